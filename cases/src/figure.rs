@@ -1,0 +1,93 @@
+//! What a case wants drawn, as data: reports draw it without knowing any solver.
+
+use serde::{Deserialize, Serialize};
+
+/// One axis of a graph.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// Quantity and unit, such as `time t (s)`.
+    pub label: String,
+    /// Logarithmic when true; points that are not positive are left out by the drawer, and counted.
+    pub logarithmic: bool,
+}
+
+/// How a curve is drawn. Colour follows the order of the curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Stroke {
+    /// A solid line.
+    Line,
+    /// A dashed line: exact answers, limits.
+    Dashed,
+    /// Separate markers: measured points.
+    Markers,
+    /// Markers joined by a line: ladders of resolution.
+    MarkedLine,
+}
+
+/// One curve of a graph.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// Name in the legend.
+    pub label: String,
+    /// How it is drawn.
+    pub stroke: Stroke,
+    /// Points (x, y) in the units of the axes.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A graph with axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Graph {
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Curves in the order in which they are drawn.
+    pub curves: Vec<Curve>,
+}
+
+/// One contact of a force plot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ForceBar {
+    /// Ends of the bar (m), grain centre to grain centre or to the wall.
+    pub from: [f64; 2],
+    /// Other end (m).
+    pub to: [f64; 2],
+    /// Magnitude of the contact force (N); the width is proportional to it.
+    pub force: f64,
+    /// Whether the contact slips.
+    pub slipping: bool,
+}
+
+/// Cundall and Strack's force plot: rectangles along contacts, width proportional to force.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ForcePlot {
+    /// Centre (m) and radius (m) of every disc, and its angle of rotation (rad).
+    pub discs: Vec<([f64; 2], f64, f64)>,
+    /// Walls as pairs of end points (m), already cut to the drawing.
+    pub walls: Vec<([f64; 2], [f64; 2])>,
+    /// The contacts.
+    pub bars: Vec<ForceBar>,
+}
+
+/// What is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Drawing {
+    /// Curves over two axes.
+    Graph(Graph),
+    /// A force plot.
+    Forces(ForcePlot),
+}
+
+/// One figure of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// File name without extension, unique within the case: letters, digits and `-`.
+    pub name: String,
+    /// Short title.
+    pub title: String,
+    /// What the reader sees and what it means, in a sentence or two.
+    pub caption: String,
+    /// The drawing.
+    pub drawing: Drawing,
+}

@@ -1,0 +1,103 @@
+//! Checks of single values, each an error that names the key.
+
+use crate::error::{SceneError, did_you_mean};
+use crate::file::SpinSpec;
+use crate::scene::Dimension;
+use crate::source::SceneSource;
+use nalgebra::Vector3;
+
+/// Checks values of one scene.
+pub(crate) struct Checker<'a> {
+    pub(crate) source: &'a SceneSource,
+    pub(crate) dimension: Dimension,
+}
+
+impl Checker<'_> {
+    pub(crate) fn error(&self, key: &str, expected: &str, found: &str) -> SceneError {
+        self.source.error(key, expected, found, None)
+    }
+
+    pub(crate) fn positive(&self, key: &str, value: f64, what: &str) -> Result<f64, SceneError> {
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            Err(self.error(key, &format!("a positive {what}"), &value.to_string()))
+        }
+    }
+
+    pub(crate) fn not_negative(&self, key: &str, value: f64, what: &str) -> Result<f64, SceneError> {
+        if value.is_finite() && value >= 0.0 {
+            Ok(value)
+        } else {
+            Err(self.error(key, &format!("a {what} of zero or more"), &value.to_string()))
+        }
+    }
+
+    pub(crate) fn finite(&self, key: &str, value: f64, what: &str) -> Result<f64, SceneError> {
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.error(key, &format!("a finite {what}"), &value.to_string()))
+        }
+    }
+
+    /// A vector with as many finite components as the scene has dimensions.
+    pub(crate) fn vector(&self, key: &str, values: &[f64]) -> Result<Vector3<f64>, SceneError> {
+        let count = self.dimension.count();
+        if values.len() != count {
+            return Err(self.error(key, &format!("{count} components"), &format!("{} in {values:?}", values.len())));
+        }
+        if values.iter().any(|value| !value.is_finite()) {
+            return Err(self.error(key, "finite components", &format!("{values:?}")));
+        }
+        Ok(Vector3::new(values[0], values[1], values.get(2).copied().unwrap_or(0.0)))
+    }
+
+    pub(crate) fn vector_or_zero(&self, key: &str, values: Option<&Vec<f64>>) -> Result<Vector3<f64>, SceneError> {
+        values.map_or(Ok(Vector3::zeros()), |values| self.vector(key, values))
+    }
+
+    pub(crate) fn spin(&self, key: &str, spin: Option<&SpinSpec>) -> Result<Vector3<f64>, SceneError> {
+        match (spin, self.dimension) {
+            (None, _) => Ok(Vector3::zeros()),
+            (Some(SpinSpec::About(rate)), Dimension::Two) => {
+                Ok(Vector3::new(0.0, 0.0, self.finite(key, *rate, "angular velocity (rad/s)")?))
+            }
+            (Some(SpinSpec::Vector(rates)), Dimension::Three) => self.vector(key, rates),
+            (Some(SpinSpec::About(rate)), Dimension::Three) => {
+                Err(self.error(key, "a vector of three numbers", &rate.to_string()))
+            }
+            (Some(SpinSpec::Vector(rates)), Dimension::Two) => {
+                Err(self.error(key, "one number, the spin about z", &format!("{rates:?}")))
+            }
+        }
+    }
+
+    /// The place of a name among those that exist.
+    pub(crate) fn place_of<'n>(
+        &self,
+        key: &str,
+        name: &str,
+        what: &str,
+        mut known: impl Iterator<Item = &'n String> + Clone,
+    ) -> Result<usize, SceneError> {
+        let names: Vec<&str> = known.clone().map(String::as_str).collect();
+        known.position(|candidate| candidate == name).ok_or_else(|| {
+            let expected = format!("{what}: one of {}", names.join(", "));
+            self.source.error(key, &expected, &format!("`{name}`"), did_you_mean(name, names.iter().copied()))
+        })
+    }
+
+    /// Exactly one of several alternatives must be given.
+    pub(crate) fn exactly_one(&self, key: &str, given: &[(&str, bool)]) -> Result<(), SceneError> {
+        let names = |wanted: bool| -> Vec<&str> {
+            given.iter().filter(|(_, is)| !wanted || *is).map(|(name, _)| *name).collect()
+        };
+        let there = names(true);
+        if there.len() == 1 {
+            return Ok(());
+        }
+        let found = if there.is_empty() { "none of them".to_owned() } else { there.join(" and ") };
+        Err(self.error(key, &format!("exactly one of {}", names(false).join(", ")), &found))
+    }
+}

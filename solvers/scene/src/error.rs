@@ -1,0 +1,38 @@
+//! What is wrong with a scene, said so that its author can mend it.
+
+use thiserror::Error;
+
+/// A scene that cannot be used: which file, where, what was expected and what stood there.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{place}: {}expected {expected}, found {found}{}", key_prefix(key), help_suffix(help.as_deref()))]
+pub struct SceneError {
+    /// File and line, or the `--set` that brought the value in.
+    pub place: String,
+    /// Dotted path of the key, empty for the file as a whole.
+    pub key: String,
+    /// What was expected.
+    pub expected: String,
+    /// What stood there.
+    pub found: String,
+    /// How to mend it, where that is known.
+    pub help: Option<String>,
+}
+
+fn key_prefix(key: &str) -> String {
+    if key.is_empty() { String::new() } else { format!("{key}: ") }
+}
+
+fn help_suffix(help: Option<&str>) -> String {
+    help.map(|help| format!(" ({help})")).unwrap_or_default()
+}
+
+/// `did you mean …?` for a mistyped word, when one of the known words is close to it.
+#[must_use]
+pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    known
+        .into_iter()
+        .map(|candidate| (strsim::jaro_winkler(word, candidate), candidate))
+        .filter(|(likeness, _)| *likeness > 0.75)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
+}

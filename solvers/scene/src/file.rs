@@ -1,0 +1,332 @@
+//! The scene file: every key a user can write, as serde reads it.
+//!
+//! Doc comments here are the documentation of the keys: `grainbench schema` prints them.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A scene: what exists and which physics acts. Numbers are SI; in two dimensions masses, forces and energies of
+/// discs are per metre of depth. Vectors have as many components as the scene has dimensions.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Scene")]
+pub struct SceneFile {
+    /// Title, for reports.
+    pub title: String,
+    /// Number of dimensions: 2 or 3.
+    pub dimension: u8,
+    /// What a grain is: `disc` (a cylinder one metre deep, m = ρπR², I = mR²/2; the default in two dimensions) or
+    /// `sphere` (m = ρ(4/3)πR³, I = 2mR²/5; in two dimensions a sphere kept in the plane).
+    #[serde(default)]
+    pub grain_shape: Option<GrainShape>,
+    /// Gravity (m/s²): a vector, or magnitude and slope. None when absent.
+    #[serde(default)]
+    pub gravity: Option<GravitySpec>,
+    /// Box of the scene (m). Needed for periodic axes and for `random` grains.
+    #[serde(default)]
+    pub domain: Option<DomainSpec>,
+    /// Global mass-proportional damping α (1/s): a force −α m v and a torque −α I ω on every grain.
+    #[serde(default)]
+    pub global_damping: f64,
+    /// Simulated time (s). Give this or `duration_cycles`.
+    #[serde(default)]
+    pub duration: Option<f64>,
+    /// Simulated time in calculation cycles. Give this or `duration`.
+    #[serde(default)]
+    pub duration_cycles: Option<u64>,
+    /// Largest initial overlap of two grains or a grain and a wall, as a fraction of the smaller radius, that is taken
+    /// for intended. Default 0.1.
+    #[serde(default = "default_largest_initial_overlap")]
+    pub largest_initial_overlap: f64,
+    /// Materials by name.
+    pub materials: IndexMap<String, MaterialSpec>,
+    /// Contact laws by name: the pair table. Every pair of materials that can meet needs one.
+    #[serde(default)]
+    pub contacts: IndexMap<String, ContactSpec>,
+    /// Groups of grains by name. Grains are numbered from 1 in the order of the file.
+    pub grains: IndexMap<String, GrainsSpec>,
+    /// Walls by name.
+    #[serde(default)]
+    pub walls: IndexMap<String, WallSpec>,
+    /// What is written down during the run.
+    #[serde(default)]
+    pub output: OutputSpec,
+    /// Named time series.
+    #[serde(default)]
+    pub probes: IndexMap<String, ProbeSpec>,
+    /// Variants: tables of overrides, laid over this file key by key.
+    #[serde(default)]
+    #[schemars(with = "IndexMap<String, serde_json::Value>")]
+    pub variants: IndexMap<String, toml::Table>,
+}
+
+const fn default_largest_initial_overlap() -> f64 {
+    0.1
+}
+
+/// What a grain is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum GrainShape {
+    /// A cylinder one metre deep that moves in the plane.
+    Disc,
+    /// A sphere.
+    Sphere,
+}
+
+/// Gravity as a vector or as a slope.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged, expecting = "a vector such as [0.0, -9.8] or a table { magnitude, slope_deg }")]
+pub enum GravitySpec {
+    /// Acceleration (m/s²).
+    Vector(Vec<f64>),
+    /// Gravity seen from a plane inclined by `slope_deg`: (g sin θ, −g cos θ), so that down the slope is +x.
+    Slope(SlopeSpec),
+}
+
+/// Gravity seen from an inclined plane.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SlopeSpec {
+    /// Magnitude g (m/s²).
+    pub magnitude: f64,
+    /// Inclination θ (degrees).
+    pub slope_deg: f64,
+}
+
+/// The box of the scene.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DomainSpec {
+    /// Lower corner (m).
+    pub low: Vec<f64>,
+    /// Upper corner (m).
+    pub high: Vec<f64>,
+    /// Which axes are periodic; none when absent.
+    #[serde(default)]
+    pub periodic: Vec<bool>,
+}
+
+/// A material.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialSpec {
+    /// Density ρ (kg/m³); not needed for materials of walls, nor where a data file gives it.
+    #[serde(default)]
+    pub density: Option<f64>,
+}
+
+/// The law of a contact between two materials: a linear spring and dashpot along the normal, an incremental spring and
+/// dashpot along the tangent, limited by Coulomb friction with cohesion, |F_s| ≤ F_n tan φ + c.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ContactSpec {
+    /// The two materials.
+    pub between: [String; 2],
+    /// Normal stiffness k_n (N/m; N/m per metre for discs).
+    pub normal_stiffness: f64,
+    /// Tangential stiffness k_s (N/m). Needed with friction or cohesion.
+    #[serde(default)]
+    pub tangential_stiffness: f64,
+    /// Coefficient of friction μ = tan φ. Give this or `friction_angle_deg`; frictionless when both are absent.
+    #[serde(default)]
+    pub friction: Option<f64>,
+    /// Angle of friction φ (degrees).
+    #[serde(default)]
+    pub friction_angle_deg: Option<f64>,
+    /// Cohesion c (N): the part of the shear strength that needs no normal force.
+    #[serde(default)]
+    pub cohesion: f64,
+    /// Stiffness-proportional contact damping β (s): dashpots c_n = β k_n and c_s = β k_s (Cundall & Strack 1979).
+    #[serde(default)]
+    pub stiffness_damping: f64,
+    /// Mass-proportional normal damping γ_n (1/s): dashpot c_n = γ_n m_eff, with m_eff = m₁m₂/(m₁+m₂), m at a wall.
+    #[serde(default)]
+    pub normal_damping: f64,
+    /// Mass-proportional tangential damping γ_t (1/s): dashpot c_s = γ_t m_eff.
+    #[serde(default)]
+    pub tangential_damping: f64,
+}
+
+/// A group of grains: exactly one of `position`, `lattice`, `random` and `file`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GrainsSpec {
+    /// Material by name.
+    pub material: String,
+    /// Radius R (m). Needed unless `random` gives a range or `file` gives diameters.
+    #[serde(default)]
+    pub radius: Option<f64>,
+    /// Velocity of every grain of the group (m/s).
+    #[serde(default)]
+    pub velocity: Option<Vec<f64>>,
+    /// Angular velocity (rad/s): one number about z in two dimensions, a vector in three.
+    #[serde(default)]
+    pub spin: Option<SpinSpec>,
+    /// A single grain at this place (m).
+    #[serde(default)]
+    pub position: Option<Vec<f64>>,
+    /// Grains on a square or simple-cubic lattice.
+    #[serde(default)]
+    pub lattice: Option<LatticeSpec>,
+    /// Grains placed at random without overlap, from a seed.
+    #[serde(default)]
+    pub random: Option<RandomSpec>,
+    /// Grains read from a LAMMPS data file (atom style sphere), plain or gzip.
+    #[serde(default)]
+    pub file: Option<FileSpec>,
+}
+
+/// Angular velocity.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged, expecting = "a number (two dimensions) or a vector of three numbers (three dimensions)")]
+pub enum SpinSpec {
+    /// About z (rad/s).
+    About(f64),
+    /// Vector (rad/s).
+    Vector(Vec<f64>),
+}
+
+/// A square or simple-cubic lattice.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LatticeSpec {
+    /// Centre of the first grain (m).
+    pub origin: Vec<f64>,
+    /// Distance between neighbours along each axis (m).
+    pub spacing: Vec<f64>,
+    /// Number of grains along each axis; x runs fastest.
+    pub count: Vec<u32>,
+}
+
+/// Grains placed at random in the domain without overlap.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RandomSpec {
+    /// How many.
+    pub count: u32,
+    /// Seed of the generator: the same seed gives the same grains on every machine.
+    pub seed: u64,
+    /// Smallest and largest radius (m), uniformly distributed; `radius` of the group when absent.
+    #[serde(default)]
+    pub radius_range: Option<[f64; 2]>,
+    /// Speed of every grain (m/s), in a random direction.
+    #[serde(default)]
+    pub speed: f64,
+}
+
+/// Grains read from a file.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FileSpec {
+    /// Path, relative to the scene file.
+    pub path: String,
+    /// Materials of atom types 1, 2, … by name; the group's material for all when absent.
+    #[serde(default)]
+    pub types: Vec<String>,
+}
+
+/// A wall: exactly one of `plane`, `segment` and `rectangle`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WallSpec {
+    /// Material by name.
+    pub material: String,
+    /// An infinite plane (a line in two dimensions), solid behind its normal.
+    #[serde(default)]
+    pub plane: Option<PlaneSpec>,
+    /// A segment between two points (m), solid on both sides; two dimensions only.
+    #[serde(default)]
+    pub segment: Option<[Vec<f64>; 2]>,
+    /// A rectangle, solid on both sides; three dimensions only.
+    #[serde(default)]
+    pub rectangle: Option<RectangleSpec>,
+    /// Prescribed motion: phases that add up.
+    #[serde(default)]
+    pub motion: Vec<MotionSpec>,
+}
+
+/// An infinite plane.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneSpec {
+    /// A point on it (m).
+    pub point: Vec<f64>,
+    /// Direction out of the solid; need not have unit length.
+    pub normal: Vec<f64>,
+}
+
+/// A rectangle: a corner and two perpendicular edges from it.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RectangleSpec {
+    /// One corner (m).
+    pub corner: Vec<f64>,
+    /// The two edges from it (m).
+    pub edges: [Vec<f64>; 2],
+}
+
+/// One phase of a wall's motion.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MotionSpec {
+    /// Velocity (m/s).
+    #[serde(default)]
+    pub velocity: Option<Vec<f64>>,
+    /// Angular velocity (rad/s) about `centre`.
+    #[serde(default)]
+    pub spin: Option<SpinSpec>,
+    /// Centre of rotation (m), which moves along with the wall. Needed with `spin`.
+    #[serde(default)]
+    pub centre: Option<Vec<f64>>,
+    /// Start (s). The beginning of the run when both starts are absent.
+    #[serde(default)]
+    pub start: Option<f64>,
+    /// Stop (s). Never when both stops are absent.
+    #[serde(default)]
+    pub stop: Option<f64>,
+    /// Start in calculation cycles.
+    #[serde(default)]
+    pub start_cycle: Option<u64>,
+    /// Stop in calculation cycles.
+    #[serde(default)]
+    pub stop_cycle: Option<u64>,
+}
+
+/// What is written down during the run.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OutputSpec {
+    /// Time between samples of the probes (s), rounded to whole cycles. Give this or `every_cycles`; 200 samples over
+    /// the run when both are absent.
+    #[serde(default)]
+    pub every: Option<f64>,
+    /// Cycles between samples of the probes.
+    #[serde(default)]
+    pub every_cycles: Option<u64>,
+    /// Number of snapshots, evenly spread, beside the first and the last. Default 0.
+    #[serde(default)]
+    pub snapshots: u32,
+}
+
+/// A named time series: exactly one of `grain`, `contact`, `wall` and `system`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProbeSpec {
+    /// A grain: the name of a group of one, or `group.k` for the k-th of a group, from 1. Columns x, y, (z), vx, …,
+    /// omega (z; or omega_x, …), angle (two dimensions).
+    #[serde(default)]
+    pub grain: Option<String>,
+    /// A contact between a grain and a grain or wall. Columns overlap, normal_force, shear_force (signed in two
+    /// dimensions), slipping (0 or 1).
+    #[serde(default)]
+    pub contact: Option<[String; 2]>,
+    /// A wall: columns force_x, … of the grains on it.
+    #[serde(default)]
+    pub wall: Option<String>,
+    /// The whole system: kinetic, rotational, elastic and gravitational energy, their sum, momentum, angular momentum
+    /// about the origin, number of contacts.
+    #[serde(default)]
+    pub system: Option<bool>,
+}

@@ -1,0 +1,125 @@
+//! Generated grains: lattices, and random placement from a seed.
+
+use crate::scene::{Dimension, Domain};
+use nalgebra::Vector3;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use std::collections::HashMap;
+
+/// Centres of a square or simple-cubic lattice (m), x fastest.
+#[must_use]
+pub fn lattice(origin: Vector3<f64>, spacing: Vector3<f64>, count: [u32; 3]) -> Vec<Vector3<f64>> {
+    let mut centres = Vec::new();
+    for k in 0..count[2] {
+        for j in 0..count[1] {
+            for i in 0..count[0] {
+                let steps = Vector3::new(f64::from(i), f64::from(j), f64::from(k));
+                centres.push(origin + spacing.component_mul(&steps));
+            }
+        }
+    }
+    centres
+}
+
+/// A grain placed at random.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Centre (m).
+    pub position: Vector3<f64>,
+    /// Radius (m).
+    pub radius: f64,
+    /// Velocity (m/s), of the given speed in a random direction.
+    pub velocity: Vector3<f64>,
+}
+
+/// Places `count` grains without overlap in `domain`, large ones first; `None` when no room is found for one in
+/// 10,000 tries. Grains keep off the faces of the domain along axes that are not periodic. The same seed gives the
+/// same grains on every machine.
+#[must_use]
+pub fn random(
+    count: u32,
+    seed: u64,
+    radii: [f64; 2],
+    speed: f64,
+    domain: &Domain,
+    dimension: Dimension,
+) -> Option<Vec<Placed>> {
+    const TRIES: u32 = 10_000;
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let mut sizes: Vec<f64> =
+        (0..count).map(|_| radii[0] + (radii[1] - radii[0]) * generator.random::<f64>()).collect();
+    sizes.sort_by(|a, b| b.total_cmp(a));
+    let cell = 2.0 * radii[1];
+    let mut taken: HashMap<[i64; 3], Vec<(Vector3<f64>, f64)>> = HashMap::new();
+    let mut placed = Vec::with_capacity(sizes.len());
+    for radius in sizes {
+        let position = (0..TRIES).find_map(|_| {
+            let centre = somewhere(&mut generator, radius, domain, dimension);
+            let free = images(centre, domain, cell).into_iter().all(|image| is_free(image, radius, cell, &taken));
+            free.then_some(centre)
+        })?;
+        taken.entry(cell_of(position, cell)).or_default().push((position, radius));
+        let velocity = direction(&mut generator, dimension) * speed;
+        placed.push(Placed { position, radius, velocity });
+    }
+    Some(placed)
+}
+
+fn somewhere(generator: &mut impl Rng, radius: f64, domain: &Domain, dimension: Dimension) -> Vector3<f64> {
+    let mut centre = Vector3::zeros();
+    for axis in 0..dimension.count() {
+        let margin = if domain.periodic[axis] { 0.0 } else { radius };
+        let (low, high) = (domain.low[axis] + margin, domain.high[axis] - margin);
+        centre[axis] = low + (high - low) * generator.random::<f64>();
+    }
+    centre
+}
+
+fn direction(generator: &mut impl Rng, dimension: Dimension) -> Vector3<f64> {
+    let angle = std::f64::consts::TAU * generator.random::<f64>();
+    match dimension {
+        Dimension::Two => Vector3::new(angle.cos(), angle.sin(), 0.0),
+        Dimension::Three => {
+            let height = 2.0 * generator.random::<f64>() - 1.0;
+            let across = (1.0 - height * height).sqrt();
+            Vector3::new(across * angle.cos(), across * angle.sin(), height)
+        }
+    }
+}
+
+fn cell_of(position: Vector3<f64>, cell: f64) -> [i64; 3] {
+    [0, 1, 2].map(|axis| (position[axis] / cell).floor() as i64)
+}
+
+/// The centre itself and its periodic images that come within a cell of the domain.
+fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>> {
+    let mut images = vec![centre];
+    for axis in 0..3 {
+        if domain.periodic[axis] {
+            let length = domain.high[axis] - domain.low[axis];
+            for image in images.clone() {
+                for shift in [-length, length] {
+                    let mut shifted = image;
+                    shifted[axis] += shift;
+                    if shifted[axis] > domain.low[axis] - cell && shifted[axis] < domain.high[axis] + cell {
+                        images.push(shifted);
+                    }
+                }
+            }
+        }
+    }
+    images
+}
+
+fn is_free(centre: Vector3<f64>, radius: f64, cell: f64, taken: &HashMap<[i64; 3], Vec<(Vector3<f64>, f64)>>) -> bool {
+    let [i, j, k] = cell_of(centre, cell);
+    (-1..=1).all(|di| {
+        (-1..=1).all(|dj| {
+            (-1..=1).all(|dk| {
+                taken
+                    .get(&[i + di, j + dj, k + dk])
+                    .is_none_or(|others| others.iter().all(|(other, size)| (centre - other).norm() >= radius + size))
+            })
+        })
+    })
+}

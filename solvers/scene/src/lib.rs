@@ -1,0 +1,24 @@
+//! Scenes of grains: what exists, which physics acts, and what a solver leaves behind.
+//!
+//! A scene names no solver. It is read from a file ([`source::SceneSource`]), made definite ([`scene::Scene`]), and
+//! given to a [`solver::Solver`], which leaves a [`record::Record`].
+
+mod check;
+pub mod effects;
+pub mod error;
+pub mod file;
+pub mod generate;
+pub mod motion;
+pub mod overlap;
+pub mod record;
+pub mod resolve;
+pub mod scene;
+pub mod solver;
+pub mod source;
+pub mod space;
+
+/// The JSON schema of scene files.
+#[must_use]
+pub fn schema() -> schemars::Schema {
+    schemars::schema_for!(file::SceneFile)
+}

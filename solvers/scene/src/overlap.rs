@@ -1,0 +1,111 @@
+//! Finds grains that overlap at the start, so that a mistyped position is an error and not an explosion.
+
+use crate::scene::{Domain, Grain, Wall, WallShape};
+use nalgebra::Vector3;
+
+/// The deepest overlap of a scene relative to the smaller radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Deepest {
+    /// Two grains, by place.
+    Grains(usize, usize, f64),
+    /// A grain and a wall, by place.
+    GrainWall(usize, usize, f64),
+}
+
+impl Deepest {
+    /// Overlap divided by the smaller radius.
+    #[must_use]
+    pub const fn ratio(&self) -> f64 {
+        match self {
+            Self::Grains(_, _, ratio) | Self::GrainWall(_, _, ratio) => *ratio,
+        }
+    }
+}
+
+/// The deepest overlap among grains, and of grains with walls, if anything overlaps.
+#[must_use]
+pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>) -> Option<Deepest> {
+    let pairs = grain_pairs(grains, domain);
+    let contacts = grains.iter().enumerate().flat_map(|(g, grain)| {
+        walls
+            .iter()
+            .enumerate()
+            .map(move |(w, wall)| Deepest::GrainWall(g, w, 1.0 - distance(grain.position, &wall.shape) / grain.radius))
+    });
+    pairs.into_iter().chain(contacts).filter(|found| found.ratio() > 0.0).max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
+}
+
+/// Sorts along x and compares only grains whose extents meet there.
+fn grain_pairs(grains: &[Grain], domain: Option<&Domain>) -> Option<Deepest> {
+    let mut order: Vec<usize> = (0..grains.len()).collect();
+    order.sort_by(|&a, &b| {
+        let left = |g: &Grain| g.position.x - g.radius;
+        left(&grains[a]).total_cmp(&left(&grains[b]))
+    });
+    let mut worst: Option<Deepest> = None;
+    let mut consider = |a: usize, b: usize| {
+        let between = nearest_image(grains[b].position - grains[a].position, domain);
+        let (ra, rb) = (grains[a].radius, grains[b].radius);
+        let ratio = (ra + rb - between.norm()) / ra.min(rb);
+        if ratio > worst.map_or(0.0, |deepest| deepest.ratio()) {
+            worst = Some(Deepest::Grains(a.min(b), a.max(b), ratio));
+        }
+    };
+    let wrap = domain.filter(|domain| domain.periodic[0]).map(|domain| domain.high.x - domain.low.x);
+    let largest = grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
+    for (at, &a) in order.iter().enumerate() {
+        let right = grains[a].position.x + grains[a].radius;
+        order[at + 1..]
+            .iter()
+            .take_while(|&&b| grains[b].position.x - grains[b].radius < right)
+            .for_each(|&b| consider(a, b));
+        // Across a periodic face: the first grains of the order come again one length to the right.
+        if let Some(length) =
+            wrap.filter(|length| right + largest > grains[order[0]].position.x + length - 2.0 * largest)
+        {
+            order
+                .iter()
+                .take_while(|&&b| grains[b].position.x - grains[b].radius + length < right)
+                .filter(|&&b| b != a)
+                .for_each(|&b| consider(a, b));
+        }
+    }
+    worst
+}
+
+fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
+    if let Some(domain) = domain {
+        for axis in 0..3 {
+            if domain.periodic[axis] {
+                let length = domain.high[axis] - domain.low[axis];
+                between[axis] -= length * (between[axis] / length).round();
+            }
+        }
+    }
+    between
+}
+
+/// Distance from a point to a wall at the start (m); negative inside the solid of a plane.
+#[must_use]
+pub fn distance(point: Vector3<f64>, shape: &WallShape) -> f64 {
+    match shape {
+        WallShape::Plane { point: on, normal } => (point - on).dot(normal),
+        WallShape::Segment { ends } => (point - nearest_on_segment(point, ends)).norm(),
+        WallShape::Rectangle { corner, edges } => (point - nearest_on_rectangle(point, corner, edges)).norm(),
+    }
+}
+
+/// The point of a segment that is nearest to `point`.
+#[must_use]
+pub fn nearest_on_segment(point: Vector3<f64>, ends: &[Vector3<f64>; 2]) -> Vector3<f64> {
+    let along = ends[1] - ends[0];
+    ends[0] + along * ((point - ends[0]).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
+}
+
+/// The point of a rectangle that is nearest to `point`.
+#[must_use]
+pub fn nearest_on_rectangle(point: Vector3<f64>, corner: &Vector3<f64>, edges: &[Vector3<f64>; 2]) -> Vector3<f64> {
+    edges
+        .iter()
+        .fold(*corner, |at, edge| at + edge * ((point - corner).dot(edge) / edge.norm_squared()).clamp(0.0, 1.0))
+}

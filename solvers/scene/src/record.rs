@@ -1,0 +1,171 @@
+//! What a run leaves behind: time series, snapshots, cost, provenance.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// One column of a time series.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Column {
+    /// Name, such as `disc.x` or `wall-corner.normal_force`.
+    pub name: String,
+    /// SI unit, such as `m/s`; `1` for a pure number.
+    pub unit: String,
+}
+
+/// Time series of all probes of a scene, sampled together.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Series {
+    /// Step (calculation cycle) of every sample.
+    pub step: Vec<u64>,
+    /// Time of every sample (s).
+    pub time: Vec<f64>,
+    /// The columns.
+    pub columns: Vec<Column>,
+    /// `values[c][k]` is column `c` at sample `k`.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl Series {
+    /// The values of a column, if there is one of that name.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let at = self.columns.iter().position(|column| column.name == name)?;
+        Some(&self.values[at])
+    }
+}
+
+/// One grain as a snapshot shows it. In two dimensions z components are zero and spin is along z.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GrainState {
+    /// Identity, from 1, the same in every snapshot.
+    pub id: u32,
+    /// Place of its material in the scene, from 0.
+    pub material: u16,
+    /// Radius (m).
+    pub radius: f64,
+    /// Mass (kg; per metre of depth for discs).
+    pub mass: f64,
+    /// Centre (m), inside the domain along periodic axes.
+    pub position: Vector3<f64>,
+    /// Velocity at the time of the snapshot (m/s).
+    pub velocity: Vector3<f64>,
+    /// Angular velocity (rad/s).
+    pub spin: Vector3<f64>,
+    /// Rotation since the start (rad), about z; zero in three dimensions.
+    pub angle: f64,
+    /// Sum of all forces, gravity excluded (N; N/m for discs).
+    pub force: Vector3<f64>,
+    /// Sum of all torques (N m; N for discs).
+    pub torque: Vector3<f64>,
+}
+
+/// The other side of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Partner {
+    /// A grain, by id.
+    Grain(u32),
+    /// A wall, by its place in the scene, from 0.
+    Wall(u16),
+}
+
+/// One contact as a snapshot shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactState {
+    /// The grain, by id.
+    pub grain: u32,
+    /// What it touches.
+    pub partner: Partner,
+    /// Contact point (m), halfway through the overlap.
+    pub point: Vector3<f64>,
+    /// Unit vector from the grain to its partner.
+    pub normal: Vector3<f64>,
+    /// Overlap (m), positive while touching.
+    pub overlap: f64,
+    /// Normal force, dashpot included (N), positive when it pushes apart.
+    pub normal_force: f64,
+    /// Tangential force on the grain, dashpot included (N).
+    pub shear_force: Vector3<f64>,
+    /// Whether the Coulomb limit was reached in the last step.
+    pub slipping: bool,
+}
+
+/// One wall as a snapshot shows it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WallState {
+    /// Name in the scene.
+    pub name: String,
+    /// Corner points (m): two for a segment, four for a rectangle; point and normal for a plane.
+    pub corners: Vec<Vector3<f64>>,
+    /// True when `corners` is a point and the unit normal of an infinite plane.
+    pub infinite: bool,
+    /// Force of the grains on the wall (N; N/m for discs).
+    pub force: Vector3<f64>,
+}
+
+/// Everything at one time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// Step (calculation cycle).
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// Corners of the domain (m), for drawing and for dump headers.
+    pub bounds: (Vector3<f64>, Vector3<f64>),
+    /// Which axes are periodic.
+    pub periodic: [bool; 3],
+    /// Grains in order of id.
+    pub grains: Vec<GrainState>,
+    /// Contacts, in order of grain id.
+    pub contacts: Vec<ContactState>,
+    /// Walls in the order of the scene.
+    pub walls: Vec<WallState>,
+}
+
+/// What a run cost: times depend on the machine, counts do not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps times grains.
+    pub particle_steps: u64,
+    /// Contact laws evaluated.
+    pub contact_evaluations: u64,
+    /// Listed pairs tested for touching.
+    pub pair_tests: u64,
+    /// Neighbour lists built.
+    pub neighbour_builds: u64,
+    /// Wall-clock time of the stepping loop (s).
+    pub wall_seconds: f64,
+}
+
+/// Where a record comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Title of the scene.
+    pub scene: String,
+    /// Solver and convention, such as `dem:lammps`.
+    pub solver: String,
+    /// Resolution in words, such as `dt=.1`.
+    pub resolution: String,
+    /// Time step (s).
+    pub time_step: f64,
+    /// Critical time step `2√(m_min/k_max)` (s); absent where the method has none.
+    pub critical_time_step: Option<f64>,
+    /// Physics that the scene called for, in words.
+    pub effects: Vec<String>,
+    /// Solver options in words.
+    pub options: Vec<String>,
+}
+
+/// What a run leaves behind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Where it comes from.
+    pub provenance: Provenance,
+    /// Time series of the scene's probes.
+    pub series: Series,
+    /// Snapshots in order of time; the last one is the end of the run.
+    pub snapshots: Vec<Snapshot>,
+    /// What it cost.
+    pub cost: Cost,
+}

@@ -1,0 +1,261 @@
+//! A scene made definite: every grain, wall and law, checked, in SI. Solvers read this and nothing else.
+
+use crate::file::GrainShape;
+use crate::motion::Motion;
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// Number of dimensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// The plane (x, y).
+    Two,
+    /// Space.
+    Three,
+}
+
+impl Dimension {
+    /// 2 or 3.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
+}
+
+impl GrainShape {
+    /// Mass of a grain of this shape: discs per metre of depth (kg/m), spheres (kg).
+    #[must_use]
+    pub fn mass(self, radius: f64, density: f64) -> f64 {
+        match self {
+            Self::Disc => density * PI * radius * radius,
+            Self::Sphere => density * (4.0 / 3.0) * PI * radius.powi(3),
+        }
+    }
+
+    /// I/(mR²): 1/2 for a disc, 2/5 for a sphere.
+    #[must_use]
+    pub const fn inertia_factor(self) -> f64 {
+        match self {
+            Self::Disc => 0.5,
+            Self::Sphere => 0.4,
+        }
+    }
+}
+
+/// One grain at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grain {
+    /// Place in [`Scene::materials`].
+    pub material: u16,
+    /// Radius R (m).
+    pub radius: f64,
+    /// Mass m (kg; per metre for discs).
+    pub mass: f64,
+    /// Moment of inertia I (kg m²).
+    pub inertia: f64,
+    /// Centre (m).
+    pub position: Vector3<f64>,
+    /// Velocity (m/s).
+    pub velocity: Vector3<f64>,
+    /// Angular velocity (rad/s).
+    pub spin: Vector3<f64>,
+}
+
+/// The law of a contact between two materials; see [`crate::file::ContactSpec`] for the meaning of each number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactLaw {
+    /// Normal stiffness k_n (N/m).
+    pub normal_stiffness: f64,
+    /// Tangential stiffness k_s (N/m).
+    pub tangential_stiffness: f64,
+    /// Friction tan φ.
+    pub friction: f64,
+    /// Cohesion c (N).
+    pub cohesion: f64,
+    /// Stiffness-proportional damping β (s).
+    pub stiffness_damping: f64,
+    /// Mass-proportional normal damping γ_n (1/s).
+    pub normal_damping: f64,
+    /// Mass-proportional tangential damping γ_t (1/s).
+    pub tangential_damping: f64,
+}
+
+impl ContactLaw {
+    /// Whether a tangential force can act: it needs strength to be limited to.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        self.friction > 0.0 || self.cohesion > 0.0
+    }
+
+    /// Whether a dashpot acts along the normal or, with friction, along the tangent.
+    #[must_use]
+    pub fn has_damping(&self) -> bool {
+        let tangential = self.has_friction() && self.tangential_damping != 0.0;
+        self.stiffness_damping != 0.0 || self.normal_damping != 0.0 || tangential
+    }
+}
+
+/// Shape of a wall at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WallShape {
+    /// Everything behind the plane through `point` with unit `normal` is solid.
+    Plane {
+        /// A point on it (m).
+        point: Vector3<f64>,
+        /// Unit vector out of the solid.
+        normal: Vector3<f64>,
+    },
+    /// The segment between two points (m), in the plane.
+    Segment {
+        /// The ends.
+        ends: [Vector3<f64>; 2],
+    },
+    /// A rectangle in space.
+    Rectangle {
+        /// One corner (m).
+        corner: Vector3<f64>,
+        /// The perpendicular edges from it (m).
+        edges: [Vector3<f64>; 2],
+    },
+}
+
+/// A wall with its prescribed motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wall {
+    /// Name in the file.
+    pub name: String,
+    /// Place in [`Scene::materials`].
+    pub material: u16,
+    /// Shape at the start.
+    pub shape: WallShape,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+/// How long the run lasts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Duration {
+    /// A time (s).
+    Seconds(f64),
+    /// A number of calculation cycles.
+    Cycles(u64),
+}
+
+/// How often probes are sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sampling {
+    /// Every so many seconds, rounded to whole cycles.
+    Seconds(f64),
+    /// Every so many cycles.
+    Cycles(u64),
+    /// So many samples over the run.
+    Count(u64),
+}
+
+/// What a probe looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProbeTarget {
+    /// A grain, by place in [`Scene::grains`].
+    Grain(usize),
+    /// A contact between two grains.
+    Pair(usize, usize),
+    /// A contact between a grain and a wall, by place in [`Scene::walls`].
+    GrainWall(usize, usize),
+    /// A wall.
+    Wall(usize),
+    /// Everything.
+    System,
+}
+
+/// A named time series.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Probe {
+    /// Name; columns are called `name.quantity`.
+    pub name: String,
+    /// What it looks at.
+    pub target: ProbeTarget,
+}
+
+/// The box of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// Lower corner (m); z is −0.5 in two dimensions.
+    pub low: Vector3<f64>,
+    /// Upper corner (m); z is 0.5 in two dimensions.
+    pub high: Vector3<f64>,
+    /// Which axes are periodic.
+    pub periodic: [bool; 3],
+}
+
+/// A scene, checked and complete.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Title, for reports.
+    pub title: String,
+    /// Number of dimensions.
+    pub dimension: Dimension,
+    /// What a grain is.
+    pub grain_shape: GrainShape,
+    /// Gravity (m/s²).
+    pub gravity: Vector3<f64>,
+    /// The box, where one is given.
+    pub domain: Option<Domain>,
+    /// Global mass-proportional damping α (1/s).
+    pub global_damping: f64,
+    /// How long the run lasts.
+    pub duration: Duration,
+    /// Names of the materials.
+    pub materials: Vec<String>,
+    /// The pair table: [`Scene::law`] reads it.
+    pub laws: Vec<Option<ContactLaw>>,
+    /// Grains; the id of a grain is its place here plus one.
+    pub grains: Vec<Grain>,
+    /// Walls.
+    pub walls: Vec<Wall>,
+    /// How often probes are sampled.
+    pub sampling: Sampling,
+    /// Number of snapshots between the first and the last.
+    pub snapshots: u32,
+    /// Named time series.
+    pub probes: Vec<Probe>,
+}
+
+impl Scene {
+    /// The law between two materials, if the scene has one.
+    #[must_use]
+    pub fn law(&self, a: u16, b: u16) -> Option<&ContactLaw> {
+        self.laws[usize::from(a) * self.materials.len() + usize::from(b)].as_ref()
+    }
+
+    /// Applies a change to every law of the pair table.
+    pub fn change_laws(&mut self, change: impl Fn(&mut ContactLaw)) {
+        self.laws.iter_mut().flatten().for_each(change);
+    }
+
+    /// Whether an axis (0, 1, 2) is periodic.
+    #[must_use]
+    pub fn is_periodic(&self) -> bool {
+        self.domain.is_some_and(|domain| domain.periodic.contains(&true))
+    }
+
+    /// Critical time step `2√(m_min/k_max)` of a mass on a spring to ground (s), over the contacts that can occur:
+    /// the smallest mass and the largest stiffness, normal or tangential (Cundall & Strack 1979, p. 53). It is an
+    /// estimate: assemblies need a fraction of it, which users choose.
+    #[must_use]
+    pub fn critical_time_step(&self) -> f64 {
+        let mass = self.grains.iter().map(|grain| grain.mass).fold(f64::INFINITY, f64::min);
+        let stiffness = self
+            .laws
+            .iter()
+            .flatten()
+            .map(|law| {
+                let tangential = if law.has_friction() { law.tangential_stiffness } else { 0.0 };
+                law.normal_stiffness.max(tangential)
+            })
+            .fold(0.0, f64::max);
+        2.0 * (mass / stiffness).sqrt()
+    }
+}

@@ -1,0 +1,124 @@
+//! What a solver is: something that takes a scene and a resolution and leaves a record.
+
+use crate::record::Record;
+use crate::scene::Scene;
+use nalgebra::Vector3;
+use std::fmt;
+use thiserror::Error;
+
+/// How finely a solver works: one rung of a ladder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resolution {
+    /// Time step as a fraction of the critical one, `2√(m_min/k_max)`. Where the scene lasts a number of seconds the
+    /// step is shortened so that a whole number of steps fits.
+    CriticalFraction(f64),
+    /// Time step (s), taken as it is.
+    TimeStep(f64),
+}
+
+impl fmt::Display for Resolution {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::CriticalFraction(fraction) => write!(formatter, "dt={fraction}"),
+            Self::TimeStep(step) => write!(formatter, "dt={step} s"),
+        }
+    }
+}
+
+/// Why a simulation broke.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cause {
+    /// A position or velocity is not a number or infinite.
+    NotFinite,
+    /// A grain moved farther than its radius in one step.
+    Runaway {
+        /// Distance moved in the step (m).
+        moved: f64,
+        /// Its radius (m).
+        radius: f64,
+    },
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite => write!(formatter, "its state is not finite"),
+            Self::Runaway { moved, radius } => {
+                write!(formatter, "it moved {moved:.3e} m in one step, more than its radius {radius:.3e} m")
+            }
+        }
+    }
+}
+
+/// A simulation that broke: when, where and why, and what would have been stable.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "the simulation broke at t = {time:.6e} s (step {step}): grain {grain} at ({:.4e}, {:.4e}, {:.4e}) m: {cause}; the time step \
+     was {time_step:.4e} s, {:.3} of the critical {critical:.4e} s; {advice}",
+    position.x, position.y, position.z, time_step / critical
+)]
+pub struct Broken {
+    /// Time (s).
+    pub time: f64,
+    /// Step.
+    pub step: u64,
+    /// Grain, by id from 1.
+    pub grain: u32,
+    /// Where it was last (m).
+    pub position: Vector3<f64>,
+    /// Why.
+    pub cause: Cause,
+    /// Time step (s).
+    pub time_step: f64,
+    /// Critical time step (s).
+    pub critical: f64,
+    /// What would have been stable.
+    pub advice: String,
+}
+
+/// Why a solver left no record.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RunError {
+    /// The solver cannot express this scene.
+    #[error("{solver} cannot run this scene: {reason}")]
+    Unsupported {
+        /// Which solver.
+        solver: String,
+        /// What it lacks.
+        reason: String,
+    },
+    /// The resolution makes no sense for this solver.
+    #[error("{solver}: {reason}")]
+    Resolution {
+        /// Which solver.
+        solver: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The simulation broke.
+    #[error(transparent)]
+    Broken(#[from] Box<Broken>),
+}
+
+/// Someone who wants to know how far a run is.
+pub trait Watch {
+    /// Called now and then with the number of steps done and to do.
+    fn progress(&mut self, done: u64, total: u64);
+}
+
+/// Nobody watches.
+impl Watch for () {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+}
+
+/// A solver, ours or anyone's.
+pub trait Solver: Send + Sync {
+    /// Name and convention, such as `dem:lammps`.
+    fn name(&self) -> String;
+
+    /// Runs a scene.
+    ///
+    /// # Errors
+    /// When the scene cannot be expressed, the resolution makes no sense, or the simulation breaks.
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError>;
+}

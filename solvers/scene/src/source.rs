@@ -1,0 +1,251 @@
+//! The text of a scene: parsing, variants, overrides, and finding the line of a key again.
+
+use crate::error::{SceneError, did_you_mean};
+use crate::file::SceneFile;
+use std::path::{Path, PathBuf};
+
+/// The text of a scene file and where it came from.
+#[derive(Clone, Debug)]
+pub struct SceneSource {
+    /// How errors call the file.
+    pub name: String,
+    /// Directory that paths in the file are relative to.
+    pub directory: PathBuf,
+    text: String,
+    variant: Option<String>,
+    overrides: Vec<(String, String)>,
+}
+
+impl SceneSource {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is not UTF-8.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let name = path.display().to_string();
+        let bytes = std::fs::read(path).map_err(|cause| SceneError {
+            place: name.clone(),
+            key: String::new(),
+            expected: "a readable scene file".to_owned(),
+            found: cause.to_string(),
+            help: None,
+        })?;
+        let text = String::from_utf8(bytes).map_err(|cause| SceneError {
+            place: name.clone(),
+            key: String::new(),
+            expected: "UTF-8 text".to_owned(),
+            found: format!("other bytes after byte {}", cause.utf8_error().valid_up_to()),
+            help: None,
+        })?;
+        let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        Ok(Self { name, directory, text, variant: None, overrides: Vec::new() })
+    }
+
+    /// A scene from text that is already at hand.
+    #[must_use]
+    pub fn from_text(name: &str, directory: &Path, text: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            directory: directory.to_path_buf(),
+            text: text.to_owned(),
+            variant: None,
+            overrides: Vec::new(),
+        }
+    }
+
+    /// Takes a variant of the scene instead of the plain one.
+    #[must_use]
+    pub fn variant(mut self, name: &str) -> Self {
+        self.variant = Some(name.to_owned());
+        self
+    }
+
+    /// Overrides one key: a dotted path and a TOML value; text that is no TOML value is taken as a string.
+    #[must_use]
+    pub fn set(mut self, key: &str, value: &str) -> Self {
+        self.overrides.push((key.to_owned(), value.to_owned()));
+        self
+    }
+
+    /// Names of the variants in the file, in its order.
+    ///
+    /// # Errors
+    /// When the text is not TOML.
+    pub fn variants(&self) -> Result<Vec<String>, SceneError> {
+        let table = self.parse()?;
+        Ok(variant_tables(&table).map(|tables| tables.keys().cloned().collect()).unwrap_or_default())
+    }
+
+    /// The file with its variant and overrides laid over it.
+    ///
+    /// # Errors
+    /// When the text is not TOML, the variant is unknown, or a key is unknown, missing or of the wrong type.
+    pub fn scene_file(&self) -> Result<SceneFile, SceneError> {
+        let mut table = self.parse()?;
+        if let Some(variant) = &self.variant {
+            let overlay = variant_tables(&table).and_then(|tables| tables.get(variant)).cloned();
+            match overlay {
+                Some(toml::Value::Table(overlay)) => merge(&mut table, overlay),
+                Some(other) => {
+                    let key = format!("variants.{variant}");
+                    return Err(self.error(&key, "a table of overrides", other.type_str(), None));
+                }
+                None => {
+                    let names = self.variants()?;
+                    let help = did_you_mean(variant, names.iter().map(String::as_str));
+                    return Err(self.error(
+                        "variants",
+                        &format!("one of the variants {}", names.join(", ")),
+                        &format!("`{variant}`"),
+                        help,
+                    ));
+                }
+            }
+        }
+        table.remove("variants");
+        for (key, value) in &self.overrides {
+            self.lay_over(&mut table, key, value)?;
+        }
+        serde_path_to_error::deserialize(toml::Value::Table(table)).map_err(|error| {
+            let path = error.path().to_string();
+            self.explain(&path, error.inner().message())
+        })
+    }
+
+    /// An error about a key of this scene.
+    #[must_use]
+    pub fn error(&self, key: &str, expected: &str, found: &str, help: Option<String>) -> SceneError {
+        SceneError {
+            place: self.place(key),
+            key: key.to_owned(),
+            expected: expected.to_owned(),
+            found: found.to_owned(),
+            help,
+        }
+    }
+
+    fn parse(&self) -> Result<toml::Table, SceneError> {
+        self.text.parse::<toml::Table>().map_err(|error| {
+            let line = error.span().map_or(1, |span| line_of(&self.text, span.start));
+            SceneError {
+                place: format!("{}:{line}", self.name),
+                key: String::new(),
+                expected: "TOML".to_owned(),
+                found: error.message().replace('\n', ", "),
+                help: None,
+            }
+        })
+    }
+
+    fn lay_over(&self, table: &mut toml::Table, key: &str, value: &str) -> Result<(), SceneError> {
+        let parsed = format!("value = {value}")
+            .parse::<toml::Table>()
+            .ok()
+            .and_then(|mut table| table.remove("value"))
+            .unwrap_or_else(|| toml::Value::String(value.to_owned()));
+        let mut nested = parsed;
+        for part in key.rsplit('.') {
+            if part.is_empty() {
+                return Err(self.error(key, "a dotted path of keys", &format!("`{key}`"), None));
+            }
+            nested = toml::Value::Table([(part.to_owned(), nested)].into_iter().collect());
+        }
+        if let toml::Value::Table(overlay) = nested {
+            merge(table, overlay);
+        }
+        Ok(())
+    }
+
+    /// Where a key was written: the `--set`, or file and line of the key or of its nearest parent.
+    fn place(&self, key: &str) -> String {
+        if let Some((set, value)) = self.overrides.iter().rev().find(|(set, _)| within(key, set)) {
+            return format!("--set {set}={value}");
+        }
+        let variant = self.variant.as_ref().map(|variant| format!("variants.{variant}.{key}"));
+        let line = variant
+            .and_then(|path| self.line(&path, true))
+            .or_else(|| self.line(key, true))
+            .or_else(|| self.line(key, false));
+        line.map_or_else(|| self.name.clone(), |line| format!("{}:{line}", self.name))
+    }
+
+    /// Line of a key; with `exact` only if the whole path is there, else of the deepest part that is.
+    fn line(&self, key: &str, exact: bool) -> Option<usize> {
+        let document = toml_edit::Document::parse(self.text.as_str()).ok()?;
+        let mut item: &dyn toml_edit::TableLike = document.as_table();
+        let mut line = None;
+        let parts: Vec<&str> = key.split('.').collect();
+        for (depth, part) in parts.iter().enumerate() {
+            let name = part.split('[').next().unwrap_or(part);
+            let Some((found, value)) = item.get_key_value(name) else {
+                return if exact { None } else { line };
+            };
+            let span = found.span().or_else(|| value.span());
+            line = span.map(|span| line_of(&self.text, span.start)).or(line);
+            match value.as_table_like() {
+                Some(table) => item = table,
+                None => return if exact && depth + 1 < parts.len() && !part.contains('[') { None } else { line },
+            }
+        }
+        line
+    }
+
+    /// Turns serde's words into ours.
+    fn explain(&self, path: &str, message: &str) -> SceneError {
+        let message = message.trim();
+        let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+        let path = if path == "." { "" } else { path };
+        if message.starts_with("unknown field") || message.starts_with("unknown variant") {
+            let word = quoted.first().copied().unwrap_or_default();
+            let known = quoted.get(1..).unwrap_or_default();
+            let key = match (message.starts_with("unknown field"), path.is_empty()) {
+                (false, _) => path.to_owned(),
+                (true, true) => word.to_owned(),
+                (true, false) if path.ends_with(&format!(".{word}")) || path == word => path.to_owned(),
+                (true, false) => format!("{path}.{word}"),
+            };
+            let kind = if message.starts_with("unknown field") { "a key" } else { "one" };
+            let expected = format!("{kind} of {}", known.join(", "));
+            return self.error(&key, &expected, &format!("`{word}`"), did_you_mean(word, known.iter().copied()));
+        }
+        if message.starts_with("missing field") {
+            let word = quoted.first().copied().unwrap_or_default();
+            let key = if path.is_empty() { word.to_owned() } else { format!("{path}.{word}") };
+            return self.error(&key, &format!("the key `{word}`"), "none", None);
+        }
+        if let Some((found, expected)) = message.split_once(", expected ") {
+            let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
+            let expected = match expected {
+                "f64" => "a number",
+                "u8" | "u32" | "u64" => "a whole number",
+                other => other,
+            };
+            return self.error(path, expected, found, None);
+        }
+        self.error(path, message, "something else", None)
+    }
+}
+
+/// Whether `key` is `set` or lies below it.
+fn within(key: &str, set: &str) -> bool {
+    key.strip_prefix(set).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+fn variant_tables(table: &toml::Table) -> Option<&toml::Table> {
+    table.get("variants").and_then(toml::Value::as_table)
+}
+
+fn merge(base: &mut toml::Table, overlay: toml::Table) {
+    for (key, value) in overlay {
+        match (base.get_mut(&key), value) {
+            (Some(toml::Value::Table(below)), toml::Value::Table(above)) => merge(below, above),
+            (_, value) => {
+                base.insert(key, value);
+            }
+        }
+    }
+}
+
+fn line_of(text: &str, offset: usize) -> usize {
+    text.as_bytes().iter().take(offset).filter(|byte| **byte == b'\n').count() + 1
+}

@@ -1,0 +1,245 @@
+//! Two and three dimensions from one source.
+//!
+//! Everything that differs between the plane and space is a method of [`Space`]; solvers are generic over it and
+//! carry no feature flag and no twin file.
+
+use nalgebra::{Vector2, Vector3};
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Plane {}
+    impl Sealed for super::Solid {}
+}
+
+/// What solvers ask of a vector, a spin or a tangential displacement.
+pub trait Linear:
+    Copy
+    + Debug
+    + PartialEq
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<f64, Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + Send
+    + Sync
+    + 'static
+{
+}
+
+impl<T> Linear for T where
+    T: Copy
+        + Debug
+        + PartialEq
+        + Add<Output = Self>
+        + Sub<Output = Self>
+        + Mul<f64, Output = Self>
+        + Neg<Output = Self>
+        + AddAssign
+        + SubAssign
+        + Send
+        + Sync
+        + 'static
+{
+}
+
+/// A space of two or three dimensions.
+///
+/// The unit normal `e` of a contact points from the first grain to the second. In the plane the tangential direction
+/// is `t = (e₂, −e₁)`, the clockwise perpendicular (Cundall & Strack 1979, eq. 10), and a tangential quantity is the
+/// scalar along it, so that it turns with the contact. In space it is a vector perpendicular to `e`.
+pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
+    /// Number of dimensions.
+    const DIMENSION: usize;
+    /// Position, velocity, force.
+    type Vector: Linear;
+    /// Angular velocity, torque: a scalar in the plane.
+    type Spin: Linear;
+    /// Tangential displacement or force at a contact: a scalar in the plane.
+    type Tangent: Linear;
+    /// The vector zero.
+    const ORIGIN: Self::Vector;
+    /// The spin zero.
+    const NO_SPIN: Self::Spin;
+    /// The tangential displacement zero.
+    const NO_TANGENT: Self::Tangent;
+
+    /// Scalar product.
+    fn dot(a: Self::Vector, b: Self::Vector) -> f64;
+    /// `r × F`.
+    fn torque(arm: Self::Vector, force: Self::Vector) -> Self::Spin;
+    /// `ω × r`.
+    fn turn(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
+    /// Tangential part of `velocity + rolling × normal`: the slip velocity at a contact when `velocity` is that of
+    /// the first centre relative to the second and `rolling` is `ω₁a₁ + ω₂a₂` with torque arms `a`.
+    fn slip_velocity(velocity: Self::Vector, rolling: Self::Spin, normal: Self::Vector) -> Self::Tangent;
+    /// A stored tangential displacement, carried along with a contact that has turned to `normal`: in the plane it
+    /// turns with it; in space its normal part is taken off (as LAMMPS and LIGGGHTS do).
+    fn carry(displacement: Self::Tangent, normal: Self::Vector) -> Self::Tangent;
+    /// A tangential quantity of the same contact with the roles of first and second grain exchanged.
+    fn exchange(tangent: Self::Tangent) -> Self::Tangent;
+    /// A tangential quantity as a vector.
+    fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
+    /// Squared length of a tangential quantity.
+    fn tangent_squared(tangent: Self::Tangent) -> f64;
+    /// Product of two spins, for rotational energy.
+    fn spin_dot(a: Self::Spin, b: Self::Spin) -> f64;
+    /// The vector in three dimensions, z = 0 for the plane.
+    fn embed(vector: Self::Vector) -> Vector3<f64>;
+    /// The vector without what this space does not have.
+    fn restrict(vector: Vector3<f64>) -> Self::Vector;
+    /// The spin in three dimensions, along z for the plane.
+    fn embed_spin(spin: Self::Spin) -> Vector3<f64>;
+    /// The spin without what this space does not have.
+    fn restrict_spin(spin: Vector3<f64>) -> Self::Spin;
+}
+
+/// The plane: vectors (x, y), spin about z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plane;
+
+/// Space of three dimensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Solid;
+
+impl Space for Plane {
+    const DIMENSION: usize = 2;
+    type Vector = Vector2<f64>;
+    type Spin = f64;
+    type Tangent = f64;
+    const ORIGIN: Vector2<f64> = Vector2::new(0.0, 0.0);
+    const NO_SPIN: f64 = 0.0;
+    const NO_TANGENT: f64 = 0.0;
+
+    #[inline(always)]
+    fn dot(a: Vector2<f64>, b: Vector2<f64>) -> f64 {
+        a.x * b.x + a.y * b.y
+    }
+    #[inline(always)]
+    fn torque(arm: Vector2<f64>, force: Vector2<f64>) -> f64 {
+        arm.x * force.y - arm.y * force.x
+    }
+    #[inline(always)]
+    fn turn(spin: f64, arm: Vector2<f64>) -> Vector2<f64> {
+        Vector2::new(-spin * arm.y, spin * arm.x)
+    }
+    #[inline(always)]
+    fn slip_velocity(velocity: Vector2<f64>, rolling: f64, normal: Vector2<f64>) -> f64 {
+        velocity.x * normal.y - velocity.y * normal.x - rolling
+    }
+    #[inline(always)]
+    fn carry(displacement: f64, _normal: Vector2<f64>) -> f64 {
+        displacement
+    }
+    #[inline(always)]
+    fn exchange(tangent: f64) -> f64 {
+        tangent
+    }
+    #[inline(always)]
+    fn along(tangent: f64, normal: Vector2<f64>) -> Vector2<f64> {
+        Vector2::new(tangent * normal.y, -tangent * normal.x)
+    }
+    #[inline(always)]
+    fn tangent_squared(tangent: f64) -> f64 {
+        tangent * tangent
+    }
+    #[inline(always)]
+    fn spin_dot(a: f64, b: f64) -> f64 {
+        a * b
+    }
+    fn embed(vector: Vector2<f64>) -> Vector3<f64> {
+        Vector3::new(vector.x, vector.y, 0.0)
+    }
+    fn restrict(vector: Vector3<f64>) -> Vector2<f64> {
+        vector.xy()
+    }
+    fn embed_spin(spin: f64) -> Vector3<f64> {
+        Vector3::new(0.0, 0.0, spin)
+    }
+    fn restrict_spin(spin: Vector3<f64>) -> f64 {
+        spin.z
+    }
+}
+
+impl Space for Solid {
+    const DIMENSION: usize = 3;
+    type Vector = Vector3<f64>;
+    type Spin = Vector3<f64>;
+    type Tangent = Vector3<f64>;
+    const ORIGIN: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+    const NO_SPIN: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+    const NO_TANGENT: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+
+    #[inline(always)]
+    fn dot(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
+        a.x * b.x + a.y * b.y + a.z * b.z
+    }
+    #[inline(always)]
+    fn torque(arm: Vector3<f64>, force: Vector3<f64>) -> Vector3<f64> {
+        arm.cross(&force)
+    }
+    #[inline(always)]
+    fn turn(spin: Vector3<f64>, arm: Vector3<f64>) -> Vector3<f64> {
+        spin.cross(&arm)
+    }
+    #[inline(always)]
+    fn slip_velocity(velocity: Vector3<f64>, rolling: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+        velocity - normal * Self::dot(velocity, normal) + rolling.cross(&normal)
+    }
+    #[inline(always)]
+    fn carry(displacement: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+        displacement - normal * Self::dot(displacement, normal)
+    }
+    #[inline(always)]
+    fn exchange(tangent: Vector3<f64>) -> Vector3<f64> {
+        -tangent
+    }
+    #[inline(always)]
+    fn along(tangent: Vector3<f64>, _normal: Vector3<f64>) -> Vector3<f64> {
+        tangent
+    }
+    #[inline(always)]
+    fn tangent_squared(tangent: Vector3<f64>) -> f64 {
+        Self::dot(tangent, tangent)
+    }
+    #[inline(always)]
+    fn spin_dot(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
+        Self::dot(a, b)
+    }
+    fn embed(vector: Vector3<f64>) -> Vector3<f64> {
+        vector
+    }
+    fn restrict(vector: Vector3<f64>) -> Vector3<f64> {
+        vector
+    }
+    fn embed_spin(spin: Vector3<f64>) -> Vector3<f64> {
+        spin
+    }
+    fn restrict_spin(spin: Vector3<f64>) -> Vector3<f64> {
+        spin
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both spaces must give the same slip, force and torque for the same planar contact.
+    #[test]
+    fn plane_agrees_with_solid() {
+        let (angle, velocity, rolling, displacement) = (0.7_f64, Vector2::new(0.3, -1.1), 2.5, -0.4);
+        let normal = Vector2::new(angle.cos(), angle.sin());
+        let flat = Plane::slip_velocity(velocity, rolling, normal);
+        let full = Solid::slip_velocity(Plane::embed(velocity), Plane::embed_spin(rolling), Plane::embed(normal));
+        assert!((Plane::embed(Plane::along(flat, normal)) - full).norm() < 1e-15);
+
+        let force = Plane::along(displacement, normal);
+        let torque = Plane::torque(normal, force);
+        let full_torque = Solid::torque(Plane::embed(normal), Plane::embed(force));
+        assert!((Plane::embed_spin(torque) - full_torque).norm() < 1e-15);
+        assert_eq!(Plane::turn(2.0, Vector2::new(1.0, 0.0)), Vector2::new(0.0, 2.0));
+    }
+}
