@@ -1,0 +1,78 @@
+//! A grid of cells over the grains, and their order by cell.
+
+use crate::grains::Place;
+use grainbench_scene::space::Space;
+use nalgebra::Vector3;
+
+/// A grid over the bounding box of the grains. Cells are at least `reach` wide, so that what lies within reach of a
+/// grain lies in its cell or the next; there are never more than a few cells a grain.
+#[derive(Clone, Debug)]
+pub(crate) struct Cells {
+    low: Vector3<f64>,
+    width: Vector3<f64>,
+    pub(crate) count: [usize; 3],
+    /// First slot of every cell, and the number of grains at the end.
+    pub(crate) start: Vec<u32>,
+}
+
+impl Cells {
+    /// Lays the grid and gives the order that sorts the grains by cell (a stable sort).
+    pub(crate) fn sort<S: Space>(place: &[Place<S>], reach: f64) -> (Self, Vec<u32>) {
+        let mut low = Vector3::repeat(f64::INFINITY);
+        let mut high = Vector3::repeat(f64::NEG_INFINITY);
+        for grain in place {
+            let position = S::embed(grain.position);
+            low = low.inf(&position);
+            high = high.sup(&position);
+        }
+        let extent = high - low;
+        let most = (4 * place.len() + 64) as f64;
+        let mut count = [1_usize; 3];
+        let mut cell = reach;
+        loop {
+            let along = [0, 1, 2].map(|axis| (extent[axis] / cell).floor().max(1.0));
+            if along.iter().product::<f64>() <= most {
+                for axis in 0..S::DIMENSION {
+                    count[axis] = along[axis] as usize;
+                }
+                break;
+            }
+            cell *= 1.3;
+        }
+        let width = Vector3::from_fn(|axis, _| (extent[axis] / count[axis] as f64).max(reach));
+        let mut cells = Self { low, width, count, start: Vec::new() };
+        let cell_of: Vec<u32> = place.iter().map(|grain| cells.index(S::embed(grain.position)) as u32).collect();
+        let mut start = vec![0_u32; count.iter().product::<usize>() + 1];
+        cell_of.iter().for_each(|&cell| start[cell as usize + 1] += 1);
+        for cell in 1..start.len() {
+            start[cell] += start[cell - 1];
+        }
+        let mut next = start.clone();
+        let mut order = vec![0_u32; place.len()];
+        for (slot, &cell) in cell_of.iter().enumerate() {
+            order[next[cell as usize] as usize] = slot as u32;
+            next[cell as usize] += 1;
+        }
+        cells.start = start;
+        (cells, order)
+    }
+
+    /// Cell coordinates of a point, the nearest cell's when it lies outside.
+    pub(crate) fn coordinates(&self, position: Vector3<f64>) -> [usize; 3] {
+        [0, 1, 2].map(|axis| {
+            let along = ((position[axis] - self.low[axis]) / self.width[axis]).floor();
+            (along.max(0.0) as usize).min(self.count[axis] - 1)
+        })
+    }
+
+    fn index(&self, position: Vector3<f64>) -> usize {
+        let [i, j, k] = self.coordinates(position);
+        (k * self.count[1] + j) * self.count[0] + i
+    }
+
+    /// Slots of the cells `from` to `to` (inclusive) of one row.
+    pub(crate) fn row(&self, from: usize, to: usize, j: usize, k: usize) -> std::ops::Range<usize> {
+        let row = (k * self.count[1] + j) * self.count[0];
+        self.start[row + from] as usize..self.start[row + to + 1] as usize
+    }
+}

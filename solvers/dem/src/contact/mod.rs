@@ -1,0 +1,58 @@
+//! The contact law as a chain of stages: normal, then tangential.
+//!
+//! A stage that a scene does not call for is another type, of zero size, so that its branch, its memory and its
+//! arithmetic are not compiled into the loop over contacts. Adding a stage touches one file here.
+
+pub mod normal;
+pub mod tangential;
+
+use crate::convention::{CapNormal, Tension, TorqueArm};
+use grainbench_scene::scene::ContactLaw;
+use grainbench_scene::space::Space;
+
+/// Two bodies that touch, as the stages see them.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch<'a, S: Space> {
+    /// The law between their materials.
+    pub law: &'a ContactLaw,
+    /// Unit vector `e` from the first body to the second.
+    pub normal: S::Vector,
+    /// Overlap δ (m), positive.
+    pub overlap: f64,
+    /// Velocity of the first centre relative to the second body at the contact, v₁ − v₂ (m/s).
+    pub velocity: S::Vector,
+    /// Effective mass m₁m₂/(m₁+m₂), or m₁ at a wall (kg). Only read by dashpots.
+    pub effective_mass: f64,
+}
+
+/// The options of a convention that are values and not types.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Part of the overlap that is taken off the torque arm: 0 or 1/2.
+    pub arm_reduction: f64,
+    /// Smallest normal force (N): zero without tension, else −∞.
+    pub least_normal_force: f64,
+    /// Weight of the dashpot in the normal force that Coulomb's limit is proportional to: 0 or 1.
+    pub dashpot_in_cap: f64,
+}
+
+impl Options {
+    /// The values of a convention's options.
+    #[must_use]
+    pub const fn new(arm: TorqueArm, tension: Tension, cap_normal: CapNormal) -> Self {
+        Self {
+            arm_reduction: match arm {
+                TorqueArm::Radius => 0.0,
+                TorqueArm::ContactPoint => 0.5,
+            },
+            least_normal_force: match tension {
+                Tension::Allowed => f64::NEG_INFINITY,
+                Tension::Clipped => 0.0,
+            },
+            dashpot_in_cap: match cap_normal {
+                CapNormal::Spring => 0.0,
+                CapNormal::Total => 1.0,
+            },
+        }
+    }
+}

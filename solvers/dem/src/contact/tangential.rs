@@ -1,0 +1,315 @@
+//! Second stage: the force along the tangent, with what the contact and its grains must remember for it.
+
+use super::Touch;
+use super::normal::{Normal, NormalForce};
+use grainbench_scene::space::Space;
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+/// The rotation of a grain, or its absence.
+pub trait Rotation<S: Space>: Copy + Debug + Send {
+    /// Torque on a grain, or its absence.
+    type Torque: Copy + Debug + Default + Send;
+
+    /// At the start: angular velocity (rad/s) and 1/I.
+    fn new(spin: S::Spin, inverse_inertia: f64) -> Self;
+    /// Angular velocity (rad/s); `None` when grains do not rotate.
+    fn spin(&self) -> Option<S::Spin>;
+    /// Rotation since the start about z (rad).
+    fn angle(&self) -> f64;
+    /// One step of angular velocity and angle: ω ← keep·ω + gain·M/I, θ ← θ + ω Δt.
+    fn advance(&mut self, torque: Self::Torque, keep: f64, gain: f64, time_step: f64);
+    /// Angular acceleration M/I (rad/s²).
+    fn acceleration(&self, torque: Self::Torque) -> S::Spin;
+    /// Replaces the angular velocity.
+    fn set_spin(&mut self, spin: S::Spin);
+    /// Adds a torque `r × F` to a sum.
+    fn add(sum: &mut Self::Torque, torque: S::Spin);
+    /// The torque as a spin-like quantity (N m).
+    fn torque(torque: Self::Torque) -> S::Spin;
+}
+
+/// A grain that cannot rotate: no memory, no arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub struct Rigid;
+
+/// No torque.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoTorque;
+
+impl<S: Space> Rotation<S> for Rigid {
+    type Torque = NoTorque;
+
+    fn new(_spin: S::Spin, _inverse_inertia: f64) -> Self {
+        Self
+    }
+    fn spin(&self) -> Option<S::Spin> {
+        None
+    }
+    fn angle(&self) -> f64 {
+        0.0
+    }
+    #[inline(always)]
+    fn advance(&mut self, _torque: NoTorque, _keep: f64, _gain: f64, _time_step: f64) {}
+    fn acceleration(&self, _torque: NoTorque) -> S::Spin {
+        S::NO_SPIN
+    }
+    fn set_spin(&mut self, _spin: S::Spin) {}
+    #[inline(always)]
+    fn add(_sum: &mut NoTorque, _torque: S::Spin) {}
+    fn torque(_torque: NoTorque) -> S::Spin {
+        S::NO_SPIN
+    }
+}
+
+/// A grain that rotates.
+#[derive(Clone, Copy, Debug)]
+pub struct Rotating<S: Space> {
+    spin: S::Spin,
+    inverse_inertia: f64,
+    angle: f64,
+}
+
+/// Torque on a rotating grain (N m).
+#[derive(Clone, Copy, Debug)]
+pub struct Torque<S: Space>(S::Spin);
+
+impl<S: Space> Default for Torque<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self(S::NO_SPIN)
+    }
+}
+
+impl<S: Space> Rotation<S> for Rotating<S> {
+    type Torque = Torque<S>;
+
+    fn new(spin: S::Spin, inverse_inertia: f64) -> Self {
+        Self { spin, inverse_inertia, angle: 0.0 }
+    }
+    #[inline(always)]
+    fn spin(&self) -> Option<S::Spin> {
+        Some(self.spin)
+    }
+    fn angle(&self) -> f64 {
+        self.angle
+    }
+    #[inline(always)]
+    fn advance(&mut self, torque: Torque<S>, keep: f64, gain: f64, time_step: f64) {
+        self.spin = self.spin * keep + torque.0 * (gain * self.inverse_inertia);
+        if S::DIMENSION == 2 {
+            self.angle += S::embed_spin(self.spin).z * time_step;
+        }
+    }
+    fn acceleration(&self, torque: Torque<S>) -> S::Spin {
+        torque.0 * self.inverse_inertia
+    }
+    fn set_spin(&mut self, spin: S::Spin) {
+        self.spin = spin;
+    }
+    #[inline(always)]
+    fn add(sum: &mut Torque<S>, torque: S::Spin) {
+        sum.0 += torque;
+    }
+    fn torque(torque: Torque<S>) -> S::Spin {
+        torque.0
+    }
+}
+
+/// What the tangential stage answers.
+#[derive(Clone, Copy, Debug)]
+pub struct Shear<S: Space> {
+    /// Force on the first body along the tangent (N).
+    pub force: S::Tangent,
+    /// Whether Coulomb's limit was reached.
+    pub slipping: bool,
+}
+
+/// The tangential stage.
+pub trait Tangential<S: Space>: Copy + Send + 'static {
+    /// Whether there is a tangential force at all.
+    const ACTIVE: bool;
+    /// What a contact remembers from step to step: the stretch of its tangential spring (m).
+    type History: Copy + Debug + Default + Send;
+    /// The rotation of a grain.
+    type Rotation: Rotation<S>;
+
+    /// The tangential force, from the slip velocity (m/s) and the time that has passed since the last one (s).
+    fn respond<N: Normal>(
+        touch: &Touch<'_, S>,
+        normal: NormalForce,
+        slip: S::Tangent,
+        elapsed: f64,
+        history: &mut Self::History,
+    ) -> Shear<S>;
+
+    /// The history with the roles of first and second grain exchanged.
+    fn exchange(history: Self::History) -> Self::History;
+    /// Energy in the tangential spring (J).
+    fn energy(history: Self::History, stiffness: f64) -> f64;
+}
+
+/// No friction: no history, no rotation, no force.
+#[derive(Clone, Copy, Debug)]
+pub struct Frictionless;
+
+impl<S: Space> Tangential<S> for Frictionless {
+    const ACTIVE: bool = false;
+    type History = ();
+    type Rotation = Rigid;
+
+    #[inline(always)]
+    fn respond<N: Normal>(
+        _touch: &Touch<'_, S>,
+        _normal: NormalForce,
+        _slip: S::Tangent,
+        _elapsed: f64,
+        _history: &mut (),
+    ) -> Shear<S> {
+        Shear { force: S::NO_TANGENT, slipping: false }
+    }
+    fn exchange((): ()) {}
+    fn energy((): (), _stiffness: f64) -> f64 {
+        0.0
+    }
+}
+
+/// How Coulomb's limit is applied to spring and dashpot.
+pub trait Cap: Copy + Debug + Send + 'static {
+    /// Force along the tangent and whether it slips, from the stretch of the spring, the slip velocity, stiffness k_s,
+    /// viscosity c_s and the limit; the stretch is cut back when it slips.
+    fn limit<S: Space, const DAMPED: bool>(
+        stretch: &mut S::Tangent,
+        slip: S::Tangent,
+        stiffness: f64,
+        viscosity: f64,
+        limit: f64,
+    ) -> Shear<S>;
+}
+
+/// The limit acts on the spring; the dashpot is added only while the contact sticks.
+#[derive(Clone, Copy, Debug)]
+pub struct CapOnSpring;
+
+impl Cap for CapOnSpring {
+    #[inline(always)]
+    fn limit<S: Space, const DAMPED: bool>(
+        stretch: &mut S::Tangent,
+        slip: S::Tangent,
+        stiffness: f64,
+        viscosity: f64,
+        limit: f64,
+    ) -> Shear<S> {
+        let spring_squared = stiffness * stiffness * S::tangent_squared(*stretch);
+        let slipping = spring_squared > limit * limit;
+        if slipping {
+            *stretch = *stretch * (limit / spring_squared.sqrt());
+        }
+        let mut force = -(*stretch * stiffness);
+        if DAMPED && !slipping {
+            force -= slip * viscosity;
+        }
+        Shear { force, slipping }
+    }
+}
+
+/// The limit acts on spring and dashpot together; the spring is reset so that their sum is the limit.
+#[derive(Clone, Copy, Debug)]
+pub struct CapOnTotal;
+
+impl Cap for CapOnTotal {
+    #[inline(always)]
+    fn limit<S: Space, const DAMPED: bool>(
+        stretch: &mut S::Tangent,
+        slip: S::Tangent,
+        stiffness: f64,
+        viscosity: f64,
+        limit: f64,
+    ) -> Shear<S> {
+        if !DAMPED {
+            return CapOnSpring::limit::<S, false>(stretch, slip, stiffness, viscosity, limit);
+        }
+        let mut force = -(*stretch * stiffness + slip * viscosity);
+        let squared = S::tangent_squared(force);
+        let slipping = squared > limit * limit;
+        if slipping {
+            force = force * (limit / squared.sqrt());
+            *stretch = -(force + slip * viscosity) * (1.0 / stiffness);
+        }
+        Shear { force, slipping }
+    }
+}
+
+/// An incremental spring with Coulomb's limit, |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19).
+#[derive(Clone, Copy, Debug)]
+pub struct Coulomb<C: Cap>(PhantomData<C>);
+
+/// The stretch of a tangential spring (m).
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch<S: Space>(S::Tangent);
+
+impl<S: Space> Default for Stretch<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self(S::NO_TANGENT)
+    }
+}
+
+impl<S: Space, C: Cap> Tangential<S> for Coulomb<C> {
+    const ACTIVE: bool = true;
+    type History = Stretch<S>;
+    type Rotation = Rotating<S>;
+
+    #[inline(always)]
+    fn respond<N: Normal>(
+        touch: &Touch<'_, S>,
+        normal: NormalForce,
+        slip: S::Tangent,
+        elapsed: f64,
+        history: &mut Stretch<S>,
+    ) -> Shear<S> {
+        let law = touch.law;
+        history.0 = S::carry(history.0 + slip * elapsed, touch.normal);
+        let limit = law.friction * normal.for_cap + law.cohesion;
+        if N::DAMPED {
+            let viscosity =
+                law.stiffness_damping * law.tangential_stiffness + law.tangential_damping * touch.effective_mass;
+            C::limit::<S, true>(&mut history.0, slip, law.tangential_stiffness, viscosity, limit)
+        } else {
+            C::limit::<S, false>(&mut history.0, slip, law.tangential_stiffness, 0.0, limit)
+        }
+    }
+    fn exchange(history: Stretch<S>) -> Stretch<S> {
+        Stretch(S::exchange(history.0))
+    }
+    fn energy(history: Stretch<S>, stiffness: f64) -> f64 {
+        0.5 * stiffness * S::tangent_squared(history.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_scene::space::Plane;
+
+    /// Above the limit both conventions leave a stretch that gives the limit: of the spring alone, or of the sum.
+    #[test]
+    fn caps_leave_a_consistent_stretch() {
+        let (slip, stiffness, viscosity, limit) = (2.0, 100.0, 3.0, 5.0);
+        let mut spring = 0.2;
+        let shear = CapOnSpring::limit::<Plane, true>(&mut spring, slip, stiffness, viscosity, limit);
+        assert!(shear.slipping && (shear.force + limit).abs() < 1e-14 && (spring * stiffness - limit).abs() < 1e-14);
+
+        let mut total = 0.2;
+        let shear = CapOnTotal::limit::<Plane, true>(&mut total, slip, stiffness, viscosity, limit);
+        assert!(shear.slipping && (shear.force + limit).abs() < 1e-14);
+        assert!((total * stiffness + slip * viscosity - limit).abs() < 1e-14);
+    }
+
+    #[test]
+    fn absent_stages_take_no_room() {
+        assert_eq!(size_of::<<Frictionless as Tangential<Plane>>::History>(), 0);
+        assert_eq!(size_of::<<Frictionless as Tangential<Plane>>::Rotation>(), 0);
+        assert_eq!(size_of::<NoTorque>(), 0);
+    }
+}

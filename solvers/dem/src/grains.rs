@@ -1,0 +1,75 @@
+//! The grains in memory: arrays in the order of the cells they lie in, so that neighbours in space are neighbours there.
+
+use crate::contact::tangential::Rotation;
+use grainbench_scene::scene::{Grain, Scene};
+use grainbench_scene::space::Space;
+
+/// Where a grain is: read for every pair that is tested.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<S: Space> {
+    pub(crate) position: S::Vector,
+    pub(crate) radius: f64,
+}
+
+/// How it moves: read for every pair that touches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Movement<S: Space> {
+    pub(crate) velocity: S::Vector,
+    pub(crate) inverse_mass: f64,
+}
+
+/// All grains. Index: slot; slots change when the grains are sorted, ids never.
+#[derive(Clone, Debug)]
+pub(crate) struct Grains<S: Space, R: Rotation<S>> {
+    pub(crate) place: Vec<Place<S>>,
+    pub(crate) movement: Vec<Movement<S>>,
+    pub(crate) rotation: Vec<R>,
+    pub(crate) force: Vec<S::Vector>,
+    pub(crate) torque: Vec<R::Torque>,
+    pub(crate) material: Vec<u16>,
+    /// Place of the grain in the scene.
+    pub(crate) id: Vec<u32>,
+    /// Slot of every place in the scene.
+    pub(crate) slot: Vec<u32>,
+}
+
+impl<S: Space, R: Rotation<S>> Grains<S, R> {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let all = &scene.grains;
+        let place = |grain: &Grain| Place { position: S::restrict(grain.position), radius: grain.radius };
+        let movement =
+            |grain: &Grain| Movement { velocity: S::restrict(grain.velocity), inverse_mass: 1.0 / grain.mass };
+        let ids = || (0..all.len()).map(|id| id as u32);
+        Self {
+            place: all.iter().map(place).collect(),
+            movement: all.iter().map(movement).collect(),
+            rotation: all.iter().map(|grain| R::new(S::restrict_spin(grain.spin), 1.0 / grain.inertia)).collect(),
+            force: vec![S::ORIGIN; all.len()],
+            torque: vec![R::Torque::default(); all.len()],
+            material: all.iter().map(|grain| grain.material).collect(),
+            id: ids().collect(),
+            slot: ids().collect(),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.place.len()
+    }
+
+    /// Sorts: slot `k` gets what was in slot `order[k]`.
+    pub(crate) fn reorder(&mut self, order: &[u32]) {
+        fn gather<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
+            *values = order.iter().map(|&from| values[from as usize]).collect();
+        }
+        gather(&mut self.place, order);
+        gather(&mut self.movement, order);
+        gather(&mut self.rotation, order);
+        gather(&mut self.force, order);
+        gather(&mut self.torque, order);
+        gather(&mut self.material, order);
+        gather(&mut self.id, order);
+        for (slot, &id) in self.id.iter().enumerate() {
+            self.slot[id as usize] = slot as u32;
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! What a simulation shows at a step: grains with velocities at that very time, contacts, walls, energies.
+
+use crate::contact::normal::Normal;
+use crate::contact::tangential::{Rotation, Tangential};
+use crate::neighbours::wrapped;
+use crate::simulation::Kernel;
+use grainbench_scene::record::{ContactState, GrainState, Snapshot, WallState};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::space::Space;
+use nalgebra::Vector3;
+
+/// A simulation at one step.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// Grains in order of id, contacts, walls.
+    pub snapshot: Snapshot,
+    /// Energy in the springs (J).
+    pub elastic_energy: f64,
+    /// Moments of inertia in order of id (kg m²).
+    pub inertia: Vec<f64>,
+    /// Unwrapped positions are not kept: gravitational energy is that of the positions shown (J).
+    pub gravitational_energy: f64,
+}
+
+pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>>(kernel: &Kernel<S, N, T>) -> Look {
+    let scene = &kernel.scene;
+    let grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(kernel, id)).collect();
+    let mut contacts: Vec<ContactState> = kernel
+        .seen
+        .iter()
+        .map(|seen| ContactState {
+            grain: seen.grain,
+            partner: seen.partner,
+            point: S::embed(seen.point),
+            normal: S::embed(seen.normal),
+            overlap: seen.overlap,
+            normal_force: seen.normal_force,
+            shear_force: S::embed(S::along(seen.shear, seen.normal)),
+            slipping: seen.slipping,
+        })
+        .collect();
+    contacts.sort_by_key(|contact| contact.grain);
+    let walls = kernel
+        .walls
+        .iter()
+        .map(|wall| {
+            let (corners, infinite) = wall.corners();
+            WallState { name: wall.name().to_owned(), corners, infinite, force: S::embed(wall.force) }
+        })
+        .collect();
+    let gravitational_energy = grains.iter().map(|grain| -grain.mass * scene.gravity.dot(&grain.position)).sum();
+    Look {
+        snapshot: Snapshot {
+            step: kernel.step,
+            time: kernel.step as f64 * kernel.time_step,
+            bounds: bounds(scene, &grains),
+            periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
+            grains,
+            contacts,
+            walls,
+        },
+        elastic_energy: kernel.seen.iter().map(|seen| seen.elastic_energy).sum(),
+        inertia: scene.grains.iter().map(|grain| grain.inertia).collect(),
+        gravitational_energy,
+    }
+}
+
+/// A grain with its velocity brought from half a step before to this step.
+fn grain_state<S: Space, N: Normal, T: Tangential<S>>(kernel: &Kernel<S, N, T>, id: usize) -> GrainState {
+    let (scene, grains) = (&kernel.scene, &kernel.grains);
+    let slot = grains.slot[id] as usize;
+    let start = &scene.grains[id];
+    let half = 0.5 * kernel.time_step;
+    let drag = 1.0 / (1.0 + scene.global_damping * half);
+    let movement = &grains.movement[slot];
+    let acceleration = S::embed(grains.force[slot]) * movement.inverse_mass + scene.gravity;
+    let rotation = &grains.rotation[slot];
+    let spin = match rotation.spin() {
+        Some(spin) => {
+            let acceleration = rotation.acceleration(grains.torque[slot]);
+            S::embed_spin(spin * drag + acceleration * (half * drag))
+        }
+        None => free_spin(scene, start.spin, kernel.time_step, kernel.step),
+    };
+    let domain = scene.domain.filter(|_| scene.is_periodic());
+    let position = grains.place[slot].position;
+    let angle = if rotation.spin().is_some() {
+        rotation.angle()
+    } else {
+        start.spin.z * kernel.step as f64 * kernel.time_step * f64::from(u8::from(S::DIMENSION == 2))
+    };
+    GrainState {
+        id: id as u32 + 1,
+        material: start.material,
+        radius: start.radius,
+        mass: start.mass,
+        position: S::embed(domain.map_or(position, |domain| wrapped::<S>(position, &domain))),
+        velocity: (S::embed(movement.velocity) + acceleration * half) * drag,
+        spin,
+        angle,
+        force: S::embed(grains.force[slot]),
+        torque: S::embed_spin(T::Rotation::torque(grains.torque[slot])),
+    }
+}
+
+/// The spin of a grain on which nothing exerts a torque: only global damping acts, once a step (eq. 36).
+fn free_spin(scene: &Scene, start: Vector3<f64>, time_step: f64, step: u64) -> Vector3<f64> {
+    let half = 0.5 * scene.global_damping * time_step;
+    start * ((1.0 - half) / (1.0 + half)).powf(step as f64)
+}
+
+fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {
+    if let Some(domain) = scene.domain {
+        return (domain.low, domain.high);
+    }
+    let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    let (mut low, mut high) = grains.iter().fold(start, |(low, high), grain| {
+        let reach = Vector3::repeat(grain.radius);
+        (low.inf(&(grain.position - reach)), high.sup(&(grain.position + reach)))
+    });
+    if scene.dimension.count() == 2 {
+        (low.z, high.z) = (-0.5, 0.5);
+    }
+    (low, high)
+}

@@ -1,0 +1,149 @@
+//! Time series of a scene's probes.
+
+use crate::observe::Look;
+use grainbench_scene::record::{Column, ContactState, Partner, Series};
+use grainbench_scene::scene::{Dimension, Probe, ProbeTarget, Scene};
+use nalgebra::Vector3;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The columns of every probe of a scene, still without samples.
+pub(crate) fn empty_series(scene: &Scene) -> Series {
+    let columns: Vec<Column> = scene
+        .probes
+        .iter()
+        .flat_map(|probe| {
+            columns(probe.target, scene.dimension)
+                .into_iter()
+                .map(|(name, unit)| Column { name: format!("{}.{name}", probe.name), unit: unit.to_owned() })
+        })
+        .collect();
+    let values = vec![Vec::new(); columns.len()];
+    Series { columns, values, ..Series::default() }
+}
+
+/// Adds one sample of every probe.
+pub(crate) fn sample(series: &mut Series, scene: &Scene, look: &Look) {
+    series.step.push(look.snapshot.step);
+    series.time.push(look.snapshot.time);
+    let values = scene.probes.iter().flat_map(|probe| values(probe, scene, look));
+    for (column, value) in series.values.iter_mut().zip(values) {
+        column.push(value);
+    }
+}
+
+fn axes(dimension: Dimension) -> &'static [&'static str] {
+    &AXES[..dimension.count()]
+}
+
+fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static str)> {
+    let flat = dimension == Dimension::Two;
+    let named = |prefix: &str, unit: &'static str| -> Vec<(String, &'static str)> {
+        axes(dimension).iter().map(|axis| (format!("{prefix}{axis}"), unit)).collect()
+    };
+    let plain = |pairs: &[(&str, &'static str)]| -> Vec<(String, &'static str)> {
+        pairs.iter().map(|&(name, unit)| (name.to_owned(), unit)).collect()
+    };
+    let spins = |name: &str, unit: &'static str| {
+        if flat { plain(&[(name, unit)]) } else { named(&format!("{name}_"), unit) }
+    };
+    match target {
+        ProbeTarget::Grain(_) => {
+            let mut all = named("", "m");
+            all.extend(named("v", "m/s"));
+            all.extend(spins("omega", "rad/s"));
+            if flat {
+                all.extend(plain(&[("angle", "rad")]));
+            }
+            all
+        }
+        ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) => {
+            plain(&[("overlap", "m"), ("normal_force", "N"), ("shear_force", "N"), ("slipping", "1")])
+        }
+        ProbeTarget::Wall(_) => named("force_", "N"),
+        ProbeTarget::System => {
+            let mut all = plain(&[
+                ("kinetic_energy", "J"),
+                ("rotational_energy", "J"),
+                ("elastic_energy", "J"),
+                ("gravitational_energy", "J"),
+                ("total_energy", "J"),
+            ]);
+            all.extend(named("momentum_", "kg m/s"));
+            all.extend(spins("angular_momentum", "kg m²/s"));
+            all.extend(plain(&[("contacts", "1"), ("slipping_contacts", "1"), ("largest_spin", "rad/s")]));
+            all
+        }
+    }
+}
+
+fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
+    let count = scene.dimension.count();
+    let flat = scene.dimension == Dimension::Two;
+    let snapshot = &look.snapshot;
+    let vector = |v: &Vector3<f64>| v.iter().copied().take(count).collect::<Vec<f64>>();
+    let spin = |v: &Vector3<f64>| if flat { vec![v.z] } else { v.iter().copied().collect() };
+    match probe.target {
+        ProbeTarget::Grain(grain) => {
+            let grain = &snapshot.grains[grain];
+            let mut all = vector(&grain.position);
+            all.extend(vector(&grain.velocity));
+            all.extend(spin(&grain.spin));
+            if flat {
+                all.push(grain.angle);
+            }
+            all
+        }
+        ProbeTarget::Pair(a, b) => contact_values(look, a, Partner::Grain(b as u32 + 1), flat),
+        ProbeTarget::GrainWall(grain, wall) => contact_values(look, grain, Partner::Wall(wall as u16), flat),
+        ProbeTarget::Wall(wall) => vector(&snapshot.walls[wall].force),
+        ProbeTarget::System => {
+            let kinetic: f64 =
+                snapshot.grains.iter().map(|grain| 0.5 * grain.mass * grain.velocity.norm_squared()).sum();
+            let rotational: f64 = snapshot
+                .grains
+                .iter()
+                .zip(&look.inertia)
+                .map(|(grain, inertia)| 0.5 * inertia * grain.spin.norm_squared())
+                .sum();
+            let momentum: Vector3<f64> = snapshot.grains.iter().map(|grain| grain.velocity * grain.mass).sum();
+            let angular: Vector3<f64> = snapshot
+                .grains
+                .iter()
+                .zip(&look.inertia)
+                .map(|(grain, &inertia)| grain.position.cross(&(grain.velocity * grain.mass)) + grain.spin * inertia)
+                .sum();
+            let total = kinetic + rotational + look.elastic_energy + look.gravitational_energy;
+            let mut all = vec![kinetic, rotational, look.elastic_energy, look.gravitational_energy, total];
+            all.extend(vector(&momentum));
+            all.extend(spin(&angular));
+            let slipping = snapshot.contacts.iter().filter(|contact| contact.slipping).count();
+            let fastest = snapshot.grains.iter().map(|grain| grain.spin.norm()).fold(0.0, f64::max);
+            all.extend([snapshot.contacts.len() as f64, slipping as f64, fastest]);
+            all
+        }
+    }
+}
+
+/// Overlap, normal force, shear force and slipping of one contact; zeros while it does not touch. In the plane the
+/// shear force on the first grain is positive along `t = (e₂, −e₁)`, clockwise from the normal `e` to the partner.
+fn contact_values(look: &Look, grain: usize, partner: Partner, flat: bool) -> Vec<f64> {
+    let id = grain as u32 + 1;
+    let found = look.snapshot.contacts.iter().find(|contact| {
+        let straight = contact.grain == id && contact.partner == partner;
+        let exchanged = partner == Partner::Grain(contact.grain) && contact.partner == Partner::Grain(id);
+        straight || exchanged
+    });
+    found.map_or_else(
+        || vec![0.0; 4],
+        |contact| {
+            vec![contact.overlap, contact.normal_force, shear(contact, flat), f64::from(u8::from(contact.slipping))]
+        },
+    )
+}
+
+/// The sign in the plane does not depend on which grain comes first: both force and direction turn around.
+fn shear(contact: &ContactState, flat: bool) -> f64 {
+    let force = contact.shear_force;
+    if flat { force.x * contact.normal.y - force.y * contact.normal.x } else { force.norm() }
+}

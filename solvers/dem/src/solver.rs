@@ -1,0 +1,187 @@
+//! The discrete element method as a solver: picks the kernel once, at the edge, and keeps the record.
+
+use crate::contact::Options;
+use crate::contact::normal::{Spring, SpringDashpot};
+use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless};
+use crate::convention::{Convention, CoulombCap};
+use crate::probe;
+use crate::simulation::{Kernel, Simulation};
+use grainbench_scene::effects::Effects;
+use grainbench_scene::record::{Provenance, Record};
+use grainbench_scene::scene::{Dimension, Duration, Sampling, Scene};
+use grainbench_scene::solver::{Broken, Resolution, RunError, Solver, Watch};
+use grainbench_scene::space::{Plane, Solid, Space};
+use std::time::Instant;
+
+/// A defect built in on purpose, for the negative controls of gates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Defect {
+    /// Every contact forgets its history after every step.
+    ForgetsHistory,
+}
+
+/// The discrete element method in one convention.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dem {
+    /// The convention.
+    pub convention: Convention,
+    /// A defect, for negative controls only.
+    pub defect: Option<Defect>,
+}
+
+impl Dem {
+    /// The method in a convention.
+    #[must_use]
+    pub const fn new(convention: Convention) -> Self {
+        Self { convention, defect: None }
+    }
+
+    /// The method with a defect, for negative controls.
+    #[must_use]
+    pub const fn with_defect(self, defect: Defect) -> Self {
+        Self { defect: Some(defect), ..self }
+    }
+
+    /// Sets up a scene with a time step (s), for callers who want to step themselves.
+    ///
+    /// # Errors
+    /// When the scene cannot be expressed or is broken from the start.
+    pub fn start(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, RunError> {
+        let simulation = match scene.dimension {
+            Dimension::Two => self.start_in::<Plane>(scene, time_step),
+            Dimension::Three => self.start_in::<Solid>(scene, time_step),
+        };
+        simulation.map_err(RunError::Broken)
+    }
+
+    /// The kernel for the effects that the scene calls for.
+    fn start_in<S: Space>(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, Box<Broken>> {
+        let effects = Effects::of(scene);
+        let convention = &self.convention;
+        let options = Options::new(convention.torque_arm, convention.tension, convention.cap_normal);
+        Ok(match (effects.contact_damping, effects.friction, convention.coulomb_cap) {
+            (false, false, _) => Box::new(Kernel::<S, Spring, Frictionless>::new(scene, options, time_step)?),
+            (true, false, _) => Box::new(Kernel::<S, SpringDashpot, Frictionless>::new(scene, options, time_step)?),
+            // Without dashpots both caps are the same.
+            (false, true, _) => Box::new(Kernel::<S, Spring, Coulomb<CapOnSpring>>::new(scene, options, time_step)?),
+            (true, true, CoulombCap::Spring) => {
+                Box::new(Kernel::<S, SpringDashpot, Coulomb<CapOnSpring>>::new(scene, options, time_step)?)
+            }
+            (true, true, CoulombCap::SpringAndDashpot) => {
+                Box::new(Kernel::<S, SpringDashpot, Coulomb<CapOnTotal>>::new(scene, options, time_step)?)
+            }
+        })
+    }
+
+    fn resolution_error(&self, reason: String) -> RunError {
+        RunError::Resolution { solver: self.name(), reason }
+    }
+
+    /// Time step (s) and number of steps.
+    fn steps(&self, scene: &Scene, resolution: &Resolution) -> Result<(f64, u64), RunError> {
+        let critical = scene.critical_time_step();
+        let wanted = match *resolution {
+            Resolution::CriticalFraction(fraction) => fraction * critical,
+            Resolution::TimeStep(step) => step,
+        };
+        if !(wanted.is_finite() && wanted > 0.0) {
+            let reason = if critical.is_finite() {
+                format!("expected a positive time step, found {resolution}")
+            } else {
+                "the scene has no contact, so no critical time step; expected a time step in seconds".to_owned()
+            };
+            return Err(self.resolution_error(reason));
+        }
+        match (scene.duration, resolution) {
+            (Duration::Cycles(cycles), _) => Ok((wanted, cycles)),
+            (Duration::Seconds(time), Resolution::TimeStep(_)) => Ok((wanted, ((time / wanted).round() as u64).max(1))),
+            (Duration::Seconds(time), Resolution::CriticalFraction(_)) => {
+                // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
+                let steps = (time / wanted * (1.0 - 1e-12)).ceil().max(1.0);
+                Ok((time / steps, steps as u64))
+            }
+        }
+    }
+}
+
+/// Steps between samples.
+fn sampling_interval(sampling: Sampling, time_step: f64, steps: u64) -> u64 {
+    let interval = match sampling {
+        Sampling::Cycles(cycles) => cycles,
+        Sampling::Seconds(time) => (time / time_step).round() as u64,
+        Sampling::Count(count) => steps / count.max(1),
+    };
+    interval.max(1)
+}
+
+/// The steps at which snapshots are due: the first, the last, and `between` spread evenly.
+fn snapshot_steps(steps: u64, between: u32) -> Vec<u64> {
+    let parts = u64::from(between) + 1;
+    let mut due: Vec<u64> =
+        (0..=parts).map(|part| (u128::from(steps) * u128::from(part) / u128::from(parts)) as u64).collect();
+    due.dedup();
+    due
+}
+
+impl Solver for Dem {
+    fn name(&self) -> String {
+        self.convention.name.to_owned()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let (time_step, steps) = self.steps(scene, resolution)?;
+        let mut simulation = self.start(scene, time_step)?;
+        let interval = sampling_interval(scene.sampling, time_step, steps);
+        let due = snapshot_steps(steps, scene.snapshots);
+        let mut series = probe::empty_series(scene);
+        let mut snapshots = Vec::with_capacity(due.len());
+        let start = Instant::now();
+        loop {
+            let now = simulation.step();
+            let (is_sample, is_snapshot) = (now % interval == 0 || now == steps, due.contains(&now));
+            if is_sample || is_snapshot {
+                let look = simulation.look();
+                if is_sample {
+                    probe::sample(&mut series, scene, &look);
+                }
+                if is_snapshot {
+                    snapshots.push(look.snapshot);
+                }
+            }
+            watch.progress(now, steps);
+            if now == steps {
+                break;
+            }
+            let next_sample = (now / interval + 1) * interval;
+            let next_snapshot = due.iter().copied().find(|&step| step > now).unwrap_or(steps);
+            let target = next_sample.min(next_snapshot).min(steps);
+            match self.defect {
+                None => simulation.advance((target - now).min(STEPS_BETWEEN_PROGRESS))?,
+                Some(Defect::ForgetsHistory) => {
+                    simulation.advance(1)?;
+                    simulation.forget_history();
+                }
+            }
+        }
+        let mut cost = simulation.cost();
+        cost.wall_seconds = start.elapsed().as_secs_f64();
+        let critical = scene.critical_time_step();
+        Ok(Record {
+            provenance: Provenance {
+                scene: scene.title.clone(),
+                solver: self.name(),
+                resolution: resolution.to_string(),
+                time_step,
+                critical_time_step: critical.is_finite().then_some(critical),
+                effects: Effects::of(scene).words(),
+                options: self.convention.words(),
+            },
+            series,
+            snapshots,
+            cost,
+        })
+    }
+}
+
+/// Steps after which a watcher hears of progress at the latest.
+const STEPS_BETWEEN_PROGRESS: u64 = 20_000;

@@ -1,0 +1,132 @@
+//! Walls in motion: where they are at a step, how they moved over it, and which grains are near.
+
+use grainbench_scene::motion::Displacement;
+use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_segment};
+use grainbench_scene::scene::{Wall, WallShape};
+use grainbench_scene::space::Space;
+use nalgebra::Vector3;
+
+/// A wall during the run.
+#[derive(Clone, Debug)]
+pub(crate) struct MovingWall<S: Space, H> {
+    wall: Wall,
+    /// Shape now.
+    pub(crate) shape: WallShape,
+    centre: Vector3<f64>,
+    displacement: Displacement,
+    at_list: Displacement,
+    /// Mean velocity over the last step (m/s), and spin (rad/s) about the centre.
+    velocity: Vector3<f64>,
+    spin: Vector3<f64>,
+    /// Slots of the grains near the wall and the history of their contacts.
+    pub(crate) near: Vec<(u32, H)>,
+    /// Force of the grains on the wall in the last force evaluation (N).
+    pub(crate) force: S::Vector,
+}
+
+/// What a grain sees of a wall.
+pub(crate) struct Facing<S: Space> {
+    /// Unit vector from the grain to the wall.
+    pub(crate) normal: S::Vector,
+    /// Distance from the grain's centre to the wall (m), negative inside the solid of a plane.
+    pub(crate) distance: f64,
+    /// Velocity of the wall there (m/s).
+    pub(crate) velocity: S::Vector,
+}
+
+impl<S: Space, H: Copy + Default> MovingWall<S, H> {
+    pub(crate) fn new(wall: &Wall) -> Self {
+        let rest = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
+        Self {
+            shape: wall.shape,
+            centre: wall.motion.centre,
+            displacement: rest,
+            at_list: rest,
+            velocity: Vector3::zeros(),
+            spin: Vector3::zeros(),
+            near: Vec::new(),
+            force: S::ORIGIN,
+            wall: wall.clone(),
+        }
+    }
+
+    pub(crate) fn material(&self) -> u16 {
+        self.wall.material
+    }
+
+    pub(crate) fn name(&self) -> &str {
+        &self.wall.name
+    }
+
+    /// Moves the wall to where it is at `time`, one step after the last call.
+    pub(crate) fn move_to(&mut self, time: f64, time_step: f64) {
+        let motion = &self.wall.motion;
+        if !motion.is_moving() {
+            return;
+        }
+        let now = motion.displacement(time, time_step);
+        self.velocity = (now.translation - self.displacement.translation) / time_step;
+        self.spin = (now.rotation - self.displacement.rotation) / time_step;
+        self.displacement = now;
+        self.centre = motion.centre + now.translation;
+        let at = |point: Vector3<f64>| motion.moved(point, &now);
+        let turn = |direction: Vector3<f64>| motion.turned(direction, &now);
+        self.shape = match self.wall.shape {
+            WallShape::Plane { point, normal } => WallShape::Plane { point: at(point), normal: turn(normal) },
+            WallShape::Segment { ends } => WallShape::Segment { ends: ends.map(at) },
+            WallShape::Rectangle { corner, edges } => {
+                WallShape::Rectangle { corner: at(corner), edges: edges.map(turn) }
+            }
+        };
+    }
+
+    /// Bound on how far any part of the wall within `extent` (m) of its centre has moved since the list was made.
+    pub(crate) fn moved_since_list(&self, extent: f64) -> f64 {
+        let translation = (self.displacement.translation - self.at_list.translation).norm();
+        translation + (self.displacement.rotation - self.at_list.rotation).norm() * extent
+    }
+
+    /// Takes note that the list of near grains is made now.
+    pub(crate) fn begin_list(&mut self) {
+        self.at_list = self.displacement;
+        self.near.clear();
+    }
+
+    /// Distance from a point to the wall's centre of rotation (m).
+    pub(crate) fn distance_to_centre(&self, point: Vector3<f64>) -> f64 {
+        (point - self.centre).norm()
+    }
+
+    /// The wall as a grain at `position` sees it.
+    #[inline(always)]
+    pub(crate) fn facing(&self, position: S::Vector) -> Facing<S> {
+        let at = S::embed(position);
+        let (nearest, normal, distance) = match &self.shape {
+            WallShape::Plane { point, normal } => {
+                let distance = (at - point).dot(normal);
+                (at - normal * distance, -normal, distance)
+            }
+            WallShape::Segment { ends } => facing_point(at, nearest_on_segment(at, ends)),
+            WallShape::Rectangle { corner, edges } => facing_point(at, nearest_on_rectangle(at, corner, edges)),
+        };
+        let velocity = self.velocity + self.spin.cross(&(nearest - self.centre));
+        Facing { normal: S::restrict(normal), distance, velocity: S::restrict(velocity) }
+    }
+
+    /// Corner points, or point and normal of a plane (see [`grainbench_scene::record::WallState`]).
+    pub(crate) fn corners(&self) -> (Vec<Vector3<f64>>, bool) {
+        match self.shape {
+            WallShape::Plane { point, normal } => (vec![point, normal], true),
+            WallShape::Segment { ends } => (ends.to_vec(), false),
+            WallShape::Rectangle { corner, edges: [u, v] } => {
+                (vec![corner, corner + u, corner + u + v, corner + v], false)
+            }
+        }
+    }
+}
+
+fn facing_point(at: Vector3<f64>, nearest: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>, f64) {
+    let to_wall = nearest - at;
+    let distance = to_wall.norm();
+    (nearest, to_wall / distance, distance)
+}
