@@ -1,0 +1,115 @@
+//! The header of a data file: how many, and in which box.
+
+use crate::fields::Fields;
+use crate::line_reader::Line;
+use crate::read_error::{ReadError, quoted};
+
+/// The keywords of the three bounds.
+const BOUNDS: [[&str; 2]; 3] = [["xlo", "xhi"], ["ylo", "yhi"], ["zlo", "zhi"]];
+
+/// What the header has said so far.
+#[derive(Default)]
+pub(crate) struct DataHeader {
+    atoms: Option<u64>,
+    types: Option<u32>,
+    bounds: [Option<(f64, f64)>; 3],
+}
+
+impl DataHeader {
+    /// Takes a line of the header; false if it is none but begins with a letter, as the keyword of a section does.
+    pub(crate) fn take(&mut self, line: Line<'_>, content: &str) -> Result<bool, ReadError> {
+        let words: Vec<&str> = content.split_whitespace().collect();
+        let mut fields = Fields::between_blanks(line, content);
+        match words[..] {
+            [.., "xy", "xz", "yz"] => {
+                return Err(
+                    line.error("a box with right angles", "tilt factors `xy xz yz` (a triclinic box is not read)")
+                );
+            }
+            [.., "atoms"] => {
+                let count = fields.whole("a number of atoms from 1 on in front of `atoms`", 1)?;
+                expect_words(&words, 2, line, "`N atoms`")?;
+                once(&mut self.atoms, count, line, "`N atoms`")?;
+            }
+            [.., "atom", "types"] => {
+                let what = "a number of types from 1 on in front of `atom types`";
+                let count = fields.whole(what, 1)?;
+                expect_words(&words, 3, line, "`N atom types`")?;
+                once(&mut self.types, count, line, "`N atom types`")?;
+            }
+            [.., low, high] if BOUNDS.contains(&[low, high]) => {
+                let label = format!("`LOW HIGH {low} {high}`");
+                let bound =
+                    (fields.finite(&format!("the number {low}"))?, fields.finite(&format!("the number {high}"))?);
+                expect_words(&words, 4, line, &label)?;
+                if bound.0 >= bound.1 {
+                    let found = format!("{:?} and {:?}", bound.0, bound.1);
+                    return Err(line.error(format!("{low} below {high}"), found));
+                }
+                let axis = BOUNDS.iter().position(|names| *names == [low, high]);
+                if let Some(place) = axis.and_then(|axis| self.bounds.get_mut(axis)) {
+                    once(place, bound, line, &label)?;
+                }
+            }
+            _ if content.trim_start().starts_with(char::is_alphabetic) => return Ok(false),
+            _ => {
+                let expected =
+                    "a header line `N atoms`, `N atom types`, `… xlo xhi`, `… ylo yhi` or `… zlo zhi`, or a section";
+                return Err(line.error(expected, quoted(content.trim())));
+            }
+        }
+        Ok(true)
+    }
+
+    /// Refuses a header that lacks something; `missing` makes the error.
+    pub(crate) fn complete(&self, missing: impl Fn(String, String) -> ReadError) -> Result<(), ReadError> {
+        let absent = |what: &str| {
+            let expected = format!("a header line `{what}` in front of the sections");
+            Err(missing(expected, "none".to_owned()))
+        };
+        if self.atoms.is_none() {
+            return absent("N atoms");
+        }
+        if self.types.is_none() {
+            return absent("N atom types");
+        }
+        for (bound, [low, high]) in self.bounds.iter().zip(BOUNDS) {
+            if bound.is_none() {
+                return absent(&format!("LOW HIGH {low} {high}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// How many atoms are declared; 0 before that was said.
+    pub(crate) fn atom_count(&self) -> u64 {
+        self.atoms.unwrap_or_default()
+    }
+
+    /// How many types are declared; 0 before that was said.
+    pub(crate) fn type_count(&self) -> u32 {
+        self.types.unwrap_or_default()
+    }
+
+    /// The lower and the upper corner of the box.
+    pub(crate) fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let pairs = self.bounds.map(Option::unwrap_or_default);
+        (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
+    }
+}
+
+/// Refuses a header line with more words than its form has.
+fn expect_words(words: &[&str], count: usize, line: Line<'_>, form: &str) -> Result<(), ReadError> {
+    if words.len() == count {
+        return Ok(());
+    }
+    Err(line.error(form, quoted(&words.join(" "))))
+}
+
+/// Stores what is to be said once.
+fn once<T>(place: &mut Option<T>, value: T, line: Line<'_>, form: &str) -> Result<(), ReadError> {
+    match place.replace(value) {
+        None => Ok(()),
+        Some(_) => Err(line.error(format!("one header line {form}"), "a second one")),
+    }
+}

@@ -1,0 +1,118 @@
+//! The fields of one line, read one after the other.
+
+use std::str::FromStr;
+
+use crate::line_reader::Line;
+use crate::read_error::{ReadError, quoted};
+
+/// Walks over the fields of a line; every fault names the column of the field.
+pub(crate) struct Fields<'l> {
+    line: Line<'l>,
+    content: &'l str,
+    /// Byte offset of what has not been read yet.
+    offset: usize,
+    separator: Option<char>,
+}
+
+impl<'l> Fields<'l> {
+    /// Fields of `content`, the part of `line` in front of a comment, between blanks.
+    pub(crate) fn between_blanks(line: Line<'l>, content: &'l str) -> Self {
+        Self { line, content, offset: 0, separator: None }
+    }
+
+    /// Fields of a whole line between commas.
+    pub(crate) fn between_commas(line: Line<'l>) -> Self {
+        Self { separator: Some(','), ..Self::between_blanks(line, line.text) }
+    }
+
+    /// A whole number from `smallest` on.
+    pub(crate) fn whole<T: FromStr + PartialOrd>(&mut self, what: &str, smallest: T) -> Result<T, ReadError> {
+        self.parsed(what, |value| *value >= smallest)
+    }
+
+    /// A whole number from `smallest` to `largest`.
+    pub(crate) fn whole_up_to<T: FromStr + PartialOrd>(
+        &mut self,
+        what: &str,
+        smallest: T,
+        largest: T,
+    ) -> Result<T, ReadError> {
+        self.parsed(what, |value| *value >= smallest && *value <= largest)
+    }
+
+    /// A finite number.
+    pub(crate) fn finite(&mut self, what: &str) -> Result<f64, ReadError> {
+        self.parsed(what, |value: &f64| value.is_finite())
+    }
+
+    /// A finite number above zero.
+    pub(crate) fn positive(&mut self, what: &str) -> Result<f64, ReadError> {
+        self.parsed(what, |value: &f64| value.is_finite() && *value > 0.0)
+    }
+
+    /// A finite number from zero on.
+    pub(crate) fn not_negative(&mut self, what: &str) -> Result<f64, ReadError> {
+        self.parsed(what, |value: &f64| value.is_finite() && *value >= 0.0)
+    }
+
+    /// Three finite numbers.
+    pub(crate) fn vector(&mut self, what: [&str; 3]) -> Result<[f64; 3], ReadError> {
+        Ok([self.finite(what[0])?, self.finite(what[1])?, self.finite(what[2])?])
+    }
+
+    /// Whether every field has been read.
+    pub(crate) fn at_end(&self) -> bool {
+        let rest = self.rest();
+        match self.separator {
+            None => rest.trim_start().is_empty(),
+            Some(_) => self.offset > self.content.len(),
+        }
+    }
+
+    /// Refuses a field more than `expected` has.
+    pub(crate) fn end(&mut self, expected: &str) -> Result<(), ReadError> {
+        if self.at_end() {
+            return Ok(());
+        }
+        let (text, column) = self.next(expected)?;
+        let found = format!("one more field, {}", quoted(text));
+        Err(self.line.error(expected, found).with_column(column))
+    }
+
+    fn rest(&self) -> &'l str {
+        self.content.get(self.offset..).unwrap_or_default()
+    }
+
+    /// The next field and its column.
+    fn next(&mut self, what: &str) -> Result<(&'l str, usize), ReadError> {
+        if self.at_end() {
+            let column = self.content.trim_end().chars().count() + 1;
+            let error = self.line.error(what, "the end of the line");
+            return Err(error.with_column(column));
+        }
+        let rest = self.rest();
+        let (text, start, next) = match self.separator {
+            None => {
+                let start = self.offset + (rest.len() - rest.trim_start().len());
+                let field = rest.trim_start();
+                let length = field.find(char::is_whitespace).unwrap_or(field.len());
+                (&field[..length], start, start + length)
+            }
+            Some(separator) => {
+                let length = rest.find(separator).unwrap_or(rest.len());
+                let next = self.offset + length + separator.len_utf8();
+                (rest[..length].trim(), self.offset, next)
+            }
+        };
+        self.offset = next;
+        let column = self.content.get(..start).unwrap_or_default();
+        Ok((text, column.chars().count() + 1))
+    }
+
+    /// The next field as a value that `fits`.
+    fn parsed<T: FromStr>(&mut self, what: &str, fits: impl Fn(&T) -> bool) -> Result<T, ReadError> {
+        let (text, column) = self.next(what)?;
+        let value = text.parse().ok().filter(fits);
+        value.ok_or_else(|| self.line.error(what, quoted(text)).with_column(column))
+    }
+}

@@ -1,0 +1,148 @@
+//! The one error of every reader here.
+
+use std::fmt;
+use std::io;
+
+/// The longest excerpt of an input that an error repeats, in characters.
+const EXCERPT: usize = 60;
+
+/// An input that could not be read: which file, where in it, what was expected and what stood there.
+///
+/// Displayed on one line, `FILE:LINE: expected …, found …`; with a column `FILE:LINE:COLUMN: …`, and without a line
+/// `FILE: …` where the file could not even be opened. Lines and columns count from 1; those of a compressed file are
+/// of its text.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: expected {expected}, found {found}", Place(file, *line, *column))]
+pub struct ReadError {
+    file: String,
+    line: Option<u64>,
+    column: Option<usize>,
+    expected: String,
+    found: String,
+    #[source]
+    source: Option<io::Error>,
+}
+
+impl ReadError {
+    pub(crate) fn at(file: &str, line: u64, expected: impl Into<String>, found: impl Into<String>) -> Self {
+        Self {
+            file: one_line(file),
+            line: Some(line),
+            column: None,
+            expected: expected.into(),
+            found: found.into(),
+            source: None,
+        }
+    }
+
+    pub(crate) fn with_column(mut self, column: usize) -> Self {
+        self.column = Some(column);
+        self
+    }
+
+    /// A failure of the operating system or of the decompressor while line `line` was being read.
+    pub(crate) fn reading(file: &str, line: u64, source: io::Error) -> Self {
+        let found = one_line(&source.to_string());
+        Self { source: Some(source), ..Self::at(file, line, "readable data", found) }
+    }
+
+    /// A file that could not be opened.
+    pub(crate) fn opening(file: &str, source: io::Error) -> Self {
+        Self { line: None, expected: "a readable file".to_owned(), ..Self::reading(file, 0, source) }
+    }
+
+    /// The input's name, as it was given (characters that would break the line are escaped).
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The line, counted from 1; none if the file could not be opened.
+    #[must_use]
+    pub fn line(&self) -> Option<u64> {
+        self.line
+    }
+
+    /// The column in characters, counted from 1, where the fault has one.
+    #[must_use]
+    pub fn column(&self) -> Option<usize> {
+        self.column
+    }
+
+    /// What should have stood there.
+    #[must_use]
+    pub fn expected(&self) -> &str {
+        &self.expected
+    }
+
+    /// What stood there.
+    #[must_use]
+    pub fn found(&self) -> &str {
+        &self.found
+    }
+}
+
+/// Writes as much of the place as is known.
+struct Place<'e>(&'e str, Option<u64>, Option<usize>);
+
+impl fmt::Display for Place<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(self.0)?;
+        if let Some(line) = self.1 {
+            write!(out, ":{line}")?;
+        }
+        if let Some(column) = self.2 {
+            write!(out, ":{column}")?;
+        }
+        Ok(())
+    }
+}
+
+/// `text` as an error may repeat it: quoted, on one line, cut short.
+pub(crate) fn quoted(text: &str) -> String {
+    let mut excerpt: String = text.chars().take(EXCERPT).collect();
+    if excerpt.len() < text.len() {
+        excerpt.push('…');
+    }
+    format!("`{}`", one_line(&excerpt))
+}
+
+/// `text` with every character that could break or disguise the line (controls, separators, directions) escaped.
+pub(crate) fn one_line(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for character in text.chars() {
+        let disguises = matches!(character, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
+        if character.is_control() || disguises {
+            safe.extend(character.escape_unicode());
+        } else {
+            safe.push(character);
+        }
+    }
+    safe
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn is_displayed_on_one_line() {
+        let error = ReadError::at("odd\nname", 3, "`N atoms`", quoted("a\r\u{2028}b")).with_column(7);
+        assert_eq!(error.to_string(), "odd\\u{a}name:3:7: expected `N atoms`, found `a\\u{d}\\u{2028}b`");
+    }
+
+    #[test]
+    fn cuts_a_long_excerpt() {
+        let text = quoted(&"é".repeat(1000));
+        assert_eq!(text.chars().count(), EXCERPT + 3);
+        assert!(text.ends_with("…`"));
+    }
+
+    #[test]
+    fn leaves_the_line_out_where_there_is_none() {
+        let error = ReadError::opening("gone", io::Error::new(io::ErrorKind::NotFound, "no file"));
+        assert_eq!(error.to_string(), "gone: expected a readable file, found no file");
+        assert_eq!(error.line(), None);
+    }
+}
