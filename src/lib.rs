@@ -1,1 +1,9 @@
-//! Façade.
+//! grainbench: how far to trust a solver of granular simulations, and what that trust costs.
+//!
+//! This façade is what a solver author uses; the crates behind it are for reading.
+
+pub use grainbench_cases as cases;
+pub use grainbench_dem as dem;
+pub use grainbench_reference as reference;
+pub use grainbench_reports as reports;
+pub use grainbench_scene as scene;

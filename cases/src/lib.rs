@@ -1,4 +1,13 @@
 //! Benchmark cases: scenes, ladders of resolution, gates and their negative controls.
+//!
+//! A case is a folder beside `src`: `scene.toml`, `case.rs` with gates and figures, and `derivation.md`. A folder that
+//! has a `scene.toml` is in the registry.
 
+pub mod bench;
+pub mod case;
 pub mod figure;
+pub mod gate;
+pub mod measure;
+pub mod registry;
+pub mod solvers;
 pub mod verdict;

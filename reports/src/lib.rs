@@ -1,1 +1,4 @@
 //! Placeholder.
+pub fn failure_line(verdict: &grainbench_cases::verdict::Verdict) -> String {
+    format!("{verdict:?}")
+}

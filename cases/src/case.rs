@@ -1,0 +1,105 @@
+//! A case is a claim: scenes, a ladder of resolutions, gates.
+
+use crate::bench::Bench;
+use crate::figure::Figure;
+use crate::gate::Gate;
+use grainbench_scene::error::SceneError;
+use grainbench_scene::resolve::FileGrain;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_scene::source::SceneSource;
+use nalgebra::Vector3;
+use std::path::{Path, PathBuf};
+
+/// One rung of a ladder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rung {
+    /// Name, such as `dt=.1`.
+    pub name: &'static str,
+    /// The resolution.
+    pub resolution: Resolution,
+}
+
+/// A time step as a fraction of the critical one.
+#[must_use]
+pub const fn fraction(name: &'static str, fraction: f64) -> Rung {
+    Rung { name, resolution: Resolution::CriticalFraction(fraction) }
+}
+
+/// A benchmark case. Its folder holds scene, gates and derivation.
+pub struct Case {
+    /// Name, as on the command line and as its folder.
+    pub name: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What is claimed, in a sentence or two.
+    pub claim: &'static str,
+    /// Text of `scene.toml`.
+    pub scene: &'static str,
+    /// Text of `derivation.md`: where the expected values come from.
+    pub derivation: &'static str,
+    /// Where this test is weak.
+    pub weakness: &'static str,
+    /// Resolutions, coarse to fine.
+    pub ladder: &'static [Rung],
+    /// The gates.
+    pub gates: fn() -> Vec<Gate>,
+    /// The figures, from runs of the bench.
+    pub figures: fn(&Bench) -> Result<Vec<Figure>, RunError>,
+}
+
+impl Case {
+    /// Folder of the case's files.
+    #[must_use]
+    pub fn directory(&self) -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(self.name)
+    }
+
+    /// The scene file.
+    #[must_use]
+    pub fn source(&self) -> SceneSource {
+        SceneSource::from_text(&format!("{}/scene.toml", self.name), &self.directory(), self.scene)
+    }
+
+    /// The scene of a variant.
+    ///
+    /// # Errors
+    /// When the scene file is wrong or there is no such variant.
+    pub fn variant(&self, variant: &str) -> Result<Scene, SceneError> {
+        let source = self.source();
+        let source = if variant == PLAIN { source } else { source.variant(variant) };
+        source.scene(&read_grains)
+    }
+
+    /// Names of the variants; [`PLAIN`] alone where the scene has none.
+    ///
+    /// # Errors
+    /// When the scene file is wrong.
+    pub fn variants(&self) -> Result<Vec<String>, SceneError> {
+        let names = self.source().variants()?;
+        Ok(if names.is_empty() { vec![PLAIN.to_owned()] } else { names })
+    }
+}
+
+/// Name of the scene without a variant.
+pub const PLAIN: &str = "plain";
+
+/// Reads grains for a scene from a LAMMPS data file.
+///
+/// # Errors
+/// Says file, line, what was expected and what was found.
+pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, String> {
+    let data = grainbench_reference::read_data_file(path).map_err(|error| error.to_string())?;
+    Ok(data
+        .atoms
+        .iter()
+        .map(|atom| FileGrain {
+            type_number: atom.type_,
+            radius: atom.radius(),
+            mass: atom.mass(),
+            position: Vector3::from(atom.position),
+            velocity: Vector3::from(atom.velocity),
+            spin: Vector3::from(atom.angular_velocity),
+        })
+        .collect())
+}

@@ -1,0 +1,241 @@
+//! A gate compares a quantity of one or more records with an expectation that has a source, and says why its
+//! tolerance is what it is. Every gate has a negative control: wrong physics that it must refuse.
+
+use crate::verdict::Evidence;
+use grainbench_dem::solver::Defect;
+use grainbench_scene::record::{Record, Series};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::Resolution;
+use std::fmt;
+use std::sync::Arc;
+
+/// A change of a scene, by code.
+pub type Change = Arc<dyn Fn(&mut Scene) + Send + Sync>;
+
+/// One run that a gate reads.
+#[derive(Clone)]
+pub struct Run {
+    /// Variant of the scene.
+    pub variant: &'static str,
+    /// Solver, by name.
+    pub solver: &'static str,
+    /// Resolution.
+    pub resolution: Resolution,
+    /// A change of the scene that belongs to the claim, such as another stiffness in a sweep: its name, which tells
+    /// runs apart, and what it does.
+    pub adjustment: Option<(String, Change)>,
+}
+
+impl Run {
+    /// A run of a variant as it stands.
+    #[must_use]
+    pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
+        Self { variant, solver, resolution, adjustment: None }
+    }
+
+    /// The run with a change of the scene.
+    #[must_use]
+    pub fn adjusted(mut self, name: &str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
+        self.adjustment = Some((name.to_owned(), Arc::new(change)));
+        self
+    }
+
+    /// The same run at another resolution.
+    #[must_use]
+    pub fn at(&self, resolution: Resolution) -> Self {
+        Self { resolution, ..self.clone() }
+    }
+
+    /// What tells this run from others of its case.
+    #[must_use]
+    pub fn key(&self) -> String {
+        let adjustment = self.adjustment.as_ref().map(|(name, _)| name.as_str()).unwrap_or_default();
+        format!("{}|{}|{:?}|{adjustment}", self.variant, self.solver, self.resolution)
+    }
+}
+
+/// A run that was done: what the scene was meant to be, and what the solver left.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// The scene as the case means it. In a negative control the solver was given a wrong one.
+    pub scene: Arc<Scene>,
+    /// The record.
+    pub record: Arc<Record>,
+}
+
+/// A quantity that the records do not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing(pub String);
+
+impl fmt::Display for Missing {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "the record has no {}", self.0)
+    }
+}
+
+impl Done {
+    /// The time series.
+    #[must_use]
+    pub fn series(&self) -> &Series {
+        &self.record.series
+    }
+
+    /// A column of the time series.
+    ///
+    /// # Errors
+    /// When there is no such column or it is empty.
+    pub fn column(&self, name: &str) -> Result<&[f64], Missing> {
+        match self.series().column(name) {
+            Some(values) if !values.is_empty() => Ok(values),
+            _ => Err(Missing(format!("column `{name}`"))),
+        }
+    }
+
+    /// The last value of a column.
+    ///
+    /// # Errors
+    /// When there is no such column or it is empty.
+    pub fn last(&self, name: &str) -> Result<f64, Missing> {
+        Ok(self.column(name)?[self.column(name)?.len() - 1])
+    }
+
+    /// The value of a column at a step.
+    ///
+    /// # Errors
+    /// When the column is missing or was not sampled at that step.
+    pub fn at_step(&self, name: &str, step: u64) -> Result<f64, Missing> {
+        let values = self.column(name)?;
+        let at = self.series().step.iter().position(|&sampled| sampled == step);
+        at.map(|at| values[at]).ok_or_else(|| Missing(format!("sample of `{name}` at step {step}")))
+    }
+}
+
+/// What a gate measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The value.
+    pub value: f64,
+    /// What it should be.
+    pub expected: f64,
+    /// What the difference is divided by.
+    pub scale: f64,
+    /// For a comparison over time: time (s) and signed error of every sample, so that a failure can say when it began.
+    pub course: Vec<(f64, f64)>,
+}
+
+impl Measured {
+    /// A single value.
+    #[must_use]
+    pub const fn new(value: f64, expected: f64, scale: f64) -> Self {
+        Self { value, expected, scale, course: Vec::new() }
+    }
+
+    /// The worst sample of a time series against an exact course.
+    #[must_use]
+    pub fn worst(time: &[f64], values: &[f64], exact: impl Fn(f64) -> f64, scale: f64) -> Self {
+        let expected: Vec<f64> = time.iter().map(|&t| exact(t)).collect();
+        Self::worst_of(time, values, &expected, scale)
+    }
+
+    /// The worst sample of a time series against another one.
+    #[must_use]
+    pub fn worst_of(time: &[f64], values: &[f64], expected: &[f64], scale: f64) -> Self {
+        let errors = values.iter().zip(expected).map(|(value, expected)| (value - expected) / scale);
+        let course: Vec<(f64, f64)> = time.iter().copied().zip(errors).collect();
+        // A value that is not a number is worse than any other.
+        let weight = |error: f64| if error.is_nan() { f64::INFINITY } else { error.abs() };
+        let worst = (0..course.len()).max_by(|&a, &b| weight(course[a].1).total_cmp(&weight(course[b].1))).unwrap_or(0);
+        let pick = |list: &[f64]| list.get(worst).copied().unwrap_or(f64::NAN);
+        Self { value: pick(values), expected: pick(expected), scale, course }
+    }
+
+    /// Signed error, (value − expected)/scale.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        (self.value - self.expected) / self.scale
+    }
+}
+
+/// Wrong physics for a negative control.
+#[derive(Clone)]
+pub enum Wrong {
+    /// The solver is given a wrong scene.
+    Scene(Change),
+    /// The solver has a defect.
+    Solver(Defect),
+    /// Another solver takes its place.
+    OtherSolver(&'static str),
+}
+
+/// A negative control: what is made wrong, in words and in deed.
+#[derive(Clone)]
+pub struct Control {
+    /// What is wrong, such as `a sphere's inertia in a disc`.
+    pub name: &'static str,
+    /// How.
+    pub wrong: Wrong,
+}
+
+impl Control {
+    /// A wrong scene.
+    #[must_use]
+    pub fn scene(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
+        Self { name, wrong: Wrong::Scene(Arc::new(change)) }
+    }
+
+    /// A solver whose contacts forget.
+    #[must_use]
+    pub const fn forgets_history() -> Self {
+        Self { name: "contacts forget their history", wrong: Wrong::Solver(Defect::ForgetsHistory) }
+    }
+
+    /// Another solver.
+    #[must_use]
+    pub const fn solver(name: &'static str, solver: &'static str) -> Self {
+        Self { name, wrong: Wrong::OtherSolver(solver) }
+    }
+}
+
+/// Reads the records of a gate's runs, in their order.
+pub type Measure = Arc<dyn Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync>;
+
+/// A gate.
+#[derive(Clone)]
+pub struct Gate {
+    /// What is measured, in words.
+    pub quantity: String,
+    /// Unit of value, expectation and scale; `1` for a pure number.
+    pub unit: &'static str,
+    /// Kind of source.
+    pub evidence: Evidence,
+    /// Where the expectation comes from.
+    pub source: &'static str,
+    /// Largest |error| that passes.
+    pub allowed: f64,
+    /// Why the tolerance is what it is.
+    pub because: &'static str,
+    /// What is read. The first run names the row.
+    pub runs: Vec<Run>,
+    /// How it is measured.
+    pub measure: Measure,
+    /// What it must refuse.
+    pub control: Control,
+}
+
+impl Gate {
+    /// Resolutions in words: one, or the first and the last of several.
+    #[must_use]
+    pub fn resolution(&self) -> String {
+        let words: Vec<String> = self.runs.iter().map(|run| run.resolution.to_string()).collect();
+        match (words.first(), words.last()) {
+            (Some(first), Some(last)) if first != last => format!("{first} … {last}"),
+            (Some(first), _) => first.clone(),
+            _ => String::new(),
+        }
+    }
+}
+
+/// Wraps a measurement.
+pub fn measure(of: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static) -> Measure {
+    Arc::new(of)
+}

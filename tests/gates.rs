@@ -1,0 +1,47 @@
+//! Every gate of the registry, and for every gate its negative control: a test each.
+
+use grainbench::cases::bench::Bench;
+use grainbench::cases::gate::Gate;
+use grainbench::cases::registry::CASES;
+use grainbench::cases::verdict::Outcome;
+use libtest_mimic::{Arguments, Failed, Trial};
+use std::sync::Arc;
+
+fn main() -> std::process::ExitCode {
+    let mut trials = Vec::new();
+    for case in CASES {
+        let bench = Arc::new(Bench::new(case));
+        for gate in (case.gates)() {
+            let gate = Arc::new(gate);
+            let run = &gate.runs[0];
+            let name = format!("{}/{} {} {}: {}", case.name, run.variant, run.solver, gate.resolution(), gate.quantity);
+            trials.push(trial(&name, &bench, &gate, accept));
+            trials.push(trial(&format!("{name} [control: {}]", gate.control.name), &bench, &gate, refuse));
+        }
+    }
+    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
+}
+
+fn trial(name: &str, bench: &Arc<Bench>, gate: &Arc<Gate>, test: fn(&Bench, &Gate) -> Result<(), Failed>) -> Trial {
+    let (bench, gate) = (Arc::clone(bench), Arc::clone(gate));
+    Trial::test(name, move || test(&bench, &gate))
+}
+
+/// The gate passes.
+fn accept(bench: &Bench, gate: &Gate) -> Result<(), Failed> {
+    let verdict = bench.judge(gate);
+    if verdict.outcome == Outcome::Pass { Ok(()) } else { Err(grainbench::reports::failure_line(&verdict).into()) }
+}
+
+/// The gate turns red when its physics is wrong.
+fn refuse(bench: &Bench, gate: &Gate) -> Result<(), Failed> {
+    let control = bench.control(gate);
+    if control.turned_red {
+        return Ok(());
+    }
+    Err(format!(
+        "{} · {} · {}: did not notice that {}: error {:?}, allowed {:e}",
+        control.case, control.solver, control.quantity, control.wrong_physics, control.error, control.allowed
+    )
+    .into())
+}
