@@ -1,4 +1,26 @@
-//! Placeholder.
-pub fn failure_line(verdict: &grainbench_cases::verdict::Verdict) -> String {
-    format!("{verdict:?}")
-}
+//! Plots, pages and result files, made from records and verdicts only: no solver is needed to redo them.
+
+pub mod export;
+pub mod headline;
+pub mod junit;
+pub mod line;
+pub mod number;
+pub mod page;
+pub mod plot;
+pub mod report;
+pub mod results;
+pub mod staged;
+pub mod store;
+mod stored_figure;
+pub mod terminal;
+pub mod write;
+
+#[cfg(test)]
+mod sample;
+
+pub use headline::Headline;
+pub use report::{Provenance, Report, RunCost, Section};
+pub use staged::StagedDir;
+pub use store::{LoadError, SaveError, write_report};
+pub use terminal::summary_table;
+pub use write::{WriteError, write_file};

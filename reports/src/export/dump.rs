@@ -1,0 +1,107 @@
+//! Snapshots as one LAMMPS text dump, which LAMMPS tools, OVITO and VMD open.
+
+use std::io::{self, Write};
+
+use grainbench_scene::record::Snapshot;
+use nalgebra::Vector3;
+
+/// The columns of every snapshot, in the words of LAMMPS.
+const COLUMNS: &str = "id type radius mass x y z vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz";
+
+/// Writes all snapshots. Units are SI; `type` is the place of the material in the scene, from 1.
+///
+/// # Errors
+/// When `out` refuses.
+pub fn write(snapshots: &[Snapshot], mut out: impl Write) -> io::Result<()> {
+    writeln!(out, "ITEM: UNITS\nsi")?;
+    for snapshot in snapshots {
+        writeln!(out, "ITEM: TIME\n{:?}", snapshot.time)?;
+        writeln!(out, "ITEM: TIMESTEP\n{}", snapshot.step)?;
+        writeln!(out, "ITEM: NUMBER OF ATOMS\n{}", snapshot.grains.len())?;
+        let kinds = snapshot.periodic.map(|periodic| if periodic { "pp" } else { "ff" });
+        writeln!(out, "ITEM: BOX BOUNDS {}", kinds.join(" "))?;
+        for axis in 0..3 {
+            let (low, high) = bounds_along(snapshot, axis);
+            writeln!(out, "{low:?} {high:?}")?;
+        }
+        writeln!(out, "ITEM: ATOMS {COLUMNS}")?;
+        for grain in &snapshot.grains {
+            write!(out, "{} {} {:?} {:?}", grain.id, u32::from(grain.material) + 1, grain.radius, grain.mass)?;
+            for vector in [&grain.position, &grain.velocity, &grain.spin, &grain.force, &grain.torque] {
+                write_vector(&mut out, vector)?;
+            }
+            writeln!(out)?;
+        }
+    }
+    out.flush()
+}
+
+fn write_vector(out: &mut impl Write, vector: &Vector3<f64>) -> io::Result<()> {
+    write!(out, " {:?} {:?} {:?}", vector.x, vector.y, vector.z)
+}
+
+/// The box along an axis. Readers refuse a box without thickness, so where the domain has none (a plane problem) or
+/// no end, the box is as thick as the grains.
+fn bounds_along(snapshot: &Snapshot, axis: usize) -> (f64, f64) {
+    let (low, high) = (snapshot.bounds.0[axis], snapshot.bounds.1[axis]);
+    if low.is_finite() && high.is_finite() && low < high {
+        return (low, high);
+    }
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for grain in &snapshot.grains {
+        low = low.min(grain.position[axis] - grain.radius);
+        high = high.max(grain.position[axis] + grain.radius);
+    }
+    if low < high && low.is_finite() && high.is_finite() { (low, high) } else { (-0.5, 0.5) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::sample;
+
+    #[test]
+    fn writes_what_lammps_would() {
+        let mut out = Vec::new();
+        let mut later = sample::snapshot();
+        later.step = 20;
+        later.time = 0.2;
+        later.grains.truncate(1);
+        write(&[sample::snapshot(), later], &mut out).unwrap();
+        let columns = format!("ITEM: ATOMS {COLUMNS}");
+        assert_eq!(
+            String::from_utf8(out).unwrap(),
+            [
+                "ITEM: UNITS",
+                "si",
+                "ITEM: TIME",
+                "0.1",
+                "ITEM: TIMESTEP",
+                "10",
+                "ITEM: NUMBER OF ATOMS",
+                "2",
+                "ITEM: BOX BOUNDS pp ff ff",
+                "0.0 4.0",
+                "0.0 3.0",
+                "-0.5 0.5",
+                &columns,
+                "1 1 0.5 1.25 3.75 0.25 0.0 0.1 -2e-7 0.0 0.0 0.0 3.0 1.0 2.0 0.0 0.0 0.0 -0.125",
+                "2 1 0.5 1.25 0.5 0.25 0.0 0.1 -2e-7 0.0 0.0 0.0 3.0 1.0 2.0 0.0 0.0 0.0 -0.125",
+                "ITEM: TIME",
+                "0.2",
+                "ITEM: TIMESTEP",
+                "20",
+                "ITEM: NUMBER OF ATOMS",
+                "1",
+                "ITEM: BOX BOUNDS pp ff ff",
+                "0.0 4.0",
+                "0.0 3.0",
+                "-0.5 0.5",
+                &columns,
+                "1 1 0.5 1.25 3.75 0.25 0.0 0.1 -2e-7 0.0 0.0 0.0 3.0 1.0 2.0 0.0 0.0 0.0 -0.125",
+                "",
+            ]
+            .join("\n")
+        );
+    }
+}

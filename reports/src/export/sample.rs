@@ -1,0 +1,88 @@
+//! A record small enough to read: two discs and a wall, one contact across a periodic boundary.
+
+use grainbench_scene::record::{
+    Column, ContactState, Cost, GrainState, Partner, Provenance, Record, Series, Snapshot, WallState,
+};
+use nalgebra::Vector3;
+
+fn grain(id: u32, x: f64, y: f64) -> GrainState {
+    GrainState {
+        id,
+        material: 0,
+        radius: 0.5,
+        mass: 1.25,
+        position: Vector3::new(x, y, 0.0),
+        velocity: Vector3::new(0.1, -2e-7, 0.0),
+        spin: Vector3::new(0.0, 0.0, 3.0),
+        angle: 0.25,
+        force: Vector3::new(1.0, 2.0, 0.0),
+        torque: Vector3::new(0.0, 0.0, -0.125),
+    }
+}
+
+pub(crate) fn snapshot() -> Snapshot {
+    Snapshot {
+        step: 10,
+        time: 0.1,
+        bounds: (Vector3::new(0.0, 0.0, 0.0), Vector3::new(4.0, 3.0, 0.0)),
+        periodic: [true, false, false],
+        grains: vec![grain(1, 3.75, 0.25), grain(2, 0.5, 0.25)],
+        contacts: vec![
+            ContactState {
+                grain: 1,
+                partner: Partner::Grain(2),
+                point: Vector3::new(0.125, 0.25, 0.0),
+                normal: Vector3::new(1.0, 0.0, 0.0),
+                overlap: 0.25,
+                normal_force: 10.0,
+                shear_force: Vector3::new(0.0, 1.5, 0.0),
+                slipping: true,
+            },
+            ContactState {
+                grain: 2,
+                partner: Partner::Wall(0),
+                point: Vector3::new(0.5, -0.125, 0.0),
+                normal: Vector3::new(0.0, -1.0, 0.0),
+                overlap: 0.25,
+                normal_force: 20.0,
+                shear_force: Vector3::zeros(),
+                slipping: false,
+            },
+        ],
+        walls: vec![WallState {
+            name: "floor".into(),
+            corners: vec![Vector3::zeros(), Vector3::new(4.0, 0.0, 0.0)],
+            infinite: false,
+            force: Vector3::new(0.0, -20.0, 0.0),
+        }],
+    }
+}
+
+pub(crate) fn series() -> Series {
+    Series {
+        step: vec![0, 5],
+        time: vec![0.0, 0.1 + 0.2],
+        columns: vec![
+            Column { name: "disc.x".into(), unit: "m".into() },
+            Column { name: "a,b".into(), unit: "1".into() },
+        ],
+        values: vec![vec![1.0, 1.0 / 3.0], vec![-1e-300, 2e20]],
+    }
+}
+
+pub(crate) fn record() -> Record {
+    Record {
+        provenance: Provenance {
+            scene: "two discs".into(),
+            solver: "dem".into(),
+            resolution: "dt=.1".into(),
+            time_step: 0.01,
+            critical_time_step: Some(0.1),
+            effects: vec!["friction".into()],
+            options: Vec::new(),
+        },
+        series: series(),
+        snapshots: vec![Snapshot { step: 0, time: 0.0, contacts: Vec::new(), ..snapshot() }, snapshot()],
+        cost: Cost::default(),
+    }
+}

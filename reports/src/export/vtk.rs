@@ -1,0 +1,193 @@
+//! Snapshots as VTK PolyData (XML, ASCII), which ParaView and VisIt open.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use grainbench_scene::record::{ContactState, GrainState, Partner, Snapshot};
+use maud::Escaper;
+use nalgebra::Vector3;
+
+/// Writes the grains as points with their state, one vertex a grain so that they show without a filter.
+///
+/// # Errors
+/// When `out` refuses.
+pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
+    let grains = &snapshot.grains;
+    open(&mut out, snapshot.time, grains.len(), grains.len(), 0)?;
+    writeln!(out, "<PointData Scalars=\"radius\" Vectors=\"velocity\">")?;
+    whole(&mut out, "Int64", "id", grains.iter().map(|grain| i64::from(grain.id)))?;
+    whole(&mut out, "Int32", "material", grains.iter().map(|grain| i64::from(grain.material)))?;
+    scalars(&mut out, "radius", grains.iter().map(|grain| grain.radius))?;
+    scalars(&mut out, "mass", grains.iter().map(|grain| grain.mass))?;
+    scalars(&mut out, "angle", grains.iter().map(|grain| grain.angle))?;
+    vectors(&mut out, "velocity", grains.iter().map(|grain| grain.velocity))?;
+    vectors(&mut out, "spin", grains.iter().map(|grain| grain.spin))?;
+    vectors(&mut out, "force", grains.iter().map(|grain| grain.force))?;
+    vectors(&mut out, "torque", grains.iter().map(|grain| grain.torque))?;
+    writeln!(out, "</PointData>\n<Points>")?;
+    vectors(&mut out, "points", grains.iter().map(|grain| grain.position))?;
+    writeln!(out, "</Points>")?;
+    cells(&mut out, "Verts", 1, grains.len())?;
+    close(&mut out)
+}
+
+/// Writes the contacts as lines from the grain's centre to its partner's, or to the contact point on a wall.
+/// `partner` is a grain's id, or −1 − the wall's place in the scene.
+///
+/// # Errors
+/// When `out` refuses.
+pub fn write_contacts(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
+    let by_id: HashMap<u32, &GrainState> = snapshot.grains.iter().map(|grain| (grain.id, grain)).collect();
+    // A contact of a grain that is not there has nothing to be drawn from.
+    let contacts: Vec<(&ContactState, [Vector3<f64>; 2])> =
+        snapshot.contacts.iter().filter_map(|contact| Some((contact, ends(contact, &by_id)?))).collect();
+    let all = || contacts.iter().map(|(contact, _)| *contact);
+    open(&mut out, snapshot.time, 2 * contacts.len(), 0, contacts.len())?;
+    writeln!(out, "<CellData Scalars=\"normal_force\" Vectors=\"shear_force\">")?;
+    whole(&mut out, "Int64", "grain", all().map(|contact| i64::from(contact.grain)))?;
+    whole(
+        &mut out,
+        "Int64",
+        "partner",
+        all().map(|contact| match contact.partner {
+            Partner::Grain(id) => i64::from(id),
+            Partner::Wall(place) => -1 - i64::from(place),
+        }),
+    )?;
+    scalars(&mut out, "normal_force", all().map(|contact| contact.normal_force))?;
+    vectors(&mut out, "shear_force", all().map(|contact| contact.shear_force))?;
+    scalars(&mut out, "overlap", all().map(|contact| contact.overlap))?;
+    whole(&mut out, "UInt8", "slipping", all().map(|contact| i64::from(contact.slipping)))?;
+    writeln!(out, "</CellData>\n<Points>")?;
+    vectors(&mut out, "points", contacts.iter().flat_map(|(_, ends)| *ends))?;
+    writeln!(out, "</Points>")?;
+    cells(&mut out, "Lines", 2, contacts.len())?;
+    close(&mut out)
+}
+
+/// A ParaView collection (`.pvd`) of files with their times (s).
+#[must_use]
+pub fn collection(files: &[(f64, String)]) -> String {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    for (time, file) in files {
+        let _ = write!(text, "<DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"");
+        let _ = Escaper::new(&mut text).write_str(file);
+        text.push_str("\"/>\n");
+    }
+    text.push_str("</Collection>\n</VTKFile>\n");
+    text
+}
+
+/// Where a contact's line begins and ends. The far end follows from the normal and not from the partner's position,
+/// so that a contact across a periodic boundary is drawn to the partner's image and never across the box.
+fn ends(contact: &ContactState, by_id: &HashMap<u32, &GrainState>) -> Option<[Vector3<f64>; 2]> {
+    let grain = by_id.get(&contact.grain)?;
+    let length = match contact.partner {
+        Partner::Grain(id) => grain.radius + by_id.get(&id)?.radius - contact.overlap,
+        Partner::Wall(_) => grain.radius - 0.5 * contact.overlap,
+    };
+    Some([grain.position, grain.position + contact.normal * length])
+}
+
+fn open(out: &mut impl Write, time: f64, points: usize, vertices: usize, lines: usize) -> io::Result<()> {
+    writeln!(
+        out,
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n\
+         <FieldData>\n\
+         <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">\n{time:?}\n\
+         </DataArray>\n</FieldData>\n\
+         <Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"{vertices}\" NumberOfLines=\"{lines}\" \
+         NumberOfStrips=\"0\" NumberOfPolys=\"0\">"
+    )
+}
+
+fn close(out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "</Piece>\n</PolyData>\n</VTKFile>")?;
+    out.flush()
+}
+
+fn array<T>(
+    out: &mut impl Write,
+    kind: &str,
+    name: &str,
+    components: usize,
+    values: impl Iterator<Item = T>,
+    mut write: impl FnMut(&mut String, T),
+) -> io::Result<()> {
+    let shape = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+    writeln!(out, "<DataArray type=\"{kind}\" Name=\"{name}\"{shape} format=\"ascii\">")?;
+    let mut line = String::new();
+    for value in values {
+        line.clear();
+        write(&mut line, value);
+        writeln!(out, "{line}")?;
+    }
+    writeln!(out, "</DataArray>")
+}
+
+fn whole(out: &mut impl Write, kind: &str, name: &str, values: impl Iterator<Item = i64>) -> io::Result<()> {
+    array(out, kind, name, 1, values, |line, value| {
+        let _ = write!(line, "{value}");
+    })
+}
+
+fn scalars(out: &mut impl Write, name: &str, values: impl Iterator<Item = f64>) -> io::Result<()> {
+    array(out, "Float64", name, 1, values, |line, value| {
+        let _ = write!(line, "{value:?}");
+    })
+}
+
+fn vectors(out: &mut impl Write, name: &str, values: impl Iterator<Item = Vector3<f64>>) -> io::Result<()> {
+    array(out, "Float64", name, 3, values, |line, value| {
+        let _ = write!(line, "{:?} {:?} {:?}", value.x, value.y, value.z);
+    })
+}
+
+/// Cells of `size` points each that use the points in order.
+fn cells(out: &mut impl Write, name: &str, size: usize, count: usize) -> io::Result<()> {
+    let number = |value: usize| i64::try_from(value).unwrap_or(i64::MAX);
+    writeln!(out, "<{name}>")?;
+    whole(out, "Int64", "connectivity", (0..size * count).map(number))?;
+    whole(out, "Int64", "offsets", (1..=count).map(|cell| number(cell * size)))?;
+    writeln!(out, "</{name}>")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::sample;
+
+    fn text(write: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> String {
+        let mut out = Vec::new();
+        write(&mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn contacts_never_cross_the_box() {
+        insta::assert_snapshot!(text(|out| write_contacts(&sample::snapshot(), out)));
+    }
+
+    #[test]
+    fn grains_carry_their_state() {
+        insta::assert_snapshot!(text(|out| write_grains(&sample::snapshot(), out)));
+    }
+
+    #[test]
+    fn a_collection_lists_times() {
+        let files = [(0.0, "a.vtp".to_owned()), (0.1, "b&c.vtp".to_owned())];
+        assert_eq!(
+            collection(&files),
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n\
+             <DataSet timestep=\"0.0\" group=\"\" part=\"0\" file=\"a.vtp\"/>\n\
+             <DataSet timestep=\"0.1\" group=\"\" part=\"0\" file=\"b&amp;c.vtp\"/>\n\
+             </Collection>\n</VTKFile>\n"
+        );
+    }
+}

@@ -1,0 +1,158 @@
+//! Counting rows by how they ended.
+
+use grainbench_cases::verdict::{Control, Outcome, Verdict};
+
+use crate::report::{Report, Section};
+
+/// All outcomes in the order in which a reader wants to know of them.
+pub const OUTCOMES: [Outcome; 8] = [
+    Outcome::Pass,
+    Outcome::Fail,
+    Outcome::Broken,
+    Outcome::Known,
+    Outcome::Stale,
+    Outcome::NoReference,
+    Outcome::Unsupported,
+    Outcome::NotAvailable,
+];
+
+/// How many rows ended how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Headline {
+    /// Rows within the allowed error.
+    pub pass: usize,
+    /// Rows outside the allowed error.
+    pub fail: usize,
+    /// Published methods' own documented errors.
+    pub known: usize,
+    /// References made from another scene.
+    pub stale: usize,
+    /// Rows with nothing to compare with.
+    pub no_reference: usize,
+    /// Scenes that the solver cannot express.
+    pub unsupported: usize,
+    /// Programs that are not installed.
+    pub not_available: usize,
+    /// Runs that ended in an error.
+    pub broken: usize,
+    /// Negative controls.
+    pub controls: usize,
+    /// Negative controls that turned red, as they must.
+    pub controls_red: usize,
+}
+
+impl Headline {
+    /// Counts rows and controls.
+    #[must_use]
+    pub fn of<'a>(
+        verdicts: impl IntoIterator<Item = &'a Verdict>,
+        controls: impl IntoIterator<Item = &'a Control>,
+    ) -> Self {
+        let mut counts = Self::default();
+        for verdict in verdicts {
+            *counts.slot(verdict.outcome) += 1;
+        }
+        for control in controls {
+            counts.controls += 1;
+            counts.controls_red += usize::from(control.turned_red);
+        }
+        counts
+    }
+
+    /// Counts a whole report.
+    #[must_use]
+    pub fn of_report(report: &Report) -> Self {
+        Self::of(
+            report.sections.iter().flat_map(|section| &section.verdicts),
+            report.sections.iter().flat_map(|section| &section.controls),
+        )
+    }
+
+    /// Counts one case.
+    #[must_use]
+    pub fn of_section(section: &Section) -> Self {
+        Self::of(&section.verdicts, &section.controls)
+    }
+
+    /// Rows that ended in one way.
+    #[must_use]
+    pub fn count(mut self, outcome: Outcome) -> usize {
+        *self.slot(outcome)
+    }
+
+    /// All rows.
+    #[must_use]
+    pub fn rows(self) -> usize {
+        OUTCOMES.into_iter().map(|outcome| self.count(outcome)).sum()
+    }
+
+    /// Rows that are neither right nor wrong.
+    #[must_use]
+    pub fn amber(self) -> usize {
+        self.rows() - self.pass - self.fail - self.broken
+    }
+
+    /// The counts in one sentence; kinds without a row are left out, except for `pass` and `fail`.
+    #[must_use]
+    pub fn sentence(self) -> String {
+        let mut parts = Vec::new();
+        for outcome in OUTCOMES {
+            let count = self.count(outcome);
+            if count > 0 || matches!(outcome, Outcome::Pass | Outcome::Fail) {
+                parts.push(format!("{count} {}", outcome.word()));
+            }
+        }
+        let controls = if self.controls > 0 {
+            format!("; negative controls: {} of {} turned red", self.controls_red, self.controls)
+        } else {
+            String::new()
+        };
+        format!("{}{controls}", parts.join(", "))
+    }
+
+    fn slot(&mut self, outcome: Outcome) -> &mut usize {
+        match outcome {
+            Outcome::Pass => &mut self.pass,
+            Outcome::Fail => &mut self.fail,
+            Outcome::Known => &mut self.known,
+            Outcome::Stale => &mut self.stale,
+            Outcome::NoReference => &mut self.no_reference,
+            Outcome::Unsupported => &mut self.unsupported,
+            Outcome::NotAvailable => &mut self.not_available,
+            Outcome::Broken => &mut self.broken,
+        }
+    }
+}
+
+/// Error over allowed error; infinite where there is an error and none is allowed, or no finite error at all.
+#[must_use]
+pub fn used_tolerance(verdict: &Verdict) -> f64 {
+    match verdict.error.map(f64::abs) {
+        Some(0.0) => 0.0,
+        Some(error) if error.is_finite() && verdict.allowed > 0.0 => error / verdict.allowed,
+        _ => f64::INFINITY,
+    }
+}
+
+/// The judged row that uses most of its tolerance.
+#[must_use]
+pub fn worst(section: &Section) -> Option<&Verdict> {
+    section
+        .verdicts
+        .iter()
+        .filter(|verdict| matches!(verdict.outcome, Outcome::Pass | Outcome::Fail))
+        .max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
+}
+
+/// Solvers of a case, each once, in the order in which they appear.
+#[must_use]
+pub fn solvers(section: &Section) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    let rows = section.verdicts.iter().map(|verdict| verdict.solver.as_str());
+    for name in rows.chain(section.runs.iter().map(|run| run.solver.as_str())) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}

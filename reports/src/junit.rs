@@ -1,0 +1,87 @@
+//! `junit.xml`, which continuous-integration services show.
+
+use grainbench_cases::verdict::{Outcome, Verdict};
+use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, TestSuite};
+
+use crate::line;
+use crate::report::Report;
+
+/// A test suite a case, a test a row and a test a negative control. Rows that are neither right nor wrong are
+/// skipped with their reason, never passed.
+///
+/// # Errors
+/// When something has no XML form, which no report that was made by this project has.
+pub fn junit_xml(report: &Report) -> Result<String, SerializeError> {
+    let mut document = quick_junit::Report::new("grainbench");
+    for section in &report.sections {
+        let mut suite = TestSuite::new(section.name.as_str());
+        for verdict in &section.verdicts {
+            let mut test = TestCase::new(
+                name(&verdict.variant, &verdict.solver, &verdict.resolution, &verdict.quantity),
+                status(verdict),
+            );
+            test.set_classname(section.name.as_str());
+            suite.add_test_case(test);
+        }
+        for control in &section.controls {
+            let status = if control.turned_red {
+                TestCaseStatus::success()
+            } else {
+                let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+                status.set_message(line::control(control));
+                status
+            };
+            let mut test = TestCase::new(
+                format!(
+                    "negative control · {} · {}",
+                    name(&control.variant, &control.solver, "", &control.quantity),
+                    control.wrong_physics
+                ),
+                status,
+            );
+            test.set_classname(section.name.as_str());
+            suite.add_test_case(test);
+        }
+        document.add_test_suite(suite);
+    }
+    document.to_string()
+}
+
+fn name(variant: &str, solver: &str, resolution: &str, quantity: &str) -> String {
+    let solver = format!("{solver} {resolution}");
+    [variant, solver.trim_end(), quantity].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ")
+}
+
+fn status(verdict: &Verdict) -> TestCaseStatus {
+    let mut status = match verdict.outcome {
+        Outcome::Pass => return TestCaseStatus::success(),
+        Outcome::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
+        Outcome::Broken => TestCaseStatus::non_success(NonSuccessKind::Error),
+        Outcome::Known | Outcome::Stale | Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => {
+            TestCaseStatus::skipped()
+        }
+    };
+    let message = match (&verdict.outcome, &verdict.detail) {
+        (Outcome::Fail | Outcome::Broken, _) => line::verdict(verdict),
+        (outcome, Some(detail)) => format!("{}: {detail}", outcome.word()),
+        (outcome, None) => outcome.word().to_owned(),
+    };
+    status.set_message(message);
+    status.set_type(verdict.outcome.word());
+    status
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn only_right_rows_pass() {
+        let text = junit_xml(&sample::report()).unwrap();
+        assert!(text.contains("failures=\"2\" errors=\"1\""), "{text}");
+        assert!(text.contains("skipped=\"3\""), "{text}");
+        assert!(text.contains("negative control"));
+        assert!(text.contains("not-available: "));
+    }
+}

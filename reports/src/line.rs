@@ -1,0 +1,117 @@
+//! A row in one line: what a person reads first when something fails.
+
+use grainbench_cases::verdict::{Control, Evidence, Outcome, Verdict};
+
+use crate::number;
+
+/// `case · solver resolution · quantity value, exact expected (source), off error, allowed tolerance`.
+#[must_use]
+pub fn verdict(verdict: &Verdict) -> String {
+    format!("{} · {}", place(&verdict.case, &verdict.variant), within_case(verdict))
+}
+
+/// The same without the case, for where the case is known: `variant · solver …`.
+#[must_use]
+pub fn verdict_in_section(verdict: &Verdict) -> String {
+    if verdict.variant.is_empty() {
+        within_case(verdict)
+    } else {
+        format!("{} · {}", verdict.variant, within_case(verdict))
+    }
+}
+
+/// `case · solver · quantity: wrong physics, off error, allowed tolerance: stayed green`.
+#[must_use]
+pub fn control(control: &Control) -> String {
+    format!("{} · {}", place(&control.case, &control.variant), tried(control))
+}
+
+/// The same without the case, for where the case is known.
+#[must_use]
+pub fn control_in_section(control: &Control) -> String {
+    if control.variant.is_empty() { tried(control) } else { format!("{} · {}", control.variant, tried(control)) }
+}
+
+fn tried(control: &Control) -> String {
+    let error = control.error.map_or_else(|| "by no finite number".to_owned(), |error| number::fraction(error.abs()));
+    let end = if control.turned_red { "turned red, as it must" } else { "stayed green, but must turn red" };
+    format!(
+        "{} · {}: fed with {}, off {error}, allowed {}: {end}",
+        control.solver,
+        control.quantity,
+        control.wrong_physics,
+        number::fraction(control.allowed),
+    )
+}
+
+/// What the expected value is called, by its kind of source.
+#[must_use]
+pub const fn expected_word(evidence: Evidence) -> &'static str {
+    match evidence {
+        Evidence::Analytic => "exact",
+        Evidence::Experiment => "measured",
+        Evidence::OtherCode => "other code",
+        Evidence::Paper => "printed",
+        Evidence::Convergence => "converged",
+        Evidence::Invariant => "required",
+    }
+}
+
+/// `of SCALE` where an error is not relative to the expected value itself.
+#[must_use]
+pub fn scale_note(verdict: &Verdict) -> Option<String> {
+    let scale = verdict.scale?;
+    let own = verdict.expected.map_or(0.0, f64::abs);
+    ((scale - own).abs() > 1e-6 * own).then(|| format!("of {}", number::with_unit(scale, &verdict.unit)))
+}
+
+fn place(case: &str, variant: &str) -> String {
+    if variant.is_empty() { case.to_owned() } else { format!("{case}/{variant}") }
+}
+
+fn within_case(verdict: &Verdict) -> String {
+    let mut line = format!("{} {} · {}", verdict.solver, verdict.resolution, verdict.quantity);
+    if verdict.outcome == Outcome::Broken {
+        line.push_str(": broken");
+    } else {
+        let value =
+            verdict.value.map_or_else(|| "no value".to_owned(), |value| number::with_unit(value, &verdict.unit));
+        line.push_str(&format!(" {value}"));
+        if let Some(expected) = verdict.expected {
+            line.push_str(&format!(", {} {}", expected_word(verdict.evidence), number::value(expected)));
+        }
+        line.push_str(&format!(" ({})", verdict.source));
+        if let Some(error) = verdict.error {
+            line.push_str(&format!(", off {}", number::fraction(error.abs())));
+            if let Some(scale) = scale_note(verdict) {
+                line.push_str(&format!(" {scale}"));
+            }
+        } else {
+            line.push_str(", off by no finite number");
+        }
+        line.push_str(&format!(", allowed {}", number::fraction(verdict.allowed)));
+    }
+    if let Some(detail) = &verdict.detail {
+        line.push_str(&format!("; {detail}"));
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn a_failure_reads_like_a_sentence() {
+        let mut row = sample::verdict("backspin", "dem", "v(t=0.5 s)", 1.391, 1.428_571, 0.02);
+        row.source = "eq. 26".to_owned();
+        assert_eq!(
+            verdict(&row).replace('\u{202f}', " "),
+            "backspin · dem dt=.1 · v(t=0.5 s) 1.391 m/s, exact 1.42857 (eq. 26), off 2.6 %, allowed 2 %"
+        );
+        row.outcome = Outcome::Broken;
+        row.detail = Some("not finite at t=0.2 s".to_owned());
+        assert_eq!(verdict(&row), "backspin · dem dt=.1 · v(t=0.5 s): broken; not finite at t=0.2 s");
+    }
+}

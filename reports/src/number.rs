@@ -1,0 +1,184 @@
+//! Numbers as a reader of physics wants them: few digits, `×10ⁿ` when plain digits would be long, a true minus sign.
+
+/// A space that neither breaks nor stretches, between a number and its unit and within long counts.
+const THIN: char = '\u{202f}';
+
+/// `value` with at most `digits` significant digits.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
+    trim(&fixed(value, digits))
+}
+
+/// A measured or expected value: six significant digits.
+#[must_use]
+pub fn value(value: f64) -> String {
+    significant(value, 6)
+}
+
+/// A value with its unit; the unit `1` of a pure number is not printed.
+#[must_use]
+pub fn with_unit(number: f64, unit: &str) -> String {
+    append_unit(value(number), unit)
+}
+
+/// A size of error or a tolerance, which are fractions: two significant digits, in percent unless far from one.
+#[must_use]
+pub fn fraction(size: f64) -> String {
+    let magnitude = size.abs();
+    if magnitude == 0.0 {
+        "0".to_owned()
+    } else if (9.95e-4..10.0).contains(&magnitude) {
+        format!("{}{THIN}%", significant(100.0 * size, 2))
+    } else {
+        fixed(size, 2)
+    }
+}
+
+/// A signed error as a fraction; a dash when there is none.
+#[must_use]
+pub fn error(error: Option<f64>) -> String {
+    match error {
+        Some(error) if error > 0.0 => format!("+{}", fraction(error)),
+        Some(error) => fraction(error),
+        None => "—".to_owned(),
+    }
+}
+
+/// A number of things, in groups of three digits.
+#[must_use]
+pub fn count(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(THIN);
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A duration with the prefix that suits it: three significant digits.
+#[must_use]
+pub fn seconds(seconds: f64) -> String {
+    let (scale, unit) = match seconds.abs() {
+        size if size == 0.0 || size >= 1.0 || !size.is_finite() => (1.0, "s"),
+        size if size >= 1e-3 => (1e3, "ms"),
+        size if size >= 1e-6 => (1e6, "µs"),
+        _ => (1e9, "ns"),
+    };
+    append_unit(significant(seconds * scale, 3), unit)
+}
+
+/// `10ⁿ`.
+#[must_use]
+pub fn power_of_ten(exponent: i32) -> String {
+    format!("10{}", superscript(exponent))
+}
+
+/// The exponent `e` for which `value` is between `10ᵉ` and `10ᵉ⁺¹`, after rounding to `digits`.
+fn exponent_of(value: f64, digits: usize) -> i32 {
+    format!("{:.*e}", digits.saturating_sub(1), value)
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok())
+        .unwrap_or(0)
+}
+
+/// Exactly `digits` significant digits.
+fn fixed(value: f64, digits: usize) -> String {
+    if value.is_nan() {
+        return "not a number".to_owned();
+    }
+    if value.is_infinite() {
+        return if value > 0.0 { "∞" } else { "−∞" }.to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let places = i32::try_from(digits).unwrap_or(i32::MAX).saturating_sub(1);
+    let exponent = exponent_of(value, digits);
+    let text = if (-3..=places.max(3)).contains(&exponent) {
+        let decimals = usize::try_from(places - exponent).unwrap_or(0);
+        format!("{value:.decimals$}")
+    } else {
+        let text = format!("{:.*e}", digits.saturating_sub(1), value);
+        let mantissa = text.split_once('e').map_or("", |(mantissa, _)| mantissa);
+        format!("{mantissa}×{}", power_of_ten(exponent))
+    };
+    text.replacen('-', "−", 1)
+}
+
+/// Takes away zeros that end a fraction.
+fn trim(text: &str) -> String {
+    let (mantissa, power) = match text.split_once('×') {
+        Some((mantissa, power)) => (mantissa, format!("×{power}")),
+        None => (text, String::new()),
+    };
+    let mantissa = if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
+    format!("{mantissa}{power}")
+}
+
+fn append_unit(number: String, unit: &str) -> String {
+    if unit == "1" || unit.is_empty() { number } else { format!("{number}{THIN}{unit}") }
+}
+
+fn superscript(number: i32) -> String {
+    number
+        .to_string()
+        .chars()
+        .map(|digit| match digit {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            '9' => '⁹',
+            _ => '⁰',
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_have_six_digits() {
+        assert_eq!(value(1.4285714285), "1.42857");
+        assert_eq!(value(1.391), "1.391");
+        assert_eq!(value(-0.05), "−0.05");
+        assert_eq!(value(123_456.7), "123457");
+        assert_eq!(value(1_234_567.0), "1.23457×10⁶");
+        assert_eq!(value(999_999.9), "1×10⁶");
+        assert_eq!(value(1.5e-9), "1.5×10⁻⁹");
+        assert_eq!(value(0.0), "0");
+        assert_eq!(value(f64::NAN), "not a number");
+        assert_eq!(with_unit(2.0, "m/s"), "2\u{202f}m/s");
+        assert_eq!(with_unit(2.0, "1"), "2");
+    }
+
+    #[test]
+    fn errors_have_two_digits() {
+        assert_eq!(error(Some(-0.0263)), "−2.6\u{202f}%");
+        assert_eq!(error(Some(0.02)), "+2\u{202f}%");
+        assert_eq!(error(Some(3.14e-12)), "+3.1×10⁻¹²");
+        assert_eq!(error(Some(0.0)), "0");
+        assert_eq!(error(None), "—");
+        assert_eq!(fraction(1.2), "120\u{202f}%");
+        assert_eq!(fraction(0.000_999), "0.1\u{202f}%");
+        assert_eq!(fraction(5e4), "5.0×10⁴");
+    }
+
+    #[test]
+    fn counts_and_times_read_easily() {
+        assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(count(999), "999");
+        assert_eq!(seconds(0.000_4), "400\u{202f}µs");
+        assert_eq!(seconds(2.13), "2.13\u{202f}s");
+        assert_eq!(seconds(0.0), "0\u{202f}s");
+    }
+}

@@ -1,0 +1,57 @@
+//! Markdown of the cases as HTML. Raw HTML shows as text; images are left to figures.
+
+use maud::{Markup, PreEscaped};
+use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
+
+/// Renders Markdown with tables. Headings come out below those of the page.
+pub(crate) fn render(markdown: &str) -> Markup {
+    let events = Parser::new_ext(markdown, Options::ENABLE_TABLES).map(tame);
+    let mut text = String::new();
+    html::push_html(&mut text, events);
+    PreEscaped(text)
+}
+
+fn tame(event: Event<'_>) -> Event<'_> {
+    match event {
+        Event::Html(raw) | Event::InlineHtml(raw) => Event::Text(raw),
+        Event::Start(Tag::Image { .. }) => Event::Start(Tag::Emphasis),
+        Event::End(TagEnd::Image) => Event::End(TagEnd::Emphasis),
+        Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
+            Event::Start(Tag::Link { link_type, dest_url: harmless(dest_url), title, id })
+        }
+        Event::Start(Tag::Heading { level, classes, attrs, .. }) => {
+            Event::Start(Tag::Heading { level: lower(level), id: None, classes, attrs })
+        }
+        Event::End(TagEnd::Heading(level)) => Event::End(TagEnd::Heading(lower(level))),
+        other => other,
+    }
+}
+
+/// Links lead to pages or within this one, and start no program.
+fn harmless(address: CowStr<'_>) -> CowStr<'_> {
+    let known = ["https://", "http://", "#"];
+    if known.iter().any(|start| address.starts_with(start)) { address } else { CowStr::Borrowed("#summary") }
+}
+
+const fn lower(level: HeadingLevel) -> HeadingLevel {
+    match level {
+        HeadingLevel::H1 | HeadingLevel::H2 => HeadingLevel::H4,
+        HeadingLevel::H3 => HeadingLevel::H5,
+        _ => HeadingLevel::H6,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeps_formulas_and_tames_the_rest() {
+        let text = render("# Slip\n\n`t* = 2v₀/7μg` <b onload=\"x\">\n\n    a < b\n\n[x](javascript:y) ![z](q)");
+        assert_eq!(
+            text.into_string(),
+            "<h4>Slip</h4>\n<p><code>t* = 2v₀/7μg</code> &lt;b onload=\"x\"&gt;</p>\n\
+             <pre><code>a &lt; b\n</code></pre>\n<p><a href=\"#summary\">x</a> <em>z</em></p>\n"
+        );
+    }
+}

@@ -1,0 +1,224 @@
+//! Cundall and Strack's force plot: discs, walls, and on every contact a bar as wide as its force.
+
+use grainbench_cases::figure::{ForceBar, ForcePlot};
+use maud::{Markup, html};
+
+use super::{FONTS, WIDTH};
+use crate::number;
+
+const MARGIN: f64 = 24.0;
+const TOP: f64 = 48.0;
+/// The key below the drawing.
+const KEY: f64 = 64.0;
+const TALLEST: f64 = 620.0;
+const STICKING: &str = "#0072b2";
+const SLIPPING: &str = "#d55e00";
+
+/// From metres to the units of the drawing, y up.
+struct View {
+    scale: f64,
+    left: f64,
+    bottom: f64,
+    low: [f64; 2],
+}
+
+impl View {
+    fn at(&self, point: [f64; 2]) -> (f64, f64) {
+        (self.left + (point[0] - self.low[0]) * self.scale, self.bottom - (point[1] - self.low[1]) * self.scale)
+    }
+}
+
+/// Draws a force plot as a complete SVG document. Parts that are not finite are left out and counted.
+#[must_use]
+pub fn draw(title: &str, plot: &ForcePlot) -> String {
+    let finite = |point: &[f64; 2]| point[0].is_finite() && point[1].is_finite();
+    let discs: Vec<_> = plot
+        .discs
+        .iter()
+        .filter(|(centre, radius, angle)| finite(centre) && radius.is_finite() && angle.is_finite())
+        .collect();
+    let walls: Vec<_> = plot.walls.iter().filter(|(a, b)| finite(a) && finite(b)).collect();
+    let mut bars: Vec<_> =
+        plot.bars.iter().filter(|bar| finite(&bar.from) && finite(&bar.to) && bar.force.is_finite()).collect();
+    // Weak bars over strong ones, so that none is hidden; outlines go over all.
+    bars.sort_by(|a, b| b.force.abs().total_cmp(&a.force.abs()));
+    let missing = plot.discs.len() + plot.walls.len() + plot.bars.len() - discs.len() - walls.len() - bars.len();
+
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let mut include = |point: [f64; 2], reach: f64| {
+        for axis in 0..2 {
+            low[axis] = low[axis].min(point[axis] - reach);
+            high[axis] = high[axis].max(point[axis] + reach);
+        }
+    };
+    for (centre, radius, _) in &discs {
+        include(*centre, *radius);
+    }
+    for (a, b) in &walls {
+        include(*a, 0.0);
+        include(*b, 0.0);
+    }
+    for bar in &bars {
+        include(bar.from, 0.0);
+        include(bar.to, 0.0);
+    }
+    if low[0] > high[0] {
+        (low, high) = ([0.0; 2], [1.0; 2]);
+    }
+    let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(f64::MIN_POSITIVE));
+    let room = WIDTH - 2.0 * MARGIN;
+    let scale = (room / size[0]).min(TALLEST / size[1]);
+    let drawn = [size[0] * scale, size[1] * scale];
+    let view = View { scale, left: MARGIN + 0.5 * (room - drawn[0]), bottom: TOP + drawn[1], low };
+    let height = TOP + drawn[1] + KEY;
+
+    let strongest = bars.iter().map(|bar| bar.force.abs()).fold(0.0, f64::max);
+    let radius = if discs.is_empty() {
+        0.05 * drawn[0]
+    } else {
+        scale * discs.iter().map(|(_, radius, _)| radius).sum::<f64>() / discs.len() as f64
+    };
+    let widest = (0.8 * radius).clamp(4.0, 40.0);
+    let width_of = |force: f64| {
+        if strongest > 0.0 { widest * force.abs() / strongest } else { 0.0 }
+    };
+    let hairline = (0.04 * radius).clamp(0.5, 1.1);
+
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
+            aria-label=(title) font-family=(FONTS) {
+            title { (title) }
+            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
+            text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (title) }
+            @for contact in &bars { (bar_between(&view, contact, width_of(contact.force))) }
+            g fill="none" stroke="#555" stroke-width=(format!("{hairline:.2}")) {
+                @for (centre, radius, angle) in &discs { (disc(&view, *centre, *radius, *angle)) }
+            }
+            g stroke="#222" stroke-width="4" stroke-linecap="round" {
+                @for (a, b) in &walls {
+                    @let (a, b) = (view.at(*a), view.at(*b));
+                    line x1=(px(a.0)) y1=(px(a.1)) x2=(px(b.0)) y2=(px(b.1)) {}
+                }
+            }
+            (key(view.bottom + 40.0, strongest, &width_of, &bars, missing))
+        }
+    }
+    .into_string()
+}
+
+/// An outline with a radius that turns with the disc.
+fn disc(view: &View, centre: [f64; 2], radius: f64, angle: f64) -> Markup {
+    let (x, y) = view.at(centre);
+    let radius = radius * view.scale;
+    let rim = (x + radius * angle.cos(), y - radius * angle.sin());
+    html! {
+        circle cx=(px(x)) cy=(px(y)) r=(px(radius)) {}
+        line x1=(px(x)) y1=(px(y)) x2=(px(rim.0)) y2=(px(rim.1)) {}
+    }
+}
+
+fn bar_between(view: &View, bar: &ForceBar, width: f64) -> Markup {
+    let (from, to) = (view.at(bar.from), view.at(bar.to));
+    let length = (to.0 - from.0).hypot(to.1 - from.1);
+    let turn = (to.1 - from.1).atan2(to.0 - from.0).to_degrees();
+    let place = format!("translate({} {}) rotate({turn:.2})", px(from.0), px(from.1));
+    html! { g transform=(place) { (bar_along(length, width, bar.slipping)) } }
+}
+
+/// A bar along x from the origin. Slipping contacts are striped, so that they stand apart without colour.
+fn bar_along(length: f64, width: f64, slipping: bool) -> Markup {
+    let half = 0.5 * width;
+    let colour = if slipping { SLIPPING } else { STICKING };
+    // A hatch as fine as the bar is thin would only be grey.
+    let gap = width.clamp(4.0, 8.0);
+    let count = if slipping { (length / gap).floor() as u32 } else { 0 };
+    let stripes: String = (0..count)
+        .map(|stripe| {
+            let x = (f64::from(stripe) + 0.5) * gap;
+            let lean = half.min(0.45 * gap);
+            format!("M{} {}L{} {}", px(x - lean), px(half), px(x + lean), px(-half))
+        })
+        .collect();
+    html! {
+        rect x="0" y=(px(-half)) width=(px(length)) height=(px(width)) fill=(colour) {}
+        @if !stripes.is_empty() { path d=(stripes) stroke="#fff" stroke-width="1.4" fill="none" {} }
+    }
+}
+
+/// What a width means, and which bars slip.
+fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar], missing: usize) -> Markup {
+    let slipping = bars.iter().any(|bar| bar.slipping);
+    let shown = round_below(strongest);
+    let note = match missing {
+        0 => None,
+        1 => Some("(1 part without a finite place not shown)".to_owned()),
+        more => Some(format!("({more} parts without a finite place not shown)")),
+    };
+    html! {
+        g font-size="17" fill="#222" {
+            @if strongest > 0.0 {
+                g transform=(format!("translate({MARGIN} {})", px(y))) {
+                    (bar_along(56.0, width_of(shown), false))
+                    text x="66" y="5" { "contact force " (number::with_unit(shown, "N")) " (width ∝ force)" }
+                }
+                @if slipping {
+                    g transform=(format!("translate(470 {})", px(y))) {
+                        (bar_along(56.0, width_of(shown), true))
+                        text x="66" y="5" { "slipping" }
+                    }
+                }
+            } @else {
+                text x=(MARGIN) y=(px(y + 5.0)) { "no contact forces" }
+            }
+            @if let Some(note) = note {
+                text x=(px(WIDTH - MARGIN)) y=(px(y + 5.0)) text-anchor="end" fill="#666" font-size="13" { (note) }
+            }
+        }
+    }
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above `value`.
+fn round_below(value: f64) -> f64 {
+    if value <= 0.0 {
+        return 0.0;
+    }
+    let decade = 10_f64.powf(value.log10().floor());
+    [5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|multiple| multiple * decade)
+        .find(|round| *round <= value * (1.0 + 1e-9))
+        .unwrap_or(decade)
+}
+
+fn px(length: f64) -> String {
+    let text = format!("{length:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn width_is_proportional_to_force() {
+        let bar = |force: f64, slipping: bool| ForceBar { from: [0.0, 0.0], to: [1.0, 0.0], force, slipping };
+        let svg = draw(
+            "forces <&>",
+            &ForcePlot {
+                discs: vec![([0.0, 0.0], 0.5, 0.0), ([1.0, 0.0], 0.5, 1.0), ([f64::NAN, 0.0], 0.5, 0.0)],
+                walls: vec![([-0.5, -0.5], [1.5, -0.5])],
+                bars: vec![bar(30.0, false), bar(15.0, true)],
+            },
+        );
+        assert!(svg.contains("height=\"40\"") && svg.contains("height=\"20\""), "{svg}");
+        assert!(svg.contains("20\u{202f}N") && svg.contains("slipping"));
+        assert!(svg.contains("(1 part without a finite place not shown)"));
+        assert!(svg.contains("forces &lt;&amp;&gt;") && !svg.contains("NaN"));
+    }
+
+    #[test]
+    fn an_empty_plot_is_still_a_drawing() {
+        let svg = draw("nothing", &ForcePlot { discs: Vec::new(), walls: Vec::new(), bars: Vec::new() });
+        assert!(svg.contains("no contact forces") && !svg.contains("NaN") && !svg.contains("inf"));
+    }
+}

@@ -1,0 +1,72 @@
+//! Figures as SVG text that needs no font and no library to be read.
+
+pub mod forces;
+pub mod graph;
+pub mod palette;
+pub mod scale;
+
+use grainbench_cases::figure::{Drawing, Figure};
+use thiserror::Error;
+
+/// Width of every figure in its own units, which a page scales.
+pub(crate) const WIDTH: f64 = 860.0;
+
+/// Fonts that are there on every desktop and phone.
+pub(crate) const FONTS: &str =
+    "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif";
+
+/// A figure that could not be drawn.
+#[derive(Debug, Error)]
+#[error("cannot draw figure `{figure}`: {reason}")]
+pub struct DrawError {
+    /// Name of the figure.
+    pub figure: String,
+    /// What went wrong.
+    pub reason: String,
+}
+
+/// Draws a figure as a complete SVG document.
+///
+/// # Errors
+/// When the drawing library refuses.
+pub fn draw(figure: &Figure) -> Result<String, DrawError> {
+    match &figure.drawing {
+        Drawing::Graph(graph) => graph::draw(&figure.title, graph)
+            .map_err(|source| DrawError { figure: figure.name.clone(), reason: source.to_string() }),
+        Drawing::Forces(plot) => Ok(forces::draw(&figure.title, plot)),
+    }
+}
+
+/// About how wide a text is. No font is at hand, so an average letter stands for all of them.
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
+    let letters: f64 = text
+        .chars()
+        .map(|letter| match letter {
+            '⁰'..='⁹' | '⁻' | '¹' | '²' | '³' => 0.42,
+            'i' | 'j' | 'l' | 't' | 'f' | '.' | ',' | ' ' | '(' | ')' => 0.36,
+            'm' | 'w' | 'M' | 'W' => 0.9,
+            _ => 0.6,
+        })
+        .sum();
+    letters * size
+}
+
+/// Breaks a text into lines no wider than `width`, at spaces where there are some.
+pub(crate) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        if let Some(line) = lines.last_mut() {
+            if line.is_empty() {
+                line.push_str(word);
+                continue;
+            }
+            let longer = format!("{line} {word}");
+            if text_width(&longer, size) <= width {
+                *line = longer;
+                continue;
+            }
+        }
+        lines.push(word.to_owned());
+    }
+    lines
+}

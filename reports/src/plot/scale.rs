@@ -1,0 +1,228 @@
+//! One axis: its range, its ticks and their labels.
+
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+
+use crate::number::power_of_ten;
+
+/// A linear or logarithmic axis.
+#[derive(Clone, Debug)]
+pub struct Scale {
+    logarithmic: bool,
+    /// Ends in axis units: the values, or their decimal logarithms.
+    low: f64,
+    high: f64,
+    /// About how many labelled ticks fit.
+    room: f64,
+}
+
+/// A place on an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// The value there.
+    pub value: f64,
+    /// What is printed; nothing at the places between.
+    pub label: Option<String>,
+}
+
+impl Scale {
+    /// An axis that shows all of `values`, with `margin` (a fraction of the range) to spare at both ends and room
+    /// for about `room` labels. Values that cannot stand on it are passed over.
+    #[must_use]
+    pub fn fit(values: impl Iterator<Item = f64>, logarithmic: bool, margin: f64, room: u32) -> Self {
+        let mut scale = Self { logarithmic, low: f64::INFINITY, high: f64::NEG_INFINITY, room: f64::from(room.max(2)) };
+        for value in values {
+            if scale.shows(value) {
+                let place = scale.place(value);
+                scale.low = scale.low.min(place);
+                scale.high = scale.high.max(place);
+            }
+        }
+        if scale.low > scale.high {
+            (scale.low, scale.high) = (0.0, 1.0);
+        }
+        // Halved before they are subtracted: the ends may be as far apart as numbers go.
+        let least = if logarithmic { 0.25 } else { 1e-12 * scale.low.abs().max(scale.high.abs()) };
+        let half = 0.5 * scale.high - 0.5 * scale.low;
+        if half <= least {
+            let middle = 0.5 * scale.low + 0.5 * scale.high;
+            let spread = if logarithmic {
+                0.5
+            } else if middle == 0.0 {
+                1.0
+            } else {
+                0.1 * middle.abs()
+            };
+            scale.low = middle - spread;
+            scale.high = middle + spread;
+        } else {
+            scale.low = (scale.low - 2.0 * margin * half).max(f64::MIN / 4.0);
+            scale.high = (scale.high + 2.0 * margin * half).min(f64::MAX / 4.0);
+        }
+        scale
+    }
+
+    /// Whether a value has a place on this axis.
+    #[must_use]
+    pub fn shows(&self, value: f64) -> bool {
+        value.is_finite() && !(self.logarithmic && value <= 0.0)
+    }
+
+    /// Position from 0 at the low end to 1 at the high end.
+    #[must_use]
+    pub fn position(&self, value: f64) -> f64 {
+        (self.place(value) - self.low) / (self.high - self.low)
+    }
+
+    /// Ticks in rising order.
+    #[must_use]
+    pub fn ticks(&self) -> Vec<Tick> {
+        if self.logarithmic { self.logarithmic_ticks() } else { self.linear_ticks() }
+    }
+
+    fn place(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            value.log10()
+        } else {
+            // Farther out, the length of the axis would overflow.
+            value.clamp(f64::MIN / 4.0, f64::MAX / 4.0)
+        }
+    }
+
+    fn linear_ticks(&self) -> Vec<Tick> {
+        let rough = (self.high - self.low) / self.room;
+        let decade = 10_f64.powf(rough.log10().floor());
+        let multiple = [1.0, 2.0, 5.0, 10.0]
+            .into_iter()
+            .find(|multiple| multiple * decade >= rough * (1.0 - 1e-9))
+            .unwrap_or(10.0);
+        let step = multiple * decade;
+        let (first, last) = ((self.low / step).ceil(), (self.high / step).floor());
+        let largest = self.low.abs().max(self.high.abs());
+        // One exponent for all labels of the axis, so that they compare at a glance.
+        let exponent = if !(1e-2..1e5).contains(&largest) { largest.log10().floor() as i32 } else { 0 };
+        let unit = 10_f64.powi(exponent);
+        let decimals = (-(step / unit).log10() - 1e-9).ceil().clamp(0.0, 15.0) as usize;
+        let mut ticks = Vec::new();
+        let mut number = first;
+        while number <= last && ticks.len() < 50 {
+            let value = number * step;
+            let mantissa = format!("{:.decimals$}", value / unit).replace('-', "−");
+            let label = if number == 0.0 {
+                "0".to_owned()
+            } else if exponent == 0 {
+                mantissa
+            } else {
+                format!("{mantissa}×{}", power_of_ten(exponent))
+            };
+            ticks.push(Tick { value, label: Some(label) });
+            number += 1.0;
+        }
+        ticks
+    }
+
+    fn logarithmic_ticks(&self) -> Vec<Tick> {
+        let (first, last) = (self.low.floor() as i32, self.high.ceil() as i32);
+        let decades = self.high - self.low;
+        let stride = (decades / self.room).ceil().max(1.0) as i32;
+        let whole = self.high.floor() - self.low.ceil() + 1.0;
+        let mut ticks = Vec::new();
+        for decade in first..=last {
+            for multiple in 1..10 {
+                let place = f64::from(decade) + f64::from(multiple).log10();
+                if place < self.low - 1e-9 || place > self.high + 1e-9 {
+                    continue;
+                }
+                let label = match multiple {
+                    1 if decade.rem_euclid(stride) == 0 => Some(power_of_ten(decade)),
+                    // A short axis has too few powers of ten to be read by.
+                    2 | 5 if whole < 3.0 => Some(format!("{multiple}×{}", power_of_ten(decade))),
+                    _ => None,
+                };
+                // A grid finer than the eye sees is only grey.
+                let fine = if multiple == 1 { 40.0 } else { 8.0 };
+                if label.is_some() || decades <= fine {
+                    ticks.push(Tick { value: 10_f64.powf(place), label });
+                }
+            }
+        }
+        ticks
+    }
+}
+
+impl Ranged for Scale {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let (from, to) = (f64::from(limit.0), f64::from(limit.1));
+        (from + self.position(*value) * (to - from)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
+        self.ticks().into_iter().map(|tick| tick.value).collect()
+    }
+
+    fn range(&self) -> Range<f64> {
+        if self.logarithmic { 10_f64.powf(self.low)..10_f64.powf(self.high) } else { self.low..self.high }
+    }
+}
+
+impl ValueFormatter<f64> for Scale {
+    fn format_ext(&self, value: &f64) -> String {
+        crate::number::value(*value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(scale: &Scale) -> Vec<String> {
+        scale.ticks().into_iter().filter_map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn linear_ticks_are_round() {
+        let scale = Scale::fit([0.0, 0.5].into_iter(), false, 0.0, 6);
+        assert_eq!(
+            labels(&scale),
+            ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"]
+                .map(|text| { if text == "0.0" { "0".to_owned() } else { text.to_owned() } })
+        );
+        let scale = Scale::fit([-3e-5, 2e-5].into_iter(), false, 0.0, 5);
+        assert_eq!(labels(&scale), ["−3×10⁻⁵", "−2×10⁻⁵", "−1×10⁻⁵", "0", "1×10⁻⁵", "2×10⁻⁵"]);
+    }
+
+    #[test]
+    fn decades_are_powers() {
+        let scale = Scale::fit([1e-4, 1e-1, -5.0].into_iter(), true, 0.0, 8);
+        assert_eq!(labels(&scale), ["10⁻⁴", "10⁻³", "10⁻²", "10⁻¹"]);
+        let short = Scale::fit([2e-3, 8e-3].into_iter(), true, 0.05, 8);
+        assert_eq!(labels(&short), ["2×10⁻³", "5×10⁻³"]);
+    }
+
+    #[test]
+    fn any_data_have_an_axis() {
+        for values in [
+            vec![],
+            vec![f64::NAN, f64::INFINITY],
+            vec![3.0],
+            vec![0.0],
+            vec![f64::MAX, f64::MIN],
+            vec![1e300, 1e-300],
+            vec![1.0, 1.0 + f64::EPSILON],
+            vec![5e-324, 1e-323],
+        ] {
+            for logarithmic in [false, true] {
+                let scale = Scale::fit(values.iter().copied(), logarithmic, 0.03, 6);
+                assert!(scale.ticks().len() < 120, "{values:?} {logarithmic}");
+                for value in values.iter().filter(|value| scale.shows(**value)) {
+                    let position = scale.position(*value);
+                    assert!((-1e-9..=1.0 + 1e-9).contains(&position), "{values:?} {position}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Everything a report is made from: enough to redo every output without a solver.
+
+use grainbench_cases::figure::Figure;
+use grainbench_cases::verdict::{Control, Verdict};
+use serde::{Deserialize, Serialize};
+
+use crate::stored_figure;
+
+/// A whole run of the harness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// What ran, where and when.
+    pub provenance: Provenance,
+    /// One section a case, in the order of the registry.
+    pub sections: Vec<Section>,
+}
+
+/// What ran, where and when.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Version of the harness.
+    pub version: String,
+    /// Commit of the harness, with a mark when the tree was changed.
+    pub commit: String,
+    /// Date and time.
+    pub date: String,
+    /// Processor and operating system.
+    pub machine: String,
+    /// Compiler.
+    pub rustc: String,
+    /// Options of the run in words.
+    pub options: Vec<String>,
+    /// Wall-clock time of the whole run (s).
+    #[serde(deserialize_with = "stored_figure::number")]
+    pub wall_seconds: f64,
+}
+
+/// One case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Section {
+    /// Name of the case, such as `nine-discs`.
+    pub name: String,
+    /// Title in words.
+    pub title: String,
+    /// What the case claims, in one paragraph.
+    pub claim: String,
+    /// Derivation of the expected answer: Markdown without raw HTML, formulas as text.
+    pub derivation: String,
+    /// Where this test is weak: Markdown.
+    pub weak: String,
+    /// Figures in the order in which they are shown.
+    #[serde(deserialize_with = "stored_figure::figures")]
+    pub figures: Vec<Figure>,
+    /// Rows in the order of the gates.
+    pub verdicts: Vec<Verdict>,
+    /// Negative controls.
+    pub controls: Vec<Control>,
+    /// What every run cost.
+    pub runs: Vec<RunCost>,
+}
+
+/// What one run cost.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunCost {
+    /// Variant of the case's scene.
+    pub variant: String,
+    /// Solver and convention.
+    pub solver: String,
+    /// Rung of the ladder.
+    pub resolution: String,
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps times grains.
+    pub particle_steps: u64,
+    /// Contact laws evaluated.
+    pub contact_evaluations: u64,
+    /// Wall-clock time of the stepping loop (s).
+    #[serde(deserialize_with = "stored_figure::number")]
+    pub wall_seconds: f64,
+    /// Time step (s).
+    #[serde(deserialize_with = "stored_figure::number")]
+    pub time_step: f64,
+    /// Time step over the critical one; absent where the method has none.
+    pub fraction_of_critical: Option<f64>,
+}

@@ -1,0 +1,133 @@
+//! Result files for other programs.
+
+use grainbench_cases::verdict::{Control, Verdict};
+use serde::Serialize;
+
+use crate::report::{Provenance, Report};
+
+/// `results.json`, as the rest of the world reads it.
+#[derive(Serialize)]
+struct Results<'a> {
+    provenance: &'a Provenance,
+    verdicts: Vec<&'a Verdict>,
+    controls: Vec<&'a Control>,
+    points: Vec<Point<'a>>,
+}
+
+/// One line of `points.csv`: what a run cost, whatever its verdicts.
+#[derive(Serialize)]
+struct Point<'a> {
+    case: &'a str,
+    variant: &'a str,
+    solver: &'a str,
+    resolution: &'a str,
+    time_step: f64,
+    fraction: Option<f64>,
+    steps: u64,
+    particle_steps: u64,
+    contact_evaluations: u64,
+    wall_seconds: f64,
+}
+
+fn points(report: &Report) -> impl Iterator<Item = Point<'_>> {
+    report.sections.iter().flat_map(|section| {
+        section.runs.iter().map(move |run| Point {
+            case: &section.name,
+            variant: &run.variant,
+            solver: &run.solver,
+            resolution: &run.resolution,
+            time_step: run.time_step,
+            fraction: run.fraction_of_critical,
+            steps: run.steps,
+            particle_steps: run.particle_steps,
+            contact_evaluations: run.contact_evaluations,
+            wall_seconds: run.wall_seconds,
+        })
+    })
+}
+
+/// `results.json`: provenance, verdicts, controls and cost points.
+///
+/// # Errors
+/// When something has no JSON form, which no report that was made by this project has.
+pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
+    let results = Results {
+        provenance: &report.provenance,
+        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).collect(),
+        controls: report.sections.iter().flat_map(|section| &section.controls).collect(),
+        points: points(report).collect(),
+    };
+    serde_json::to_string_pretty(&results).map(|text| text + "\n")
+}
+
+/// `points.csv`: a header and a line a run.
+///
+/// # Errors
+/// When a line cannot be encoded, which none of this project can fail to be.
+pub fn points_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
+    let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    // Written apart from the rows, so that a report without runs has a header too.
+    table.write_record([
+        "case",
+        "variant",
+        "solver",
+        "resolution",
+        "time_step",
+        "fraction",
+        "steps",
+        "particle_steps",
+        "contact_evaluations",
+        "wall_seconds",
+    ])?;
+    for point in points(report) {
+        table.serialize(point)?;
+    }
+    table.into_inner().map_err(|error| error.into_error().into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn results_have_the_agreed_keys() {
+        let text = results_json(&sample::report()).unwrap();
+        let results: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let row = &results["verdicts"][0];
+        for key in [
+            "case",
+            "variant",
+            "solver",
+            "resolution",
+            "quantity",
+            "unit",
+            "value",
+            "expected",
+            "scale",
+            "error",
+            "allowed",
+            "evidence",
+            "source",
+            "verdict",
+        ] {
+            assert!(!row[key].is_null(), "{key}");
+        }
+        for key in ["version", "commit", "date", "machine", "rustc", "options"] {
+            assert!(!results["provenance"][key].is_null(), "{key}");
+        }
+        assert!(results["controls"].is_array() && results["points"].is_array());
+    }
+
+    #[test]
+    fn points_have_a_header_even_without_runs() {
+        let mut report = sample::report();
+        let text = String::from_utf8(points_csv(&report).unwrap()).unwrap();
+        assert_eq!(text.lines().nth(1).unwrap(), "backspin,,dem,dt=.1,0.00002,0.1,25000,25000,25000,0.001");
+        report.sections.clear();
+        assert_eq!(
+            String::from_utf8(points_csv(&report).unwrap()).unwrap(),
+            "case,variant,solver,resolution,time_step,fraction,steps,particle_steps,contact_evaluations,wall_seconds\n"
+        );
+    }
+}

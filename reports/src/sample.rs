@@ -1,0 +1,297 @@
+//! A small report with every kind of row and figure, for tests.
+
+use grainbench_cases::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
+use grainbench_cases::verdict::{Control, Evidence, Outcome, Verdict};
+
+use crate::report::{Provenance, Report, RunCost, Section};
+
+/// A row that passes or fails by its numbers.
+pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expected: f64, allowed: f64) -> Verdict {
+    let error = (value - expected) / expected.abs();
+    Verdict {
+        case: case.into(),
+        variant: String::new(),
+        solver: solver.into(),
+        resolution: "dt=.1".into(),
+        quantity: quantity.into(),
+        unit: "m/s".into(),
+        value: Some(value),
+        expected: Some(expected),
+        scale: Some(expected.abs()),
+        error: Some(error),
+        allowed,
+        because: "the scheme is first order in Δt".into(),
+        evidence: Evidence::Analytic,
+        source: "rigid sphere under Coulomb friction, eq. 26".into(),
+        outcome: if error.abs() <= allowed { Outcome::Pass } else { Outcome::Fail },
+        detail: None,
+    }
+}
+
+fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) -> Control {
+    Control {
+        case: case.into(),
+        variant: String::new(),
+        solver: "dem".into(),
+        quantity: quantity.into(),
+        wrong_physics: wrong_physics.into(),
+        error: Some(if turned_red { 0.31 } else { 0.004 }),
+        allowed: 0.02,
+        turned_red,
+    }
+}
+
+fn axis(label: &str, logarithmic: bool) -> Axis {
+    Axis { label: label.into(), logarithmic }
+}
+
+fn curve(label: &str, stroke: Stroke, points: Vec<(f64, f64)>) -> Curve {
+    Curve { label: label.into(), stroke, points }
+}
+
+fn run(solver: &str, resolution: &str, time_step: f64, steps: u64) -> RunCost {
+    RunCost {
+        variant: String::new(),
+        solver: solver.into(),
+        resolution: resolution.into(),
+        steps,
+        particle_steps: steps,
+        contact_evaluations: steps,
+        wall_seconds: steps as f64 / 2.5e7,
+        time_step,
+        fraction_of_critical: Some(time_step / 2e-4),
+    }
+}
+
+fn backspin() -> Section {
+    let case = "backspin";
+    let times = || (0..=400).map(|step| f64::from(step) * 0.002);
+    // Sliding until t = 0.2913 s, then rolling.
+    let exact = |t: f64| {
+        if t < 0.2913 { 2.0 - 1.9620 * t } else { 1.428_471 }
+    };
+    let mut broken = verdict(case, "mpm", "v(t=0.5 s)", 1.0, 1.428_571, 0.02);
+    broken.resolution = "R/8".into();
+    broken.value = None;
+    broken.error = None;
+    broken.outcome = Outcome::Broken;
+    broken.detail = Some("not finite at t=0.213 s, step 1065; Δt=1.5×10⁻⁴ s would have been stable".into());
+    let mut fail = verdict(case, "dem:liggghts", "v(t=0.5 s)", 1.391, 1.428_571, 0.02);
+    fail.detail = Some("first outside at t=0.21 s".into());
+    let mut known = verdict(case, "mpm:2000", "spin at the end", -1.21, -1.0, 0.02);
+    known.unit = "rad/s".into();
+    known.outcome = Outcome::Known;
+    known.evidence = Evidence::Paper;
+    known.source = "Bardenhagen and others (2000), fig. 7".into();
+    known.detail = Some("the contact of 2000 does not release, as its paper says".into());
+    let mut momentum = verdict(case, "dem", "momentum drift", 2.2e-16, 1.0, 1e-12);
+    momentum.quantity = "largest momentum drift".into();
+    momentum.unit = "kg m/s".into();
+    momentum.expected = Some(0.0);
+    momentum.scale = Some(0.5);
+    momentum.error = Some(4.4e-16);
+    momentum.evidence = Evidence::Invariant;
+    momentum.source = "Newton's third law".into();
+    momentum.because = "a thousand roundings of double precision".into();
+    momentum.outcome = Outcome::Pass;
+    let ladder = [0.4, 0.2, 0.1, 0.05, 0.025, 0.0125];
+    let convergence = Graph {
+        x: axis("Δt / critical (1)", true),
+        y: axis("|error| of v(t = 0.5 s) (1)", true),
+        curves: vec![
+            curve("dem", Stroke::MarkedLine, ladder.map(|x| (x, 0.03 * x)).to_vec()),
+            curve("dem:lammps", Stroke::MarkedLine, ladder.map(|x| (x, 0.19 * x * x)).to_vec()),
+            curve(
+                "rigid, 8 substeps",
+                Stroke::MarkedLine,
+                ladder.map(|x| (x, if x < 0.02 { 0.0 } else { 4e-4 + 0.01 * x })).to_vec(),
+            ),
+            curve("allowed", Stroke::Dashed, vec![(0.0125, 0.02), (0.4, 0.02)]),
+            curve("first order", Stroke::Dashed, vec![(0.0125, 1.25e-3), (0.1, 1e-2)]),
+        ],
+    };
+    let series = Graph {
+        x: axis("time t (s)", false),
+        y: axis("velocity v (m/s)", false),
+        curves: vec![
+            curve("dem", Stroke::Line, times().map(|t| (t, exact(t) + 0.004 * (60.0 * t).sin())).collect()),
+            curve("dem:liggghts", Stroke::Line, times().map(|t| (t, exact(t) * (1.0 - 0.05 * t))).collect()),
+            curve(
+                "rigid, 8 substeps",
+                Stroke::Line,
+                times().map(|t| (t, exact(t) + 0.03 * (1.0 - (-9.0 * t).exp()))).collect(),
+            ),
+            curve("exact", Stroke::Dashed, times().map(|t| (t, exact(t))).collect()),
+        ],
+    };
+    Section {
+        name: case.into(),
+        title: "A sphere with backspin on a rough floor".into(),
+        claim: "A sphere set down with velocity v₀ and backspin slides, slows at μg and rolls from t* on at a speed \
+                that depends neither on friction nor on stiffness. A solver that has Coulomb friction, the lever arm \
+                and the moment of inertia right must reach it."
+            .into(),
+        derivation: "While the contact slips, friction is μmg and both equations are linear:\n\n\
+                     ```\nv(t) = v₀ − μ g t\nω(t) = ω₀ + (5/2) μ g t / R\n```\n\n\
+                     Slip ends when v = ωR, that is at `t* = (2/7)(v₀ − ω₀R)/(μg)`. From then on\n\n\
+                     ```\nv = (5 v₀ + 2 ω₀ R)/7\n```\n\n\
+                     ## Limits\n\nThe contact is soft: the first oscillation of the normal force lasts \
+                     *√(m/k)* and changes v by less than 10⁻⁴.\n\n\
+                     | μ | t* (s) |\n|---|---|\n| 0.2 | 0.291 |\n| 0.4 | 0.146 |\n"
+            .into(),
+        weak: "One contact only: neighbour search and history transfer are not tried. The end speed is blind to the \
+               value of μ; only **t\\*** tells it."
+            .into(),
+        figures: vec![
+            Figure {
+                name: "convergence".into(),
+                title: "Error against time step".into(),
+                caption: "Error of the end speed over the ladder. The in-house solver converges with the first power \
+                          of the step, LAMMPS' convention with the second."
+                    .into(),
+                drawing: Drawing::Graph(convergence),
+            },
+            Figure {
+                name: "velocity".into(),
+                title: "Velocity of the centre".into(),
+                caption: "Sliding, then rolling. The kink is at t* = 0.291 s.".into(),
+                drawing: Drawing::Graph(series),
+            },
+        ],
+        verdicts: vec![
+            verdict(case, "dem", "v(t=0.5 s)", 1.4268, 1.428_571, 0.02),
+            fail,
+            verdict(case, "rigid", "v(t=0.5 s)", 1.4411, 1.428_571, 0.02),
+            broken,
+            known,
+            momentum,
+        ],
+        controls: vec![
+            control(case, "v(t=0.5 s)", "moment of inertia of a disc, ½ m R²", true),
+            control(case, "v(t=0.5 s)", "friction ten per cent too high", false),
+        ],
+        runs: vec![
+            run("dem", "dt=.1", 2e-5, 25_000),
+            run("dem", "dt=.05", 1e-5, 50_000),
+            RunCost { fraction_of_critical: None, ..run("rigid", "8 substeps", 1.0 / 480.0, 1_234_567) },
+        ],
+    }
+}
+
+fn nine_discs() -> Section {
+    let case = "nine-discs";
+    let radius = 0.05;
+    let mut discs = Vec::new();
+    let mut bars = Vec::new();
+    for place in 0..9 {
+        let (column, row) = (f64::from(place % 3), f64::from(place / 3));
+        let centre = [0.06 + 0.1 * column + 0.012 * (row % 2.0), 0.05 + 0.098 * row];
+        discs.push((centre, radius, 0.4 * f64::from(place) - 1.0));
+    }
+    let force = |from: usize, to: usize, force: f64, slipping: bool| ForceBar {
+        from: discs[from].0,
+        to: discs[to].0,
+        force,
+        slipping,
+    };
+    for (from, to, size, slipping) in [
+        (0, 1, 38.0, false),
+        (1, 2, 21.0, true),
+        (3, 4, 30.0, false),
+        (4, 5, 44.0, false),
+        (6, 7, 12.0, true),
+        (7, 8, 26.0, false),
+        (0, 3, 61.0, false),
+        (1, 4, 83.0, false),
+        (2, 5, 40.0, true),
+        (3, 6, 57.0, false),
+        (4, 7, 72.0, false),
+        (5, 8, 33.0, false),
+    ] {
+        bars.push(force(from, to, size, slipping));
+    }
+    for (disc, size) in [(0, 75.0), (1, 92.0), (2, 48.0)] {
+        let centre: [f64; 2] = discs[disc].0;
+        bars.push(ForceBar { from: centre, to: [centre[0], 0.0], force: size, slipping: false });
+    }
+    let mut absent = verdict(case, "lammps", "force on the floor", 1.0, 214.9, 0.01);
+    absent.unit = "N".into();
+    absent.value = None;
+    absent.error = None;
+    absent.outcome = Outcome::NotAvailable;
+    absent.evidence = Evidence::OtherCode;
+    absent.source = "the same scene in LAMMPS".into();
+    absent.detail = Some("the program `lmp` is not on the path".into());
+    let mut paper = verdict(case, "dem", "force on the floor", 215.02, 214.9, 0.01);
+    paper.unit = "N".into();
+    paper.variant = "kappa-1".into();
+    paper.evidence = Evidence::Paper;
+    paper.source = "Cundall and Strack (1979), table 2".into();
+    paper.because = "the table prints three digits".into();
+    let mut unsupported = absent.clone();
+    unsupported.solver = "rigid".into();
+    unsupported.outcome = Outcome::Unsupported;
+    unsupported.detail = Some("rapier has no contact stiffness".into());
+    Section {
+        name: case.into(),
+        title: "Nine discs in a box whose walls close".into(),
+        claim: "Nine discs between four walls carry the load of the paper's first test, contact by contact.".into(),
+        derivation: "The expected forces are those that the paper prints.".into(),
+        weak: "Three digits were printed.".into(),
+        figures: vec![Figure {
+            name: "forces".into(),
+            title: "Contact forces at the end".into(),
+            caption: "Width is proportional to force; radii show rotation since the start.".into(),
+            drawing: Drawing::Forces(ForcePlot {
+                discs,
+                walls: vec![([0.0, 0.0], [0.34, 0.0]), ([0.0, 0.0], [0.0, 0.31]), ([0.34, 0.0], [0.34, 0.31])],
+                bars,
+            }),
+        }],
+        verdicts: vec![paper, absent, unsupported],
+        controls: vec![control(case, "force on the floor", "gravity turned off", true)],
+        runs: vec![run("dem", "dt=.1", 2e-5, 40_000)],
+    }
+}
+
+/// Two cases with every kind of row.
+pub(crate) fn report() -> Report {
+    Report {
+        provenance: Provenance {
+            version: "0.1.0".into(),
+            commit: "0123456789ab".into(),
+            date: "2025-03-01 12:00 UTC".into(),
+            machine: "x86_64, 2 cores, Linux".into(),
+            rustc: "rustc 1.95.0".into(),
+            options: vec!["--rungs default".into()],
+            wall_seconds: 12.3,
+        },
+        sections: vec![backspin(), nine_discs()],
+    }
+}
+
+/// The same report with text in every field that would break out of a page that does not escape it.
+pub(crate) fn hostile() -> Report {
+    const TEXT: &str =
+        "\"'></title></svg></style><script>alert(1)</script><img src=x onload=\"y\"> &amp; ![i](a) [l](javascript:z)";
+    fn poison(value: &mut serde_json::Value) {
+        match value {
+            serde_json::Value::String(text) => {
+                // Words of an enumeration must stay what they are.
+                let fixed = ["Line", "Dashed", "Markers", "MarkedLine"];
+                let is_word = fixed.contains(&text.as_str())
+                    || serde_json::from_value::<Outcome>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<Evidence>(text.as_str().into()).is_ok();
+                if !is_word {
+                    *text = TEXT.to_owned();
+                }
+            }
+            serde_json::Value::Array(items) => items.iter_mut().for_each(poison),
+            serde_json::Value::Object(fields) => fields.values_mut().for_each(poison),
+            _ => {}
+        }
+    }
+    let mut value = serde_json::to_value(report()).unwrap();
+    poison(&mut value);
+    serde_json::from_value(value).unwrap()
+}

@@ -1,0 +1,231 @@
+//! Writing a directory of files whole or not at all.
+
+use std::fs;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+use tempfile::TempDir;
+
+use crate::write::{WriteError, parent_of, temporary_in};
+
+/// Files on their way into a directory. They gather in a hidden sibling and move into place at
+/// [`StagedDir::commit`]; dropped before that, nothing of them remains.
+#[derive(Debug)]
+pub struct StagedDir {
+    target: PathBuf,
+    /// Holds `new`, the content, and during the commit `old`, what it replaces.
+    holder: Option<TempDir>,
+    /// In the order in which they were written.
+    files: Vec<PathBuf>,
+    /// Missing parents of the target that had to be made, outermost first; they go when nothing is committed.
+    made: Vec<PathBuf>,
+}
+
+impl StagedDir {
+    /// Prepares output for `target`, which need not exist yet, nor its parents.
+    ///
+    /// # Errors
+    /// When `target` is a file, or nothing can be written beside it.
+    pub fn new(target: impl Into<PathBuf>) -> Result<Self, WriteError> {
+        let target = target.into();
+        let mut staged = Self { target, holder: None, files: Vec::new(), made: Vec::new() };
+        staged.prepare().map_err(|source| WriteError::new(&staged.target, source))?;
+        Ok(staged)
+    }
+
+    fn prepare(&mut self) -> io::Result<()> {
+        if self.target.exists() && !self.target.is_dir() {
+            return Err(io::Error::new(io::ErrorKind::NotADirectory, "a file of this name is in the way"));
+        }
+        // An existing directory may stand in a read-only one, or be `.`: then the files gather inside it.
+        let parent = if self.target.is_dir() { self.target.as_path() } else { parent_of(&self.target) };
+        let mut missing: Vec<_> = parent
+            .ancestors()
+            .filter(|path| !path.as_os_str().is_empty() && !path.exists())
+            .map(Path::to_path_buf)
+            .collect();
+        missing.reverse();
+        for path in missing {
+            fs::create_dir(&path)?;
+            self.made.push(path);
+        }
+        let holder = temporary_in(parent)?;
+        fs::create_dir(holder.path().join("new"))?;
+        self.holder = Some(holder);
+        Ok(())
+    }
+
+    /// The directory that the files will stand in.
+    #[must_use]
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Adds a file; `name` is relative to the directory and may have subdirectories.
+    ///
+    /// # Errors
+    /// When `name` leads out of the directory, or the disk refuses.
+    pub fn write(&mut self, name: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(), WriteError> {
+        self.write_with(name, |out| io::Write::write_all(out, bytes.as_ref()))
+    }
+
+    /// Adds a file that `fill` writes piece by piece, for what is too long to hold in memory.
+    ///
+    /// # Errors
+    /// When `name` leads out of the directory, `fill` fails, or the disk refuses.
+    pub fn write_with<F>(&mut self, name: impl AsRef<Path>, fill: F) -> Result<(), WriteError>
+    where
+        F: FnOnce(&mut io::BufWriter<fs::File>) -> io::Result<()>,
+    {
+        let name = name.as_ref();
+        let shown = self.target.join(name);
+        let write = || -> io::Result<()> {
+            let inside = name.components().all(|part| matches!(part, Component::Normal(_)));
+            if !inside || name.as_os_str().is_empty() {
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, "the name leads out of the output directory"));
+            }
+            let path = self.staging()?.join("new").join(name);
+            fs::create_dir_all(parent_of(&path))?;
+            let mut out = io::BufWriter::new(fs::File::create(path)?);
+            fill(&mut out)?;
+            io::Write::flush(&mut out)
+        };
+        write().map_err(|source| WriteError::new(shown, source))?;
+        if !self.files.iter().any(|known| known == name) {
+            self.files.push(name.to_path_buf());
+        }
+        Ok(())
+    }
+
+    /// Moves all files into place. Files of the same name are replaced, other files are left alone; when one
+    /// cannot be moved, those already moved go back.
+    ///
+    /// # Errors
+    /// When a file cannot be put in place; all files are then as they were.
+    pub fn commit(mut self) -> Result<(), WriteError> {
+        let holder = self.staging().map_err(|source| WriteError::new(&self.target, source))?.to_path_buf();
+        if self.target.exists() {
+            self.replace_files(&holder)?;
+        } else {
+            fs::rename(holder.join("new"), &self.target).map_err(|source| WriteError::new(&self.target, source))?;
+        }
+        self.made.clear();
+        Ok(())
+    }
+
+    fn staging(&self) -> io::Result<&Path> {
+        self.holder.as_ref().map(TempDir::path).ok_or_else(|| io::Error::other("the output directory was not prepared"))
+    }
+
+    fn replace_files(&self, holder: &Path) -> Result<(), WriteError> {
+        // (place, where the file that stood there waits)
+        let mut done: Vec<(PathBuf, Option<PathBuf>)> = Vec::new();
+        for name in &self.files {
+            let place = self.target.join(name);
+            match replace(&holder.join("new").join(name), &place, &holder.join("old").join(name)) {
+                Ok(old) => done.push((place, old)),
+                Err(source) => {
+                    for (place, old) in done.into_iter().rev() {
+                        // Nothing better can be done about a disk that refuses to undo.
+                        let _ = match old {
+                            Some(old) => fs::rename(old, place),
+                            None => fs::remove_file(place),
+                        };
+                    }
+                    return Err(WriteError::new(place, source));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Puts `new` at `place`; returns where the file that stood there waits, if one did.
+fn replace(new: &Path, place: &Path, old: &Path) -> io::Result<Option<PathBuf>> {
+    fs::create_dir_all(parent_of(place))?;
+    let kept = place.is_file();
+    if kept {
+        fs::create_dir_all(parent_of(old))?;
+        if fs::hard_link(place, old).is_err() {
+            fs::copy(place, old)?;
+        }
+    }
+    fs::rename(new, place)?;
+    Ok(kept.then(|| old.to_path_buf()))
+}
+
+impl Drop for StagedDir {
+    fn drop(&mut self) {
+        self.holder = None;
+        for path in self.made.iter().rev() {
+            // Not empty means that somebody else uses it by now.
+            let _ = fs::remove_dir(path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn appears_whole_at_commit() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("deep/out");
+        let mut staged = StagedDir::new(&target).unwrap();
+        staged.write("a.txt", "a").unwrap();
+        staged.write("figures/b.svg", "b").unwrap();
+        assert!(!target.exists());
+        staged.commit().unwrap();
+        assert_eq!(fs::read_to_string(target.join("figures/b.svg")).unwrap(), "b");
+        assert_eq!(fs::read_dir(dir.path().join("deep")).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn leaves_nothing_when_dropped() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut staged = StagedDir::new(dir.path().join("deep/er/out")).unwrap();
+        staged.write("a.txt", "a").unwrap();
+        drop(staged);
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn replaces_its_own_files_and_leaves_others_alone() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("a.txt"), "old").unwrap();
+        fs::write(dir.path().join("mine.txt"), "mine").unwrap();
+        let mut staged = StagedDir::new(dir.path()).unwrap();
+        staged.write("a.txt", "new").unwrap();
+        staged.commit().unwrap();
+        assert_eq!(fs::read_to_string(dir.path().join("a.txt")).unwrap(), "new");
+        assert_eq!(fs::read_to_string(dir.path().join("mine.txt")).unwrap(), "mine");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_commit_that_fails_undoes_itself() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("a.txt"), "old").unwrap();
+        fs::create_dir_all(dir.path().join("c.txt/full")).unwrap();
+        let mut staged = StagedDir::new(dir.path()).unwrap();
+        for name in ["a.txt", "b.txt", "c.txt"] {
+            staged.write(name, "new").unwrap();
+        }
+        let message = staged.commit().unwrap_err().to_string();
+        assert!(message.contains("c.txt"), "{message}");
+        assert_eq!(fs::read_to_string(dir.path().join("a.txt")).unwrap(), "old");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn refuses_names_that_lead_outside_and_targets_that_are_files() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut staged = StagedDir::new(dir.path().join("out")).unwrap();
+        assert!(staged.write("../a.txt", "a").is_err());
+        assert!(staged.write("/a.txt", "a").is_err());
+        fs::write(dir.path().join("file"), "x").unwrap();
+        let message = StagedDir::new(dir.path().join("file")).unwrap_err().to_string();
+        assert!(message.contains("a file of this name is in the way"), "{message}");
+    }
+}

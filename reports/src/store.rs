@@ -1,0 +1,185 @@
+//! The output directory: written whole, read back to redraw.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::junit::junit_xml;
+use crate::page;
+use crate::plot;
+use crate::report::Report;
+use crate::results::{points_csv, results_json};
+use crate::staged::StagedDir;
+use crate::write::WriteError;
+
+/// The file from which everything else can be made again.
+pub const REPORT_FILE: &str = "report.json";
+
+/// A report that could not be written.
+#[derive(Debug, Error)]
+pub enum SaveError {
+    /// The disk refused.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A figure cannot be drawn.
+    #[error(transparent)]
+    Draw(#[from] plot::DrawError),
+    /// Something has no form in a file format.
+    #[error("cannot encode {file}: {reason}")]
+    Encode {
+        /// Name of the file.
+        file: &'static str,
+        /// What went wrong.
+        reason: String,
+    },
+}
+
+/// A report that could not be read back.
+#[derive(Debug, Error)]
+pub enum LoadError {
+    /// The file cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is not a report.
+    #[error("{}, line {line}, column {column}, at `{place}`: {reason}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// Keys that lead to the place.
+        place: String,
+        /// What was expected and what stood there.
+        reason: String,
+    },
+}
+
+/// Writes `index.html`, `results.json`, `report.json`, `points.csv`, `junit.xml` and `figures/CASE-NAME.svg` into
+/// `dir`, all of them or none.
+///
+/// # Errors
+/// When the disk refuses or a figure cannot be drawn.
+pub fn write_report(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveError> {
+    let mut out = StagedDir::new(dir.as_ref())?;
+    add_report(&mut out, report)?;
+    out.commit()?;
+    Ok(())
+}
+
+/// Adds all files of a report to a directory that is being written.
+///
+/// # Errors
+/// When the disk refuses or a figure cannot be drawn.
+pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError> {
+    let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
+    let stored = serde_json::to_string_pretty(report).map_err(|error| encode(REPORT_FILE)(error.to_string()))?;
+    out.write(REPORT_FILE, stored + "\n")?;
+    let results = results_json(report).map_err(|error| encode("results.json")(error.to_string()))?;
+    out.write("results.json", results)?;
+    let points = points_csv(report).map_err(|error| encode("points.csv")(error.to_string()))?;
+    out.write("points.csv", points)?;
+    let junit = junit_xml(report).map_err(|error| encode("junit.xml")(error.to_string()))?;
+    out.write("junit.xml", junit)?;
+    out.write("index.html", page::render(report)?)?;
+    let mut names = BTreeSet::new();
+    for section in &report.sections {
+        for figure in &section.figures {
+            let stem = page::slug(&format!("{}-{}", section.name, figure.name));
+            let name = page::unique(&stem, &mut names);
+            out.write(format!("figures/{name}.svg"), plot::draw(figure)?)?;
+        }
+    }
+    Ok(())
+}
+
+impl Report {
+    /// Reads the report that [`write_report`] left in `dir`.
+    ///
+    /// # Errors
+    /// When the file is missing or damaged; the message names the place.
+    pub fn load(dir: impl AsRef<Path>) -> Result<Self, LoadError> {
+        let path = dir.as_ref().join(REPORT_FILE);
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(source) => return Err(LoadError::Read { path, source }),
+        };
+        let mut json = serde_json::Deserializer::from_str(&text);
+        let read = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+            let place = error.path().to_string();
+            (place, error.into_inner())
+        });
+        let read = read.and_then(|report| match json.end() {
+            Ok(()) => Ok(report),
+            Err(error) => Err((".".to_owned(), error)),
+        });
+        read.map_err(|(place, error)| LoadError::Damaged {
+            path,
+            line: error.line(),
+            column: error.column(),
+            place,
+            // The parser repeats the line and column at the end.
+            reason: error.to_string().split(" at line ").next().unwrap_or_default().to_owned(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn redraws_the_same_page_from_the_directory_alone() {
+        let dir = tempfile::tempdir().unwrap();
+        let out = dir.path().join("out");
+        let report = sample::report();
+        write_report(&out, &report).unwrap();
+        let first = fs::read_to_string(out.join("index.html")).unwrap();
+        let loaded = Report::load(&out).unwrap();
+        write_report(&out, &loaded).unwrap();
+        assert_eq!(fs::read_to_string(out.join("index.html")).unwrap(), first);
+        for name in [
+            "results.json",
+            "points.csv",
+            "junit.xml",
+            "figures/backspin-convergence.svg",
+            "figures/nine-discs-forces.svg",
+        ] {
+            assert!(out.join(name).is_file(), "{name}");
+        }
+        // For a look with a browser.
+        if let Ok(copy) = std::env::var("GRAINBENCH_REPORT_DIR") {
+            write_report(copy, &report).unwrap();
+        }
+    }
+
+    #[test]
+    fn a_damaged_report_is_an_error_that_names_the_place() {
+        let dir = tempfile::tempdir().unwrap();
+        let message = Report::load(dir.path()).unwrap_err().to_string();
+        assert!(message.starts_with("cannot read ") && message.contains(REPORT_FILE), "{message}");
+
+        write_report(dir.path(), &sample::report()).unwrap();
+        let path = dir.path().join(REPORT_FILE);
+        let text = fs::read_to_string(&path).unwrap();
+        fs::write(&path, text.replacen("\"steps\": 25000", "\"steps\": \"many\"", 1)).unwrap();
+        let message = Report::load(dir.path()).unwrap_err().to_string();
+        assert!(message.contains("report.json, line "), "{message}");
+        assert!(message.contains("at `sections[0].runs[0].steps`"), "{message}");
+        assert!(message.contains("invalid type: string \"many\", expected u64"), "{message}");
+
+        fs::write(&path, &text[..text.len() / 2]).unwrap();
+        let message = Report::load(dir.path()).unwrap_err().to_string();
+        assert!(message.contains("EOF"), "{message}");
+    }
+}

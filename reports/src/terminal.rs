@@ -1,0 +1,91 @@
+//! The summary as plain text.
+
+use grainbench_cases::verdict::Outcome;
+
+use crate::headline::{self, Headline};
+use crate::line;
+use crate::number;
+use crate::report::{Report, Section};
+
+/// A row a case, the counts, then every line that fails. No colour codes: it goes to files as well.
+#[must_use]
+pub fn summary_table(report: &Report) -> String {
+    let head = ["case", "solvers", "passed", "amber", "worst, of allowed", "controls red"];
+    let mut rows = vec![head.map(str::to_owned)];
+    rows.extend(report.sections.iter().map(row));
+    let widths = [0, 1, 2, 3, 4, 5].map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+    let mut text = String::new();
+    for (index, row) in rows.iter().enumerate() {
+        push_line(&mut text, row, &widths);
+        if index == 0 {
+            let rule = widths.map(|width| "─".repeat(width));
+            push_line(&mut text, &rule, &widths);
+        }
+    }
+    let counts = Headline::of_report(report);
+    text.push_str(&format!("\n{}\n", counts.sentence()));
+    let failing = failing_lines(report);
+    if !failing.is_empty() {
+        text.push('\n');
+        for line in failing {
+            text.push_str(&line);
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// Every row that fails or broke, and every negative control that stayed green, a line each.
+#[must_use]
+pub fn failing_lines(report: &Report) -> Vec<String> {
+    let mut lines = Vec::new();
+    for section in &report.sections {
+        for verdict in &section.verdicts {
+            if matches!(verdict.outcome, Outcome::Fail | Outcome::Broken) {
+                lines.push(format!("✗ {}", line::verdict(verdict)));
+            }
+        }
+        for control in &section.controls {
+            if !control.turned_red {
+                lines.push(format!("✗ {}", line::control(control)));
+            }
+        }
+    }
+    lines
+}
+
+fn row(section: &Section) -> [String; 6] {
+    let counts = Headline::of_section(section);
+    let worst = headline::worst(section).map_or_else(
+        || "—".to_owned(),
+        |verdict| {
+            let used = headline::used_tolerance(verdict);
+            format!("{} {}", number::significant(used, 2), verdict.quantity)
+        },
+    );
+    [
+        section.name.clone(),
+        headline::solvers(section).join(", "),
+        format!("{}/{}", counts.pass, counts.rows()),
+        counts.amber().to_string(),
+        worst,
+        format!("{}/{}", counts.controls_red, counts.controls),
+    ]
+}
+
+fn push_line(text: &mut String, cells: &[String; 6], widths: &[usize; 6]) {
+    let padded: Vec<String> = cells.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
+    text.push_str(padded.join("  ").trim_end());
+    text.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn reads_well() {
+        insta::assert_snapshot!(summary_table(&sample::report()));
+    }
+}

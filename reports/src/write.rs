@@ -1,0 +1,83 @@
+//! Writing a file whole or not at all.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, TempDir};
+use thiserror::Error;
+
+/// A file or directory that could not be written.
+#[derive(Debug, Error)]
+#[error("cannot write {}: {source}", path.display())]
+pub struct WriteError {
+    /// What was to be written.
+    pub path: PathBuf,
+    /// What the system said.
+    pub source: io::Error,
+}
+
+impl WriteError {
+    /// An error about `path`.
+    #[must_use]
+    pub fn new(path: impl Into<PathBuf>, source: io::Error) -> Self {
+        Self { path: path.into(), source }
+    }
+}
+
+/// Writes `bytes` beside `path` and then renames, so that a reader never sees half a file.
+///
+/// # Errors
+/// When the directory does not exist, is read-only or full, or when `path` is a directory.
+pub fn write_file(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(), WriteError> {
+    let path = path.as_ref();
+    let write = || -> io::Result<()> {
+        let name =
+            path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"))?;
+        let beside = temporary_in(parent_of(path))?;
+        let staged = beside.path().join(name);
+        fs::write(&staged, bytes.as_ref())?;
+        fs::rename(&staged, path)
+    };
+    write().map_err(|source| WriteError::new(path, source))
+}
+
+/// The directory that holds `path`; the current one for a bare name.
+pub(crate) fn parent_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// A hidden directory on the same file system, so that a rename out of it is atomic. Files are made inside it
+/// rather than by `NamedTempFile` so that they get the permissions of any other new file.
+pub(crate) fn temporary_in(parent: &Path) -> io::Result<TempDir> {
+    Builder::new().prefix(".grainbench-").tempdir_in(parent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn replaces_a_file_and_leaves_nothing_beside_it() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.txt");
+        write_file(&path, "one").unwrap();
+        write_file(&path, "two").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "two");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn says_what_could_not_be_written() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("missing/a.txt");
+        let message = write_file(&path, "one").unwrap_err().to_string();
+        assert!(message.starts_with(&format!("cannot write {}: ", path.display())), "{message}");
+        let message = write_file(dir.path(), "one").unwrap_err().to_string();
+        assert!(message.contains("cannot write"), "{message}");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+    }
+}
