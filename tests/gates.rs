@@ -30,7 +30,7 @@ fn trial(name: &str, bench: &Arc<Bench>, gate: &Arc<Gate>, test: fn(&Bench, &Gat
 /// The gate passes.
 fn accept(bench: &Bench, gate: &Gate) -> Result<(), Failed> {
     let verdict = bench.judge(gate);
-    if verdict.outcome == Outcome::Pass { Ok(()) } else { Err(grainbench::reports::failure_line(&verdict).into()) }
+    if verdict.outcome == Outcome::Pass { Ok(()) } else { Err(grainbench::reports::line::verdict(&verdict).into()) }
 }
 
 /// The gate turns red when its physics is wrong.

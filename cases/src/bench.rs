@@ -159,7 +159,7 @@ fn conclude(case: &Case, gate: &Gate, done: Result<Vec<Done>, RunError>) -> Verd
                 if error.abs() <= gate.allowed {
                     verdict.outcome = Outcome::Pass;
                 } else {
-                    let outside = |error: f64| !(error.abs() <= gate.allowed);
+                    let outside = |error: f64| error.is_nan() || error.abs() > gate.allowed;
                     verdict.detail = measured
                         .course
                         .iter()

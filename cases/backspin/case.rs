@@ -1,0 +1,143 @@
+//! A grain set down with spin and no velocity (2001 paper, and the disc beside it).
+
+use crate::bench::Bench;
+use crate::case::{Case, Rung, fraction};
+use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, measure};
+use crate::incline::{DAMPING, STEP, at_overlap, more_friction, wrong_inertia};
+use crate::one_grain::{OneGrain, State, course, last};
+use crate::verdict::Evidence;
+use grainbench_scene::solver::RunError;
+
+const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const VARIANTS: [&str; 2] = ["disc", "sphere"];
+
+pub(crate) static CASE: Case = Case {
+    name: "backspin",
+    title: "Backspin",
+    claim: "A spinning grain set down on a flat plane slides, is driven forwards by friction, and rolls on at f RΩ₀, with \
+            f = 1/3 for a disc and 2/7 for a sphere.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "The final velocity does not depend on μ, on stiffness or on damping: alone it would pass a solver with a \
+               wrong friction law. Displacement does depend on μ. One contact, constant load.",
+    ladder: LADDER,
+    gates,
+    figures,
+};
+
+fn gates() -> Vec<Gate> {
+    VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant)].concat()).collect()
+}
+
+fn rigid(variant: &'static str) -> Vec<Gate> {
+    let gate = |quantity: &str, unit, allowed, because, control, pick: fn(State) -> f64| Gate {
+        quantity: quantity.to_owned(),
+        unit,
+        evidence: Evidence::Analytic,
+        source: "2001 paper, section on backspin; derivation",
+        allowed,
+        because,
+        runs: vec![at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP)],
+        measure: measure(move |done| {
+            let (t, state) = last(&done[0])?;
+            let exact = pick(OneGrain::of(&done[0].scene).rigid_backspin(t));
+            Ok(Measured::new(pick(state), exact, exact))
+        }),
+        control,
+    };
+    vec![
+        gate(
+            "displacement at 1 s",
+            "m",
+            3e-3,
+            "the spring must be stretched before it slides and relaxes when it rolls: ∝ √(overlap/R), here 1e-3",
+            Control::scene("friction ×1.05", more_friction),
+            |state| state.x,
+        ),
+        gate(
+            "spin at 1 s",
+            "rad/s",
+            1e-9,
+            "momentum about the contact fixes it once the spring has come to rest",
+            Control::scene("the inertia of the other shape", wrong_inertia),
+            |state| state.omega,
+        ),
+        Gate {
+            quantity: "velocity while it slides, worst".to_owned(),
+            unit: "m/s",
+            evidence: Evidence::Analytic,
+            source: "v = μ g t up to t_s",
+            allowed: 1e-2,
+            because: "the elastic phase at overlap/R = 1e-3, in units of the final velocity",
+            runs: vec![at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP)],
+            measure: measure(|done| worst_velocity(&done[0])),
+            control: Control::scene("friction ×1.05", more_friction),
+        },
+    ]
+}
+
+fn worst_velocity(done: &Done) -> Result<Measured, Missing> {
+    let grain = OneGrain::of(&done.scene);
+    let course = course(done)?;
+    let (time, velocity): (Vec<f64>, Vec<f64>) = course.iter().map(|(t, state)| (*t, state.v)).unzip();
+    Ok(Measured::worst(&time, &velocity, |t| grain.rigid_backspin(t).v, grain.backspin_velocity(grain.radius)))
+}
+
+fn final_motion(variant: &'static str) -> Vec<Gate> {
+    let gate = |solver: &'static str, quantity: &str, other: Control| {
+        let at_contact = solver == "dem:liggghts";
+        Gate {
+            quantity: quantity.to_owned(),
+            unit: "m/s",
+            evidence: Evidence::Analytic,
+            source: "v = iR²Ω₀a/(a² + iR²) with arm a (derivation)",
+            allowed: 1e-9,
+            because: "momentum about the contact fixes it once the spring has come to rest",
+            runs: vec![at_overlap(variant, solver, 1e-3, DAMPING, STEP)],
+            measure: measure(move |done| {
+                let (_, state) = last(&done[0])?;
+                let grain = OneGrain::of(&done[0].scene);
+                let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
+                let exact = grain.backspin_velocity(arm);
+                Ok(Measured::new(state.v, exact, exact))
+            }),
+            control: other,
+        }
+    };
+    vec![
+        gate("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
+        gate("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
+    ]
+}
+
+fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let mut curves = Vec::new();
+    for variant in VARIANTS {
+        let done = bench.run(&at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
+        let grain = OneGrain::of(&done.scene);
+        let states = course(&done).unwrap_or_default();
+        let surface = |state: &State| state.omega * grain.radius;
+        let thin = |of: &dyn Fn(&State) -> f64| states.iter().step_by(4).map(|(t, state)| (*t, of(state))).collect();
+        let curve = |label: String, stroke, points| Curve { label, stroke, points };
+        curves.push(curve(format!("{variant}: v"), Stroke::Markers, thin(&|state| state.v)));
+        curves.push(curve(format!("{variant}: ΩR"), Stroke::Markers, thin(&surface)));
+        let exact = |of: &dyn Fn(State) -> f64| {
+            (0..=200).map(|k| f64::from(k) / 200.0).map(|t| (t, of(grain.rigid_backspin(t)))).collect()
+        };
+        curves.push(curve(format!("{variant}: v, rigid"), Stroke::Line, exact(&|state| state.v)));
+        curves.push(curve(format!("{variant}: ΩR, rigid"), Stroke::Dashed, exact(&|state| surface(&state))));
+    }
+    Ok(vec![Figure {
+        name: "velocity".to_owned(),
+        title: "From sliding to rolling".to_owned(),
+        caption: "Velocity rises and surface speed falls at constant rates until they meet; from there the grain rolls. \
+                  dem:lammps at overlap/R = 1e-3 (markers), rigid answer (lines)."
+            .to_owned(),
+        drawing: Drawing::Graph(Graph {
+            x: Axis { label: "time t (s)".to_owned(), logarithmic: false },
+            y: Axis { label: "velocity v, surface speed ΩR (m/s)".to_owned(), logarithmic: false },
+            curves,
+        }),
+    }])
+}

@@ -1,0 +1,40 @@
+//! A disc released from rest on an inclined plane (2000 paper).
+
+use crate::bench::Bench;
+use crate::case::{Case, Rung, fraction};
+use crate::figure::Figure;
+use crate::gate::Gate;
+use crate::incline::{self, Slope};
+use grainbench_scene::solver::RunError;
+
+const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+
+const SLOPES: &[Slope] = &[
+    Slope { variant: "60deg-mu.3", sticks: false, rigid_allowed: 1e-3 },
+    Slope { variant: "60deg-mu.9", sticks: true, rigid_allowed: 3e-4 },
+    Slope { variant: "60deg-mu.5", sticks: false, rigid_allowed: 2.5e-3 },
+    Slope { variant: "30deg-mu.5", sticks: true, rigid_allowed: 3e-4 },
+];
+
+pub(crate) static CASE: Case = Case {
+    name: "incline-disc",
+    title: "A disc on an inclined plane",
+    claim: "A disc released from rest rolls or slips as Coulomb friction says: displacement, velocity and spin follow \
+            the rigid answer up to the compliance of the contact, and the compliant answer to the step's own error.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "One contact that never opens and whose normal never turns, started at its static overlap: nothing is \
+               said about impact, about history on a turning contact, or about grains against grains. A wrong μ is \
+               felt only where the disc slips, a wrong inertia mostly where it rolls: read the four together.",
+    ladder: LADDER,
+    gates,
+    figures,
+};
+
+fn gates() -> Vec<Gate> {
+    incline::gates(SLOPES)
+}
+
+fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    incline::figures(bench, SLOPES)
+}

@@ -1,0 +1,203 @@
+//! One grain on a plane: closed forms, and scenes at a stated static overlap.
+//!
+//! With `i = I/(mR²)` (1/2 for a disc, 2/5 for a sphere), gravity along the plane g_t and onto it g_n, friction μ:
+//!
+//! ```text
+//! rolls without slip iff g_t/g_n ≤ μ(1+i)/i         F = m g_t f,   f = i/(1+i)
+//! rolling   a = g_t/(1+i)                            slipping   a = g_t − μ g_n,   R dΩ/dt = μ g_n/i
+//! ```
+//!
+//! An elastic tangential spring k_t sticks and rings first: with slip u = v − ΩR, F = k_t ∫u dt,
+//! du/dt = g_t − (F/m)(1 + 1/i), hence F/m = f g_t (1 − cos ωt) with ω² = (k_t/m)(1 + 1/i), until it reaches μ g_n.
+//! Sources: Bardenhagen, Brackbill & Sulsky 2000, eq. 25; Bardenhagen et al. 2001, eqs. 23-26; the compliant forms are
+//! derived here.
+
+use crate::gate::{Done, Missing};
+use grainbench_scene::scene::{Dimension, Scene};
+
+/// The grain, the plane and the law between them.
+#[derive(Clone, Copy, Debug)]
+pub struct OneGrain {
+    /// Radius R (m).
+    pub radius: f64,
+    /// Mass m (kg).
+    pub mass: f64,
+    /// I/(mR²).
+    pub inertia_factor: f64,
+    /// Gravity along the plane g_t (m/s²), down the slope.
+    pub along: f64,
+    /// Gravity onto the plane g_n (m/s²).
+    pub onto: f64,
+    /// Friction μ.
+    pub friction: f64,
+    /// Tangential stiffness k_t (N/m).
+    pub tangential_stiffness: f64,
+    /// Initial spin Ω₀ in the direction that drives the grain down the slope (rad/s).
+    pub spin: f64,
+    /// Static overlap divided by the radius.
+    pub overlap_ratio: f64,
+}
+
+/// Displacement (m), velocity (m/s) and spin in the rolling direction (rad/s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Displacement down the slope (m).
+    pub x: f64,
+    /// Velocity (m/s).
+    pub v: f64,
+    /// Spin in the direction of rolling down (rad/s).
+    pub omega: f64,
+}
+
+impl OneGrain {
+    /// Reads the scene: one grain on a plane whose normal is y (two dimensions) or z (three).
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let grain = &scene.grains[0];
+        let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
+        let onto = -scene.gravity[normal_axis(scene)];
+        Self {
+            radius: grain.radius,
+            mass: grain.mass,
+            inertia_factor: grain.inertia / (grain.mass * grain.radius * grain.radius),
+            along: scene.gravity.x,
+            onto,
+            friction: law.friction,
+            tangential_stiffness: law.tangential_stiffness,
+            spin: rolling_spin(scene, &grain.spin),
+            overlap_ratio: grain.mass * onto / law.normal_stiffness / grain.radius,
+        }
+    }
+
+    fn share(&self) -> f64 {
+        self.inertia_factor / (1.0 + self.inertia_factor)
+    }
+
+    /// Whether a rigid grain rolls without slip.
+    #[must_use]
+    pub fn sticks(&self) -> bool {
+        self.along * self.share() <= self.friction * self.onto
+    }
+
+    /// A rigid grain released from rest on the slope.
+    #[must_use]
+    pub fn rigid_incline(&self, t: f64) -> State {
+        if self.sticks() {
+            let a = self.along / (1.0 + self.inertia_factor);
+            State { x: 0.5 * a * t * t, v: a * t, omega: a * t / self.radius }
+        } else {
+            let a = self.along - self.friction * self.onto;
+            let turn = self.friction * self.onto / (self.inertia_factor * self.radius);
+            State { x: 0.5 * a * t * t, v: a * t, omega: turn * t }
+        }
+    }
+
+    /// The same with an undamped tangential spring, for a grain that slips in the end.
+    #[must_use]
+    pub fn compliant_incline(&self, t: f64) -> State {
+        let (i, f, g) = (self.inertia_factor, self.share(), self.along);
+        let omega = (self.tangential_stiffness / self.mass * (1.0 + 1.0 / i)).sqrt();
+        let stick = |t: f64| State {
+            x: g * ((1.0 - f) * t * t / 2.0 + f * (1.0 - (omega * t).cos()) / (omega * omega)),
+            v: g * ((1.0 - f) * t + f * (omega * t).sin() / omega),
+            omega: g * f / (i * self.radius) * (t - (omega * t).sin() / omega),
+        };
+        let reached = 1.0 - self.friction * self.onto / (f * g);
+        if reached < -1.0 {
+            return stick(t);
+        }
+        let slips_from = reached.acos() / omega;
+        if t <= slips_from {
+            return stick(t);
+        }
+        let (start, tau) = (stick(slips_from), t - slips_from);
+        let slide = self.rigid_incline(1.0).v;
+        let turn = self.friction * self.onto / (i * self.radius);
+        State {
+            x: start.x + start.v * tau + 0.5 * slide * tau * tau,
+            v: start.v + slide * tau,
+            omega: start.omega + turn * tau,
+        }
+    }
+
+    /// A rigid grain set down on a flat plane with spin Ω₀ and no velocity: slides until v = ΩR, then rolls.
+    #[must_use]
+    pub fn rigid_backspin(&self, t: f64) -> State {
+        let a = self.friction * self.onto;
+        let last = self.radius * self.spin * self.share();
+        let until = last / a;
+        if t < until {
+            let turn = a / (self.inertia_factor * self.radius);
+            State { x: 0.5 * a * t * t, v: a * t, omega: self.spin - turn * t }
+        } else {
+            State { x: 0.5 * a * until * until + last * (t - until), v: last, omega: last / self.radius }
+        }
+    }
+
+    /// Velocity of rolling down the slope at t when tangential forces act at an arm `a` instead of R (m/s):
+    /// v(1 + i(R/a)²) = g_t t, from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
+    #[must_use]
+    pub fn rolling_velocity(&self, t: f64, arm: f64) -> f64 {
+        self.along * t / (1.0 + self.inertia_factor * (self.radius / arm).powi(2))
+    }
+
+    /// Final velocity after backspin with the arm `a` (m/s): iR²(Ω₀ − Ω) = a v and v = aΩ.
+    #[must_use]
+    pub fn backspin_velocity(&self, arm: f64) -> f64 {
+        let moment = self.inertia_factor * self.radius * self.radius;
+        moment * self.spin * arm / (arm * arm + moment)
+    }
+}
+
+/// 1 (y) in two dimensions, 2 (z) in three.
+fn normal_axis(scene: &Scene) -> usize {
+    scene.dimension.count() - 1
+}
+
+/// Spin in the direction of rolling towards +x: −ω_z in two dimensions, +ω_y in three (the plane's normal is z).
+fn rolling_spin(scene: &Scene, spin: &nalgebra::Vector3<f64>) -> f64 {
+    match scene.dimension {
+        Dimension::Two => -spin.z,
+        Dimension::Three => spin.y,
+    }
+}
+
+/// Sets stiffness and start so that the grain rests at a static overlap of `ratio`·R: k_n = m g_n/(ratio R),
+/// k_t = (2/7) k_n, with normal damping ratio ζ and an equal tangential coefficient, γ_n = γ_t = 2ζ√(k_n/m).
+pub fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
+    let axis = normal_axis(scene);
+    let onto = -scene.gravity[axis];
+    let grain = &mut scene.grains[0];
+    grain.position[axis] = grain.radius * (1.0 - ratio);
+    let stiffness = grain.mass * onto / (ratio * grain.radius);
+    let damping = 2.0 * damping_ratio * (stiffness / grain.mass).sqrt();
+    scene.change_laws(|law| {
+        law.normal_stiffness = stiffness;
+        law.tangential_stiffness = stiffness * 2.0 / 7.0;
+        law.normal_damping = damping;
+        law.tangential_damping = damping;
+    });
+}
+
+/// Displacement, velocity and rolling spin of the probe `grain`, at every sample.
+///
+/// # Errors
+/// When the record lacks the probe.
+pub fn course(done: &Done) -> Result<Vec<(f64, State)>, Missing> {
+    let (x, v) = (done.column("grain.x")?, done.column("grain.vx")?);
+    let (spin, sign) = match done.scene.dimension {
+        Dimension::Two => (done.column("grain.omega")?, -1.0),
+        Dimension::Three => (done.column("grain.omega_y")?, 1.0),
+    };
+    let start = done.scene.grains[0].position.x;
+    let samples = done.series().time.iter().zip(x).zip(v).zip(spin);
+    Ok(samples.map(|(((&t, x), &v), omega)| (t, State { x: x - start, v, omega: sign * omega })).collect())
+}
+
+/// The last sample.
+///
+/// # Errors
+/// When the record lacks the probe.
+pub fn last(done: &Done) -> Result<(f64, State), Missing> {
+    course(done)?.last().copied().ok_or_else(|| Missing("samples".to_owned()))
+}
