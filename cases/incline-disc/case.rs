@@ -32,7 +32,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    incline::gates(SLOPES)
+    incline::gates(&CASE, SLOPES)
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

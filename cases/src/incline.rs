@@ -1,6 +1,7 @@
 //! Gates that inclines share, whether the grain is a disc or a sphere.
 
 use crate::bench::Bench;
+use crate::case::Case;
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Run, measure};
 use crate::measure::slope;
@@ -22,8 +23,11 @@ pub struct Slope {
 
 /// The step of runs against rigid answers.
 pub const STEP: Resolution = Resolution::CriticalFraction(0.01);
-/// Steps of the undamped runs, coarse to fine.
-const FINE: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
+/// The step of the undamped run that is compared with the elastic answer.
+const FINE: Resolution = Resolution::CriticalFraction(0.0025);
+/// Steps before slip sets in, of the undamped runs that show the order. Slip sets in at mid-step in each, for the error's
+/// coefficient depends on where within a step that is.
+const STEPS_BEFORE_SLIP: [f64; 4] = [16.5, 32.5, 64.5, 128.5];
 /// Static overlaps of the sweep, divided by R.
 const OVERLAPS: [f64; 5] = [1e-3, 3e-4, 1e-4, 3e-5, 1e-5];
 /// Damping ratio of the damped runs.
@@ -50,11 +54,11 @@ pub fn at_overlap(variant: &'static str, solver: &'static str, ratio: f64, dampi
 
 /// All gates of some slopes.
 #[must_use]
-pub fn gates(slopes: &[Slope]) -> Vec<Gate> {
+pub fn gates(case: &Case, slopes: &[Slope]) -> Vec<Gate> {
     let mut gates = Vec::new();
     for &slope in slopes {
         if !slope.sticks {
-            gates.extend(compliant(slope));
+            gates.extend(compliant(case, slope));
         }
         gates.extend(rigid(slope));
         gates.push(exponent(slope));
@@ -66,9 +70,10 @@ pub fn gates(slopes: &[Slope]) -> Vec<Gate> {
 }
 
 /// Undamped slip against the exact compliant answer: small at a fine step, second order in the step.
-fn compliant(slope: Slope) -> Vec<Gate> {
+fn compliant(case: &Case, slope: Slope) -> Vec<Gate> {
     const SOURCE: &str = "closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law";
-    let run = |fraction| at_overlap(slope.variant, "dem:lammps", 1e-3, 0.0, Resolution::CriticalFraction(fraction));
+    let run = |step| at_overlap(slope.variant, "dem:lammps", 1e-3, 0.0, step);
+    let slips_from = case.variant(slope.variant).map_or(f64::NAN, |scene| OneGrain::of(&scene).slips_from());
     let error = |done: &Done| {
         let (t, state) = last(done)?;
         let exact = OneGrain::of(&done.scene).compliant_incline(t);
@@ -80,8 +85,8 @@ fn compliant(slope: Slope) -> Vec<Gate> {
         evidence: Evidence::Analytic,
         source: SOURCE,
         allowed: 1e-5,
-        because: "discretisation at a fortieth of the default's square; relative to the displacement",
-        runs: vec![run(FINE[3])],
+        because: "discretisation, of second order in Δt; relative to the displacement",
+        runs: vec![run(FINE)],
         measure: measure(move |done| error(&done[0])),
         control: Control::scene("friction ×1.05", more_friction),
     };
@@ -91,8 +96,8 @@ fn compliant(slope: Slope) -> Vec<Gate> {
         evidence: Evidence::Convergence,
         source: "central differences are of second order",
         allowed: 0.1,
-        because: "fitted over four steps; the onset of slip falls between two steps",
-        runs: FINE.iter().map(|&fraction| run(fraction)).collect(),
+        because: "fitted over three halvings",
+        runs: STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))).collect(),
         measure: measure(move |done| {
             let points: Result<Vec<(f64, f64)>, _> =
                 done.iter().map(|done| Ok((done.record.provenance.time_step, error(done)?.error()))).collect();

@@ -92,22 +92,29 @@ impl OneGrain {
         }
     }
 
-    /// The same with an undamped tangential spring, for a grain that slips in the end.
+    /// Frequency of the tangential spring, ω² = (k_t/m)(1 + 1/i) (rad/s).
+    fn tangential_frequency(&self) -> f64 {
+        (self.tangential_stiffness / self.mass * (1.0 + 1.0 / self.inertia_factor)).sqrt()
+    }
+
+    /// When the undamped spring reaches Coulomb's limit, arccos(1 − μ g_n/(f g_t))/ω (s); not a number if it never does.
+    #[must_use]
+    pub fn slips_from(&self) -> f64 {
+        (1.0 - self.friction * self.onto / (self.share() * self.along)).acos() / self.tangential_frequency()
+    }
+
+    /// The same with an undamped tangential spring.
     #[must_use]
     pub fn compliant_incline(&self, t: f64) -> State {
         let (i, f, g) = (self.inertia_factor, self.share(), self.along);
-        let omega = (self.tangential_stiffness / self.mass * (1.0 + 1.0 / i)).sqrt();
+        let omega = self.tangential_frequency();
         let stick = |t: f64| State {
             x: g * ((1.0 - f) * t * t / 2.0 + f * (1.0 - (omega * t).cos()) / (omega * omega)),
             v: g * ((1.0 - f) * t + f * (omega * t).sin() / omega),
             omega: g * f / (i * self.radius) * (t - (omega * t).sin() / omega),
         };
-        let reached = 1.0 - self.friction * self.onto / (f * g);
-        if reached < -1.0 {
-            return stick(t);
-        }
-        let slips_from = reached.acos() / omega;
-        if t <= slips_from {
+        let slips_from = self.slips_from();
+        if slips_from.is_nan() || t <= slips_from {
             return stick(t);
         }
         let (start, tau) = (stick(slips_from), t - slips_from);

@@ -72,7 +72,6 @@ pub fn parse_thermo(reader: impl BufRead, name: &str) -> Result<Vec<ThermoRow>, 
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
