@@ -39,6 +39,15 @@ pub enum Tension {
     Clipped,
 }
 
+/// How the tangential spring's stretch is carried along with a contact that turns in the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum History {
+    /// As a scalar along the tangent, which turns with the contact (Cundall & Strack 1979).
+    Turned,
+    /// As a vector whose normal part is taken off (LAMMPS, LIGGGHTS).
+    Projected,
+}
+
 /// A convention: the options together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Convention {
@@ -52,6 +61,8 @@ pub struct Convention {
     pub torque_arm: TorqueArm,
     /// Tension at release.
     pub tension: Tension,
+    /// Stretch at a contact that turns.
+    pub history: History,
 }
 
 impl Convention {
@@ -62,6 +73,7 @@ impl Convention {
         cap_normal: CapNormal::Spring,
         torque_arm: TorqueArm::Radius,
         tension: Tension::Allowed,
+        history: History::Turned,
     };
     /// LAMMPS `gran/hooke/history`.
     pub const LAMMPS: Self = Self {
@@ -70,6 +82,7 @@ impl Convention {
         cap_normal: CapNormal::Total,
         torque_arm: TorqueArm::Radius,
         tension: Tension::Allowed,
+        history: History::Projected,
     };
     /// LIGGGHTS `hooke/stiffness tangential history`.
     pub const LIGGGHTS: Self = Self {
@@ -78,6 +91,7 @@ impl Convention {
         cap_normal: CapNormal::Total,
         torque_arm: TorqueArm::ContactPoint,
         tension: Tension::Allowed,
+        history: History::Projected,
     };
     /// Cundall & Strack with the normal force never below zero.
     pub const NO_TENSION: Self = Self { name: "dem:no-tension", tension: Tension::Clipped, ..Self::CUNDALL_STRACK };
@@ -115,6 +129,13 @@ impl Convention {
                 match self.tension {
                     Tension::Allowed => "allowed",
                     Tension::Clipped => "clipped",
+                }
+            ),
+            format!(
+                "stretch {}",
+                match self.history {
+                    History::Turned => "turned with the contact",
+                    History::Projected => "projected on the tangent",
                 }
             ),
         ]

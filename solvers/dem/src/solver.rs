@@ -2,8 +2,8 @@
 
 use crate::contact::Options;
 use crate::contact::normal::{Spring, SpringDashpot};
-use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless};
-use crate::convention::{Convention, CoulombCap};
+use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
+use crate::convention::{Convention, CoulombCap, History};
 use crate::probe;
 use crate::simulation::{Kernel, Simulation};
 use grainbench_scene::effects::Effects;
@@ -59,16 +59,27 @@ impl Dem {
         let effects = Effects::of(scene);
         let convention = &self.convention;
         let options = Options::new(convention.torque_arm, convention.tension, convention.cap_normal);
-        Ok(match (effects.contact_damping, effects.friction, convention.coulomb_cap) {
-            (false, false, _) => Box::new(Kernel::<S, Spring, Frictionless>::new(scene, options, time_step)?),
-            (true, false, _) => Box::new(Kernel::<S, SpringDashpot, Frictionless>::new(scene, options, time_step)?),
+        macro_rules! kernel {
+            ($normal:ty, $tangential:ty) => {
+                Box::new(Kernel::<S, $normal, $tangential>::new(scene, options, time_step)?)
+            };
+        }
+        use {CapOnSpring as OnSpring, CapOnTotal as OnTotal};
+        Ok(match (effects.contact_damping, effects.friction, convention.coulomb_cap, convention.history) {
+            (false, false, ..) => kernel!(Spring, Frictionless),
+            (true, false, ..) => kernel!(SpringDashpot, Frictionless),
             // Without dashpots both caps are the same.
-            (false, true, _) => Box::new(Kernel::<S, Spring, Coulomb<CapOnSpring>>::new(scene, options, time_step)?),
-            (true, true, CoulombCap::Spring) => {
-                Box::new(Kernel::<S, SpringDashpot, Coulomb<CapOnSpring>>::new(scene, options, time_step)?)
+            (false, true, _, History::Turned) => kernel!(Spring, Coulomb<OnSpring, Turned>),
+            (false, true, _, History::Projected) => kernel!(Spring, Coulomb<OnSpring, Projected>),
+            (true, true, CoulombCap::Spring, History::Turned) => kernel!(SpringDashpot, Coulomb<OnSpring, Turned>),
+            (true, true, CoulombCap::Spring, History::Projected) => {
+                kernel!(SpringDashpot, Coulomb<OnSpring, Projected>)
             }
-            (true, true, CoulombCap::SpringAndDashpot) => {
-                Box::new(Kernel::<S, SpringDashpot, Coulomb<CapOnTotal>>::new(scene, options, time_step)?)
+            (true, true, CoulombCap::SpringAndDashpot, History::Turned) => {
+                kernel!(SpringDashpot, Coulomb<OnTotal, Turned>)
+            }
+            (true, true, CoulombCap::SpringAndDashpot, History::Projected) => {
+                kernel!(SpringDashpot, Coulomb<OnTotal, Projected>)
             }
         })
     }

@@ -2,7 +2,7 @@
 
 use super::Touch;
 use super::normal::{Normal, NormalForce};
-use grainbench_scene::space::Space;
+use grainbench_scene::space::{Linear, Space};
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
@@ -240,24 +240,90 @@ impl Cap for CapOnTotal {
     }
 }
 
-/// An incremental spring with Coulomb's limit, |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19).
-#[derive(Clone, Copy, Debug)]
-pub struct Coulomb<C: Cap>(PhantomData<C>);
+/// How the stretch of a tangential spring is carried along with a contact that turns.
+pub trait Carrying<S: Space>: Copy + Debug + Send + 'static {
+    /// What is stored.
+    type Stored: Linear;
+    /// No stretch.
+    const NONE: Self::Stored;
+    /// The stretch at a contact that has turned to `normal`.
+    fn carried(stored: Self::Stored, normal: S::Vector) -> S::Tangent;
+    /// The stretch as it is stored.
+    fn stored(stretch: S::Tangent, normal: S::Vector) -> Self::Stored;
+    /// What is stored, with the roles of first and second grain exchanged.
+    fn exchange(stored: Self::Stored) -> Self::Stored;
+    /// Squared length.
+    fn squared(stored: Self::Stored) -> f64;
+}
 
-/// The stretch of a tangential spring (m).
+/// It turns with the contact: in the plane a scalar along the tangent (Cundall & Strack 1979), in space its normal part is
+/// taken off.
 #[derive(Clone, Copy, Debug)]
-pub struct Stretch<S: Space>(S::Tangent);
+pub struct Turned;
 
-impl<S: Space> Default for Stretch<S> {
+impl<S: Space> Carrying<S> for Turned {
+    type Stored = S::Tangent;
+    const NONE: S::Tangent = S::NO_TANGENT;
+
     #[inline(always)]
-    fn default() -> Self {
-        Self(S::NO_TANGENT)
+    fn carried(stored: S::Tangent, normal: S::Vector) -> S::Tangent {
+        S::carry(stored, normal)
+    }
+    #[inline(always)]
+    fn stored(stretch: S::Tangent, _normal: S::Vector) -> S::Tangent {
+        stretch
+    }
+    fn exchange(stored: S::Tangent) -> S::Tangent {
+        S::exchange(stored)
+    }
+    fn squared(stored: S::Tangent) -> f64 {
+        S::tangent_squared(stored)
     }
 }
 
-impl<S: Space, C: Cap> Tangential<S> for Coulomb<C> {
+/// A vector that keeps its direction and loses its normal part, in the plane too (LAMMPS, LIGGGHTS): it shrinks a little
+/// as the contact turns.
+#[derive(Clone, Copy, Debug)]
+pub struct Projected;
+
+impl<S: Space> Carrying<S> for Projected {
+    type Stored = S::Vector;
+    const NONE: S::Vector = S::ORIGIN;
+
+    #[inline(always)]
+    fn carried(stored: S::Vector, normal: S::Vector) -> S::Tangent {
+        S::slip_velocity(stored, S::NO_SPIN, normal)
+    }
+    #[inline(always)]
+    fn stored(stretch: S::Tangent, normal: S::Vector) -> S::Vector {
+        S::along(stretch, normal)
+    }
+    fn exchange(stored: S::Vector) -> S::Vector {
+        -stored
+    }
+    fn squared(stored: S::Vector) -> f64 {
+        S::dot(stored, stored)
+    }
+}
+
+/// An incremental spring with Coulomb's limit, |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19).
+#[derive(Clone, Copy, Debug)]
+pub struct Coulomb<C: Cap, H>(PhantomData<(C, H)>);
+
+/// The stretch of a tangential spring (m).
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch<S: Space, H: Carrying<S>>(H::Stored);
+
+impl<S: Space, H: Carrying<S>> Default for Stretch<S, H> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self(H::NONE)
+    }
+}
+
+impl<S: Space, C: Cap, H: Carrying<S>> Tangential<S> for Coulomb<C, H> {
     const ACTIVE: bool = true;
-    type History = Stretch<S>;
+    type History = Stretch<S, H>;
     type Rotation = Rotating<S>;
 
     #[inline(always)]
@@ -266,24 +332,26 @@ impl<S: Space, C: Cap> Tangential<S> for Coulomb<C> {
         normal: NormalForce,
         slip: S::Tangent,
         elapsed: f64,
-        history: &mut Stretch<S>,
+        history: &mut Stretch<S, H>,
     ) -> Shear<S> {
         let law = touch.law;
-        history.0 = S::carry(history.0 + slip * elapsed, touch.normal);
+        let mut stretch = H::carried(history.0, touch.normal) + slip * elapsed;
         let limit = law.friction * normal.for_cap + law.cohesion;
-        if N::DAMPED {
+        let shear = if N::DAMPED {
             let viscosity =
                 law.stiffness_damping * law.tangential_stiffness + law.tangential_damping * touch.effective_mass;
-            C::limit::<S, true>(&mut history.0, slip, law.tangential_stiffness, viscosity, limit)
+            C::limit::<S, true>(&mut stretch, slip, law.tangential_stiffness, viscosity, limit)
         } else {
-            C::limit::<S, false>(&mut history.0, slip, law.tangential_stiffness, 0.0, limit)
-        }
+            C::limit::<S, false>(&mut stretch, slip, law.tangential_stiffness, 0.0, limit)
+        };
+        history.0 = H::stored(stretch, touch.normal);
+        shear
     }
-    fn exchange(history: Stretch<S>) -> Stretch<S> {
-        Stretch(S::exchange(history.0))
+    fn exchange(history: Stretch<S, H>) -> Stretch<S, H> {
+        Stretch(H::exchange(history.0))
     }
-    fn energy(history: Stretch<S>, stiffness: f64) -> f64 {
-        0.5 * stiffness * S::tangent_squared(history.0)
+    fn energy(history: Stretch<S, H>, stiffness: f64) -> f64 {
+        0.5 * stiffness * H::squared(history.0)
     }
 }
 
