@@ -84,7 +84,7 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Gate> {
         unit: "m",
         evidence: Evidence::Analytic,
         source: SOURCE,
-        allowed: 1e-5,
+        allowed: 1e-7,
         because: "discretisation, of second order in Δt; relative to the displacement",
         runs: vec![run(FINE)],
         measure: measure(move |done| error(&done[0])),
@@ -95,7 +95,7 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Gate> {
         unit: "1",
         evidence: Evidence::Convergence,
         source: "central differences are of second order",
-        allowed: 0.1,
+        allowed: 0.02,
         because: "fitted over three halvings",
         runs: STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))).collect(),
         measure: measure(move |done| {
@@ -135,29 +135,26 @@ fn rigid(slope: Slope) -> Vec<Gate> {
     } else {
         "compliance of the contact at overlap/R = 1e-3; falls with its square root"
     };
-    vec![
-        gate("displacement at 1 s", "m", slope.rigid_allowed, physics, |done| {
-            let (t, state) = last(done)?;
-            let exact = OneGrain::of(&done.scene).rigid_incline(t);
-            Ok(Measured::new(state.x, exact.x, exact.x))
-        }),
-        gate("velocity at 1 s", "m/s", slope.rigid_allowed, physics, |done| {
+    let mut gates = vec![gate("displacement at 1 s", "m", slope.rigid_allowed, physics, |done| {
+        let (t, state) = last(done)?;
+        let exact = OneGrain::of(&done.scene).rigid_incline(t);
+        Ok(Measured::new(state.x, exact.x, exact.x))
+    })];
+    // A grain that rolls has its velocity and spin gated to rounding, below.
+    if !slope.sticks {
+        gates.push(gate("velocity at 1 s", "m/s", slope.rigid_allowed, physics, |done| {
             let (t, state) = last(done)?;
             let exact = OneGrain::of(&done.scene).rigid_incline(t);
             Ok(Measured::new(state.v, exact.v, exact.v))
-        }),
-        gate(
-            "spin at 1 s",
-            "rad/s",
-            4.0 * slope.rigid_allowed,
-            "as for the velocity; an error of the friction impulse weighs 1/i times more in the spin",
-            |done| {
-                let (t, state) = last(done)?;
-                let exact = OneGrain::of(&done.scene).rigid_incline(t);
-                Ok(Measured::new(state.omega, exact.omega, exact.omega))
-            },
-        ),
-    ]
+        }));
+        let because = "as for the velocity; the missing friction impulse weighs more in the spin";
+        gates.push(gate("spin at 1 s", "rad/s", 2.5 * slope.rigid_allowed, because, |done| {
+            let (t, state) = last(done)?;
+            let exact = OneGrain::of(&done.scene).rigid_incline(t);
+            Ok(Measured::new(state.omega, exact.omega, exact.omega))
+        }));
+    }
+    gates
 }
 
 /// How the error against the rigid answer falls with the overlap.
@@ -168,8 +165,8 @@ fn exponent(slope_: Slope) -> Gate {
         unit: "1",
         evidence: Evidence::Analytic,
         source: "elastic phase before slip lasts ∝ √(overlap/R), its stretch ∝ overlap/R (derivation)",
-        allowed: 0.1,
-        because: "fitted over two decades, where higher powers are still seen at the upper end",
+        allowed: 0.02,
+        because: "fitted over two decades; higher powers of the overlap are small there",
         runs: OVERLAPS.iter().map(|&ratio| at_overlap(slope_.variant, "dem:lammps", ratio, DAMPING, STEP)).collect(),
         measure: measure(move |done| {
             let points: Result<Vec<(f64, f64)>, _> = done

@@ -6,6 +6,7 @@
 pub mod bench;
 pub mod case;
 pub mod figure;
+pub mod force_plot;
 pub mod gate;
 pub mod incline;
 pub mod measure;

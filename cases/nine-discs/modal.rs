@@ -1,0 +1,90 @@
+//! The nine discs without slip, as two oscillators: static forces, the continuous answer, and the answer of the cycle.
+
+use grainbench_scene::scene::{ContactLaw, Scene};
+use std::f64::consts::SQRT_2;
+
+/// Closed forms for one scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Modal {
+    /// κ = k_s/k_n.
+    pub(crate) kappa: f64,
+    /// k_n/m (1/s²).
+    pub(crate) rate: f64,
+}
+
+/// Displacements of the edge disc (a) and of the corner disc along each axis (b), as fractions of the wall travel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inward {
+    pub(crate) edge: f64,
+    pub(crate) corner: f64,
+}
+
+impl Modal {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let law = law(scene);
+        Self {
+            kappa: if law.has_friction() { law.tangential_stiffness / law.normal_stiffness } else { 0.0 },
+            rate: law.normal_stiffness / scene.grains[0].mass,
+        }
+    }
+
+    /// At rest.
+    pub(crate) fn at_rest(&self) -> Inward {
+        let k = self.kappa;
+        let below = 2.0 + 4.0 * k + k * k;
+        Inward { edge: (1.0 + 2.0 * k) / below, corner: (2.0 + 3.0 * k) / (2.0 * below) }
+    }
+
+    /// ω₋ and ω₊ (rad/s).
+    pub(crate) fn frequencies(&self) -> [f64; 2] {
+        let k = self.kappa;
+        [-1.0, 1.0].map(|sign| (self.rate * (2.0 + 2.0 * k + sign * SQRT_2 * k)).sqrt())
+    }
+
+    /// Both displacements when each mode has come to a fraction of its rest value.
+    fn combine(&self, fractions: [f64; 2]) -> Inward {
+        let rest = self.at_rest();
+        let slow = (rest.edge + SQRT_2 * rest.corner) * fractions[0];
+        let fast = (rest.edge - SQRT_2 * rest.corner) * fractions[1];
+        Inward { edge: 0.5 * (slow + fast), corner: (slow - fast) / (2.0 * SQRT_2) }
+    }
+
+    /// The continuous answer for a ramp of duration `ramp` (s).
+    pub(crate) fn continuous(&self, t: f64, ramp: f64) -> Inward {
+        self.combine(self.frequencies().map(|omega| {
+            if t < ramp {
+                t / ramp - (omega * t).sin() / (omega * ramp)
+            } else {
+                1.0 - 2.0 * (0.5 * omega * ramp).sin() / (omega * ramp) * (omega * (t - 0.5 * ramp)).cos()
+            }
+        }))
+    }
+
+    /// The answer of the calculation cycle itself, for a ramp of `ramp` cycles of `time_step` (s).
+    pub(crate) fn discrete(&self, cycle: u64, ramp: u64, time_step: f64) -> Inward {
+        self.combine(self.frequencies().map(|omega| {
+            let theta = 2.0 * (0.5 * omega * time_step).asin();
+            let r = |n: f64| if n > 0.0 { n - (n * theta).sin() / theta.sin() } else { 0.0 };
+            let (n, ramp) = (cycle as f64, ramp as f64);
+            (r(n) - r(n - ramp)) / ramp
+        }))
+    }
+
+    /// Amplitude of the force between centre and edge after the ramp, as a fraction of its rest value: sum of both modes.
+    pub(crate) fn residual(&self, ramp: u64, time_step: f64) -> f64 {
+        let rest = self.at_rest();
+        let parts = [rest.edge + SQRT_2 * rest.corner, rest.edge - SQRT_2 * rest.corner].map(|part| 0.5 * part);
+        let amplitude = |part: f64, omega: f64| {
+            let theta = 2.0 * (0.5 * omega * time_step).asin();
+            let ramp = ramp as f64;
+            (part * 2.0 * (0.5 * ramp * theta).sin() / (ramp * theta.sin())).abs()
+        };
+        let [slow, fast] = self.frequencies();
+        (amplitude(parts[0], slow) + amplitude(parts[1], fast)) / rest.edge
+    }
+}
+
+/// The one law of the scene.
+pub(crate) fn law(scene: &Scene) -> ContactLaw {
+    scene.laws.iter().flatten().next().copied().unwrap_or_default()
+}
