@@ -232,7 +232,10 @@ impl Cap for CapOnTotal {
         let mut force = -(*stretch * stiffness + slip * viscosity);
         let squared = S::tangent_squared(force);
         let slipping = squared > limit * limit;
-        if slipping {
+        if slipping && S::tangent_squared(*stretch) == 0.0 {
+            // LAMMPS drops a force beyond the limit where there is no stretch yet: seen in its evaluation at the start.
+            force = S::NO_TANGENT;
+        } else if slipping {
             force = force * (limit / squared.sqrt());
             *stretch = -(force + slip * viscosity) * (1.0 / stiffness);
         }
