@@ -1,0 +1,87 @@
+//! Time of a DEM step and of the contact kernel: `cargo bench`.
+//!
+//! `particle-steps` are 10,000 sheared discs in the convention of LAMMPS with 4.7 contacts a disc, with the effects
+//! that the scene calls for and with friction taken out of it. `contact` is one pair that stays in touch. `lattice` is a
+//! square lattice of growing size: the time per grain must not grow.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use grainbench::cases::registry;
+use grainbench::dem::Simulation;
+use grainbench::dem::convention::Convention;
+use grainbench::dem::solver::Dem;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::source::SceneSource;
+use std::hint::black_box;
+use std::path::Path;
+
+fn start(scene: &Scene, convention: Convention, time_step: f64) -> Box<dyn Simulation> {
+    Dem::new(convention).start(scene, time_step).expect("the scene runs")
+}
+
+fn plane_shear() -> Scene {
+    let case = registry::by_name("plane-shear").expect("a case of the registry");
+    case.variant("plain").expect("the scene is right")
+}
+
+/// A square lattice of touching discs with friction, `count` along each side.
+fn lattice(count: u32) -> Scene {
+    let text = format!(
+        r#"
+title = "lattice"
+dimension = 2
+duration = 1.0
+materials.disc.density = 0.3183098861837907
+contacts.all = {{ between = ["disc", "disc"], normal_stiffness = 1.0, tangential_stiffness = 1.0, friction = 0.5 }}
+grains.disc = {{ material = "disc", radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], count = [{count}, {count}] }} }}
+"#
+    );
+    SceneSource::from_text("lattice", Path::new(""), &text)
+        .scene(&|_| Err("no data files here".to_owned()))
+        .expect("the scene is right")
+}
+
+fn particle_steps(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("particle-steps");
+    group.sample_size(20);
+    let with_friction = plane_shear();
+    let mut without = with_friction.clone();
+    without.change_laws(|law| law.friction = 0.0);
+    group.throughput(Throughput::Elements(100 * with_friction.grains.len() as u64));
+    for (name, scene) in [("friction", &with_friction), ("frictionless", &without)] {
+        let mut simulation = start(scene, Convention::LAMMPS, 1e-4);
+        group.bench_function(name, |bencher| bencher.iter(|| simulation.advance(black_box(100))));
+    }
+    group.finish();
+}
+
+fn contact(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("contact");
+    let case = registry::by_name("collision").expect("a case of the registry");
+    let mut scene = case.variant("oblique").expect("the scene is right");
+    // Held together from the start and hardly moving: the contact lasts.
+    scene.grains[1].position = scene.grains[0].position + nalgebra::Vector3::new(2.199, 0.0, 0.0);
+    scene.grains.iter_mut().for_each(|grain| (grain.velocity, grain.spin) = (grain.velocity * 0.0, grain.spin * 1e-9));
+    group.throughput(Throughput::Elements(1000));
+    for convention in Convention::ALL {
+        let mut simulation = start(&scene, convention, 1e-6);
+        group.bench_function(convention.name, |bencher| bencher.iter(|| simulation.advance(black_box(1000))));
+    }
+    group.finish();
+}
+
+fn scaling(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("lattice");
+    group.sample_size(20);
+    for count in [10_u32, 32, 100, 316] {
+        let scene = lattice(count);
+        let mut simulation = start(&scene, Convention::CUNDALL_STRACK, 0.1);
+        group.throughput(Throughput::Elements(10 * scene.grains.len() as u64));
+        group.bench_with_input(BenchmarkId::from_parameter(count * count), &count, |bencher, _| {
+            bencher.iter(|| simulation.advance(black_box(10)));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, particle_steps, contact, scaling);
+criterion_main!(benches);

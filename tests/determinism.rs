@@ -1,0 +1,33 @@
+//! The same scene, solver and step give the same bits, however often and beside whatever else they run.
+
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use grainbench::scene::record::{Cost, Record};
+use grainbench::scene::solver::Resolution;
+
+/// A record without its times. Debug output tells every bit of a number but the sign of a NaN, and there are none.
+fn bits(mut record: Record) -> String {
+    record.cost = Cost { wall_seconds: 0.0, ..record.cost };
+    format!("{record:?}")
+}
+
+#[test]
+fn a_rerun_gives_the_same_bits() {
+    for case in CASES {
+        let variant = &case.variants().unwrap()[0];
+        let mut scene = case.variant(variant).unwrap();
+        // Long runs are cut: bits part at once or not at all.
+        if scene.grains.len() > 1000 {
+            scene.duration = grainbench::scene::scene::Duration::Cycles(200);
+        }
+        for solver in solvers::all() {
+            let resolution = Resolution::CriticalFraction(0.05);
+            let run = || solver.run(&scene, &resolution, &mut ()).unwrap();
+            let (first, second) = std::thread::scope(|scope| {
+                let beside = scope.spawn(run);
+                (run(), beside.join().unwrap())
+            });
+            assert!(bits(first) == bits(second), "{} with {} differs from its rerun", case.name, solver.name());
+        }
+    }
+}
