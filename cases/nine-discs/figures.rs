@@ -9,17 +9,32 @@ use crate::gate::{Done, Run};
 use grainbench_scene::solver::RunError;
 
 pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let at_rest = bench.run(&Run::new("static-1", "dem", LADDER[0].resolution))?;
     let mut all = Vec::new();
-    if let Some(snapshot) = at_rest.record.snapshots.last() {
-        all.push(Figure {
-            name: "forces".to_owned(),
-            title: "Contact forces after compression".to_owned(),
-            caption: "κ = 1, at rest; bars along contacts, width proportional to force, as in Fig. 5(b). The walls carry \
-                      shear at the corner discs although they only move towards each other."
-                .to_owned(),
-            drawing: Drawing::Forces(force_plot(snapshot)),
-        });
+    for (name, variant, title, caption) in [
+        (
+            "forces",
+            "static-1",
+            "Contact forces after compression",
+            "κ = 1, at rest; bars through the contacts with the orientation of the force and a width proportional to it, as \
+             in Fig. 5(b). The walls carry shear at the corner discs although they only move towards each other.",
+        ),
+        (
+            "forces-distortion",
+            DISTORTION[3],
+            "Contact forces in distortion",
+            "κ = 1, φ = 30°, after the walls have turned by .35°: one diagonal carries the load, its contacts slip at the \
+             corners and at the centre, and the corners of the other diagonal have come off the walls, as in Fig. 8(b).",
+        ),
+    ] {
+        let done = bench.run(&Run::new(variant, "dem", LADDER[0].resolution))?;
+        if let Some(snapshot) = done.record.snapshots.last() {
+            all.push(Figure {
+                name: name.to_owned(),
+                title: title.to_owned(),
+                caption: caption.to_owned(),
+                drawing: Drawing::Forces(force_plot(snapshot)),
+            });
+        }
     }
     all.push(damping(bench)?);
     all.push(speed(bench, "speed-stiff", "Speed of loading, k_n = k_s = 1.35e9", ["fast", "slow"], [0.12, 0.04])?);

@@ -4,7 +4,7 @@ use crate::figure::{ForceBar, ForcePlot};
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::Vector3;
 
-/// Draws every contact as a bar from centre to centre, or from centre to wall.
+/// Draws every contact as a bar through the contact point with the orientation of the force, as long as the radii together.
 #[must_use]
 pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
     let flat = |point: Vector3<f64>| [point.x, point.y];
@@ -12,15 +12,21 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
         .contacts
         .iter()
         .map(|contact| {
-            let grain = &snapshot.grains[contact.grain as usize - 1];
-            let from = grain.position;
-            let reach = match contact.partner {
-                Partner::Grain(other) => grain.radius + snapshot.grains[other as usize - 1].radius,
-                Partner::Wall(_) => grain.radius,
+            let radius = |id: u32| snapshot.grains[id as usize - 1].radius;
+            let beyond = match contact.partner {
+                Partner::Grain(other) => radius(other),
+                Partner::Wall(_) => 0.0,
             };
-            let force = (contact.shear_force - contact.normal * contact.normal_force).norm();
-            let to = from + contact.normal * (reach - contact.overlap);
-            ForceBar { from: flat(from), to: flat(to), force, slipping: contact.slipping }
+            let force = contact.shear_force - contact.normal * contact.normal_force;
+            let magnitude = force.norm();
+            // Without force there is no orientation but the normal's.
+            let along = if magnitude > 0.0 { -force / magnitude } else { contact.normal };
+            ForceBar {
+                from: flat(contact.point - along * radius(contact.grain)),
+                to: flat(contact.point + along * beyond),
+                force: magnitude,
+                slipping: contact.slipping,
+            }
         })
         .collect();
     let (low, high) = snapshot.bounds;

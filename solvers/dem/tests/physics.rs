@@ -1,0 +1,170 @@
+//! Parts of the method that no case of the registry singles out: walls of every shape and motion, periodic faces,
+//! cohesion, and what a grain in the plane is.
+
+use grainbench_dem::convention::Convention;
+use grainbench_dem::solver::Dem;
+use grainbench_scene::record::Record;
+use grainbench_scene::solver::{Resolution, Solver};
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+
+const MATERIAL: &str = r#"
+title = "test"
+materials.m.density = 1000.0
+contacts.m = { between = ["m", "m"], normal_stiffness = 1.0e6 }
+output.every_cycles = 1
+"#;
+
+fn run(text: &str) -> Record {
+    run_as(text, Convention::CUNDALL_STRACK)
+}
+
+fn run_as(text: &str, convention: Convention) -> Record {
+    let source = SceneSource::from_text("test", Path::new(""), &format!("{MATERIAL}{text}"));
+    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
+    Dem::new(convention).run(&scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap()
+}
+
+fn last(record: &Record, column: &str) -> f64 {
+    *record.series.column(column).unwrap().last().unwrap()
+}
+
+/// A disc dropped on the face of a segment does as on a plane.
+#[test]
+fn the_face_of_a_segment_is_a_plane() {
+    let scene = |wall: &str| {
+        run(&format!(
+            "dimension = 2\nduration = 0.5\ngravity = [0.0, -9.8]\n\
+             [grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.3]\nvelocity = [0.2, 0.0]\n\
+             [walls.w]\nmaterial = 'm'\n{wall}\n[probes]\ng.grain = 'g'\n"
+        ))
+    };
+    let plane = scene("plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }");
+    let segment = scene("segment = [[-2.0, 0.0], [2.0, 0.0]]");
+    assert!(last(&plane, "g.y") > 0.1, "it bounces");
+    assert!((last(&plane, "g.y") - last(&segment, "g.y")).abs() < 1e-12);
+    assert!((last(&plane, "g.vx") - 0.2).abs() < 1e-15);
+}
+
+/// A ball dropped on a rectangle does as on a plane; beside it, it falls past.
+#[test]
+fn the_face_of_a_rectangle_is_a_plane() {
+    let scene = |wall: &str, x: f64| {
+        run(&format!(
+            "dimension = 3\nduration = 0.5\ngravity = [0.0, 0.0, -9.8]\n\
+             [grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [{x}, 0.0, 0.3]\n\
+             [walls.w]\nmaterial = 'm'\n{wall}\n[probes]\ng.grain = 'g'\n"
+        ))
+    };
+    let rectangle = "rectangle = { corner = [-1.0, -1.0, 0.0], edges = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]] }";
+    let plane = scene("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }", 0.0);
+    assert!((last(&plane, "g.z") - last(&scene(rectangle, 0.0), "g.z")).abs() < 1e-12);
+    let fallen = 0.3 - 0.5 * 9.8 * 0.25;
+    assert!((last(&scene(rectangle, 1.2), "g.z") - fallen).abs() < 1e-9);
+}
+
+/// A disc that meets the end of a segment is thrown back along the line from that end to its centre, with its speed.
+#[test]
+fn the_end_of_a_segment_is_a_point() {
+    let record = run("dimension = 2\nduration = 0.2\nmaterials.n.density = 1000.0\n\
+         contacts.n = { between = ['n', 'n'], normal_stiffness = 1.0e9 }\n\
+         [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [0.2, 0.05]\nvelocity = [-1.0, 0.0]\n\
+         [walls.w]\nmaterial = 'n'\nsegment = [[-1.0, 0.0], [0.0, 0.0]]\n[probes]\ng.grain = 'g'\n");
+    // Normal at first touch: (√(R² − .05²), .05)/R; a head-on part reverses, the other is kept.
+    let (nx, ny) = ((0.01_f64 - 0.0025).sqrt() / 0.1, 0.5);
+    let (vx, vy) = (-1.0 + 2.0 * nx * nx, 2.0 * nx * ny);
+    assert!((last(&record, "g.vx") - vx).abs() < 0.02 && (last(&record, "g.vy") - vy).abs() < 0.02);
+    assert!((last(&record, "g.vx").hypot(last(&record, "g.vy")) - 1.0).abs() < 1e-3);
+}
+
+/// A belt under a disc: friction ends when the surface keeps up with the belt; then v = V i/(1+i) = V/3.
+#[test]
+fn a_belt_drags_a_disc_to_a_third_of_its_speed() {
+    let record = run("dimension = 2\nduration = 1.0\ngravity = [0.0, -9.8]\nmaterials.n.density = 1000.0\n\
+         contacts.n = { between = ['n', 'n'], normal_stiffness = 1.0e6, tangential_stiffness = 3.0e5, friction = 0.5, \
+         normal_damping = 200.0, tangential_damping = 200.0 }\n\
+         [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [0.0, 0.1]\n\
+         [walls.w]\nmaterial = 'n'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+         motion = [{ velocity = [0.9, 0.0] }]\n[probes]\ng.grain = 'g'\n");
+    assert!((last(&record, "g.vx") - 0.3).abs() < 1e-6, "{}", last(&record, "g.vx"));
+    assert!((last(&record, "g.omega") - 6.0).abs() < 1e-5, "the top lags, so it turns counter-clockwise");
+}
+
+/// A paddle that turns about its end hits a disc with the velocity of the point that touches it.
+#[test]
+fn a_turning_wall_hits_with_its_local_velocity() {
+    let record = run("dimension = 2\nduration = 0.08\n\
+         [grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [1.0, 0.102]\n\
+         [walls.w]\nmaterial = 'm'\nsegment = [[0.0, 0.0], [2.0, 0.0]]\nmotion = [{ spin = 0.5, centre = [0.0, 0.0] }]\n\
+         [probes]\ng.grain = 'g'\n");
+    // Elastic impact of a heavy wall: twice the velocity Ω r = .5 · 1 at the point of contact.
+    assert!((last(&record, "g.vy") - 1.0).abs() < 0.01, "{}", last(&record, "g.vy"));
+}
+
+/// A collision across a periodic face is the same as one in the middle.
+#[test]
+fn a_periodic_face_is_not_felt() {
+    let scene = |x: f64, dimension: u8| {
+        let (zero, periodic) = if dimension == 2 { ("", "") } else { (", 5.0", ", true") };
+        run(&format!(
+            "dimension = {dimension}\nduration = 0.1\n\
+             contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 0.4 }}\n\
+             domain = {{ low = [0.0, 0.0{}], high = [10.0, 10.0{}], periodic = [true, true{periodic}] }}\n\
+             materials.n.density = 1000.0\n\
+             [grains.a]\nmaterial = 'n'\nradius = 0.5\nposition = [{}, 5.0{zero}]\nvelocity = [1.0, 0.0{}]\n\
+             [grains.b]\nmaterial = 'n'\nradius = 0.5\nposition = [{}, 5.3{zero}]\nvelocity = [-1.0, 0.0{}]\n\
+             [probes]\nall.system = true\na.grain = 'a'\n",
+            if dimension == 2 { "" } else { ", 0.0" },
+            if dimension == 2 { "" } else { ", 10.0" },
+            (x - 0.49_f64).rem_euclid(10.0),
+            if dimension == 2 { "" } else { ", 0.0" },
+            (x + 0.49_f64).rem_euclid(10.0),
+            if dimension == 2 { "" } else { ", 0.0" },
+        ))
+    };
+    for dimension in [2, 3] {
+        let (middle, face) = (scene(5.0, dimension), scene(10.0, dimension));
+        for column in ["a.vx", "a.vy", if dimension == 2 { "a.omega" } else { "a.omega_z" }] {
+            assert!((last(&middle, column) - last(&face, column)).abs() < 1e-9, "{column} in {dimension} dimensions");
+        }
+        assert!(last(&middle, "a.vx") < 0.9, "they met");
+    }
+}
+
+/// With cohesion a disc rolls without slip iff m g sin θ/3 ≤ μ m g cos θ + c; else it slips at g sin θ − μ g cos θ − c/m.
+#[test]
+fn cohesion_carries_shear_without_load() {
+    let mass = 1000.0 * std::f64::consts::PI * 0.01;
+    let run = |cohesion: f64| {
+        let text = format!(
+            "dimension = 2\nduration = 0.5\ngravity = {{ magnitude = 10.0, slope_deg = 60.0 }}\nmaterials.n.density = 1000.0\n\
+             contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e7, tangential_stiffness = 1.0e7, friction = 0.2, \
+             cohesion = {cohesion}, normal_damping = 500.0, tangential_damping = 500.0 }}\n\
+             [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [0.0, 0.1]\n\
+             [walls.w]\nmaterial = 'n'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n[probes]\ng.grain = 'g'\n"
+        );
+        last(&run_as(&text, Convention::CUNDALL_STRACK), "g.vx") / 0.5
+    };
+    let (sine, cosine) = (60_f64.to_radians().sin(), 60_f64.to_radians().cos());
+    let threshold = mass * 10.0 * (sine / 3.0 - 0.2 * cosine);
+    let rolling = 10.0 * sine * 2.0 / 3.0;
+    assert!((run(1.01 * threshold) / rolling - 1.0).abs() < 1e-3);
+    let slipping = |cohesion: f64| 10.0 * (sine - 0.2 * cosine) - cohesion / mass;
+    assert!((run(0.5 * threshold) / slipping(0.5 * threshold) - 1.0).abs() < 5e-3);
+}
+
+/// A sphere kept in the plane has a sphere's mass and inertia: it rolls at (5/7) g sin θ, a disc at (2/3).
+#[test]
+fn a_grain_in_the_plane_is_what_the_scene_says() {
+    for (shape, factor, share) in [("disc", 0.5, 2.0 / 3.0), ("sphere", 0.4, 5.0 / 7.0)] {
+        let record = run(&format!(
+            "dimension = 2\ngrain_shape = '{shape}'\nduration = 0.5\ngravity = {{ magnitude = 10.0, slope_deg = 30.0 }}\n\
+             materials.n.density = 1000.0\n\
+             contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e7, tangential_stiffness = 1.0e7, friction = 0.9, \
+             normal_damping = 500.0, tangential_damping = 500.0 }}\n\
+             [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [0.0, 0.1]\n\
+             [walls.w]\nmaterial = 'n'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n[probes]\ng.grain = 'g'\n"
+        ));
+        assert!((last(&record, "g.vx") / (2.5 * share) - 1.0).abs() < 1e-3, "{shape}: I/(mR²) = {factor}");
+    }
+}

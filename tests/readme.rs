@@ -1,0 +1,96 @@
+//! README shows what the code says: its tables are generated, its pictures are drawn, its scene runs.
+//!
+//! `UPDATE_README=1 cargo test --release --test readme` writes them anew.
+
+use grainbench::cases::bench::Bench;
+use grainbench::cases::case::{PLAIN, read_grains};
+use grainbench::cases::registry::{self, CASES};
+use grainbench::dem::convention::Convention;
+use grainbench::reports::plot;
+use grainbench::scene::solver::{Resolution, Solver};
+use grainbench::scene::source::SceneSource;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+fn root(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Compares a file with what it should hold, or writes it.
+fn expect_file(path: &str, wanted: &str) {
+    let path = root(path);
+    if std::env::var_os("UPDATE_README").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, wanted).unwrap();
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(found == wanted, "{} is out of date: UPDATE_README=1 cargo test --test readme writes it", path.display());
+}
+
+/// README with the text between two marks replaced.
+fn with_generated(readme: &str, mark: &str, table: &str) -> String {
+    let open = format!("<!-- generated: {mark} -->\n");
+    let start = readme.find(&open).unwrap() + open.len();
+    let end = start + readme[start..].find("<!-- end -->").unwrap();
+    format!("{}\n{table}\n{}", &readme[..start], &readme[end..])
+}
+
+fn cases_table() -> String {
+    let mut table = "| case | what it is | gates | evidence | solvers |\n|---|---|---|---|---|\n".to_owned();
+    for case in CASES {
+        let gates = (case.gates)();
+        let list = |words: BTreeSet<String>| words.into_iter().collect::<Vec<_>>().join(", ");
+        let evidence = list(gates.iter().map(|gate| gate.evidence.word().to_owned()).collect());
+        let solvers =
+            list(gates.iter().flat_map(|gate| gate.runs.iter().map(|run| format!("`{}`", run.solver))).collect());
+        writeln!(table, "| `{}` | {} | {} | {evidence} | {solvers} |", case.name, case.title, gates.len()).unwrap();
+    }
+    table
+}
+
+fn conventions_table() -> String {
+    let mut table = "| solver | options |\n|---|---|\n".to_owned();
+    for convention in Convention::ALL {
+        writeln!(table, "| `{}` | {} |", convention.name, convention.words().join("; ")).unwrap();
+    }
+    table
+}
+
+#[test]
+fn tables_are_generated() {
+    let readme = std::fs::read_to_string(root("README.md")).unwrap();
+    let readme = with_generated(&readme, "cases", &cases_table());
+    expect_file("README.md", &with_generated(&readme, "conventions", &conventions_table()));
+}
+
+#[test]
+fn pictures_are_drawn() {
+    for (case, figure) in [("nine-discs", "forces-distortion"), ("incline-disc", "compliance")] {
+        let case = registry::by_name(case).unwrap();
+        let figures = (case.figures)(&Bench::new(case)).unwrap();
+        let figure = figures.iter().find(|candidate| candidate.name == figure).unwrap();
+        let path = format!("reports/readme/{}-{}.svg", case.name, figure.name);
+        expect_file(&path, &plot::draw(figure).unwrap());
+    }
+}
+
+#[test]
+fn the_scene_runs() {
+    let readme = std::fs::read_to_string(root("README.md")).unwrap();
+    let start = readme.find("<!-- scene -->\n```toml\n").unwrap() + "<!-- scene -->\n```toml\n".len();
+    let text = &readme[start..start + readme[start..].find("```").unwrap()];
+    let source = SceneSource::from_text("README.md", Path::new(""), text);
+    for variant in [PLAIN, "icy"] {
+        let source = if variant == PLAIN { source.clone() } else { source.clone().variant(variant) };
+        let scene = source.scene(&read_grains).unwrap();
+        let record = grainbench::dem::solver::Dem::new(Convention::CUNDALL_STRACK)
+            .run(&scene, &Resolution::CriticalFraction(0.1), &mut ())
+            .unwrap();
+        // Rolls at (2/3) g sin θ; on ice it slides at g (sin θ − μ cos θ). Both to the compliance of the contact.
+        let (sine, cosine) = (20_f64.to_radians().sin(), 20_f64.to_radians().cos());
+        let expected = if variant == PLAIN { 9.81 * sine / 3.0 } else { 0.5 * 9.81 * (sine - 0.05 * cosine) };
+        let x = record.series.column("disc.x").unwrap().last().copied().unwrap();
+        assert!((x / expected - 1.0).abs() < 5e-3, "{variant}: {x} m, expected {expected} m");
+    }
+}
