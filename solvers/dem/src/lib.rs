@@ -16,11 +16,9 @@ pub mod convention;
 mod grains;
 mod neighbours;
 mod observe;
-mod probe;
 mod simulation;
 pub mod solver;
 pub mod stability;
 mod walls;
 
-pub use observe::Look;
 pub use simulation::Simulation;

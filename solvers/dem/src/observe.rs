@@ -4,23 +4,10 @@ use crate::contact::normal::Normal;
 use crate::contact::tangential::{Rotation, Tangential};
 use crate::neighbours::wrapped;
 use crate::simulation::Kernel;
-use grainbench_scene::record::{ContactState, GrainState, Snapshot, WallState};
+use grainbench_scene::record::{ContactState, GrainState, Look, Snapshot, WallState};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
-
-/// A simulation at one step.
-#[derive(Clone, Debug)]
-pub struct Look {
-    /// Grains in order of id, contacts, walls.
-    pub snapshot: Snapshot,
-    /// Energy in the springs (J).
-    pub elastic_energy: f64,
-    /// Moments of inertia in order of id (kg m²).
-    pub inertia: Vec<f64>,
-    /// Unwrapped positions are not kept: gravitational energy is that of the positions shown (J).
-    pub gravitational_energy: f64,
-}
 
 pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>>(kernel: &Kernel<S, N, T>) -> Look {
     let scene = &kernel.scene;
@@ -48,7 +35,6 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>>(kernel: &Kernel<S, N, 
             WallState { name: wall.name().to_owned(), corners, infinite, force: S::embed(wall.force) }
         })
         .collect();
-    let gravitational_energy = grains.iter().map(|grain| -grain.mass * scene.gravity.dot(&grain.position)).sum();
     Look {
         snapshot: Snapshot {
             step: kernel.step,
@@ -60,8 +46,6 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>>(kernel: &Kernel<S, N, 
             walls,
         },
         elastic_energy: kernel.seen.iter().map(|seen| seen.elastic_energy).sum(),
-        inertia: scene.grains.iter().map(|grain| grain.inertia).collect(),
-        gravitational_energy,
     }
 }
 

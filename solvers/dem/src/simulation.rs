@@ -6,7 +6,7 @@ use crate::contact::{Options, Touch};
 use crate::grains::Grains;
 use crate::neighbours::Neighbours;
 use crate::walls::MovingWall;
-use grainbench_scene::record::{Cost, Partner};
+use grainbench_scene::record::{Cost, Look, Partner};
 use grainbench_scene::scene::{ContactLaw, Scene};
 use grainbench_scene::solver::{Broken, Cause};
 use grainbench_scene::space::Space;
@@ -79,7 +79,7 @@ pub trait Simulation: Send {
     /// Cycles taken.
     fn step(&self) -> u64;
     /// The scene at this moment.
-    fn look(&self) -> crate::observe::Look;
+    fn look(&self) -> Look;
 }
 
 /// A simulation in a space, with a normal and a tangential stage.
@@ -528,7 +528,7 @@ impl<S: Space, N: Normal, T: Tangential<S>> Simulation for Kernel<S, N, T> {
         self.step
     }
 
-    fn look(&self) -> crate::observe::Look {
+    fn look(&self) -> Look {
         crate::observe::look(self)
     }
 }

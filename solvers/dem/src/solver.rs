@@ -4,11 +4,11 @@ use crate::contact::Options;
 use crate::contact::normal::{Spring, SpringDashpot};
 use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
 use crate::convention::{Convention, CoulombCap, History};
-use crate::probe;
 use crate::simulation::{Kernel, Simulation};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Provenance, Record};
-use grainbench_scene::scene::{Dimension, Duration, Sampling, Scene};
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::{Dimension, Duration, Scene};
 use grainbench_scene::solver::{Broken, Resolution, RunError, Solver, Watch};
 use grainbench_scene::space::{Plane, Solid, Space};
 use std::time::Instant;
@@ -115,25 +115,6 @@ impl Dem {
     }
 }
 
-/// Steps between samples.
-fn sampling_interval(sampling: Sampling, time_step: f64, steps: u64) -> u64 {
-    let interval = match sampling {
-        Sampling::Cycles(cycles) => cycles,
-        Sampling::Seconds(time) => (time / time_step).round() as u64,
-        Sampling::Count(count) => steps / count.max(1),
-    };
-    interval.max(1)
-}
-
-/// The steps at which snapshots are due: the first, the last, and `between` spread evenly.
-fn snapshot_steps(steps: u64, between: u32) -> Vec<u64> {
-    let parts = u64::from(between) + 1;
-    let mut due: Vec<u64> =
-        (0..=parts).map(|part| (u128::from(steps) * u128::from(part) / u128::from(parts)) as u64).collect();
-    due.dedup();
-    due
-}
-
 impl Solver for Dem {
     fn name(&self) -> String {
         self.convention.name.to_owned()
@@ -142,38 +123,26 @@ impl Solver for Dem {
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         let (time_step, steps) = self.steps(scene, resolution)?;
         let mut simulation = self.start(scene, time_step)?;
-        let interval = sampling_interval(scene.sampling, time_step, steps);
-        let due = snapshot_steps(steps, scene.snapshots);
-        let mut series = probe::empty_series(scene);
-        let mut snapshots = Vec::with_capacity(due.len());
+        let mut recorder = Recorder::new(scene, time_step, steps);
         let start = Instant::now();
         loop {
             let now = simulation.step();
-            let (is_sample, is_snapshot) = (now % interval == 0 || now == steps, due.contains(&now));
-            if is_sample || is_snapshot {
-                let look = simulation.look();
-                if is_sample {
-                    probe::sample(&mut series, scene, &look);
-                }
-                if is_snapshot {
-                    snapshots.push(look.snapshot);
-                }
+            if recorder.is_due(now) {
+                recorder.take(scene, simulation.look());
             }
             watch.progress(now, steps);
             if now == steps {
                 break;
             }
-            let next_sample = (now / interval + 1) * interval;
-            let next_snapshot = due.iter().copied().find(|&step| step > now).unwrap_or(steps);
-            let target = next_sample.min(next_snapshot).min(steps);
             match self.defect {
-                None => simulation.advance((target - now).min(STEPS_BETWEEN_PROGRESS))?,
+                None => simulation.advance((recorder.next(now) - now).min(STEPS_BETWEEN_PROGRESS))?,
                 Some(Defect::ForgetsHistory) => {
                     simulation.advance(1)?;
                     simulation.forget_history();
                 }
             }
         }
+        let (series, snapshots) = recorder.finish();
         let mut cost = simulation.cost();
         cost.wall_seconds = start.elapsed().as_secs_f64();
         let critical = scene.critical_time_step();

@@ -121,6 +121,15 @@ pub struct Snapshot {
     pub walls: Vec<WallState>,
 }
 
+/// A simulation at one step, with what its probes need beside the snapshot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// Grains in order of id, contacts, walls.
+    pub snapshot: Snapshot,
+    /// Energy in the springs (J).
+    pub elastic_energy: f64,
+}
+
 /// What a run cost: times depend on the machine, counts do not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {

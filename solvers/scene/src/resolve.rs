@@ -166,6 +166,9 @@ impl Resolver<'_> {
 
     fn sampling(&self) -> Result<Sampling, SceneError> {
         let (check, output) = (&self.check, &self.file.output);
+        if output.snapshots > 1_000_000 {
+            return Err(check.error("output.snapshots", "at most a million snapshots", &output.snapshots.to_string()));
+        }
         match (output.every, output.every_cycles) {
             (Some(_), Some(_)) => Err(check.error("output", "one of `every` and `every_cycles`", "both")),
             (Some(every), None) => Ok(Sampling::Seconds(check.positive("output.every", every, "time (s)")?)),

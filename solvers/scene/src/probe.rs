@@ -1,8 +1,7 @@
 //! Time series of a scene's probes.
 
-use crate::observe::Look;
-use grainbench_scene::record::{Column, ContactState, Partner, Series};
-use grainbench_scene::scene::{Dimension, Probe, ProbeTarget, Scene};
+use crate::record::{Column, ContactState, GrainState, Look, Partner, Series};
+use crate::scene::{Dimension, Probe, ProbeTarget, Scene};
 use nalgebra::Vector3;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -100,21 +99,19 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
         ProbeTarget::System => {
             let kinetic: f64 =
                 snapshot.grains.iter().map(|grain| 0.5 * grain.mass * grain.velocity.norm_squared()).sum();
-            let rotational: f64 = snapshot
-                .grains
-                .iter()
-                .zip(&look.inertia)
-                .map(|(grain, inertia)| 0.5 * inertia * grain.spin.norm_squared())
-                .sum();
+            let inertia = |grain: &GrainState| scene.grains[grain.id as usize - 1].inertia;
+            let rotational: f64 =
+                snapshot.grains.iter().map(|grain| 0.5 * inertia(grain) * grain.spin.norm_squared()).sum();
+            let gravitational: f64 =
+                snapshot.grains.iter().map(|grain| -grain.mass * scene.gravity.dot(&grain.position)).sum();
             let momentum: Vector3<f64> = snapshot.grains.iter().map(|grain| grain.velocity * grain.mass).sum();
             let angular: Vector3<f64> = snapshot
                 .grains
                 .iter()
-                .zip(&look.inertia)
-                .map(|(grain, &inertia)| grain.position.cross(&(grain.velocity * grain.mass)) + grain.spin * inertia)
+                .map(|grain| grain.position.cross(&(grain.velocity * grain.mass)) + grain.spin * inertia(grain))
                 .sum();
-            let total = kinetic + rotational + look.elastic_energy + look.gravitational_energy;
-            let mut all = vec![kinetic, rotational, look.elastic_energy, look.gravitational_energy, total];
+            let total = kinetic + rotational + look.elastic_energy + gravitational;
+            let mut all = vec![kinetic, rotational, look.elastic_energy, gravitational, total];
             all.extend(vector(&momentum));
             all.extend(spin(&angular));
             let slipping = snapshot.contacts.iter().filter(|contact| contact.slipping).count();

@@ -1,0 +1,71 @@
+//! Keeps the record of a run: knows at which steps something is due and takes it down.
+
+use crate::probe;
+use crate::record::{Look, Series, Snapshot};
+use crate::scene::{Sampling, Scene};
+
+/// The record of a run in the making.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    /// Steps between samples.
+    interval: u64,
+    /// Steps at which snapshots are due, in order.
+    snapshot_steps: Vec<u64>,
+    steps: u64,
+    series: Series,
+    snapshots: Vec<Snapshot>,
+}
+
+impl Recorder {
+    /// For a run of `steps` steps of `time_step` (s).
+    #[must_use]
+    pub fn new(scene: &Scene, time_step: f64, steps: u64) -> Self {
+        let interval = match scene.sampling {
+            Sampling::Cycles(cycles) => cycles,
+            Sampling::Seconds(time) => (time / time_step).round() as u64,
+            Sampling::Count(count) => steps / count.max(1),
+        };
+        let parts = u128::from(scene.snapshots) + 1;
+        let mut snapshot_steps: Vec<u64> = (0..=parts).map(|part| (u128::from(steps) * part / parts) as u64).collect();
+        snapshot_steps.dedup();
+        let series = probe::empty_series(scene);
+        Self { interval: interval.max(1), snapshot_steps, steps, series, snapshots: Vec::new() }
+    }
+
+    /// Whether probes are sampled at a step: every interval, and at the end.
+    fn is_sample(&self, step: u64) -> bool {
+        step.is_multiple_of(self.interval) || step == self.steps
+    }
+
+    /// Whether a sample or a snapshot is due at a step.
+    #[must_use]
+    pub fn is_due(&self, step: u64) -> bool {
+        self.is_sample(step) || self.snapshot_steps.binary_search(&step).is_ok()
+    }
+
+    /// The next step after `step` at which something is due; the last step when nothing is.
+    #[must_use]
+    pub fn next(&self, step: u64) -> u64 {
+        let sample = (step / self.interval + 1).saturating_mul(self.interval);
+        let after = self.snapshot_steps.partition_point(|&due| due <= step);
+        let snapshot = self.snapshot_steps.get(after).copied().unwrap_or(self.steps);
+        sample.min(snapshot).min(self.steps)
+    }
+
+    /// Takes down what is due at the step of `look`.
+    pub fn take(&mut self, scene: &Scene, look: Look) {
+        let step = look.snapshot.step;
+        if self.is_sample(step) {
+            probe::sample(&mut self.series, scene, &look);
+        }
+        if self.snapshot_steps.binary_search(&step).is_ok() {
+            self.snapshots.push(look.snapshot);
+        }
+    }
+
+    /// The time series and the snapshots.
+    #[must_use]
+    pub fn finish(self) -> (Series, Vec<Snapshot>) {
+        (self.series, self.snapshots)
+    }
+}
