@@ -16,7 +16,8 @@ type Slot = Arc<OnceLock<Result<Done, RunError>>>;
 /// The workbench of one case.
 pub struct Bench {
     case: &'static Case,
-    runs: Mutex<BTreeMap<String, Slot>>,
+    /// By [`Run::key`].
+    runs: Mutex<BTreeMap<String, (Run, Slot)>>,
 }
 
 impl Bench {
@@ -39,16 +40,17 @@ impl Bench {
     pub fn run(&self, run: &Run) -> Result<Done, RunError> {
         let slot = {
             let mut runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
-            Arc::clone(runs.entry(run.key()).or_default())
+            let (_, slot) = runs.entry(run.key()).or_insert_with(|| (run.clone(), Slot::default()));
+            Arc::clone(slot)
         };
         slot.get_or_init(|| self.simulate(run, None)).clone()
     }
 
     /// Every run done so far, in the order of their keys.
     #[must_use]
-    pub fn done(&self) -> Vec<(String, Done)> {
+    pub fn done(&self) -> Vec<(Run, Done)> {
         let runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
-        runs.iter().filter_map(|(key, slot)| Some((key.clone(), slot.get()?.as_ref().ok()?.clone()))).collect()
+        runs.values().filter_map(|(run, slot)| Some((run.clone(), slot.get()?.as_ref().ok()?.clone()))).collect()
     }
 
     /// Judges a gate.

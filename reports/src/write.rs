@@ -53,7 +53,14 @@ pub(crate) fn parent_of(path: &Path) -> &Path {
 /// A hidden directory on the same file system, so that a rename out of it is atomic. Files are made inside it
 /// rather than by `NamedTempFile` so that they get the permissions of any other new file.
 pub(crate) fn temporary_in(parent: &Path) -> io::Result<TempDir> {
-    Builder::new().prefix(".grainbench-").tempdir_in(parent)
+    Builder::new().prefix(".grainbench-").tempdir_in(parent).map_err(without_its_path)
+}
+
+/// What the system said, without the temporary name that nobody asked for.
+fn without_its_path(error: io::Error) -> io::Error {
+    let inner =
+        error.get_ref().and_then(|wrapper| wrapper.source()).and_then(|inner| inner.downcast_ref::<io::Error>());
+    inner.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
 }
 
 #[cfg(test)]

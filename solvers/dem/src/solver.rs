@@ -122,6 +122,7 @@ impl Solver for Dem {
 
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         let (time_step, steps) = self.steps(scene, resolution)?;
+        watch.begin(time_step, steps);
         let mut simulation = self.start(scene, time_step)?;
         let mut recorder = Recorder::new(scene, time_step, steps);
         let start = Instant::now();

@@ -21,7 +21,7 @@ impl Checker<'_> {
         if value.is_finite() && value > 0.0 {
             Ok(value)
         } else {
-            Err(self.error(key, &format!("a positive {what}"), &value.to_string()))
+            Err(self.error(key, &format!("a positive{} {what}", and_finite(value)), &value.to_string()))
         }
     }
 
@@ -29,7 +29,7 @@ impl Checker<'_> {
         if value.is_finite() && value >= 0.0 {
             Ok(value)
         } else {
-            Err(self.error(key, &format!("a {what} of zero or more"), &value.to_string()))
+            Err(self.error(key, &format!("a {what} of zero or more{}", and_finite(value)), &value.to_string()))
         }
     }
 
@@ -100,4 +100,9 @@ impl Checker<'_> {
         let found = if there.is_empty() { "none of them".to_owned() } else { there.join(" and ") };
         Err(self.error(key, &format!("exactly one of {}", names(false).join(", ")), &found))
     }
+}
+
+/// Says that a value must be finite where that is what is wrong with it.
+fn and_finite(value: f64) -> &'static str {
+    if value.is_finite() { "" } else { ", finite" }
 }

@@ -112,7 +112,8 @@ fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>>
 }
 
 fn is_free(centre: Vector3<f64>, radius: f64, cell: f64, taken: &HashMap<[i64; 3], Vec<(Vector3<f64>, f64)>>) -> bool {
-    let [i, j, k] = cell_of(centre, cell);
+    // Far beyond what a cell number can hold, neighbours are the same cell.
+    let [i, j, k] = cell_of(centre, cell).map(|at| at.clamp(i64::MIN + 1, i64::MAX - 1));
     (-1..=1).all(|di| {
         (-1..=1).all(|dj| {
             (-1..=1).all(|dk| {

@@ -25,7 +25,8 @@ impl Recorder {
             Sampling::Seconds(time) => (time / time_step).round() as u64,
             Sampling::Count(count) => steps / count.max(1),
         };
-        let parts = u128::from(scene.snapshots) + 1;
+        // More snapshots than steps are one a step, whatever number was asked for.
+        let parts = (u128::from(scene.snapshots) + 1).min(u128::from(steps.max(1)));
         let mut snapshot_steps: Vec<u64> = (0..=parts).map(|part| (u128::from(steps) * part / parts) as u64).collect();
         snapshot_steps.dedup();
         let series = probe::empty_series(scene);

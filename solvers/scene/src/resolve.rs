@@ -166,9 +166,6 @@ impl Resolver<'_> {
 
     fn sampling(&self) -> Result<Sampling, SceneError> {
         let (check, output) = (&self.check, &self.file.output);
-        if output.snapshots > 1_000_000 {
-            return Err(check.error("output.snapshots", "at most a million snapshots", &output.snapshots.to_string()));
-        }
         match (output.every, output.every_cycles) {
             (Some(_), Some(_)) => Err(check.error("output", "one of `every` and `every_cycles`", "both")),
             (Some(every), None) => Ok(Sampling::Seconds(check.positive("output.every", every, "time (s)")?)),
@@ -189,6 +186,7 @@ impl Resolver<'_> {
         for (name, spec) in &self.file.grains {
             let start = grains.len();
             self.group(name, spec, shape, domain, &mut grains)?;
+            self.refuse_beyond_numbers(name, &grains[start..])?;
             groups.insert(name.clone(), start..grains.len());
         }
         if grains.is_empty() {
@@ -245,10 +243,8 @@ impl Resolver<'_> {
                 let expected = format!("{dimensions} counts of one or more");
                 return Err(check.error(&key("count"), &expected, &format!("{:?}", lattice.count)));
             }
-            let total: u64 = lattice.count.iter().map(|&count| u64::from(count)).product();
-            if total > 100_000_000 {
-                return Err(check.error(&key("count"), "at most 100 million grains", &total.to_string()));
-            }
+            let total = lattice.count.iter().fold(1_u128, |total, &count| total * u128::from(count));
+            self.refuse_too_many(&key("count"), total)?;
             let count = [lattice.count[0], lattice.count[1], lattice.count.get(2).copied().unwrap_or(1)];
             let (radius, density) = (radius()?, density()?);
             let centres = generate::lattice(origin, spacing, count);
@@ -256,6 +252,7 @@ impl Resolver<'_> {
         }
         if let Some(random) = &spec.random {
             let key = |part: &str| format!("grains.{name}.random.{part}");
+            self.refuse_too_many(&key("count"), u128::from(random.count))?;
             let Some(domain) = domain else {
                 return Err(check.error(&key("count"), "a `domain` to place grains in", "none"));
             };
@@ -285,6 +282,29 @@ impl Resolver<'_> {
         }
         if let Some(file) = &spec.file {
             self.grains_from_file(name, file, shape, material, grains)?;
+        }
+        Ok(())
+    }
+
+    /// Radius, density and domain may each be a fine number and still give a grain without one.
+    fn refuse_beyond_numbers(&self, group: &str, grains: &[Grain]) -> Result<(), SceneError> {
+        let key = format!("grains.{group}");
+        for grain in grains {
+            if !(grain.inertia > 0.0 && grain.inertia.is_finite()) {
+                let found = format!("mass {:e} and moment of inertia {:e}", grain.mass, grain.inertia);
+                return Err(self.check.error(&key, "a positive, finite mass and moment of inertia", &found));
+            }
+            if grain.position.iter().any(|value| !value.is_finite()) {
+                return Err(self.check.error(&key, "finite positions", &format!("{:?}", grain.position.as_slice())));
+            }
+        }
+        Ok(())
+    }
+
+    /// Memory for more grains than any machine steps is asked for by mistake.
+    fn refuse_too_many(&self, key: &str, count: u128) -> Result<(), SceneError> {
+        if count > 100_000_000 {
+            return Err(self.check.error(key, "at most 100 million grains", &count.to_string()));
         }
         Ok(())
     }
@@ -348,8 +368,10 @@ impl Resolver<'_> {
         )?;
         let shape = if let Some(plane) = &spec.plane {
             let normal = check.vector(&key("plane.normal"), &plane.normal)?;
-            if normal.norm() == 0.0 {
-                return Err(check.error(&key("plane.normal"), "a direction", "a vector of length zero"));
+            let length = normal.norm();
+            if !(length > 0.0 && length.is_finite()) {
+                let found = format!("a vector of length {length}");
+                return Err(check.error(&key("plane.normal"), "a direction", &found));
             }
             WallShape::Plane { point: check.vector(&key("plane.point"), &plane.point)?, normal: normal.normalize() }
         } else if let Some([from, to]) = &spec.segment {

@@ -102,6 +102,8 @@ pub enum RunError {
 
 /// Someone who wants to know how far a run is.
 pub trait Watch {
+    /// Called once, before the first step, with the time step (s) and the number of steps.
+    fn begin(&mut self, _time_step: f64, _steps: u64) {}
     /// Called now and then with the number of steps done and to do.
     fn progress(&mut self, done: u64, total: u64);
 }

@@ -37,6 +37,15 @@ impl SceneSource {
             found: format!("other bytes after byte {}", cause.utf8_error().valid_up_to()),
             help: None,
         })?;
+        if let Some(at) = text.find('\0') {
+            return Err(SceneError {
+                place: format!("{name}:{}", line_of(&text, at)),
+                key: String::new(),
+                expected: "a text file".to_owned(),
+                found: format!("a zero byte after byte {at}"),
+                help: None,
+            });
+        }
         let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
         Ok(Self { name, directory, text, variant: None, overrides: Vec::new() })
     }
@@ -106,9 +115,9 @@ impl SceneSource {
         for (key, value) in &self.overrides {
             self.lay_over(&mut table, key, value)?;
         }
-        serde_path_to_error::deserialize(toml::Value::Table(table)).map_err(|error| {
+        serde_path_to_error::deserialize(toml::Value::Table(table.clone())).map_err(|error| {
             let path = error.path().to_string();
-            self.explain(&path, error.inner().message())
+            self.explain(&path, error.inner().message(), &table)
         })
     }
 
@@ -127,11 +136,13 @@ impl SceneSource {
     fn parse(&self) -> Result<toml::Table, SceneError> {
         self.text.parse::<toml::Table>().map_err(|error| {
             let line = error.span().map_or(1, |span| line_of(&self.text, span.start));
+            let there = error.span().and_then(|span| self.text.get(span)).map(str::trim).unwrap_or_default();
+            let at = if there.is_empty() { String::new() } else { format!(" at `{}`", shortened(there)) };
             SceneError {
                 place: format!("{}:{line}", self.name),
                 key: String::new(),
                 expected: "TOML".to_owned(),
-                found: error.message().replace('\n', ", "),
+                found: error.message().replace('\n', ", ") + &at,
                 help: None,
             }
         })
@@ -162,10 +173,12 @@ impl SceneSource {
             return format!("--set {set}={value}");
         }
         let variant = self.variant.as_ref().map(|variant| format!("variants.{variant}.{key}"));
-        let line = variant
-            .and_then(|path| self.line(&path, true))
-            .or_else(|| self.line(key, true))
-            .or_else(|| self.line(key, false));
+        let exact = variant.and_then(|path| self.line(&path, true)).or_else(|| self.line(key, true));
+        // A parent that the file does not have came in with an override of something below it.
+        if let (None, Some((set, value))) = (exact, self.overrides.iter().rev().find(|(set, _)| within(set, key))) {
+            return format!("--set {set}={value}");
+        }
+        let line = exact.or_else(|| self.line(key, false));
         line.map_or_else(|| self.name.clone(), |line| format!("{}:{line}", self.name))
     }
 
@@ -191,7 +204,7 @@ impl SceneSource {
     }
 
     /// Turns serde's words into ours.
-    fn explain(&self, path: &str, message: &str) -> SceneError {
+    fn explain(&self, path: &str, message: &str, table: &toml::Table) -> SceneError {
         let message = message.trim();
         let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
         let path = if path == "." { "" } else { path };
@@ -204,8 +217,8 @@ impl SceneSource {
                 (true, false) if path.ends_with(&format!(".{word}")) || path == word => path.to_owned(),
                 (true, false) => format!("{path}.{word}"),
             };
-            let kind = if message.starts_with("unknown field") { "a key" } else { "one" };
-            let expected = format!("{kind} of {}", known.join(", "));
+            let kind = if message.starts_with("unknown field") { "one of the keys" } else { "one of" };
+            let expected = format!("{kind} {}", known.join(", "));
             return self.error(&key, &expected, &format!("`{word}`"), did_you_mean(word, known.iter().copied()));
         }
         if message.starts_with("missing field") {
@@ -222,7 +235,29 @@ impl SceneSource {
             };
             return self.error(path, expected, found, None);
         }
-        self.error(path, message, "something else", None)
+        let found = value_at(table, path).map_or_else(|| "something else".to_owned(), describe);
+        self.error(path, message, &found, None)
+    }
+}
+
+/// The value at a dotted path, where there is one.
+fn value_at<'a>(table: &'a toml::Table, path: &str) -> Option<&'a toml::Value> {
+    let mut parts = path.split('.');
+    let first = table.get(parts.next()?)?;
+    parts.try_fold(first, |value, part| value.as_table()?.get(part))
+}
+
+fn describe(value: &toml::Value) -> String {
+    format!("{} `{}`", value.type_str(), shortened(value.to_string().trim()))
+}
+
+/// The first words of a text, in one line.
+fn shortened(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let line = text.lines().next().unwrap_or_default();
+    match line.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &line[..end]),
+        None => line.to_owned(),
     }
 }
 
