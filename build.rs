@@ -1,0 +1,43 @@
+//! Notes for provenance which commit and which compiler the program is built from.
+
+use std::path::Path;
+use std::process::Command;
+use std::{env, fs};
+
+fn main() {
+    let root = env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
+    let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    println!("cargo::rustc-env=GRAINBENCH_RUSTC={}", words(&rustc, &["--version"]).unwrap_or_else(unknown));
+    println!("cargo::rustc-env=GRAINBENCH_COMMIT={}", commit(&root).unwrap_or_else(unknown));
+    // Whatever can make the tree differ from its commit, and the commit itself.
+    for part in ["build.rs", "Cargo.toml", "Cargo.lock", "src", "solvers", "reference", "cases", "reports"] {
+        println!("cargo::rerun-if-changed={part}");
+    }
+    if let Some(git) = words("git", &["-C", &root, "rev-parse", "--absolute-git-dir"]) {
+        for part in ["HEAD", "logs/HEAD"].map(|part| Path::new(&git).join(part)).iter().filter(|part| part.exists()) {
+            println!("cargo::rerun-if-changed={}", part.display());
+        }
+    }
+}
+
+/// The commit, marked when the tree has changes; nothing when the sources are no repository of their own.
+fn commit(root: &str) -> Option<String> {
+    let top = words("git", &["-C", root, "rev-parse", "--show-toplevel"])?;
+    if fs::canonicalize(top).ok()? != fs::canonicalize(root).ok()? {
+        return None;
+    }
+    let commit = words("git", &["-C", root, "rev-parse", "--short", "HEAD"])?;
+    // Without the locks git leaves its index alone, and two builds at once do not disturb each other.
+    let changes = words("git", &["--no-optional-locks", "-C", root, "status", "--porcelain"])?;
+    Some(if changes.is_empty() { commit } else { commit + "+changes" })
+}
+
+/// What a program prints, when it is there and succeeds.
+fn words(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())
+}
+
+fn unknown() -> String {
+    "unknown".to_owned()
+}

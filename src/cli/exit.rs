@@ -1,0 +1,84 @@
+//! Exit codes, messages, and what is printed.
+
+use grainbench::scene::error::{SceneError, did_you_mean};
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// What a command ends with.
+pub(crate) type Outcome = Result<ExitCode, Fault>;
+
+/// Why a command could not do what it was asked for.
+#[derive(Debug)]
+pub(crate) enum Fault {
+    /// Bad input or usage: exit code 2.
+    Input(String),
+    /// A solver of ours broke: exit code 1.
+    Broken(String),
+}
+
+/// Exit code of a run with a row that fails, a control that stayed green, or a solver that broke.
+pub(crate) const RED: u8 = 1;
+
+/// Exit code of bad input or usage, the same that clap has for its own.
+const BAD_INPUT: u8 = 2;
+
+impl Fault {
+    /// Bad input or usage.
+    pub(crate) fn input(message: impl Display) -> Self {
+        Self::Input(message.to_string())
+    }
+
+    /// A word that is none of those known.
+    pub(crate) fn unknown<'a>(what: &str, word: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Self {
+        let names = known.clone().into_iter().collect::<Vec<_>>().join(", ");
+        let help = did_you_mean(word, known).map(|help| format!(" ({help})")).unwrap_or_default();
+        Self::Input(format!("expected {what}, one of {names}; found `{word}`{help}"))
+    }
+
+    /// Says it on the standard error and gives the exit code.
+    pub(crate) fn report(&self) -> ExitCode {
+        let (message, code) = match self {
+            Self::Input(message) => (message, BAD_INPUT),
+            Self::Broken(message) => (message, RED),
+        };
+        say("error", message);
+        ExitCode::from(code)
+    }
+}
+
+impl From<SceneError> for Fault {
+    fn from(error: SceneError) -> Self {
+        Self::input(error)
+    }
+}
+
+/// A line on the standard error. Nobody is left to tell when that is closed.
+pub(crate) fn say(kind: &str, message: &str) {
+    let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    let _ = writeln!(io::stderr(), "{kind}: {one_line}");
+}
+
+/// Prints text on the standard output. A reader who has seen enough, as `head` has, is no error.
+pub(crate) fn print(text: &str) -> Result<(), Fault> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Fault::input(format!("cannot write the standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a value as JSON.
+pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Fault> {
+    let text = serde_json::to_string_pretty(value).map_err(Fault::input)?;
+    print(&(text + "\n"))
+}
+
+/// Refuses an output directory that cannot be written, before anything is computed for it.
+pub(crate) fn check_writable(out: &Path) -> Result<(), Fault> {
+    // Made and dropped at once, so that a run that is interrupted leaves nothing beside the directory either.
+    grainbench::reports::StagedDir::new(out).map(drop).map_err(|error| Fault::input(format!("--out: {error}")))
+}

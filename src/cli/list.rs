@@ -1,0 +1,70 @@
+//! `grainbench list`: which cases there are.
+
+use super::exit::{Outcome, print, print_json};
+use super::select;
+use grainbench::cases::case::Case;
+use grainbench::cases::registry::CASES;
+use serde::Serialize;
+use std::process::ExitCode;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Print the list as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// One case of the list.
+#[derive(Serialize)]
+struct Entry {
+    name: &'static str,
+    title: &'static str,
+    claim: &'static str,
+    variants: Vec<String>,
+    gates: usize,
+    default_rung: String,
+    rungs: Vec<String>,
+    solvers: Vec<&'static str>,
+}
+
+/// Prints the cases.
+pub(crate) fn list(arguments: &Arguments) -> Outcome {
+    let entries = CASES.iter().map(|case| entry(case)).collect::<Result<Vec<_>, _>>()?;
+    if arguments.json {
+        print_json(&entries)?;
+    } else {
+        print(&table(&entries))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn entry(case: &Case) -> Result<Entry, super::exit::Fault> {
+    let gates = (case.gates)();
+    let rungs = select::rungs(case, &gates);
+    let first = gates.first().and_then(|gate| gate.runs.first());
+    Ok(Entry {
+        name: case.name,
+        title: case.title,
+        claim: case.claim,
+        variants: select::variants(case, &gates)?,
+        gates: gates.len(),
+        default_rung: first.map(|run| select::rung_of(case, run)).unwrap_or_default(),
+        rungs,
+        solvers: select::solvers(&gates),
+    })
+}
+
+fn table(entries: &[Entry]) -> String {
+    let width = entries.iter().map(|entry| entry.name.chars().count()).max().unwrap_or(0);
+    let mut text = String::new();
+    for Entry { name, title, variants, gates, default_rung, solvers, .. } in entries {
+        let variants = variants.join(", ");
+        let plural = if *gates == 1 { "" } else { "s" };
+        let solvers = solvers.join(", ");
+        text.push_str(&format!("{name:<width$}  {title}\n"));
+        text.push_str(&format!("{:<width$}    variants  {variants}\n", ""));
+        text.push_str(&format!("{:<width$}    {gates} gate{plural}, rung {default_rung}, solvers {solvers}\n", ""));
+    }
+    text
+}

@@ -1,0 +1,56 @@
+//! Commands: what can be asked for, and who answers.
+
+mod exit;
+mod list;
+mod progress;
+mod provenance;
+mod report;
+mod run;
+mod schema;
+mod select;
+mod simulate;
+
+use clap::{Parser, Subcommand};
+use exit::Fault;
+use std::process::ExitCode;
+
+/// How far to trust a solver of granular simulations, and what that trust costs.
+///
+/// Runs benchmark cases, judges their gates, and leaves a page with the results. Without a command: `run`, with the
+/// options below.
+#[derive(Parser)]
+#[command(name = "grainbench", version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    run: run::Options,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List the cases: title, variants, gates, default rung, solvers.
+    List(list::Arguments),
+    /// Judge the gates of cases and write the report.
+    Run(run::Arguments),
+    /// Simulate one scene and write its record.
+    Simulate(simulate::Arguments),
+    /// Print the JSON schema of scene files.
+    Schema,
+    /// Make the page and figures again from a report's directory, without any solver.
+    Report(report::Arguments),
+}
+
+/// Reads the command line, does what it says, and says how it went.
+pub(crate) fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let done = match cli.command {
+        None => run::run(&[], &cli.run),
+        Some(Command::List(arguments)) => list::list(&arguments),
+        Some(Command::Run(arguments)) => run::run(&arguments.cases, &arguments.options),
+        Some(Command::Simulate(arguments)) => simulate::simulate(&arguments),
+        Some(Command::Schema) => schema::schema(),
+        Some(Command::Report(arguments)) => report::report(&arguments),
+    };
+    done.unwrap_or_else(|fault: Fault| fault.report())
+}

@@ -1,0 +1,40 @@
+//! What ran, where and when.
+
+use grainbench::reports::Provenance;
+use std::fs;
+
+/// The provenance of a run that took `wall_seconds`, with its options in words.
+pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance {
+    Provenance {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        commit: env!("GRAINBENCH_COMMIT").to_owned(),
+        date: jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string(),
+        machine: machine(),
+        rustc: env!("GRAINBENCH_RUSTC").to_owned(),
+        options,
+        wall_seconds,
+    }
+}
+
+/// Processor, cores and operating system.
+fn machine() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let plural = if cores == 1 { "" } else { "s" };
+    format!("{}, {cores} core{plural}, {}", processor(), system())
+}
+
+/// The value of the first line `key … separator value` of a file of the system.
+fn setting(file: &str, key: &str, separator: char) -> Option<String> {
+    let text = fs::read_to_string(file).ok()?;
+    let line = text.lines().find(|line| line.starts_with(key))?;
+    let (_, value) = line.split_once(separator)?;
+    Some(value.trim().trim_matches('"').to_owned())
+}
+
+fn processor() -> String {
+    setting("/proc/cpuinfo", "model name", ':').unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+}
+
+fn system() -> String {
+    setting("/etc/os-release", "PRETTY_NAME=", '=').unwrap_or_else(|| std::env::consts::OS.to_owned())
+}

@@ -1,0 +1,22 @@
+//! `grainbench report`: a page made again from what a run left.
+
+use super::exit::{Fault, Outcome, print};
+use super::run;
+use grainbench::reports::report::Report;
+use grainbench::reports::{summary_table, write_report};
+use std::path::PathBuf;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Directory that a run left.
+    dir: PathBuf,
+}
+
+/// Reads the report of a directory and writes page, figures and result files again. Ends as the run ended.
+pub(crate) fn report(arguments: &Arguments) -> Outcome {
+    let report = Report::load(&arguments.dir).map_err(Fault::input)?;
+    write_report(&arguments.dir, &report).map_err(Fault::input)?;
+    print(&format!("{}\n{}\n", summary_table(&report), arguments.dir.join("index.html").display()))?;
+    Ok(run::exit_code(&report))
+}

@@ -1,0 +1,220 @@
+//! `grainbench run`: judge the gates of cases and write the report.
+
+use super::exit::{self, Fault, Outcome, RED, check_writable, print};
+use super::progress::Progress;
+use super::provenance::provenance;
+use super::select::{self, Selected};
+use grainbench::cases::bench::Bench;
+use grainbench::cases::figure::Figure;
+use grainbench::cases::gate::{Done, Run};
+use grainbench::cases::verdict::{self, Control, Verdict};
+use grainbench::reports::results::results_json;
+use grainbench::reports::{Report, RunCost, Section, summary_table, write_report};
+use grainbench::scene::solver::RunError;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Cases to run; all when none is named.
+    #[arg(value_name = "CASE|CASE/VARIANT")]
+    pub(crate) cases: Vec<String>,
+    #[command(flatten)]
+    pub(crate) options: Options,
+}
+
+/// Options of a run, which are those of the bare command too.
+#[derive(clap::Args)]
+pub(crate) struct Options {
+    /// Only rows of this solver; may be given more than once.
+    #[arg(long, value_name = "NAME")]
+    solver: Vec<String>,
+    /// Only gates at these rungs of their ladders: `default`, `all`, or names such as `dt=.1`.
+    #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
+    rungs: Vec<String>,
+    /// Directory for the report.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
+    out: PathBuf,
+    /// Print the results as JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Leave out the negative controls.
+    #[arg(long)]
+    no_controls: bool,
+}
+
+/// Runs the named cases, all when none is named.
+pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
+    let selected = select::select(cases, &options.solver, &options.rungs)?;
+    check_writable(&options.out)?;
+    let start = Instant::now();
+    let sections = judge(&selected, !options.no_controls);
+    let provenance = provenance(words(cases, options), start.elapsed().as_secs_f64());
+    let report = Report { provenance, sections };
+    write_report(&options.out, &report).map_err(Fault::input)?;
+    if options.json {
+        print(&results_json(&report).map_err(Fault::input)?)?;
+    } else {
+        print(&format!("{}\n{}\n", summary_table(&report), options.out.join("index.html").display()))?;
+    }
+    Ok(exit_code(&report))
+}
+
+/// Success, or red when a row failed, a control stayed green, or a solver of ours broke.
+pub(crate) fn exit_code(report: &Report) -> ExitCode {
+    let red_row = |verdict: &Verdict| match verdict.outcome {
+        verdict::Outcome::Fail => true,
+        verdict::Outcome::Broken => is_ours(&verdict.solver),
+        _ => false,
+    };
+    let is_red = report.sections.iter().any(|section| {
+        section.verdicts.iter().any(red_row) || section.controls.iter().any(|control| !control.turned_red)
+    });
+    if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
+}
+
+/// Other people's programs may break without it being our failure.
+fn is_ours(solver: &str) -> bool {
+    !matches!(solver, "lammps" | "liggghts")
+}
+
+/// The options that are not the default, in words.
+fn words(cases: &[String], options: &Options) -> Vec<String> {
+    let mut words = cases.to_vec();
+    words.extend(options.solver.iter().map(|solver| format!("--solver {solver}")));
+    if !options.rungs.is_empty() {
+        words.push(format!("--rungs {}", options.rungs.join(",")));
+    }
+    if options.no_controls {
+        words.push("--no-controls".to_owned());
+    }
+    words
+}
+
+/// One case at work. Every answer has its own place, so that the order in which they come does not matter.
+struct Work<'a> {
+    selected: &'a Selected,
+    bench: Bench,
+    verdicts: Vec<OnceLock<Verdict>>,
+    controls: Vec<OnceLock<Control>>,
+    figures: OnceLock<Result<Vec<Figure>, RunError>>,
+}
+
+/// One piece of work, by places in the list of cases and in the gates of the case.
+enum Task {
+    Judge(usize, usize),
+    Control(usize, usize),
+    Draw(usize),
+}
+
+fn judge(selected: &[Selected], with_controls: bool) -> Vec<Section> {
+    let work: Vec<Work<'_>> = selected.iter().map(Work::new).collect();
+    let tasks = tasks(selected, with_controls);
+    let progress = Progress::new(tasks.len() as u64, "checks");
+    let next = AtomicUsize::new(0);
+    let take = || tasks.get(next.fetch_add(1, Ordering::Relaxed));
+    // Plain threads: gates wait for runs that they share, and a pool that lends a waiting thread to another gate
+    // could let a run wait for itself.
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from).min(tasks.len()) {
+            scope.spawn(|| {
+                while let Some(task) = take() {
+                    do_task(&work, task, &progress);
+                }
+            });
+        }
+    });
+    drop(progress);
+    work.into_iter().map(Work::section).collect()
+}
+
+/// Each gate and then its control, so that two threads at one case seldom wait for the same run; figures last, when
+/// what they show has been run.
+fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
+    let mut tasks = Vec::new();
+    for (case, selected) in selected.iter().enumerate() {
+        for gate in 0..selected.gates.len() {
+            tasks.push(Task::Judge(case, gate));
+            if with_controls {
+                tasks.push(Task::Control(case, gate));
+            }
+        }
+    }
+    tasks.extend((0..selected.len()).map(Task::Draw));
+    tasks
+}
+
+fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
+    let (Task::Judge(case, _) | Task::Control(case, _) | Task::Draw(case)) = *task;
+    let at = &work[case];
+    progress.now(at.selected.case.name);
+    match *task {
+        Task::Judge(_, gate) => {
+            at.verdicts[gate].get_or_init(|| at.bench.judge(&at.selected.gates[gate]));
+        }
+        Task::Control(_, gate) => {
+            at.controls[gate].get_or_init(|| at.bench.control(&at.selected.gates[gate]));
+        }
+        Task::Draw(_) => {
+            at.figures.get_or_init(|| (at.selected.case.figures)(&at.bench));
+        }
+    }
+    progress.advance();
+}
+
+impl<'a> Work<'a> {
+    fn new(selected: &'a Selected) -> Self {
+        Self {
+            selected,
+            bench: Bench::new(selected.case),
+            verdicts: selected.gates.iter().map(|_| OnceLock::new()).collect(),
+            controls: selected.gates.iter().map(|_| OnceLock::new()).collect(),
+            figures: OnceLock::new(),
+        }
+    }
+
+    fn section(self) -> Section {
+        let case = self.selected.case;
+        let figures = match self.figures.into_inner() {
+            Some(Ok(figures)) => figures,
+            Some(Err(error)) => {
+                exit::say("warning", &format!("{}: its figures are left out: {error}", case.name));
+                Vec::new()
+            }
+            None => Vec::new(),
+        };
+        Section {
+            name: case.name.to_owned(),
+            title: case.title.to_owned(),
+            claim: case.claim.to_owned(),
+            derivation: case.derivation.to_owned(),
+            weak: case.weakness.to_owned(),
+            figures,
+            verdicts: self.verdicts.into_iter().filter_map(OnceLock::into_inner).collect(),
+            controls: self.controls.into_iter().filter_map(OnceLock::into_inner).collect(),
+            runs: self.bench.done().iter().map(|(run, done)| cost(run, done)).collect(),
+        }
+    }
+}
+
+fn cost(run: &Run, done: &Done) -> RunCost {
+    let (provenance, cost) = (&done.record.provenance, &done.record.cost);
+    RunCost {
+        variant: match &run.adjustment {
+            Some((name, _)) => format!("{}, {name}", run.variant),
+            None => run.variant.to_owned(),
+        },
+        solver: run.solver.to_owned(),
+        resolution: run.resolution.to_string(),
+        steps: cost.steps,
+        particle_steps: cost.particle_steps,
+        contact_evaluations: cost.contact_evaluations,
+        wall_seconds: cost.wall_seconds,
+        time_step: provenance.time_step,
+        fraction_of_critical: provenance.critical_time_step.map(|critical| provenance.time_step / critical),
+    }
+}

@@ -1,0 +1,162 @@
+//! Which gates a command line means.
+
+use super::exit::Fault;
+use grainbench::cases::case::{Case, PLAIN};
+use grainbench::cases::gate::{Gate, Run};
+use grainbench::cases::registry::CASES;
+
+/// The gates of one case that are to be judged.
+pub(crate) struct Selected {
+    /// The case.
+    pub(crate) case: &'static Case,
+    /// Its gates, in their order; never empty.
+    pub(crate) gates: Vec<Gate>,
+}
+
+/// The gates of the cases (`CASE` or `CASE/VARIANT`; all when none is named) whose rows are of one of the solvers and
+/// that need one of the rungs, in the order of the registry.
+pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> Result<Vec<Selected>, Fault> {
+    let named = cases.iter().map(|name| Named::read(name)).collect::<Result<Vec<_>, _>>()?;
+    let mut selected = Vec::new();
+    for case in CASES {
+        let mine: Vec<&Named> = named.iter().filter(|named| named.case.name == case.name).collect();
+        if mine.is_empty() && !named.is_empty() {
+            continue;
+        }
+        let mut gates = (case.gates)();
+        if !mine.is_empty() && mine.iter().all(|named| named.variant.is_some()) {
+            let wanted = |variant: &str| mine.iter().any(|named| named.variant == Some(variant));
+            gates.retain(|gate| row(gate).is_some_and(|run| wanted(run.variant)));
+        }
+        selected.push(Selected { case, gates });
+    }
+    refuse_unknown_solvers(&selected, solvers)?;
+    let rungs = wanted_rungs(&selected, rungs)?;
+    for Selected { case, gates } in &mut selected {
+        if !solvers.is_empty() {
+            gates.retain(|gate| row(gate).is_some_and(|run| solvers.iter().any(|name| name == run.solver)));
+        }
+        if let Some(rungs) = &rungs {
+            gates.retain(|gate| gate.runs.iter().any(|run| is_at(case, run, rungs)));
+        }
+    }
+    selected.retain(|selected| !selected.gates.is_empty());
+    // A selection without a row would end green without having looked at anything.
+    if selected.is_empty() {
+        return Err(Fault::input(
+            "expected at least one gate, found none that is of the cases, solvers and rungs named",
+        ));
+    }
+    Ok(selected)
+}
+
+/// A case, or one variant of it, as the command line names it.
+struct Named<'a> {
+    case: &'static Case,
+    variant: Option<&'a str>,
+}
+
+impl<'a> Named<'a> {
+    fn read(text: &'a str) -> Result<Self, Fault> {
+        let (name, variant) = text.split_once('/').map_or((text, None), |(name, variant)| (name, Some(variant)));
+        let case = CASES
+            .iter()
+            .find(|case| case.name == name)
+            .ok_or_else(|| Fault::unknown("a case", name, CASES.iter().map(|case| case.name)))?;
+        if let Some(variant) = variant {
+            let known = variants(case, &(case.gates)())?;
+            if !known.iter().any(|name| name == variant) {
+                let what = format!("a variant of {}", case.name);
+                return Err(Fault::unknown(&what, variant, known.iter().map(String::as_str)));
+            }
+        }
+        Ok(Self { case, variant })
+    }
+}
+
+/// The run that names a gate's row.
+fn row(gate: &Gate) -> Option<&Run> {
+    gate.runs.first()
+}
+
+fn refuse_unknown_solvers(selected: &[Selected], names: &[String]) -> Result<(), Fault> {
+    let ours: Vec<String> = grainbench::cases::solvers::all().iter().map(|solver| solver.name()).collect();
+    let mut known: Vec<&str> = ours.iter().map(String::as_str).collect();
+    for name in selected.iter().flat_map(|selected| solvers(&selected.gates)) {
+        push_new(&mut known, name);
+    }
+    match names.iter().find(|name| !known.contains(&name.as_str())) {
+        Some(name) => Err(Fault::unknown("a solver", name, known)),
+        None => Ok(()),
+    }
+}
+
+/// The rungs asked for, each one that a selected case has; nothing when all are wanted.
+fn wanted_rungs(selected: &[Selected], names: &[String]) -> Result<Option<Vec<String>>, Fault> {
+    // Every gate takes part in the default set as in the full one: the rungs are written into the gates.
+    if names.is_empty() || names.iter().any(|name| name == "default" || name == "all") {
+        return Ok(None);
+    }
+    let mut known: Vec<String> = vec!["default".to_owned(), "all".to_owned()];
+    for name in selected.iter().flat_map(|Selected { case, gates }| rungs(case, gates)) {
+        push_new(&mut known, name);
+    }
+    let unified: Vec<String> = known.iter().map(|name| unified(name)).collect();
+    for name in names {
+        if !unified.contains(&self::unified(name)) {
+            return Err(Fault::unknown("a rung", name, known.iter().map(String::as_str)));
+        }
+    }
+    Ok(Some(names.iter().map(|name| self::unified(name)).collect()))
+}
+
+fn is_at(case: &Case, run: &Run, rungs: &[String]) -> bool {
+    [rung_of(case, run), run.resolution.to_string()].iter().any(|name| rungs.contains(&unified(name)))
+}
+
+/// `dt=.1` and `dt=0.1` are one rung.
+fn unified(name: &str) -> String {
+    match name.split_once('=') {
+        Some((knob, value)) if value.starts_with('.') => format!("{knob}=0{value}"),
+        _ => name.to_owned(),
+    }
+}
+
+/// Name of the rung of a run: that of the case's ladder, or the resolution in words.
+pub(crate) fn rung_of(case: &Case, run: &Run) -> String {
+    let rung = case.ladder.iter().find(|rung| rung.resolution == run.resolution);
+    rung.map_or_else(|| run.resolution.to_string(), |rung| rung.name.to_owned())
+}
+
+/// Names of the rungs of a case: its ladder, then what its gates have beside it.
+pub(crate) fn rungs(case: &Case, gates: &[Gate]) -> Vec<String> {
+    let mut names: Vec<String> = case.ladder.iter().map(|rung| rung.name.to_owned()).collect();
+    for run in gates.iter().flat_map(|gate| &gate.runs) {
+        push_new(&mut names, rung_of(case, run));
+    }
+    names
+}
+
+/// Names of the variants of a case, the plain scene among them where a gate looks at it.
+pub(crate) fn variants(case: &Case, gates: &[Gate]) -> Result<Vec<String>, Fault> {
+    let mut names = case.variants()?;
+    if gates.iter().filter_map(row).any(|run| run.variant == PLAIN) {
+        push_new(&mut names, PLAIN.to_owned());
+    }
+    Ok(names)
+}
+
+/// Solvers that gates name their rows by, each once, in their order.
+pub(crate) fn solvers(gates: &[Gate]) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for run in gates.iter().filter_map(row) {
+        push_new(&mut names, run.solver);
+    }
+    names
+}
+
+fn push_new<T: PartialEq>(list: &mut Vec<T>, item: T) {
+    if !list.contains(&item) {
+        list.push(item);
+    }
+}

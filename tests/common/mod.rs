@@ -1,0 +1,50 @@
+//! The program under test, run as a user runs it.
+
+// Each test file uses its part of this.
+#![allow(dead_code)]
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// What a command answered.
+pub(crate) struct Answer {
+    /// Exit code; none when it was killed.
+    pub(crate) code: Option<i32>,
+    /// Standard output.
+    pub(crate) out: String,
+    /// Standard error.
+    pub(crate) err: String,
+}
+
+/// Runs the program in a directory, so that messages hold relative paths.
+pub(crate) fn grainbench(directory: &Path, arguments: &[&str]) -> Answer {
+    let output = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+        .args(arguments)
+        .current_dir(directory)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts");
+    let text = |bytes| String::from_utf8(bytes).expect("the program writes UTF-8");
+    Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+}
+
+/// Every file below a directory, as sorted relative paths; an empty directory as its path and `/`.
+pub(crate) fn files(directory: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut open = vec![directory.to_path_buf()];
+    while let Some(path) = open.pop() {
+        let shown = path.strip_prefix(directory).expect("below the directory").display().to_string();
+        if path.is_dir() {
+            let entries: Vec<_> =
+                std::fs::read_dir(&path).expect("readable").map(|entry| entry.unwrap().path()).collect();
+            if entries.is_empty() && path != directory {
+                found.push(shown + "/");
+            }
+            open.extend(entries);
+        } else {
+            found.push(shown);
+        }
+    }
+    found.sort();
+    found
+}
