@@ -1,0 +1,347 @@
+//! What a user can type wrong and a file can hold wrong: each an error that says where, what was expected and what
+//! was found; exit code 2, and nothing left behind.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{files, grainbench};
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use std::path::Path;
+
+/// Two discs on a floor, the upper one not yet touching.
+const SCENE: &str = r#"title = "Two discs on a floor"
+dimension = 2
+gravity = [0.0, -9.8]
+duration = 0.01
+
+[materials.rock]
+density = 2600.0
+
+[contacts.rock]
+between = ["rock", "rock"]
+normal_stiffness = 1e6
+tangential_stiffness = 1e6
+friction = 0.5
+
+[grains.lower]
+material = "rock"
+radius = 0.1
+position = [0.0, 0.1]
+
+[grains.upper]
+material = "rock"
+radius = 0.1
+position = [0.0, 0.35]
+
+[walls.floor]
+material = "rock"
+plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }
+
+[probes]
+upper = { grain = "upper" }
+
+[variants.slippery]
+contacts.rock.friction = 0.1
+"#;
+
+/// The message about input in a directory, after a look that the run was refused and left nothing.
+fn refusal(directory: &Path, arguments: &[&str]) -> String {
+    let before = files(directory);
+    let answer = grainbench(directory, arguments);
+    assert_eq!(answer.code, Some(2), "{}{}", answer.out, answer.err);
+    assert_eq!(answer.out, "");
+    assert!(answer.err.starts_with("error: "), "{}", answer.err);
+    assert_eq!(files(directory), before);
+    answer.err
+}
+
+/// The message about a scene file, simulated with further options.
+fn refused_with(scene: &[u8], options: &[&str]) -> String {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
+    let plain = ["simulate", "scene.toml", "--solver", "dem", "--out", "out"];
+    let err = refusal(directory.path(), &[&plain, options].concat());
+    assert_eq!(err.lines().count(), 1, "{err}");
+    err
+}
+
+/// The scene above with one piece of its text replaced.
+fn edited(from: &str, to: &str) -> String {
+    assert!(SCENE.contains(from), "{from}");
+    SCENE.replacen(from, to, 1)
+}
+
+fn refused(from: &str, to: &str) -> String {
+    refused_with(edited(from, to).as_bytes(), &[])
+}
+
+/// Names of all cases and solvers, which are not this test's business.
+fn without_registries(message: &str) -> String {
+    let cases: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+    let solvers: Vec<String> = solvers::all().iter().map(|solver| solver.name()).collect();
+    message.replace(&cases.join(", "), "[cases]").replace(&solvers.join(", "), "[solvers]")
+}
+
+#[test]
+fn the_scene_itself_is_fine() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    let answer = grainbench(directory.path(), &["simulate", "scene.toml", "--solver", "dem", "--variant", "slippery"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+}
+
+/// A test for each edit of the scene: name, what is replaced, by what.
+macro_rules! refused_edits {
+    ($($name:ident: $from:expr => $to:expr;)*) => {
+        $(#[test]
+        fn $name() {
+            insta::assert_snapshot!(refused($from, $to));
+        })*
+    };
+}
+
+refused_edits! {
+    unknown_key: "friction = 0.5" => "frction = 0.5";
+    unknown_key_at_the_top: "gravity" => "gravitiy";
+    wrong_type: "radius = 0.1" => "radius = \"0.1\"";
+    wrong_type_of_many_forms: "gravity = [0.0, -9.8]" => "gravity = 9.8";
+    negative_radius: "radius = 0.1" => "radius = -0.1";
+    zero_density: "density = 2600.0" => "density = 0.0";
+    negative_density: "density = 2600.0" => "density = -2600.0";
+    no_density: "density = 2600.0" => "";
+    mass_below_all_numbers: "radius = 0.1" => "radius = 1e-200";
+    friction_not_a_number: "friction = 0.5" => "friction = nan";
+    infinite_stiffness: "normal_stiffness = 1e6" => "normal_stiffness = inf";
+    friction_without_tangential_stiffness: "tangential_stiffness = 1e6" => "";
+    deep_overlap: "position = [0.0, 0.35]" => "position = [0.0, 0.25]";
+    zero_duration: "duration = 0.01" => "duration = 0.0";
+    no_duration: "duration = 0.01" => "";
+    two_kinds_of_duration: "duration = 0.01" => "duration = 0.01\nduration_cycles = 10";
+    duration_twice: "duration = 0.01" => "duration = 0.01\nduration = 0.02";
+    four_dimensions: "dimension = 2" => "dimension = 4";
+    vector_of_wrong_length: "position = [0.0, 0.35]" => "position = [0.0, 0.35, 0.0]";
+    spin_of_wrong_form: "[grains.upper]" => "[grains.upper]\nspin = [0.0, 0.0, 1.0]";
+    no_contact_law: "[walls.floor]\nmaterial = \"rock\"" => "[materials.steel]\n[walls.floor]\nmaterial = \"steel\"";
+    unknown_material: "between = [\"rock\", \"rock\"]" => "between = [\"rock\", \"rok\"]";
+    unknown_probe: "upper = { grain = \"upper\" }" => "upper = { grain = \"uper\" }";
+    wall_without_direction: "normal = [0.0, 1.0]" => "normal = [0.0, 0.0]";
+    segment_of_no_length: "plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }" => "segment = [[0.0, 0.0], [0.0, 0.0]]";
+    periodic_without_domain: "[materials.rock]" => "[domain]\nperiodic = [true, false]\n\n[materials.rock]";
+    domain_upside_down: "[materials.rock]" => "[domain]\nlow = [1.0, 0.0]\nhigh = [0.0, 1.0]\n\n[materials.rock]";
+    toml_syntax: "radius = 0.1" => "radius = = 0.1";
+    missing_data_file: "radius = 0.1\nposition = [0.0, 0.1]" => "file = { path = \"no-such.data\" }";
+    huge_lattice:
+        "position = [0.0, 0.1]" => "lattice = { origin = [0.0, 0.1], spacing = [0.2, 0.2], count = [100000, 10000] }";
+    huge_random: "position = [0.0, 0.1]" => "random = { count = 1000000000, seed = 1 }";
+}
+
+#[test]
+fn a_mistake_in_a_variant_is_found_where_it_stands() {
+    let scene = edited("contacts.rock.friction = 0.1", "contacts.rock.friction = -0.1");
+    insta::assert_snapshot!(refused_with(scene.as_bytes(), &["--variant", "slippery"]));
+}
+
+#[test]
+fn unknown_variant() {
+    insta::assert_snapshot!(refused_with(SCENE.as_bytes(), &["--variant", "slipery"]));
+}
+
+#[test]
+fn unknown_solver() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    let err = refusal(directory.path(), &["simulate", "scene.toml", "--solver", "dem:lamps"]);
+    insta::assert_snapshot!(without_registries(&err));
+}
+
+#[test]
+fn set_of_an_unknown_key() {
+    insta::assert_snapshot!(refused_with(SCENE.as_bytes(), &["--set", "grains.upper.radus=0.2"]));
+}
+
+#[test]
+fn set_below_an_unknown_key() {
+    insta::assert_snapshot!(refused_with(SCENE.as_bytes(), &["--set", "grain.upper.radius=0.2"]));
+}
+
+#[test]
+fn set_of_a_wrong_value() {
+    insta::assert_snapshot!(refused_with(SCENE.as_bytes(), &["--set", "grains.upper.radius=-0.2"]));
+}
+
+#[test]
+fn set_of_an_empty_path() {
+    insta::assert_snapshot!(refused_with(SCENE.as_bytes(), &["--set", "grains..radius=0.2"]));
+}
+
+#[test]
+fn set_without_a_value() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    let arguments = ["simulate", "scene.toml", "--solver", "dem", "--set", "grains.upper.radius"];
+    insta::assert_snapshot!(refusal(directory.path(), &arguments));
+}
+
+#[test]
+fn step_of_no_size() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    for step in ["-1e-3", "0", "nan", "inf", "small"] {
+        let err = refusal(directory.path(), &["simulate", "scene.toml", "--solver", "dem", "--time-step", step]);
+        assert!(err.contains("expected a positive number") && err.contains(step), "{err}");
+    }
+}
+
+#[test]
+fn step_above_the_critical_one() {
+    insta::assert_snapshot!(refused_with(SCENE.as_bytes(), &["--time-step-fraction", "1.5"]));
+    let err = refused_with(SCENE.as_bytes(), &["--time-step", "0.1"]);
+    assert!(err.contains("found 1.000000e-1 s") && err.contains("--allow-unstable"), "{err}");
+}
+
+#[test]
+fn step_above_the_critical_one_is_taken_when_it_is_meant() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    let arguments = [
+        "simulate",
+        "scene.toml",
+        "--solver",
+        "dem",
+        "--time-step-fraction",
+        "1.5",
+        "--allow-unstable",
+        "--out",
+        "out",
+    ];
+    // The discs fall freely for the first ten milliseconds: no spring is there to be unstable.
+    let answer =
+        grainbench(directory.path(), &[&arguments[..], &["--set", "grains.lower.position=[1.0, 0.5]"]].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(directory.path().join("out/record.json").is_file());
+}
+
+#[test]
+fn no_critical_step_without_contacts() {
+    let start = SCENE.find("[contacts.rock]").unwrap();
+    let end = SCENE.find("[grains.lower]").unwrap();
+    let walls = SCENE.find("[walls.floor]").unwrap();
+    let lone = format!("{}{}", &SCENE[..start], &SCENE[end..walls]);
+    let lone = lone.split("[grains.upper]").next().unwrap().to_owned();
+    insta::assert_snapshot!(refused_with(lone.as_bytes(), &[]));
+}
+
+#[test]
+fn a_run_that_blows_up_says_when_where_why_and_what_would_have_been_stable() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    let arguments =
+        ["simulate", "scene.toml", "--solver", "dem", "--time-step-fraction", "0.9", "--out", "out", "--json"];
+    let long = ["--set", "duration=100", "--set", "grains.upper.position=[0.0, 0.295]"];
+    let answer = grainbench(directory.path(), &[&arguments[..], &long].concat());
+    assert_eq!((answer.code, answer.out.as_str()), (Some(1), ""));
+    assert_eq!(files(directory.path()), ["scene.toml"]);
+    insta::assert_snapshot!(answer.err);
+}
+
+#[test]
+fn missing_scene_file() {
+    let directory = tempfile::tempdir().unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["simulate", "no-such.toml", "--solver", "dem"]));
+}
+
+#[test]
+fn a_directory_for_a_scene() {
+    let directory = tempfile::tempdir().unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["simulate", ".", "--solver", "dem"]));
+}
+
+#[test]
+fn empty_scene_file() {
+    insta::assert_snapshot!(refused_with(b"", &[]));
+}
+
+#[test]
+fn scene_file_of_other_bytes() {
+    insta::assert_snapshot!(refused_with(b"title = \"\xff\xfe\"\n", &[]));
+}
+
+#[test]
+fn binary_scene_file() {
+    insta::assert_snapshot!(refused_with(b"\x7fELF\x02\x01\x01\0\0\0\0\0\0\0\0\0\x03\0>\0\x01\0\0\0", &[]));
+}
+
+#[test]
+fn truncated_data_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let from = "radius = 0.1\nposition = [0.0, 0.1]";
+    std::fs::write(directory.path().join("scene.toml"), edited(from, "file = { path = \"cut.data\" }")).unwrap();
+    let data = "LAMMPS data file\n\n2 atoms\n1 atom types\n\n0 1 xlo xhi\n0 1 ylo yhi\n-0.5 0.5 zlo zhi\n\n\
+                Atoms # sphere\n\n1 1 0.2 2600.0 0.5 0.5 0.0\n";
+    std::fs::write(directory.path().join("cut.data"), data).unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["simulate", "scene.toml", "--solver", "dem"]));
+}
+
+#[test]
+fn output_directories_that_cannot_be_written() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    std::fs::write(directory.path().join("file"), "").unwrap();
+    let mut messages = String::new();
+    // A million seconds: the refusal comes before the run, or this test never ends.
+    let simulate = ["simulate", "scene.toml", "--solver", "dem", "--set", "duration=1000000"];
+    // Permissions do not stop a superuser; a file in the way and a system's own directory stop everybody.
+    for out in ["file", "file/deep/er", "/proc/grainbench/deep"] {
+        messages += &refusal(directory.path(), &[&simulate[..], &["--out", out]].concat());
+        messages += &refusal(directory.path(), &["run", "squash", "--out", out]);
+    }
+    insta::assert_snapshot!(messages);
+}
+
+#[test]
+fn unknown_case() {
+    let directory = tempfile::tempdir().unwrap();
+    insta::assert_snapshot!(without_registries(&refusal(directory.path(), &["run", "squahs"])));
+}
+
+#[test]
+fn unknown_variant_of_a_case() {
+    let directory = tempfile::tempdir().unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["run", "squash/plane"]));
+}
+
+#[test]
+fn unknown_solver_of_a_run() {
+    let directory = tempfile::tempdir().unwrap();
+    let err = refusal(directory.path(), &["run", "squash", "--solver", "dem:ligghts"]);
+    insta::assert_snapshot!(without_registries(&err));
+}
+
+#[test]
+fn unknown_rung() {
+    let directory = tempfile::tempdir().unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["run", "squash", "--rungs", "dt=.06"]));
+}
+
+#[test]
+fn nothing_selected() {
+    let directory = tempfile::tempdir().unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["run", "squash", "--solver", "dem:lammps"]));
+}
+
+#[test]
+fn unknown_command_and_option() {
+    let directory = tempfile::tempdir().unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["simulat"]));
+    insta::assert_snapshot!(refusal(directory.path(), &["run", "--rung", "all"]));
+}
+
+#[test]
+fn reports_that_are_missing_or_damaged() {
+    let directory = tempfile::tempdir().unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["report", "no-such"]));
+    std::fs::write(directory.path().join("report.json"), "{\"provenance\": 3}").unwrap();
+    insta::assert_snapshot!(refusal(directory.path(), &["report", "."]));
+}

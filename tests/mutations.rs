@@ -1,0 +1,297 @@
+//! Scenes with random mistakes in them: an error or a scene, and never a panic; the same for the first steps of what
+//! is still a scene.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use grainbench::cases::registry::CASES;
+use grainbench::dem::convention::Convention;
+use grainbench::dem::solver::Dem;
+use grainbench::scene::resolve::FileGrain;
+use grainbench::scene::scene::Duration;
+use grainbench::scene::solver::{Resolution, Solver};
+use grainbench::scene::source::SceneSource;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, FileFailurePersistence};
+use std::path::Path;
+
+/// Everything that a scene in the plane can hold.
+const PLANE: &str = r#"title = "Everything in the plane"
+dimension = 2
+grain_shape = "sphere"
+gravity = { magnitude = 9.8, slope_deg = 30.0 }
+global_damping = 0.1
+duration_cycles = 20
+largest_initial_overlap = 0.2
+
+[domain]
+low = [0.0, 0.0]
+high = [4.0, 4.0]
+periodic = [true, false]
+
+[materials.rock]
+density = 2600.0
+
+[contacts.rock]
+between = ["rock", "rock"]
+normal_stiffness = 1e6
+tangential_stiffness = 1e6
+friction_angle_deg = 20.0
+cohesion = 1.0
+stiffness_damping = 1e-6
+normal_damping = 1.0
+tangential_damping = 1.0
+
+[grains.first]
+material = "rock"
+radius = 0.1
+position = [0.5, 0.5]
+spin = 2.0
+
+[grains.rows]
+material = "rock"
+radius = 0.1
+lattice = { origin = [0.5, 1.5], spacing = [0.21, 0.21], count = [3, 2] }
+velocity = [1.0, 0.0]
+
+[grains.cloud]
+material = "rock"
+random = { count = 6, seed = 9, radius_range = [0.01, 0.02], speed = 1.0 }
+
+[grains.file]
+material = "rock"
+file = { path = "grains.data", types = ["rock"] }
+
+[walls.floor]
+material = "rock"
+plane = { point = [0.0, -1.0], normal = [0.0, 1.0] }
+
+[walls.bar]
+material = "rock"
+segment = [[1.0, 3.9], [2.0, 3.9]]
+motion = [{ velocity = [0.1, 0.0], start = 0.1, stop = 0.2 }, { spin = 1.0, centre = [1.0, 3.9], start_cycle = 1, stop_cycle = 9 }]
+
+[output]
+every = 0.001
+snapshots = 2
+
+[probes]
+grain = { grain = "rows.2" }
+contact = { contact = ["first", "floor"] }
+wall = { wall = "bar" }
+system = { system = true }
+
+[variants.steep]
+gravity.slope_deg = 60.0
+"#;
+
+const SPACE: &str = r#"title = "Everything in space"
+dimension = 3
+gravity = [0.0, 0.0, -9.8]
+duration = 0.001
+
+[domain]
+low = [0.0, 0.0, 0.0]
+high = [4.0, 4.0, 4.0]
+periodic = [true, true, false]
+
+[materials.rock]
+density = 2600.0
+
+[contacts.rock]
+between = ["rock", "rock"]
+normal_stiffness = 1e6
+
+[grains.block]
+material = "rock"
+radius = 0.1
+spin = [1.0, 0.0, 0.0]
+lattice = { origin = [0.5, 0.5, 1.5], spacing = [0.2, 0.2, 0.2], count = [2, 2, 2] }
+
+[walls.plate]
+material = "rock"
+rectangle = { corner = [0.0, 0.0, 0.0], edges = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] }
+motion = [{ velocity = [0.0, 0.0, 0.1] }]
+
+[output]
+every_cycles = 2
+"#;
+
+/// Values that stand where others should.
+const STRANGE: &[&str] = &[
+    "1e308",
+    "-1e308",
+    "1e-308",
+    "-1",
+    "0",
+    "nan",
+    "inf",
+    "\"\"",
+    "[]",
+    "{}",
+    "true",
+    "[[]]",
+    "\"rock\"",
+    "[nan, inf]",
+    "[1e308, 1e308]",
+    "[-1e308, 1e308, 1e308]",
+    "4294967295",
+    "-9223372036854775808",
+    "1979-05-27",
+    "[1e-200, 0.0]",
+];
+
+/// One mistake. Numbers pick places, modulo how many there are.
+#[derive(Clone, Debug)]
+enum Mistake {
+    FlipBit(usize, u8),
+    Cut(usize, usize),
+    DropLine(usize),
+    RepeatLine(usize, usize),
+    StrangeValue(usize, usize),
+    SwapValues(usize, usize),
+}
+
+fn mistake() -> impl Strategy<Value = Mistake> {
+    let place = || any::<usize>();
+    prop_oneof![
+        (place(), 0..7_u8).prop_map(|(at, bit)| Mistake::FlipBit(at, bit)),
+        (place(), 1..40_usize).prop_map(|(at, length)| Mistake::Cut(at, length)),
+        place().prop_map(Mistake::DropLine),
+        (place(), place()).prop_map(|(from, to)| Mistake::RepeatLine(from, to)),
+        (place(), place()).prop_map(|(at, value)| Mistake::StrangeValue(at, value)),
+        (place(), place()).prop_map(|(a, b)| Mistake::SwapValues(a, b)),
+    ]
+}
+
+fn make(text: &str, mistake: &Mistake) -> String {
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    // Places of values: line, where it begins, where it ends; those inside braces too.
+    let values: Vec<(usize, usize, usize)> = lines
+        .iter()
+        .enumerate()
+        .flat_map(|(number, line)| {
+            line.match_indices(" = ").map(move |(at, _)| {
+                let start = at + 3;
+                let rest = &line[start..];
+                let mut depth = 0_i32;
+                let end = rest.find(|letter: char| {
+                    depth += i32::from(matches!(letter, '[' | '{')) - i32::from(matches!(letter, ']' | '}'));
+                    depth < 0 || (depth == 0 && letter == ',')
+                });
+                (number, start, start + end.unwrap_or(rest.len()))
+            })
+        })
+        .collect();
+    match *mistake {
+        Mistake::FlipBit(at, bit) if !text.is_empty() => {
+            let mut bytes = text.as_bytes().to_vec();
+            let at = at % bytes.len();
+            bytes[at] ^= 1 << bit;
+            return String::from_utf8_lossy(&bytes).into_owned();
+        }
+        Mistake::Cut(at, length) if !text.is_empty() => {
+            let mut bytes = text.as_bytes().to_vec();
+            let at = at % bytes.len();
+            bytes.drain(at..(at + length).min(text.len()));
+            return String::from_utf8_lossy(&bytes).into_owned();
+        }
+        Mistake::DropLine(at) if !lines.is_empty() => {
+            let at = at % lines.len();
+            lines.remove(at);
+        }
+        Mistake::RepeatLine(from, to) if !lines.is_empty() => {
+            let line = lines[from % lines.len()].clone();
+            let to = to % lines.len();
+            lines.insert(to, line);
+        }
+        Mistake::StrangeValue(at, value) if !values.is_empty() => {
+            let (line, start, end) = values[at % values.len()];
+            lines[line].replace_range(start..end, STRANGE[value % STRANGE.len()]);
+        }
+        Mistake::SwapValues(a, b) if !values.is_empty() => {
+            let (a, b) = (values[a % values.len()], values[b % values.len()]);
+            let text_of = |(line, start, end): (usize, usize, usize)| lines[line][start..end].to_owned();
+            let (of_a, of_b) = (text_of(a), text_of(b));
+            // Values of one line may lie within each other: one replacement then.
+            lines[a.0].replace_range(a.1..a.2, &of_b);
+            if a.0 != b.0 {
+                lines[b.0].replace_range(b.1..b.2, &of_a);
+            }
+        }
+        _ => {}
+    }
+    lines.join("\n") + "\n"
+}
+
+fn two_grains(_: &Path) -> Result<Vec<FileGrain>, String> {
+    let grain = |x: f64| FileGrain {
+        type_number: 1,
+        radius: 0.1,
+        mass: 1.0,
+        position: [x, 3.0, 0.0].into(),
+        velocity: [0.0; 3].into(),
+        spin: [0.0; 3].into(),
+    };
+    Ok(vec![grain(1.0), grain(3.0)])
+}
+
+/// Resolves a scene, and takes a few steps of it.
+fn try_out(text: &str, variant: Option<&str>) {
+    let mut source = SceneSource::from_text("scene.toml", Path::new(""), text);
+    if let Some(variant) = variant {
+        source = source.variant(variant);
+    }
+    match source.scene(&two_grains) {
+        Err(error) => {
+            let message = error.to_string();
+            assert!(message.starts_with("scene.toml") && !message.contains('\n'), "{message}");
+        }
+        Ok(mut scene) => {
+            assert!(scene.grains.iter().all(|grain| grain.mass > 0.0 && grain.inertia > 0.0));
+            scene.duration = Duration::Cycles(4);
+            // The answer may be any; that there is one is the point.
+            let _ = Dem::new(Convention::LAMMPS).run(&scene, &Resolution::CriticalFraction(0.1), &mut ());
+        }
+    }
+}
+
+#[test]
+fn the_scenes_themselves_are_fine() {
+    for (text, variant) in [(PLANE, None), (PLANE, Some("steep")), (SPACE, None)] {
+        let source = SceneSource::from_text("scene.toml", Path::new(""), text);
+        let source = variant.map_or(source.clone(), |name| source.variant(name));
+        let scene = source.scene(&two_grains).unwrap();
+        let resolution = Resolution::CriticalFraction(0.1);
+        Dem::new(Convention::LAMMPS).run(&scene, &resolution, &mut ()).unwrap();
+    }
+}
+
+#[test]
+fn every_strange_value_in_every_place() {
+    for text in [PLANE, SPACE] {
+        for place in 0..60 {
+            for value in 0..STRANGE.len() {
+                try_out(&make(text, &Mistake::StrangeValue(place, value)), None);
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(Config {
+        cases: 600,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Off)),
+        ..Config::default()
+    })]
+
+    #[test]
+    fn mistakes_never_panic(
+        which in any::<usize>(),
+        mistakes in prop::collection::vec(mistake(), 1..4),
+        variant in prop_oneof![Just(None), Just(Some("steep"))],
+    ) {
+        let texts: Vec<&str> = [PLANE, SPACE].into_iter().chain(CASES.iter().map(|case| case.scene)).collect();
+        let text = mistakes.iter().fold(texts[which % texts.len()].to_owned(), |text, mistake| make(&text, mistake));
+        try_out(&text, variant);
+    }
+}
