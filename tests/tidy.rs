@@ -1,0 +1,240 @@
+//! What holds everywhere in the house, so that nobody has to remember it.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use grainbench::cases::case::PLAIN;
+use grainbench::cases::registry::CASES;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every text file of the repository, as relative path and text; build products and hidden folders but `.ci` left out.
+fn texts() -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let mut open = vec![root().to_path_buf()];
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let shown = path.strip_prefix(root()).unwrap().display().to_string();
+            let hidden = shown.starts_with('.') && !shown.starts_with(".ci") && !shown.starts_with(".gitignore");
+            if hidden || shown == "target" || shown == "grainbench-out" {
+                continue;
+            }
+            if path.is_dir() {
+                open.push(path);
+            } else if let Ok(text) = fs::read_to_string(&path) {
+                found.push((shown, text));
+            }
+        }
+    }
+    found.sort();
+    assert!(found.len() > 50, "{}", found.len());
+    found
+}
+
+fn rust() -> Vec<(String, String)> {
+    texts().into_iter().filter(|(name, _)| name.ends_with(".rs")).collect()
+}
+
+/// Code without its comments and without what follows `#[cfg(test)]`. Strings with `//` in them are cut short, which
+/// hides nothing that is looked for here.
+fn code(text: &str) -> String {
+    let lines = text.lines().take_while(|line| line.trim() != "#[cfg(test)]");
+    lines.map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
+}
+
+/// Whether `word` stands in `text` by itself, not as a part of another name.
+fn has_word(text: &str, word: &str) -> bool {
+    let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
+    text.match_indices(word).any(|(at, _)| {
+        !text[..at].chars().next_back().is_some_and(is_name)
+            && !text[at + word.len()..].chars().next().is_some_and(is_name)
+    })
+}
+
+#[test]
+fn crates_depend_in_one_direction() {
+    // Whom a crate may know. A new crate needs its line here.
+    let solver: &[&str] = &["scene"];
+    let allowed: &[(&str, &[&str])] = &[
+        ("solvers/scene", &[]),
+        ("solvers/dem", solver),
+        ("solvers/mpm", solver),
+        ("solvers/rigid", solver),
+        ("reference", solver),
+        ("cases", &["scene", "dem", "mpm", "rigid", "reference"]),
+        ("reports", &["scene", "cases"]),
+        (".", &["scene", "dem", "mpm", "rigid", "reference", "cases", "reports"]),
+    ];
+    let manifest: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
+    let members = manifest["workspace"]["members"].as_array().unwrap();
+    assert_eq!(Some(members), manifest["workspace"]["default-members"].as_array(), "`cargo test` runs all crates");
+    for member in members {
+        let member = member.as_str().unwrap();
+        let (_, known) = allowed.iter().find(|(name, _)| *name == member).unwrap_or_else(|| panic!("{member} is new"));
+        let manifest: toml::Table =
+            fs::read_to_string(root().join(member).join("Cargo.toml")).unwrap().parse().unwrap();
+        for section in ["dependencies", "dev-dependencies", "build-dependencies"] {
+            let names = manifest.get(section).and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
+            for name in names.filter_map(|name| name.strip_prefix("grainbench-")) {
+                assert!(known.contains(&name), "{member} must not depend on {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_unsafe_unfinished_or_left_from_debugging() {
+    // In pieces, so that this file does not find itself.
+    let banned = [
+        concat!("un", "safe"),
+        concat!("todo", "!("),
+        concat!("unimplemented", "!("),
+        concat!("dbg", "!("),
+        concat!("#[ig", "nore"),
+    ];
+    for (name, text) in rust() {
+        for word in banned {
+            let text: String = text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+            let found =
+                if word.ends_with('(') || word.starts_with('#') { text.contains(word) } else { has_word(&text, word) };
+            assert!(!found, "{name} has `{word}`");
+        }
+    }
+}
+
+/// The body of a function: from its name to the brace that closes it.
+fn body<'a>(code: &'a str, function: &str) -> Option<&'a str> {
+    let start = code.find(&format!("fn {function}"))?;
+    let open = start + code[start..].find('{')?;
+    let mut depth = 0_usize;
+    for (at, letter) in code[open..].char_indices() {
+        match letter {
+            '{' => depth += 1,
+            '}' if depth == 1 => return Some(&code[open..open + at]),
+            '}' => depth -= 1,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Contact laws and lists hold no hash map, string or trait object at all; the loops over particles and contacts
+/// allocate nothing either. (Growth of the list of contacts that a snapshot looks at is the one exception.)
+#[test]
+fn no_hash_map_string_or_allocation_in_hot_loops() {
+    let source = root().join("solvers/dem/src");
+    let mut files: Vec<PathBuf> =
+        ["neighbours.rs", "cells.rs", "walls.rs", "grains.rs"].map(|name| source.join(name)).into();
+    files.extend(fs::read_dir(source.join("contact")).unwrap().map(|entry| entry.unwrap().path()));
+    assert!(files.len() > 6);
+    for path in &files {
+        let code = code(&fs::read_to_string(path).unwrap());
+        for word in ["HashMap", "HashSet", "BTreeMap", "BTreeSet", "String", "format", "to_string", "to_owned", "dyn"] {
+            assert!(!has_word(&code, word), "{} has `{word}`", path.display());
+        }
+    }
+    let allocations =
+        ["HashMap", "BTreeMap", "String", "format!", "vec!", "Vec::", "Box", "dyn ", "collect", "clone()", "to_vec"];
+    let refuse = |file: &str, function: &str| {
+        let code = code(&fs::read_to_string(source.join(file)).unwrap());
+        let body = body(&code, function).unwrap_or_else(|| panic!("{file} has no `fn {function}` to look at"));
+        // A range is cloned to be used twice, which costs nothing.
+        let body = body.replace("range.clone()", "range");
+        for word in allocations {
+            assert!(!body.contains(word), "`{function}` in {file} has `{word}`");
+        }
+    };
+    for function in ["drift<", "evaluate_forces<", "pairs<", "wall_contacts<", "respond<", "stages<"] {
+        refuse("simulation.rs", function);
+    }
+    refuse("walls.rs", "facing");
+    for entry in fs::read_dir(source.join("contact")).unwrap() {
+        let code = code(&fs::read_to_string(entry.unwrap().path()).unwrap());
+        for word in ["vec", "Vec", "Box", "collect"] {
+            assert!(!has_word(&code, word), "a contact law has `{word}`");
+        }
+    }
+}
+
+#[test]
+fn every_case_folder_is_whole() {
+    let mut folders = BTreeSet::new();
+    for entry in fs::read_dir(root().join("cases")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if !path.is_dir() || name == "src" || name == "tests" || name == "benches" {
+            continue;
+        }
+        assert!(path.join("scene.toml").is_file(), "cases/{name} has no scene.toml, so it is in no registry");
+        let code =
+            fs::read_to_string(path.join("case.rs")).unwrap_or_else(|error| panic!("cases/{name}/case.rs: {error}"));
+        // Two cases may share a derivation: then one includes the other's.
+        let derived = path.join("derivation.md").is_file() || code.contains("derivation.md\")");
+        assert!(derived, "cases/{name} has no derivation");
+        folders.insert(name);
+    }
+    assert_eq!(CASES.iter().map(|case| case.name.to_owned()).collect::<BTreeSet<_>>(), folders);
+}
+
+#[test]
+fn every_case_and_gate_says_what_it_claims_and_why() {
+    for case in CASES {
+        let words = [case.title, case.claim, case.derivation, case.weakness];
+        assert!(words.iter().all(|text| !text.trim().is_empty()), "{}: title, claim, derivation, weakness", case.name);
+        assert!(!case.ladder.is_empty(), "{} has no ladder", case.name);
+        let mut variants = case.variants().unwrap();
+        for variant in &variants {
+            case.variant(variant).unwrap_or_else(|error| panic!("{error}"));
+        }
+        variants.push(PLAIN.to_owned());
+        let gates = (case.gates)();
+        assert!(!gates.is_empty(), "{} has no gate", case.name);
+        for gate in gates {
+            let place = format!("{} · {}", case.name, gate.quantity);
+            let words = [gate.quantity.as_str(), gate.unit, gate.source, gate.because, gate.control.name];
+            assert!(
+                words.iter().all(|text| !text.trim().is_empty()),
+                "{place}: quantity, unit, source, because, control"
+            );
+            assert!(gate.allowed.is_finite() && gate.allowed >= 0.0, "{place}: allowed {}", gate.allowed);
+            assert!(!gate.runs.is_empty(), "{place} reads no run");
+            for run in &gate.runs {
+                assert!(variants.iter().any(|variant| variant == run.variant), "{place}: no variant {}", run.variant);
+            }
+        }
+    }
+}
+
+#[test]
+fn files_are_short_enough_to_read() {
+    for (name, text) in texts() {
+        let is_ours = [".rs", ".md", ".toml"].iter().any(|end| name.ends_with(end)) || name.starts_with(".ci");
+        let lines = text.lines().count();
+        assert!(!is_ours || lines <= 700, "{name} has {lines} lines");
+    }
+}
+
+#[test]
+fn no_path_of_one_machine() {
+    let folders = [["/wo", "rk/"].concat(), ["/ro", "ot/"].concat(), ["/ho", "me/"].concat(), ["/Us", "ers/"].concat()];
+    for (name, text) in texts() {
+        for folder in &folders {
+            if let Some(line) = text.lines().position(|line| line.contains(folder.as_str())) {
+                panic!("{name}:{} has {folder}", line + 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_readme_has_the_two_commands() {
+    let Ok(text) = fs::read_to_string(root().join("README.md")) else { return };
+    for command in ["cargo run --release", "cargo test --release"] {
+        assert!(text.contains(command), "README.md says nothing of `{command}`");
+    }
+}
