@@ -2,6 +2,8 @@
 //!
 //! `UPDATE_README=1 cargo test --release --test readme` writes them anew.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use grainbench::cases::bench::Bench;
 use grainbench::cases::case::{PLAIN, read_grains};
 use grainbench::cases::registry::{self, CASES};

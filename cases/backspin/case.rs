@@ -22,6 +22,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "The final velocity does not depend on μ, on stiffness or on damping: alone it would pass a solver with a \
                wrong friction law. Displacement does depend on μ. One contact, constant load.",
     ladder: LADDER,
+    default_rung: LADDER[2],
     gates,
     figures,
 };
@@ -128,14 +129,14 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         let exact = |of: &dyn Fn(State) -> f64| {
             (0..=200).map(|k| f64::from(k) / 200.0).map(|t| (t, of(grain.rigid_backspin(t)))).collect()
         };
-        curves.push(curve(format!("{variant}: v, rigid"), Stroke::Line, exact(&|state| state.v)));
+        curves.push(curve(format!("{variant}: v, rigid"), Stroke::Dashed, exact(&|state| state.v)));
         curves.push(curve(format!("{variant}: ΩR, rigid"), Stroke::Dashed, exact(&|state| surface(&state))));
     }
     Ok(vec![Figure {
         name: "velocity".to_owned(),
         title: "From sliding to rolling".to_owned(),
         caption: "Velocity rises and surface speed falls at constant rates until they meet; from there the grain rolls. \
-                  dem:lammps at overlap/R = 1e-3 (markers), rigid answer (lines)."
+                  dem:lammps at overlap/R = 1e-3 (markers), rigid answer (dashes)."
             .to_owned(),
         drawing: Drawing::Graph(Graph {
             x: Axis { label: "time t (s)".to_owned(), logarithmic: false },

@@ -28,6 +28,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "One dimension, frictionless, linear: contacts never open and grains never turn. It tests transport along many \
                contacts, not their law.",
     ladder: LADDER,
+    default_rung: LADDER[3],
     gates,
     figures,
 };

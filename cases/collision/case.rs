@@ -25,6 +25,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "Restitution is one number of a head-on impact: damping that depends on the overlap could give the same e at \
                this speed. Two grains of similar mass; no wall.",
     ladder: LADDER,
+    default_rung: LADDER[3],
     gates,
     figures,
 };

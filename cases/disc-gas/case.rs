@@ -20,6 +20,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "A wrong but conservative force would pass, and so would a grain that passes through another. Few discs \
                touch at a time.",
     ladder: LADDER,
+    default_rung: LADDER[2],
     gates,
     figures,
 };

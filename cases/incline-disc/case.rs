@@ -27,6 +27,7 @@ pub(crate) static CASE: Case = Case {
                said about impact, about history on a turning contact, or about grains against grains. A wrong μ is \
                felt only where the disc slips, a wrong inertia mostly where it rolls: read the four together.",
     ladder: LADDER,
+    default_rung: LADDER[2],
     gates,
     figures,
 };

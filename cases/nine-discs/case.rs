@@ -35,6 +35,7 @@ pub(crate) static CASE: Case = Case {
                are only compared with words. Contacts never open. A code that treats every disc alike but finds contacts \
                wrongly in less regular packings would pass.",
     ladder: LADDER,
+    default_rung: LADDER[0],
     gates,
     figures: figures::figures,
 };

@@ -21,6 +21,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "Another program, not an exact answer: an error that both share is not seen. Kinetic energy is a sum over \
                grains; it is sensitive to every one here only because nothing has had time to become chaotic.",
     ladder: LADDER,
+    default_rung: LADDER[0],
     gates,
     figures,
 };

@@ -20,6 +20,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "One dimension, no friction, no rotation and no contact that opens. It tells the order of operations in a \
                cycle and nothing about contact detection: a code may pass and still find contacts one step late.",
     ladder: LADDER,
+    default_rung: LADDER[0],
     gates,
     figures,
 };

@@ -42,6 +42,8 @@ pub struct Case {
     pub weakness: &'static str,
     /// Resolutions, coarse to fine.
     pub ladder: &'static [Rung],
+    /// The rung of the ladder that most gates take.
+    pub default_rung: Rung,
     /// The gates.
     pub gates: fn() -> Vec<Gate>,
     /// The figures, from runs of the bench.

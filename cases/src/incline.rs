@@ -240,8 +240,8 @@ pub fn figures(bench: &Bench, slopes: &[Slope]) -> Result<Vec<Figure>, RunError>
         motion.push(curve(slope.variant.to_owned(), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.x)).collect()));
         spin.push(curve(slope.variant.to_owned(), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.omega)).collect()));
         let exact = |of: &dyn Fn(f64) -> f64| (0..=50).map(|k| f64::from(k) / 50.0).map(|t| (t, of(t))).collect();
-        motion.push(curve(format!("{}, rigid", slope.variant), Stroke::Line, exact(&|t| grain.rigid_incline(t).x)));
-        spin.push(curve(format!("{}, rigid", slope.variant), Stroke::Line, exact(&|t| grain.rigid_incline(t).omega)));
+        motion.push(curve(format!("{}, rigid", slope.variant), Stroke::Dashed, exact(&|t| grain.rigid_incline(t).x)));
+        spin.push(curve(format!("{}, rigid", slope.variant), Stroke::Dashed, exact(&|t| grain.rigid_incline(t).omega)));
         let mut points = Vec::new();
         for ratio in OVERLAPS {
             let done = bench.run(&at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP))?;
@@ -264,7 +264,7 @@ pub fn figures(bench: &Bench, slopes: &[Slope]) -> Result<Vec<Figure>, RunError>
         figure(
             "displacement",
             "Displacement down the slope",
-            "dem:lammps at overlap/R = 1e-3 (markers) and the rigid answer (lines).",
+            "dem:lammps at overlap/R = 1e-3 (markers) and the rigid answer (dashes).",
             axis("time t (s)", false),
             axis("displacement x (m)", false),
             motion,

@@ -1,5 +1,7 @@
 //! Data files, sound and damaged.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::io::{BufReader, Read, Write};
 use std::path::Path;
 

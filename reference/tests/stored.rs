@@ -1,5 +1,7 @@
 //! The stored runs are what they were, and say so when they are not.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

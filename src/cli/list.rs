@@ -23,7 +23,7 @@ struct Entry {
     claim: &'static str,
     variants: Vec<String>,
     gates: usize,
-    default_rung: String,
+    default_rung: &'static str,
     rungs: Vec<String>,
     solvers: Vec<&'static str>,
 }
@@ -42,14 +42,13 @@ pub(crate) fn list(arguments: &Arguments) -> Outcome {
 fn entry(case: &Case) -> Result<Entry, super::exit::Fault> {
     let gates = (case.gates)();
     let rungs = select::rungs(case, &gates);
-    let first = gates.first().and_then(|gate| gate.runs.first());
     Ok(Entry {
         name: case.name,
         title: case.title,
         claim: case.claim,
         variants: select::variants(case, &gates)?,
         gates: gates.len(),
-        default_rung: first.map(|run| select::rung_of(case, run)).unwrap_or_default(),
+        default_rung: case.default_rung.name,
         rungs,
         solvers: select::solvers(&gates),
     })

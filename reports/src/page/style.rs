@@ -8,7 +8,7 @@ pub(crate) const CSS: &str = r#"
 html { -webkit-text-size-adjust: 100%; scroll-behavior: smooth; }
 body { margin: 0; color: var(--ink); background: #fff; font: 400 1rem/1.55 system-ui, -apple-system, "Segoe UI",
   Roboto, "Helvetica Neue", Arial, "DejaVu Sans", sans-serif; overflow-wrap: break-word; }
-main { max-width: 78rem; margin: 0 auto; padding: 3rem 1.75rem 4rem; }
+main { max-width: 84rem; margin: 0 auto; padding: 3rem 1.75rem 4rem; }
 h1, h2, h3, h4, h5, h6 { line-height: 1.2; font-weight: 650; letter-spacing: -.012em; margin: 0; text-wrap: balance; }
 h1 { font-size: clamp(1.9rem, 4.5vw, 2.7rem); }
 h2 { font-size: clamp(1.45rem, 3.2vw, 1.85rem); }
@@ -51,7 +51,7 @@ tbody tr > * { border-bottom: 1px solid var(--rule); }
 td.n, th.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums lining-nums; }
 .rows tbody th { min-width: 7rem; }
 .rows td { white-space: nowrap; }
-.rows td.wide { white-space: normal; min-width: 11rem; }
+.rows td.wide { white-space: normal; min-width: 15rem; }
 .rows td.verdict { white-space: normal; min-width: 7.5rem; }
 .rows tr.fail > * { background: var(--fail-wash); }
 .rows tr.amber > * { background: var(--amber-wash); }

@@ -1,6 +1,8 @@
 //! Parts of the method that no case of the registry singles out: walls of every shape and motion, periodic faces,
 //! cohesion, and what a grain in the plane is.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_scene::record::Record;

@@ -19,10 +19,15 @@ pub enum Resolution {
 impl fmt::Display for Resolution {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::CriticalFraction(fraction) => write!(formatter, "dt={fraction}"),
-            Self::TimeStep(step) => write!(formatter, "dt={step} s"),
+            Self::CriticalFraction(fraction) => write!(formatter, "dt={}", rounded(*fraction)),
+            Self::TimeStep(step) => write!(formatter, "dt={} s", rounded(*step)),
         }
     }
+}
+
+/// A number to four significant digits, without zeros that say nothing.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 /// Why a simulation broke.
