@@ -5,7 +5,7 @@
 //! periodic axes.
 
 use crate::cells::Cells;
-use crate::contact::tangential::Tangential;
+use crate::contact::tangential::Rotation;
 use crate::grains::{Grains, Place};
 use grainbench_scene::scene::Domain;
 use grainbench_scene::space::Space;
@@ -67,10 +67,14 @@ impl<S: Space, H: Copy + Default> Neighbours<S, H> {
     }
 
     /// Wraps positions into the domain, sorts the grains and lists the pairs again; contacts keep their history.
-    pub(crate) fn rebuild<T>(&mut self, grains: &mut Grains<S, T::Rotation>, domain: Option<&Domain>, largest: f64)
-    where
-        T: Tangential<S, History = H>,
-    {
+    /// `exchange` gives a history with the roles of both grains exchanged.
+    pub(crate) fn rebuild<R: Rotation<S>>(
+        &mut self,
+        grains: &mut Grains<S, R>,
+        domain: Option<&Domain>,
+        largest: f64,
+        exchange: fn(H) -> H,
+    ) {
         if let Some(domain) = domain {
             grains.place.iter_mut().for_each(|place| place.position = wrapped::<S>(place.position, domain));
         }
@@ -92,7 +96,7 @@ impl<S: Space, H: Copy + Default> Neighbours<S, H> {
                 for row in 0..old_slot.len().min(pairs.start.len() - 1) {
                     for at in pairs.start[row] as usize..pairs.start[row + 1] as usize {
                         let (a, b) = (old_slot[row], old_slot[pairs.partner[at] as usize]);
-                        if let Some(history) = recall(a, b).or_else(|| recall(b, a).map(T::exchange)) {
+                        if let Some(history) = recall(a, b).or_else(|| recall(b, a).map(exchange)) {
                             pairs.history[at] = history;
                         }
                     }
@@ -219,7 +223,6 @@ fn bounds<S: Space>(place: &[Place<S>]) -> (Vector3<f64>, Vector3<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::tangential::Frictionless;
     use grainbench_scene::scene::Domain;
     use grainbench_scene::space::{Plane, Solid};
     use std::collections::BTreeSet;
@@ -249,7 +252,7 @@ mod tests {
             slot: (0..points.len() as u32).collect(),
         };
         let mut neighbours = Neighbours::<S, ()>::new(skin);
-        neighbours.rebuild::<Frictionless>(&mut grains, Some(&domain), radius);
+        neighbours.rebuild(&mut grains, Some(&domain), radius, |()| ());
         let mut listed = BTreeSet::new();
         for pairs in [&neighbours.near, &neighbours.across] {
             for row in 0..pairs.start.len() - 1 {

@@ -1,6 +1,7 @@
 //! What a simulation shows at a step: grains with velocities at that very time, contacts, walls, energies.
 
 use crate::contact::normal::Normal;
+use crate::contact::rolling::Rolling;
 use crate::contact::tangential::{Rotation, Tangential};
 use crate::neighbours::wrapped;
 use crate::simulation::Kernel;
@@ -9,7 +10,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>>(kernel: &Kernel<S, N, T>) -> Look {
+pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel: &Kernel<S, N, T, R>) -> Look {
     let scene = &kernel.scene;
     let grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(kernel, id)).collect();
     let mut contacts: Vec<ContactState> = kernel
@@ -50,7 +51,10 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>>(kernel: &Kernel<S, N, 
 }
 
 /// A grain with its velocity brought from half a step before to this step.
-fn grain_state<S: Space, N: Normal, T: Tangential<S>>(kernel: &Kernel<S, N, T>, id: usize) -> GrainState {
+fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
+    kernel: &Kernel<S, N, T, R>,
+    id: usize,
+) -> GrainState {
     let (scene, grains) = (&kernel.scene, &kernel.grains);
     let slot = grains.slot[id] as usize;
     let start = &scene.grains[id];

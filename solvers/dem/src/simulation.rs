@@ -1,11 +1,12 @@
 //! One simulation: the calculation cycle of Cundall & Strack, compiled for the effects of its scene.
 
 use crate::contact::normal::Normal;
+use crate::contact::rolling::Rolling;
 use crate::contact::tangential::{Rotation, Tangential};
 use crate::contact::{Options, Touch};
 use crate::grains::Grains;
 use crate::neighbours::Neighbours;
-use crate::walls::MovingWall;
+use crate::walls::{MovingWall, NearWall};
 use grainbench_scene::record::{Cost, Look, Partner};
 use grainbench_scene::scene::{ContactLaw, Scene};
 use grainbench_scene::solver::{Broken, Cause};
@@ -82,15 +83,18 @@ pub trait Simulation: Send {
     fn look(&self) -> Look;
 }
 
-/// A simulation in a space, with a normal and a tangential stage.
-pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>> {
+/// What a contact remembers: the histories of its stages.
+type Memory<S, T, R> = (<T as Tangential<S>>::History, <R as Rolling<S>>::History);
+
+/// A simulation in a space, with a normal, a tangential and a rolling stage.
+pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
     pub(crate) scene: Scene,
     laws: Vec<ContactLaw>,
     material_count: usize,
     options: Options,
     pub(crate) grains: Grains<S, T::Rotation>,
-    neighbours: Neighbours<S, T::History>,
-    pub(crate) walls: Vec<MovingWall<S, T::History>>,
+    neighbours: Neighbours<S, Memory<S, T, R>>,
+    pub(crate) walls: Vec<MovingWall<S, Memory<S, T, R>>>,
     pub(crate) seen: Vec<Seen<S>>,
     gravity: S::Vector,
     largest_radius: f64,
@@ -105,7 +109,7 @@ pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>> {
     stage: PhantomData<N>,
 }
 
-impl<S: Space, N: Normal, T: Tangential<S>> Kernel<S, N, T> {
+impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
     /// Sets up a scene: forces at the start, and velocities half a step back, so that every cycle is alike.
     pub(crate) fn new(scene: &Scene, options: Options, time_step: f64) -> Result<Self, Box<Broken>> {
         let largest_radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
@@ -209,13 +213,14 @@ impl<S: Space, N: Normal, T: Tangential<S>> Kernel<S, N, T> {
     fn rebuild(&mut self) -> Result<(), Box<Broken>> {
         self.refuse_broken_state()?;
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
-        let by_wall: Vec<Vec<(u32, T::History)>> = self
+        let by_wall: Vec<NearWall<Memory<S, T, R>>> = self
             .walls
             .iter()
             .map(|wall| wall.near.iter().map(|&(slot, history)| (self.grains.id[slot as usize], history)).collect())
             .collect();
-        self.neighbours.rebuild::<T>(&mut self.grains, domain.as_ref(), self.largest_radius);
-        let mut remembered = vec![T::History::default(); self.grains.len()];
+        let exchange = |(shear, rolling): Memory<S, T, R>| (T::exchange(shear), R::exchange(rolling));
+        self.neighbours.rebuild(&mut self.grains, domain.as_ref(), self.largest_radius, exchange);
+        let mut remembered = vec![Memory::<S, T, R>::default(); self.grains.len()];
         self.extent = 0.0;
         for (wall, before) in self.walls.iter_mut().zip(&by_wall) {
             before.iter().for_each(|&(id, history)| remembered[id as usize] = history);
@@ -226,7 +231,7 @@ impl<S: Space, N: Normal, T: Tangential<S>> Kernel<S, N, T> {
                 }
                 self.extent = self.extent.max(wall.distance_to_centre(S::embed(place.position)));
             }
-            before.iter().for_each(|&(id, _)| remembered[id as usize] = T::History::default());
+            before.iter().for_each(|&(id, _)| remembered[id as usize] = Memory::<S, T, R>::default());
         }
         self.extent += self.largest_radius + self.neighbours.skin;
         self.moved_squared = 0.0;
@@ -322,21 +327,30 @@ impl<S: Space, N: Normal, T: Tangential<S>> Kernel<S, N, T> {
                         velocity: movement.velocity - other_movement.velocity,
                         inverse_masses: [movement.inverse_mass, other_movement.inverse_mass],
                         spins: [rotation.spin(), grains.rotation[other].spin()],
+                        inertia: if R::ACTIVE {
+                            [rotation.inertia(), grains.rotation[other].inertia()]
+                        } else {
+                            [0.0; 2]
+                        },
                     };
-                    let answer = respond::<S, N, T>(&pair, &self.options, elapsed, history);
+                    let answer = respond::<S, N, T, R, RECORD>(&pair, &self.options, elapsed, history);
                     force += answer.force;
                     grains.force[other] -= answer.force;
                     if T::ACTIVE {
                         T::Rotation::add(&mut torque, answer.twist * answer.arms[0]);
                         T::Rotation::add(&mut grains.torque[other], answer.twist * answer.arms[1]);
                     }
+                    if R::ACTIVE {
+                        T::Rotation::add(&mut torque, answer.rolling);
+                        T::Rotation::add(&mut grains.torque[other], -answer.rolling);
+                    }
                     if RECORD {
                         let id = |slot: usize| grains.id[slot] + 1;
                         let point = place.position + answer.normal * (place.radius - 0.5 * answer.overlap);
-                        self.seen.push(answer.seen::<T>(id(row), Partner::Grain(id(other)), point, pair.law, *history));
+                        self.seen.push(answer.seen(id(row), Partner::Grain(id(other)), point));
                     }
                 } else {
-                    *history = T::History::default();
+                    *history = Memory::<S, T, R>::default();
                 }
             }
             grains.force[row] += force;
@@ -358,7 +372,7 @@ impl<S: Space, N: Normal, T: Tangential<S>> Kernel<S, N, T> {
                 let place = grains.place[slot];
                 let facing = wall.facing(place.position);
                 if facing.distance >= place.radius {
-                    *history = T::History::default();
+                    *history = Memory::<S, T, R>::default();
                     continue;
                 }
                 let law_at = usize::from(grains.material[slot]) * self.material_count;
@@ -370,20 +384,29 @@ impl<S: Space, N: Normal, T: Tangential<S>> Kernel<S, N, T> {
                     overlap: place.radius - facing.distance,
                     velocity: movement.velocity - facing.velocity,
                     effective_mass: 1.0 / movement.inverse_mass,
+                    effective_radius: place.radius,
                 };
                 let arms = [place.radius - self.options.arm_reduction * touch.overlap, 0.0];
-                let rolling = grains.rotation[slot].spin().map(|spin| spin * arms[0]);
-                let answer = stages::<S, N, T>(&touch, arms, rolling, &self.options, elapsed, history);
+                let spin = grains.rotation[slot].spin();
+                let turning = spin.map(|spin| Turning {
+                    surface: spin * arms[0],
+                    relative: spin,
+                    inertia: grains.rotation[slot].inertia() + touch.effective_mass * place.radius * place.radius,
+                });
+                let answer = stages::<S, N, T, R, RECORD>(&touch, arms, turning, &self.options, elapsed, history);
                 grains.force[slot] += answer.force;
                 wall.force -= answer.force;
                 if T::ACTIVE {
                     T::Rotation::add(&mut grains.torque[slot], answer.twist * answer.arms[0]);
                 }
+                if R::ACTIVE {
+                    T::Rotation::add(&mut grains.torque[slot], answer.rolling);
+                }
                 self.cost.contact_evaluations += 1;
                 if RECORD {
                     let point = place.position + facing.normal * (place.radius - 0.5 * answer.overlap);
                     let partner = Partner::Wall(number as u16);
-                    self.seen.push(answer.seen::<T>(grains.id[slot] + 1, partner, point, law, *history));
+                    self.seen.push(answer.seen(grains.id[slot] + 1, partner, point));
                 }
             }
             wall.near = near;
@@ -408,6 +431,18 @@ struct Pair<'a, S: Space> {
     velocity: S::Vector,
     inverse_masses: [f64; 2],
     spins: [Option<S::Spin>; 2],
+    /// Moments of inertia, only set for rolling resistance.
+    inertia: [f64; 2],
+}
+
+/// How two bodies turn at their contact.
+struct Turning<S: Space> {
+    /// ω₁a₁ + ω₂a₂ (m/s).
+    surface: S::Spin,
+    /// ω₁ − ω₂ (rad/s).
+    relative: S::Spin,
+    /// Moment of inertia of the pair about the contact, [1/(I₁ + m₁R₁²) + 1/(I₂ + m₂R₂²)]⁻¹ (kg m²).
+    inertia: f64,
 }
 
 /// What the stages answer.
@@ -418,22 +453,18 @@ struct Answer<S: Space> {
     force: S::Vector,
     /// `e × F_s`: a torque when multiplied by an arm.
     twist: S::Spin,
+    /// Moment against rolling on the first body (N m).
+    rolling: S::Spin,
     arms: [f64; 2],
     normal_force: f64,
     shear: S::Tangent,
     slipping: bool,
+    /// Energy in the springs (J), only when it is recorded.
+    elastic_energy: f64,
 }
 
 impl<S: Space> Answer<S> {
-    fn seen<T: Tangential<S>>(
-        &self,
-        grain: u32,
-        partner: Partner,
-        point: S::Vector,
-        law: &ContactLaw,
-        history: T::History,
-    ) -> Seen<S> {
-        let normal_energy = 0.5 * law.normal_stiffness * self.overlap * self.overlap;
+    fn seen(&self, grain: u32, partner: Partner, point: S::Vector) -> Seen<S> {
         Seen {
             grain,
             partner,
@@ -443,44 +474,50 @@ impl<S: Space> Answer<S> {
             normal_force: self.normal_force,
             shear: self.shear,
             slipping: self.slipping,
-            elastic_energy: normal_energy + T::energy(history, law.tangential_stiffness),
+            elastic_energy: self.elastic_energy,
         }
     }
 }
 
 #[inline(always)]
-fn respond<S: Space, N: Normal, T: Tangential<S>>(
+fn respond<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>, const RECORD: bool>(
     pair: &Pair<'_, S>,
     options: &Options,
     elapsed: f64,
-    history: &mut T::History,
+    history: &mut Memory<S, T, R>,
 ) -> Answer<S> {
     let distance = pair.squared.sqrt();
-    let overlap = pair.radii[0] + pair.radii[1] - distance;
+    let [first, second] = pair.radii;
+    let overlap = first + second - distance;
     let touch = Touch {
         law: pair.law,
         normal: pair.between * (1.0 / distance),
         overlap,
         velocity: pair.velocity,
         effective_mass: if N::DAMPED { 1.0 / (pair.inverse_masses[0] + pair.inverse_masses[1]) } else { 0.0 },
+        effective_radius: if N::CURVED || R::ACTIVE { first * second / (first + second) } else { 0.0 },
     };
     let arms = pair.radii.map(|radius| radius - options.arm_reduction * overlap);
-    let rolling = match pair.spins {
-        [Some(first), Some(second)] => Some(first * arms[0] + second * arms[1]),
+    let turning = match pair.spins {
+        [Some(a), Some(b)] => {
+            let about = |k: usize| pair.inertia[k] + pair.radii[k] * pair.radii[k] / pair.inverse_masses[k];
+            let inertia = if R::ACTIVE { 1.0 / (1.0 / about(0) + 1.0 / about(1)) } else { 0.0 };
+            Some(Turning { surface: a * arms[0] + b * arms[1], relative: a - b, inertia })
+        }
         _ => None,
     };
-    stages::<S, N, T>(&touch, arms, rolling, options, elapsed, history)
+    stages::<S, N, T, R, RECORD>(&touch, arms, turning, options, elapsed, history)
 }
 
 /// The chain of stages at one contact.
 #[inline(always)]
-fn stages<S: Space, N: Normal, T: Tangential<S>>(
+fn stages<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>, const RECORD: bool>(
     touch: &Touch<'_, S>,
     arms: [f64; 2],
-    rolling: Option<S::Spin>,
+    turning: Option<Turning<S>>,
     options: &Options,
     elapsed: f64,
-    history: &mut T::History,
+    history: &mut Memory<S, T, R>,
 ) -> Answer<S> {
     let normal = N::force(touch, options);
     let mut answer = Answer {
@@ -488,23 +525,32 @@ fn stages<S: Space, N: Normal, T: Tangential<S>>(
         overlap: touch.overlap,
         force: touch.normal * -normal.total,
         twist: S::NO_SPIN,
+        rolling: S::NO_SPIN,
         arms,
         normal_force: normal.total,
         shear: S::NO_TANGENT,
         slipping: false,
+        elastic_energy: 0.0,
     };
-    if let (true, Some(rolling)) = (T::ACTIVE, rolling) {
-        let slip = S::slip_velocity(touch.velocity, rolling, touch.normal);
-        let shear = T::respond::<N>(touch, normal, slip, elapsed, history);
+    if let (true, Some(turning)) = (T::ACTIVE, turning) {
+        let slip = S::slip_velocity(touch.velocity, turning.surface, touch.normal);
+        let shear = T::respond::<N>(touch, normal, slip, elapsed, &mut history.0);
         let force = S::along(shear.force, touch.normal);
         answer.force += force;
         answer.twist = S::torque(touch.normal, force);
         (answer.shear, answer.slipping) = (shear.force, shear.slipping);
+        if R::ACTIVE {
+            answer.rolling = R::moment::<N>(touch, normal, turning.relative, elapsed, turning.inertia, &mut history.1);
+        }
+    }
+    if RECORD {
+        let shear = T::energy(history.0, N::tangential_stiffness(touch));
+        answer.elastic_energy = N::energy(touch) + shear + R::energy::<N>(touch, history.1);
     }
     answer
 }
 
-impl<S: Space, N: Normal, T: Tangential<S>> Simulation for Kernel<S, N, T> {
+impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Simulation for Kernel<S, N, T, R> {
     fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>> {
         for _ in 1..steps {
             self.cycle::<false>()?;
@@ -516,7 +562,7 @@ impl<S: Space, N: Normal, T: Tangential<S>> Simulation for Kernel<S, N, T> {
     fn forget_history(&mut self) {
         self.neighbours.forget();
         for wall in &mut self.walls {
-            wall.near.iter_mut().for_each(|(_, history)| *history = T::History::default());
+            wall.near.iter_mut().for_each(|(_, history)| *history = Memory::<S, T, R>::default());
         }
     }
 

@@ -1,7 +1,8 @@
 //! The discrete element method as a solver: picks the kernel once, at the edge, and keeps the record.
 
 use crate::contact::Options;
-use crate::contact::normal::{Spring, SpringDashpot};
+use crate::contact::normal::{Hertz, HertzDashpot, Spring, SpringDashpot, SpringRestitution};
+use crate::contact::rolling::{ElasticPlastic, FreeRolling};
 use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
 use crate::convention::{Convention, CoulombCap, History};
 use crate::simulation::{Kernel, Simulation};
@@ -60,28 +61,49 @@ impl Dem {
         let convention = &self.convention;
         let options = Options::new(convention.torque_arm, convention.tension, convention.cap_normal);
         macro_rules! kernel {
-            ($normal:ty, $tangential:ty) => {
-                Box::new(Kernel::<S, $normal, $tangential>::new(scene, options, time_step)?)
+            ($normal:ty, $tangential:ty, $rolling:ty) => {
+                Box::new(Kernel::<S, $normal, $tangential, $rolling>::new(scene, options, time_step)?)
             };
         }
-        use {CapOnSpring as OnSpring, CapOnTotal as OnTotal};
-        Ok(match (effects.contact_damping, effects.friction, convention.coulomb_cap, convention.history) {
-            (false, false, ..) => kernel!(Spring, Frictionless),
-            (true, false, ..) => kernel!(SpringDashpot, Frictionless),
-            // Without dashpots both caps are the same.
-            (false, true, _, History::Turned) => kernel!(Spring, Coulomb<OnSpring, Turned>),
-            (false, true, _, History::Projected) => kernel!(Spring, Coulomb<OnSpring, Projected>),
-            (true, true, CoulombCap::Spring, History::Turned) => kernel!(SpringDashpot, Coulomb<OnSpring, Turned>),
-            (true, true, CoulombCap::Spring, History::Projected) => {
-                kernel!(SpringDashpot, Coulomb<OnSpring, Projected>)
-            }
-            (true, true, CoulombCap::SpringAndDashpot, History::Turned) => {
-                kernel!(SpringDashpot, Coulomb<OnTotal, Turned>)
-            }
-            (true, true, CoulombCap::SpringAndDashpot, History::Projected) => {
-                kernel!(SpringDashpot, Coulomb<OnTotal, Projected>)
-            }
-        })
+        // The tangential stage by the convention; without dashpots both caps are the same.
+        macro_rules! undamped {
+            ($normal:ty, $rolling:ty) => {
+                match convention.history {
+                    History::Turned => kernel!($normal, Coulomb<CapOnSpring, Turned>, $rolling),
+                    History::Projected => kernel!($normal, Coulomb<CapOnSpring, Projected>, $rolling),
+                }
+            };
+        }
+        macro_rules! damped {
+            ($normal:ty, $rolling:ty) => {
+                match (convention.coulomb_cap, convention.history) {
+                    (CoulombCap::Spring, _) => undamped!($normal, $rolling),
+                    (CoulombCap::SpringAndDashpot, History::Turned) => {
+                        kernel!($normal, Coulomb<CapOnTotal, Turned>, $rolling)
+                    }
+                    (CoulombCap::SpringAndDashpot, History::Projected) => {
+                        kernel!($normal, Coulomb<CapOnTotal, Projected>, $rolling)
+                    }
+                }
+            };
+        }
+        macro_rules! stages {
+            ($normal:ty, $tangential:ident) => {
+                match (effects.friction, effects.rolling_resistance) {
+                    (false, _) => kernel!($normal, Frictionless, FreeRolling),
+                    (true, false) => $tangential!($normal, FreeRolling),
+                    (true, true) => $tangential!($normal, ElasticPlastic),
+                }
+            };
+        }
+        let simulation: Box<dyn Simulation> = match (effects.hertz, effects.contact_damping, effects.restitution) {
+            (false, false, _) => stages!(Spring, undamped),
+            (false, true, false) => stages!(SpringDashpot, damped),
+            (false, true, true) => stages!(SpringRestitution, damped),
+            (true, false, _) => stages!(Hertz, undamped),
+            (true, true, _) => stages!(HertzDashpot, damped),
+        };
+        Ok(simulation)
     }
 
     fn resolution_error(&self, reason: String) -> RunError {
@@ -94,6 +116,9 @@ impl Dem {
         let wanted = match *resolution {
             Resolution::CriticalFraction(fraction) => fraction * critical,
             Resolution::TimeStep(step) => step,
+            Resolution::Rigid { .. } => {
+                return Err(self.resolution_error(format!("expected a time step, found {resolution}")));
+            }
         };
         if !(wanted.is_finite() && wanted > 0.0) {
             let reason = if critical.is_finite() {
@@ -106,7 +131,7 @@ impl Dem {
         match (scene.duration, resolution) {
             (Duration::Cycles(cycles), _) => Ok((wanted, cycles)),
             (Duration::Seconds(time), Resolution::TimeStep(_)) => Ok((wanted, ((time / wanted).round() as u64).max(1))),
-            (Duration::Seconds(time), Resolution::CriticalFraction(_)) => {
+            (Duration::Seconds(time), _) => {
                 // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
                 let steps = (time / wanted * (1.0 - 1e-12)).ceil().max(1.0);
                 Ok((time / steps, steps as u64))

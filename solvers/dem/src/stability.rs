@@ -14,7 +14,8 @@ pub fn stable_fraction(scene: &Scene) -> f64 {
         Dimension::Three => 12.0,
     };
     let ratio = |law: &ContactLaw| {
-        if law.has_friction() { law.tangential_stiffness / law.normal_stiffness } else { 0.0 }
+        let (normal, tangential) = law.stiffness(1.0, 1.0);
+        if law.has_friction() { tangential / normal } else { 0.0 }
     };
     let worst = scene.laws.iter().flatten().map(ratio).fold(0.0, f64::max);
     1.0 / (contacts * (1.0 + worst * (1.0 + 1.0 / scene.grain_shape.inertia_factor()))).sqrt()

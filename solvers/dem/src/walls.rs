@@ -6,6 +6,9 @@ use grainbench_scene::scene::{Wall, WallShape};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
+/// Slots or ids of grains near a wall, and the history of their contacts.
+pub(crate) type NearWall<H> = Vec<(u32, H)>;
+
 /// A wall during the run.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingWall<S: Space, H> {
@@ -18,8 +21,8 @@ pub(crate) struct MovingWall<S: Space, H> {
     /// Mean velocity over the last step (m/s), and spin (rad/s) about the centre.
     velocity: Vector3<f64>,
     spin: Vector3<f64>,
-    /// Slots of the grains near the wall and the history of their contacts.
-    pub(crate) near: Vec<(u32, H)>,
+    /// The grains near the wall, by slot.
+    pub(crate) near: NearWall<H>,
     /// Force of the grains on the wall in the last force evaluation (N).
     pub(crate) force: S::Vector,
 }

@@ -115,18 +115,42 @@ pub struct MaterialSpec {
     /// Density ρ (kg/m³); not needed for materials of walls, nor where a data file gives it.
     #[serde(default)]
     pub density: Option<f64>,
+    /// Young's modulus E (Pa); needed for Hertz contacts unless `rigid`.
+    #[serde(default)]
+    pub young_modulus: Option<f64>,
+    /// Poisson's ratio ν, from −1 to 1/2; needed for Hertz contacts unless `rigid`.
+    #[serde(default)]
+    pub poisson_ratio: Option<f64>,
+    /// Whether the material is rigid: its partner alone deforms in a Hertz contact.
+    #[serde(default)]
+    pub rigid: bool,
 }
 
-/// The law of a contact between two materials: a linear spring and dashpot along the normal, an incremental spring and
-/// dashpot along the tangent, limited by Coulomb friction with cohesion, |F_s| ≤ F_n tan φ + c.
+/// Force law along the normal, and the tangential spring that goes with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LawKind {
+    /// Linear springs of given stiffness.
+    #[default]
+    Linear,
+    /// Hertz along the normal, Mindlin's spring along the tangent, from E and ν of both materials; spheres only.
+    Hertz,
+}
+
+/// The law of a contact between two materials: a spring and dashpot along the normal, an incremental spring and dashpot
+/// along the tangent, limited by Coulomb friction with cohesion, |F_s| ≤ F_n tan φ + c, and rolling resistance.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSpec {
     /// The two materials.
     pub between: [String; 2],
-    /// Normal stiffness k_n (N/m; N/m per metre for discs).
-    pub normal_stiffness: f64,
-    /// Tangential stiffness k_s (N/m). Needed with friction or cohesion.
+    /// `linear` (the default) or `hertz`. One scene has one kind.
+    #[serde(default)]
+    pub law: LawKind,
+    /// Normal stiffness k_n (N/m; N/m per metre for discs). Needed for linear laws.
+    #[serde(default)]
+    pub normal_stiffness: Option<f64>,
+    /// Tangential stiffness k_s (N/m). Needed for linear laws with friction or cohesion.
     #[serde(default)]
     pub tangential_stiffness: f64,
     /// Coefficient of friction μ = tan φ. Give this or `friction_angle_deg`; frictionless when both are absent.
@@ -147,6 +171,18 @@ pub struct ContactSpec {
     /// Mass-proportional tangential damping γ_t (1/s): dashpot c_s = γ_t m_eff.
     #[serde(default)]
     pub tangential_damping: f64,
+    /// Coefficient of restitution e, above 0 and at most 1: a normal dashpot that gives it exactly when the dashpot may
+    /// pull at release, c_n = 2ζ√(k_n m_eff) for linear, 2√(5/6) ζ√(S m_eff) with S = dF/dδ for Hertz contacts, and
+    /// ζ = −ln e/√(π² + ln² e).
+    #[serde(default)]
+    pub restitution: Option<f64>,
+    /// Coefficient of rolling resistance μ_r: a moment of at most μ_r R_eff F_n against rolling, R_eff = R₁R₂/(R₁+R₂), R at
+    /// a wall. An elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r² R_eff² (Ai et al. 2011, model C).
+    #[serde(default)]
+    pub rolling_friction: f64,
+    /// Damping ratio η_r of the rolling spring: a moment −2η_r√(I_r k_r) times the rolling velocity while it has not yielded.
+    #[serde(default)]
+    pub rolling_damping: f64,
 }
 
 /// A group of grains: exactly one of `position`, `lattice`, `random` and `file`.

@@ -3,7 +3,7 @@
 use crate::check::Checker;
 use crate::error::SceneError;
 use crate::file::{
-    ContactSpec, DomainSpec, GrainShape, GrainsSpec, GravitySpec, MotionSpec, ProbeSpec, SceneFile, WallSpec,
+    ContactSpec, DomainSpec, GrainShape, GrainsSpec, GravitySpec, LawKind, MotionSpec, ProbeSpec, SceneFile, WallSpec,
 };
 use crate::generate;
 use crate::motion::{Moment, Motion, Phase};
@@ -14,6 +14,7 @@ use crate::scene::{
 use crate::source::SceneSource;
 use indexmap::IndexMap;
 use nalgebra::Vector3;
+use std::f64::consts::PI;
 use std::ops::Range;
 use std::path::Path;
 
@@ -464,6 +465,10 @@ impl Resolver<'_> {
             table[a * count + b] = law;
             table[b * count + a] = law;
         }
+        let hertz = table.iter().flatten().filter(|law| ContactLaw::is_hertz(law)).count();
+        if hertz > 0 && hertz < table.iter().flatten().count() {
+            return Err(self.check.error("contacts", "laws of one kind, all `linear` or all `hertz`", "both"));
+        }
         self.require_laws(&table, grains, walls)?;
         Ok(table)
     }
@@ -509,27 +514,93 @@ impl Resolver<'_> {
             (None, None) => 0.0,
         };
         let damping = |part: &str, value: f64, unit: &str| check.not_negative(&key(part), value, unit);
-        let law = ContactLaw {
-            normal_stiffness: check.positive(&key("normal_stiffness"), spec.normal_stiffness, "stiffness (N/m)")?,
-            tangential_stiffness: check.not_negative(
-                &key("tangential_stiffness"),
-                spec.tangential_stiffness,
-                "stiffness (N/m)",
-            )?,
+        let restitution = spec.restitution.unwrap_or(1.0);
+        if !(restitution > 0.0 && restitution <= 1.0) {
+            return Err(check.error(
+                &key("restitution"),
+                "a coefficient above 0 and at most 1",
+                &restitution.to_string(),
+            ));
+        }
+        let log = restitution.ln();
+        let mut law = ContactLaw {
             friction,
             cohesion: check.not_negative(&key("cohesion"), spec.cohesion, "force (N)")?,
             stiffness_damping: damping("stiffness_damping", spec.stiffness_damping, "time (s)")?,
             normal_damping: damping("normal_damping", spec.normal_damping, "rate (1/s)")?,
             tangential_damping: damping("tangential_damping", spec.tangential_damping, "rate (1/s)")?,
+            damping_ratio: -log / (PI * PI + log * log).sqrt(),
+            rolling_friction: damping("rolling_friction", spec.rolling_friction, "coefficient")?,
+            rolling_damping: damping("rolling_damping", spec.rolling_damping, "damping ratio")?,
+            ..ContactLaw::default()
         };
-        if law.has_friction() {
-            check.positive(
-                &key("tangential_stiffness"),
-                spec.tangential_stiffness,
-                "stiffness (N/m), since there is friction",
-            )?;
+        match spec.law {
+            LawKind::Linear => self.linear(name, spec, &mut law)?,
+            LawKind::Hertz => self.hertz(name, spec, &mut law)?,
         }
         Ok(law)
+    }
+
+    fn linear(&self, name: &str, spec: &ContactSpec, law: &mut ContactLaw) -> Result<(), SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("contacts.{name}.{part}");
+        let Some(stiffness) = spec.normal_stiffness else {
+            return Err(check.error(&format!("contacts.{name}"), "the key `normal_stiffness`", "none"));
+        };
+        law.normal_stiffness = check.positive(&key("normal_stiffness"), stiffness, "stiffness (N/m)")?;
+        let tangential = spec.tangential_stiffness;
+        law.tangential_stiffness = if law.has_friction() {
+            let what = "stiffness (N/m), since there is friction";
+            check.positive(&key("tangential_stiffness"), tangential, what)?
+        } else {
+            check.not_negative(&key("tangential_stiffness"), tangential, "stiffness (N/m)")?
+        };
+        Ok(())
+    }
+
+    /// 1/E* and 1/G* are sums over both materials; a rigid one adds nothing.
+    fn hertz(&self, name: &str, spec: &ContactSpec, law: &mut ContactLaw) -> Result<(), SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("contacts.{name}.{part}");
+        if self.grain_shape()? == GrainShape::Disc {
+            return Err(check.error(&key("law"), "`linear` between discs: Hertz's law is for spheres", "`hertz`"));
+        }
+        if spec.normal_stiffness.is_some() || spec.tangential_stiffness != 0.0 {
+            let expected = "no stiffness: a Hertz contact takes it from E and ν of the materials";
+            return Err(check.error(&key("normal_stiffness"), expected, "one"));
+        }
+        if spec.stiffness_damping != 0.0 {
+            let expected = "`normal_damping` or `restitution` in a Hertz contact, which has no one stiffness";
+            return Err(check.error(&key("stiffness_damping"), expected, &spec.stiffness_damping.to_string()));
+        }
+        let (mut compliance, mut shear_compliance) = (0.0, 0.0);
+        for material in &spec.between {
+            let of = |part: &str| format!("materials.{material}.{part}");
+            let properties = &self.file.materials[material.as_str()];
+            if properties.rigid {
+                continue;
+            }
+            let (Some(young), Some(poisson)) = (properties.young_modulus, properties.poisson_ratio) else {
+                let expected = "`young_modulus` and `poisson_ratio` (or `rigid = true`), since it has Hertz contacts";
+                return Err(check.error(&format!("materials.{material}"), expected, "not both"));
+            };
+            check.positive(&of("young_modulus"), young, "modulus (Pa)")?;
+            if !(poisson > -1.0 && poisson <= 0.5) {
+                return Err(check.error(
+                    &of("poisson_ratio"),
+                    "a ratio above −1 and at most 1/2",
+                    &poisson.to_string(),
+                ));
+            }
+            compliance += (1.0 - poisson * poisson) / young;
+            shear_compliance += 2.0 * (2.0 - poisson) * (1.0 + poisson) / young;
+        }
+        if compliance == 0.0 {
+            return Err(check.error(&key("between"), "at least one material that is not rigid", "two rigid ones"));
+        }
+        law.effective_modulus = 1.0 / compliance;
+        law.effective_shear_modulus = 1.0 / shear_compliance;
+        Ok(())
     }
 
     fn refuse_deep_overlap(

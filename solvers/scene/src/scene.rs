@@ -81,6 +81,16 @@ pub struct ContactLaw {
     pub normal_damping: f64,
     /// Mass-proportional tangential damping γ_t (1/s).
     pub tangential_damping: f64,
+    /// Hertz: 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂ (Pa); zero for linear laws.
+    pub effective_modulus: f64,
+    /// Mindlin: 1/G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ (Pa); zero for linear laws.
+    pub effective_shear_modulus: f64,
+    /// Damping ratio ζ from a coefficient of restitution.
+    pub damping_ratio: f64,
+    /// Coefficient of rolling resistance μ_r.
+    pub rolling_friction: f64,
+    /// Damping ratio η_r of the rolling spring.
+    pub rolling_damping: f64,
 }
 
 impl ContactLaw {
@@ -94,7 +104,25 @@ impl ContactLaw {
     #[must_use]
     pub fn has_damping(&self) -> bool {
         let tangential = self.has_friction() && self.tangential_damping != 0.0;
-        self.stiffness_damping != 0.0 || self.normal_damping != 0.0 || tangential
+        self.stiffness_damping != 0.0 || self.normal_damping != 0.0 || self.damping_ratio != 0.0 || tangential
+    }
+
+    /// Whether the law is that of Hertz.
+    #[must_use]
+    pub fn is_hertz(&self) -> bool {
+        self.effective_modulus > 0.0
+    }
+
+    /// Stiffness dF/dδ along the normal and along the tangent (N/m) at an overlap (m) of bodies with an effective radius
+    /// R* = R₁R₂/(R₁+R₂) (m): S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and Mindlin, k_n and k_s for linear laws.
+    #[must_use]
+    pub fn stiffness(&self, overlap: f64, effective_radius: f64) -> (f64, f64) {
+        if self.is_hertz() {
+            let root = (effective_radius * overlap).sqrt();
+            (2.0 * self.effective_modulus * root, 8.0 * self.effective_shear_modulus * root)
+        } else {
+            (self.normal_stiffness, self.tangential_stiffness)
+        }
     }
 }
 
@@ -243,17 +271,19 @@ impl Scene {
 
     /// Critical time step `2√(m_min/k_max)` of a mass on a spring to ground (s), over the contacts that can occur:
     /// the smallest mass and the largest stiffness, normal or tangential (Cundall & Strack 1979, p. 53). It is an
-    /// estimate: assemblies need a fraction of it, which users choose.
+    /// estimate: assemblies need a fraction of it, which users choose. The stiffness of a Hertz contact is taken at an
+    /// overlap of a hundredth of the largest radius.
     #[must_use]
     pub fn critical_time_step(&self) -> f64 {
         let mass = self.grains.iter().map(|grain| grain.mass).fold(f64::INFINITY, f64::min);
+        let radius = self.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
         let stiffness = self
             .laws
             .iter()
             .flatten()
             .map(|law| {
-                let tangential = if law.has_friction() { law.tangential_stiffness } else { 0.0 };
-                law.normal_stiffness.max(tangential)
+                let (normal, tangential) = law.stiffness(0.01 * radius, radius);
+                normal.max(if law.has_friction() { tangential } else { 0.0 })
             })
             .fold(0.0, f64::max);
         2.0 * (mass / stiffness).sqrt()

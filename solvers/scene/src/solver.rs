@@ -14,6 +14,29 @@ pub enum Resolution {
     CriticalFraction(f64),
     /// Time step (s), taken as it is.
     TimeStep(f64),
+    /// Of engines for rigid bodies, whose contacts have no critical step. The step is shortened so that a whole number
+    /// of steps fits.
+    Rigid {
+        /// Step (s) that is divided into substeps.
+        step: f64,
+        /// Time steps in it.
+        substeps: u32,
+        /// Iterations of the constraint solver in each time step.
+        iterations: u32,
+    },
+}
+
+impl Resolution {
+    /// Step of an engine for rigid bodies (s), unless another one is asked for: sixty a second, as pictures are drawn.
+    pub const RIGID_STEP: f64 = 1.0 / 60.0;
+    /// Iterations of its constraint solver, unless others are asked for.
+    pub const RIGID_ITERATIONS: u32 = 4;
+
+    /// Substeps of an engine for rigid bodies, all else as usual.
+    #[must_use]
+    pub const fn substeps(substeps: u32) -> Self {
+        Self::Rigid { step: Self::RIGID_STEP, substeps, iterations: Self::RIGID_ITERATIONS }
+    }
 }
 
 impl fmt::Display for Resolution {
@@ -21,6 +44,16 @@ impl fmt::Display for Resolution {
         match self {
             Self::CriticalFraction(fraction) => write!(formatter, "dt={}", rounded(*fraction)),
             Self::TimeStep(step) => write!(formatter, "dt={} s", rounded(*step)),
+            Self::Rigid { step, substeps, iterations } => {
+                write!(formatter, "substeps={substeps}")?;
+                if *iterations != Self::RIGID_ITERATIONS {
+                    write!(formatter, " iterations={iterations}")?;
+                }
+                if *step != Self::RIGID_STEP {
+                    write!(formatter, " step={step} s")?;
+                }
+                Ok(())
+            }
         }
     }
 }

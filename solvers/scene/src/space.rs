@@ -85,6 +85,8 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
     /// Squared length of a tangential quantity.
     fn tangent_squared(tangent: Self::Tangent) -> f64;
+    /// A relative spin without its part along the normal, which is twisting and not rolling; in the plane all of it rolls.
+    fn without_twist(spin: Self::Spin, normal: Self::Vector) -> Self::Spin;
     /// Product of two spins, for rotational energy.
     fn spin_dot(a: Self::Spin, b: Self::Spin) -> f64;
     /// The vector in three dimensions, z = 0 for the plane.
@@ -147,6 +149,10 @@ impl Space for Plane {
         tangent * tangent
     }
     #[inline(always)]
+    fn without_twist(spin: f64, _normal: Vector2<f64>) -> f64 {
+        spin
+    }
+    #[inline(always)]
     fn spin_dot(a: f64, b: f64) -> f64 {
         a * b
     }
@@ -204,6 +210,10 @@ impl Space for Solid {
     #[inline(always)]
     fn tangent_squared(tangent: Vector3<f64>) -> f64 {
         Self::dot(tangent, tangent)
+    }
+    #[inline(always)]
+    fn without_twist(spin: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+        spin - normal * Self::dot(spin, normal)
     }
     #[inline(always)]
     fn spin_dot(a: Vector3<f64>, b: Vector3<f64>) -> f64 {

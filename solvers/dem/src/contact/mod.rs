@@ -1,9 +1,10 @@
-//! The contact law as a chain of stages: normal, then tangential.
+//! The contact law as a chain of stages: normal, then tangential, then rolling.
 //!
 //! A stage that a scene does not call for is another type, of zero size, so that its branch, its memory and its
 //! arithmetic are not compiled into the loop over contacts. Adding a stage touches one file here.
 
 pub mod normal;
+pub mod rolling;
 pub mod tangential;
 
 use crate::convention::{CapNormal, Tension, TorqueArm};
@@ -21,8 +22,10 @@ pub struct Touch<'a, S: Space> {
     pub overlap: f64,
     /// Velocity of the first centre relative to the second body at the contact, v₁ − v₂ (m/s).
     pub velocity: S::Vector,
-    /// Effective mass m₁m₂/(m₁+m₂), or m₁ at a wall (kg). Only read by dashpots.
+    /// Effective mass m₁m₂/(m₁+m₂), or m₁ at a wall (kg). Only set for dashpots.
     pub effective_mass: f64,
+    /// Effective radius R₁R₂/(R₁+R₂), or R₁ at a wall (m). Only set for stages that say so.
+    pub effective_radius: f64,
 }
 
 /// The options of a convention that are values and not types.

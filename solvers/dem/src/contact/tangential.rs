@@ -19,6 +19,8 @@ pub trait Rotation<S: Space>: Copy + Debug + Send {
     fn angle(&self) -> f64;
     /// One step of angular velocity and angle: ω ← keep·ω + gain·M/I, θ ← θ + ω Δt.
     fn advance(&mut self, torque: Self::Torque, keep: f64, gain: f64, time_step: f64);
+    /// Moment of inertia I (kg m²); infinite when grains do not rotate.
+    fn inertia(&self) -> f64;
     /// Angular acceleration M/I (rad/s²).
     fn acceleration(&self, torque: Self::Torque) -> S::Spin;
     /// Replaces the angular velocity.
@@ -51,6 +53,9 @@ impl<S: Space> Rotation<S> for Rigid {
     }
     #[inline(always)]
     fn advance(&mut self, _torque: NoTorque, _keep: f64, _gain: f64, _time_step: f64) {}
+    fn inertia(&self) -> f64 {
+        f64::INFINITY
+    }
     fn acceleration(&self, _torque: NoTorque) -> S::Spin {
         S::NO_SPIN
     }
@@ -100,6 +105,10 @@ impl<S: Space> Rotation<S> for Rotating<S> {
         if S::DIMENSION == 2 {
             self.angle += S::embed_spin(self.spin).z * time_step;
         }
+    }
+    #[inline(always)]
+    fn inertia(&self) -> f64 {
+        1.0 / self.inverse_inertia
     }
     fn acceleration(&self, torque: Torque<S>) -> S::Spin {
         torque.0 * self.inverse_inertia
@@ -340,12 +349,12 @@ impl<S: Space, C: Cap, H: Carrying<S>> Tangential<S> for Coulomb<C, H> {
         let law = touch.law;
         let mut stretch = H::carried(history.0, touch.normal) + slip * elapsed;
         let limit = law.friction * normal.for_cap + law.cohesion;
+        let stiffness = N::tangential_stiffness(touch);
         let shear = if N::DAMPED {
-            let viscosity =
-                law.stiffness_damping * law.tangential_stiffness + law.tangential_damping * touch.effective_mass;
-            C::limit::<S, true>(&mut stretch, slip, law.tangential_stiffness, viscosity, limit)
+            let viscosity = law.stiffness_damping * stiffness + law.tangential_damping * touch.effective_mass;
+            C::limit::<S, true>(&mut stretch, slip, stiffness, viscosity, limit)
         } else {
-            C::limit::<S, false>(&mut stretch, slip, law.tangential_stiffness, 0.0, limit)
+            C::limit::<S, false>(&mut stretch, slip, stiffness, 0.0, limit)
         };
         history.0 = H::stored(stretch, touch.normal);
         shear
