@@ -27,10 +27,11 @@ fn trial(name: &str, bench: &Arc<Bench>, gate: &Arc<Gate>, test: fn(&Bench, &Gat
     Trial::test(name, move || test(&bench, &gate))
 }
 
-/// The gate passes.
+/// The gate passes; where the solver must refuse the scene, it does, with a reason.
 fn accept(bench: &Bench, gate: &Gate) -> Result<(), Failed> {
     let verdict = bench.judge(gate);
-    if verdict.outcome == Outcome::Pass { Ok(()) } else { Err(grainbench::reports::line::verdict(&verdict).into()) }
+    let expected = if gate.is_refused() { Outcome::Unsupported } else { Outcome::Pass };
+    if verdict.outcome == expected { Ok(()) } else { Err(grainbench::reports::line::verdict(&verdict).into()) }
 }
 
 /// The gate turns red when its physics is wrong.

@@ -6,11 +6,16 @@ use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, measure};
 use crate::incline::{DAMPING, STEP, at_overlap, more_friction, wrong_inertia};
 use crate::one_grain::{OneGrain, State, course, last};
+use crate::rigid_rows::{self, Row};
 use crate::verdict::Evidence;
 use grainbench_scene::solver::RunError;
 
 const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const VARIANTS: [&str; 2] = ["disc", "sphere"];
+const RIGID: &[Row] = &[
+    Row { variant: "disc", rolls: true, x: 2e-3, v: 5e-5, omega: 1.5e-4 },
+    Row { variant: "sphere", rolls: true, x: 2e-3, v: 2.5e-5, omega: 8e-5 },
+];
 
 pub(crate) static CASE: Case = Case {
     name: "backspin",
@@ -28,7 +33,8 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant)].concat()).collect()
+    let dem = VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant)].concat());
+    dem.chain(rigid_rows::backspins(RIGID)).collect()
 }
 
 fn rigid(variant: &'static str) -> Vec<Gate> {
@@ -132,7 +138,7 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         curves.push(curve(format!("{variant}: v, rigid"), Stroke::Dashed, exact(&|state| state.v)));
         curves.push(curve(format!("{variant}: ΩR, rigid"), Stroke::Dashed, exact(&|state| surface(&state))));
     }
-    Ok(vec![Figure {
+    let velocity = Figure {
         name: "velocity".to_owned(),
         title: "From sliding to rolling".to_owned(),
         caption: "Velocity rises and surface speed falls at constant rates until they meet; from there the grain rolls. \
@@ -143,5 +149,6 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
             y: Axis { label: "velocity v, surface speed ΩR (m/s)".to_owned(), logarithmic: false },
             curves,
         }),
-    }])
+    };
+    Ok(vec![velocity, rigid_rows::figure(bench, RIGID, OneGrain::rigid_backspin)?])
 }

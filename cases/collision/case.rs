@@ -5,6 +5,7 @@ use crate::case::{Case, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
+use crate::rigid_rows;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError};
@@ -39,7 +40,28 @@ fn gates() -> Vec<Gate> {
     }
     gates.extend(momentum());
     gates.extend(angular_momentum());
+    gates.extend(DAMPED.map(|variant| rigid_rows::restitution(variant, measured_restitution)));
+    gates.extend(rigid_invariants());
     gates
+}
+
+/// Momentum and angular momentum of the oblique impact between rigid discs.
+fn rigid_invariants() -> Vec<Gate> {
+    let momentum = |column: &'static str, axis: usize| {
+        rigid_rows::momentum("oblique", format!("momentum along {}, worst", ["x", "y"][axis]), move |done| {
+            let grains = &done.scene.grains;
+            let start: f64 = grains.iter().map(|grain| grain.mass * grain.velocity[axis]).sum();
+            let scale = grains[0].mass * grains[0].velocity.norm();
+            Ok(Measured::worst(&done.series().time, done.column(column)?, |_| start, scale))
+        })
+    };
+    let angular = rigid_rows::angular_momentum("oblique", |done| {
+        let (scene, grain) = (&done.scene, &done.scene.grains[0]);
+        let scale = grain.mass * grain.velocity.norm() * grain.radius;
+        let start = initial_angular_momentum(scene);
+        Ok(Measured::worst(&done.series().time, done.column("all.angular_momentum")?, |_| start, scale))
+    });
+    vec![momentum("all.momentum_x", 0), momentum("all.momentum_y", 1), angular]
 }
 
 /// Effective mass (kg), frequency ω (rad/s) and damping ratio ζ of the pair.

@@ -4,6 +4,7 @@ use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::rigid_rows;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Duration;
 use grainbench_scene::solver::RunError;
@@ -36,7 +37,8 @@ fn run(rung: Rung) -> Run {
 fn fraction_of(rung: Rung) -> f64 {
     match rung.resolution {
         grainbench_scene::solver::Resolution::CriticalFraction(fraction) => fraction,
-        grainbench_scene::solver::Resolution::TimeStep(step) => step,
+        grainbench_scene::solver::Resolution::TimeStep(step)
+        | grainbench_scene::solver::Resolution::Rigid { step, .. } => step,
     }
 }
 
@@ -79,7 +81,7 @@ fn gates() -> Vec<Gate> {
             scene.walls.pop();
         }),
     };
-    vec![conserved, same_sign]
+    vec![conserved, same_sign, rigid_rows::refuses_cycles(PLAIN), rigid_rows::gas_energy(PLAIN, 9.0, energy)]
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

@@ -5,6 +5,8 @@ use crate::case::{Case, Rung, fraction};
 use crate::figure::Figure;
 use crate::gate::Gate;
 use crate::incline::{self, Slope};
+use crate::one_grain::OneGrain;
+use crate::rigid_rows::{self, Row};
 use grainbench_scene::solver::RunError;
 
 const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
@@ -12,6 +14,11 @@ const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), frac
 const SLOPES: &[Slope] = &[
     Slope { variant: "45deg-mu.495", sticks: true, rigid_allowed: 3e-4 },
     Slope { variant: "60deg-mu2_7", sticks: false, rigid_allowed: 1e-3 },
+];
+
+const RIGID: &[Row] = &[
+    Row { variant: "45deg-mu.495", rolls: true, x: 8e-4, v: 1.5e-5, omega: 1.5e-5 },
+    Row { variant: "60deg-mu2_7", rolls: false, x: 8e-4, v: 1e-12, omega: 2e-5 },
 ];
 
 pub(crate) static CASE: Case = Case {
@@ -31,9 +38,11 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    incline::gates(&CASE, SLOPES)
+    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID)].concat()
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    incline::figures(bench, SLOPES)
+    let mut figures = incline::figures(bench, SLOPES)?;
+    figures.push(rigid_rows::figure(bench, RIGID, OneGrain::rigid_incline)?);
+    Ok(figures)
 }

@@ -8,6 +8,7 @@ mod modal;
 use crate::case::{Case, Rung, fraction};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::{dominant_frequency, slope};
+use crate::rigid_rows;
 use crate::verdict::Evidence;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Duration, Scene};
@@ -41,7 +42,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [static_forces(), discrete(), vec![geometry()], continuous(), paper()].concat()
+    [static_forces(), discrete(), vec![geometry()], continuous(), paper(), vec![rigid_rows::refuses_cycles("kappa-0")]].concat()
 }
 
 /// Static forces at every named contact, damped.

@@ -4,6 +4,7 @@ use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::rigid_rows;
 use crate::verdict::Evidence;
 use grainbench_reference::{StoredRun, ThermoRow};
 use grainbench_scene::solver::{Resolution, RunError};
@@ -63,6 +64,7 @@ fn gates() -> Vec<Gate> {
             measure: measure(|done| compare(&done[0], "all.kinetic_energy", |row| row.kinetic_energy, 1.0)),
             control: Control::solver("torque arm R − overlap/2, cap on the spring", "dem:liggghts"),
         },
+        rigid_rows::refuses_periodic_axes(PLAIN),
     ]
 }
 

@@ -4,6 +4,7 @@ use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::rigid_rows;
 use crate::verdict::Evidence;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::solver::RunError;
@@ -104,6 +105,7 @@ fn gates() -> Vec<Gate> {
             scene.change_laws(|law| law.normal_damping = 2e-6);
         }),
     });
+    gates.push(rigid_rows::refuses_cycles(PLAIN));
     gates
 }
 

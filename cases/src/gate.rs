@@ -24,13 +24,15 @@ pub struct Run {
     /// A change of the scene that belongs to the claim, such as another stiffness in a sweep: its name, which tells
     /// runs apart, and what it does.
     pub adjustment: Option<(String, Change)>,
+    /// Whether the solver must refuse the scene, because it cannot express it.
+    pub refused: bool,
 }
 
 impl Run {
     /// A run of a variant as it stands.
     #[must_use]
     pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
-        Self { variant, solver, resolution, adjustment: None }
+        Self { variant, solver, resolution, adjustment: None, refused: false }
     }
 
     /// The run with a change of the scene.
@@ -223,6 +225,29 @@ pub struct Gate {
 }
 
 impl Gate {
+    /// A scene that a solver must refuse: the row is amber, with the solver's reason. The control makes a scene of it
+    /// that the solver can run, and then the row is red.
+    #[must_use]
+    pub fn refused(run: Run, quantity: &str, because: &'static str, control: Control) -> Self {
+        Self {
+            quantity: quantity.to_owned(),
+            unit: "1",
+            evidence: Evidence::Invariant,
+            source: "what the method is",
+            allowed: 0.0,
+            because,
+            runs: vec![Run { refused: true, ..run }],
+            measure: measure(|_| Err(Missing("refusal: the solver ran the scene".to_owned()))),
+            control,
+        }
+    }
+
+    /// Whether the solver must refuse the scene.
+    #[must_use]
+    pub fn is_refused(&self) -> bool {
+        self.runs.iter().any(|run| run.refused)
+    }
+
     /// Resolutions in words: one, or the first and the last of several.
     #[must_use]
     pub fn resolution(&self) -> String {

@@ -12,5 +12,6 @@ pub mod incline;
 pub mod measure;
 pub mod one_grain;
 pub mod registry;
+pub mod rigid_rows;
 pub mod solvers;
 pub mod verdict;

@@ -2,12 +2,14 @@
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
+use grainbench_rigid::solver::Rigid;
 use grainbench_scene::solver::Solver;
 
 /// Every solver, by name.
 #[must_use]
 pub fn all() -> Vec<Box<dyn Solver>> {
-    Convention::ALL.into_iter().map(|convention| Box::new(Dem::new(convention)) as Box<dyn Solver>).collect()
+    let dem = Convention::ALL.into_iter().map(|convention| Box::new(Dem::new(convention)) as Box<dyn Solver>);
+    dem.chain([Box::new(Rigid::new()) as Box<dyn Solver>]).collect()
 }
 
 /// The solver of a name.

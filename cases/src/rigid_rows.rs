@@ -1,0 +1,343 @@
+//! Rows of the solver `rigid`: one grain on a plane against the rigid answer, and what its errors are made of.
+//!
+//! rapier takes h = Δt/4 in a step Δt, with symplectic Euler; a contact is detected once a step and its points are then
+//! fixed on the bodies. Three errors follow, and nothing else is seen:
+//!
+//! ```text
+//! position     x is ahead of its velocities: (x − x_exact)/x_exact = h/t at constant acceleration
+//! lift-off     a contact point that turns with the grain rises by R(1 − cos ΩΔt) in a step, the load drops out and the
+//!              grain falls after it: at any moment friction lacks the impulse μ m |v_n| of that fall
+//! overlap      the pull towards zero overlap is soft, a spring of frequency f = 60 Hz at fixed walls: at rest
+//!              the overlap is δ = g_n/(2πf)², whatever Δt, and friction acts at the arm R − δ/2
+//! ```
+//!
+//! For the overlap: in rest the biased solve keeps the impulse P = m g_n h, P = (P + m δ b)/(1 + c), with
+//! b = ω/(hω + 2ζ) and c = b/(hω²), ω = 2πf; hence δ = g_n h c/b = g_n/ω². It is reached within about
+//! 2ζ/ω + 1/(hω²), which is longer the finer the step.
+
+use crate::bench::Bench;
+use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::incline::{more_friction, wrong_inertia};
+use crate::measure::slope;
+use crate::one_grain::{OneGrain, State, last};
+use crate::verdict::Evidence;
+use grainbench_rigid::settings::Settings;
+use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::solver::{Resolution, RunError};
+use std::f64::consts::TAU;
+
+/// The solver.
+const RIGID: &str = "rigid";
+/// The resolution of rows.
+pub const DEFAULT: Resolution = Resolution::substeps(8);
+/// Substeps of the ladder.
+const LADDER: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
+/// Substeps over which the order is fitted: so many that turning grains no longer lift off, so few that the overlap is
+/// reached early in the run.
+const FITTED: [u32; 4] = [16, 20, 24, 32];
+
+const RIGID_SOURCE: &str = "MPM 2000 eq. 25; 2001 eqs. 23-26";
+const ORDER_SOURCE: &str = "symplectic Euler is of first order in positions";
+
+/// A variant with the errors that are allowed at the default resolution, relative to the exact values at 1 s.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Variant of the scene.
+    pub variant: &'static str,
+    /// Whether the grain rolls without slip in the end, so that a wrong inertia is felt; friction is felt otherwise.
+    pub rolls: bool,
+    /// Displacement.
+    pub x: f64,
+    /// Velocity.
+    pub v: f64,
+    /// Spin.
+    pub omega: f64,
+}
+
+/// Sets the grain down just touching: a rigid contact has no static overlap to start from.
+fn touching(scene: &mut Scene) {
+    let axis = scene.dimension.count() - 1;
+    let grain = &mut scene.grains[0];
+    grain.position[axis] = grain.radius;
+}
+
+fn run(variant: &'static str, resolution: Resolution) -> Run {
+    Run::new(variant, RIGID, resolution).adjusted("touching", touching)
+}
+
+/// Overlap at rest under the scene's gravity (m).
+fn rest_overlap(grain: &OneGrain) -> f64 {
+    grain.onto / (TAU * Settings::default().wall_frequency).powi(2)
+}
+
+fn wrong(row: Row) -> Control {
+    if row.rolls {
+        Control::scene("the inertia of the other shape", wrong_inertia)
+    } else {
+        Control::scene("friction ×1.05", more_friction)
+    }
+}
+
+/// Displacement, velocity and spin at 1 s against the rigid answer.
+fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, because: [&'static str; 3]) -> Vec<Gate> {
+    let gate = |quantity: &str, unit, allowed, because, control, pick: fn(State) -> f64| Gate {
+        quantity: quantity.to_owned(),
+        unit,
+        evidence: Evidence::Analytic,
+        source: RIGID_SOURCE,
+        allowed,
+        because,
+        runs: vec![run(row.variant, DEFAULT)],
+        measure: measure(move |done| {
+            let (t, state) = last(&done[0])?;
+            let expected = pick(exact(&OneGrain::of(&done[0].scene), t));
+            Ok(Measured::new(pick(state), expected, expected))
+        }),
+        control,
+    };
+    vec![
+        gate("displacement at 1 s", "m", row.x, because[0], x_control, |state| state.x),
+        gate("velocity at 1 s", "m/s", row.v, because[1], wrong(row), |state| state.v),
+        gate("spin at 1 s", "rad/s", row.omega, because[2], wrong(row), |state| state.omega),
+    ]
+}
+
+/// Order of the displacement's error in the time step.
+fn order(row: Row, allowed: f64, because: &'static str, exact: fn(&OneGrain, f64) -> f64) -> Gate {
+    Gate {
+        quantity: "order in Δt of the displacement's error".to_owned(),
+        unit: "1",
+        evidence: Evidence::Convergence,
+        source: ORDER_SOURCE,
+        allowed,
+        because,
+        runs: FITTED.iter().map(|&substeps| run(row.variant, Resolution::substeps(substeps))).collect(),
+        measure: measure(move |done| {
+            let error = |done: &Done| {
+                let (t, state) = last(done)?;
+                let exact = exact(&OneGrain::of(&done.scene), t);
+                Ok((done.record.provenance.time_step, (state.x - exact) / exact))
+            };
+            let points: Result<Vec<(f64, f64)>, Missing> = done.iter().map(error).collect();
+            Ok(Measured::new(slope(&points?), 1.0, 1.0))
+        }),
+        control: wrong(row),
+    }
+}
+
+/// Rows of a grain released on a slope.
+#[must_use]
+pub fn inclines(rows: &[Row]) -> Vec<Gate> {
+    rows.iter().flat_map(|&row| incline(row)).collect()
+}
+
+fn incline(row: Row) -> Vec<Gate> {
+    const X: &str = "positions are ahead of their velocities by h/t = 5.2e-4, h = Δt/4 (symplectic Euler); where \
+                     turning lifts the contact point off, friction lacks the impulse of the fall";
+    const V: &str = "turning lifts the contact point off for parts of a step: friction lacks μ m |v_n|, which ends at finer \
+                     steps; what remains is rounding where it slips, the arm R − δ/2 where it rolls";
+    const OMEGA: &str = "as for the velocity, with more weight; what remains is the arm R − δ/2";
+    const ORDER: &str =
+        "fitted over steps without lift-off; the overlap at rest takes time to be reached, more the finer the step";
+    let mut gates = against(row, OneGrain::rigid_incline, wrong(row), [X, V, OMEGA]);
+    gates.push(order(row, 0.05, ORDER, |grain, t| {
+        if grain.sticks() { 0.5 * t * rolling(grain, t) } else { grain.rigid_incline(t).x }
+    }));
+    if row.rolls {
+        gates.push(final_velocity(row));
+    }
+    gates
+}
+
+/// Velocity of rolling with friction at the arm that rapier's overlap at rest leaves (m/s).
+fn rolling(grain: &OneGrain, t: f64) -> f64 {
+    grain.rolling_velocity(t, grain.radius - 0.5 * rest_overlap(grain))
+}
+
+/// What does not go away with the time step is the arm.
+fn final_velocity(row: Row) -> Gate {
+    Gate {
+        quantity: "velocity at 1 s, arm R − δ/2".to_owned(),
+        unit: "m/s",
+        evidence: Evidence::Analytic,
+        source: "v(1 + i(R/a)²) = g_t t with arm a = R − δ/2, δ = g_n/(2πf)² (derived beside the row)",
+        allowed: 3e-6,
+        because: "the overlap is reached within 2ζ/(2πf) = .05 s: a twentieth of the arm's effect",
+        runs: vec![run(row.variant, Resolution::substeps(32))],
+        measure: measure(|done| {
+            let (t, state) = last(&done[0])?;
+            let exact = rolling(&OneGrain::of(&done[0].scene), t);
+            Ok(Measured::new(state.v, exact, exact))
+        }),
+        control: wrong(row),
+    }
+}
+
+/// Rows of a grain set down with spin.
+#[must_use]
+pub fn backspins(rows: &[Row]) -> Vec<Gate> {
+    rows.iter().flat_map(|&row| backspin(row)).collect()
+}
+
+fn backspin(row: Row) -> Vec<Gate> {
+    const X: &str = "while RΩ² exceeds g the contact point lifts off faster than the grain can fall: friction starts a \
+                     part of a step late, and then acts in bursts";
+    const V: &str = "arm R − δ/2 and rounding";
+    let friction = Control::scene("friction ×1.05", more_friction);
+    against(row, OneGrain::rigid_backspin, friction, [X, V, V])
+}
+
+/// The error against the rigid answer over the ladder of substeps.
+///
+/// # Errors
+/// When a run fails.
+pub fn figure(bench: &Bench, rows: &[Row], exact: fn(&OneGrain, f64) -> State) -> Result<Figure, RunError> {
+    let mut curves = Vec::new();
+    for row in rows {
+        let mut points = Vec::new();
+        for substeps in LADDER {
+            let done = bench.run(&run(row.variant, Resolution::substeps(substeps)))?;
+            if let Ok((t, state)) = last(&done) {
+                let x = exact(&OneGrain::of(&done.scene), t).x;
+                points.push((f64::from(substeps), ((state.x - x) / x).abs()));
+            }
+        }
+        curves.push(Curve { label: row.variant.to_owned(), stroke: Stroke::MarkedLine, points });
+    }
+    let ends = [LADDER[0], LADDER[LADDER.len() - 1]].map(f64::from);
+    let small = Resolution::RIGID_STEP / f64::from(Resolution::RIGID_ITERATIONS);
+    curves.push(Curve {
+        label: "h/t".to_owned(),
+        stroke: Stroke::Dashed,
+        points: ends.iter().map(|&substeps| (substeps, small / substeps)).collect(),
+    });
+    Ok(Figure {
+        name: "rigid-substeps".to_owned(),
+        title: "rigid: error against the rigid answer".to_owned(),
+        caption: "A rigid-body engine has no compliance to pay for; what is left is its time step. Positions of symplectic \
+                  Euler are off by h/t (dashed), h being a quarter of a substep; above it, turning lifts contact points off."
+            .to_owned(),
+        drawing: Drawing::Graph(Graph {
+            x: Axis { label: "substeps in 1/60 s".to_owned(), logarithmic: true },
+            y: Axis { label: "|x − x_rigid| / x_rigid at 1 s".to_owned(), logarithmic: true },
+            curves,
+        }),
+    })
+}
+
+/// Restitution of a head-on impact.
+#[must_use]
+pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured, Missing>) -> Gate {
+    Gate {
+        quantity: "coefficient of restitution".to_owned(),
+        unit: "1",
+        evidence: Evidence::Analytic,
+        source: "damped oscillator whose dashpot may pull (derivation)",
+        allowed: 1e-12,
+        because: "rapier reverses the approach velocity times e once, at the end of the step of the impact: rounding",
+        runs: vec![Run::new(variant, RIGID, DEFAULT)],
+        measure: measure(move |done| measured(&done[0])),
+        control: Control::scene("damping ×1.05", |scene| {
+            scene.change_laws(|law| {
+                law.stiffness_damping *= 1.05;
+                law.normal_damping *= 1.05;
+            });
+        }),
+    }
+}
+
+/// A momentum that is kept to rounding.
+#[must_use]
+pub fn momentum(
+    variant: &'static str,
+    quantity: String,
+    worst: impl Fn(&Done) -> Result<Measured, Missing> + Send + Sync + 'static,
+) -> Gate {
+    Gate {
+        quantity,
+        unit: "kg m/s",
+        evidence: Evidence::Invariant,
+        source: "equal and opposite impulses",
+        allowed: 1e-12,
+        because: "rounding, in units of one grain's momentum",
+        runs: vec![Run::new(variant, RIGID, DEFAULT)],
+        measure: measure(move |done| worst(&done[0])),
+        control: Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9),
+    }
+}
+
+/// Angular momentum of an impact off centre.
+#[must_use]
+pub fn angular_momentum(
+    variant: &'static str,
+    worst: impl Fn(&Done) -> Result<Measured, Missing> + Send + Sync + 'static,
+) -> Gate {
+    Gate {
+        quantity: "angular momentum, worst".to_owned(),
+        unit: "kg m²/s",
+        evidence: Evidence::Invariant,
+        source: "equal and opposite impulses at one point",
+        allowed: 1.5e-3,
+        because: "normal and arms are those of the beginning of the step, and the grains have moved on when the impulse \
+                  acts: ∝ v Δt, in units of m v R",
+        runs: vec![Run::new(variant, RIGID, DEFAULT)],
+        measure: measure(move |done| worst(&done[0])),
+        control: Control::scene("the inertia of spheres", |scene| {
+            scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.8);
+        }),
+    }
+}
+
+/// Energy of a gas of elastic grains over some seconds, in place of a number of cycles.
+#[must_use]
+pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Result<Measured, Missing>) -> Gate {
+    let run = Run::new(variant, RIGID, DEFAULT).adjusted(&format!("{seconds} s"), move |scene| {
+        scene.duration = Duration::Seconds(seconds);
+    });
+    Gate {
+        quantity: format!("total energy over {seconds} s, worst"),
+        unit: "J",
+        evidence: Evidence::Invariant,
+        source: "conservation of energy",
+        allowed: 1.5e-2,
+        because: "impacts one at a time keep it to rounding; a disc that meets two others in one step is given back one \
+                  approach velocity after the other, and the second undoes a part of the first. It happens \
+                  once in this run: finer steps make it rarer, not smaller",
+        runs: vec![run],
+        measure: measure(move |done| worst(&done[0])),
+        control: Control::scene("dashpots of a hundredth of critical", |scene| {
+            let law = scene.laws[0].unwrap_or_default();
+            let rate = 2e-2 * (law.normal_stiffness / scene.grains[0].mass).sqrt();
+            scene.change_laws(|law| law.normal_damping = rate);
+        }),
+    }
+}
+
+/// A variant whose length is a number of cycles: `rigid` must say that it cannot run it.
+#[must_use]
+pub fn refuses_cycles(variant: &'static str) -> Gate {
+    Gate::refused(
+        Run::new(variant, RIGID, DEFAULT),
+        "refusal of a length in calculation cycles",
+        "a cycle is a fraction of the period of the contacts' springs, which rigid contacts do not have",
+        Control::scene("a length in seconds, walls at rest", |scene| {
+            scene.duration = Duration::Seconds(0.1);
+            scene.walls.iter_mut().for_each(|wall| wall.motion.phases.clear());
+        }),
+    )
+}
+
+/// A scene with periodic axes: `rigid` must say that it cannot run it.
+#[must_use]
+pub fn refuses_periodic_axes(variant: &'static str) -> Gate {
+    Gate::refused(
+        Run::new(variant, RIGID, DEFAULT),
+        "refusal of periodic axes",
+        "rapier has no periodic axes",
+        Control::scene("no box, a thousandth of a second", |scene| {
+            scene.domain = None;
+            scene.duration = Duration::Seconds(1e-3);
+        }),
+    )
+}

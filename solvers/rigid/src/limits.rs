@@ -1,0 +1,41 @@
+//! What a rigid-body engine cannot express, each with its reason.
+
+use grainbench_scene::effects::Effects;
+use grainbench_scene::motion::Moment;
+use grainbench_scene::scene::{Duration, Scene};
+
+/// Why the scene cannot be run, if it cannot.
+pub(crate) fn reason(scene: &Scene) -> Option<String> {
+    let effects = Effects::of(scene);
+    if effects.periodic {
+        return Some("rapier has no periodic axes".to_owned());
+    }
+    if scene.laws.iter().flatten().any(|law| law.cohesion != 0.0) {
+        return Some("rapier's contacts only push: it has no cohesion".to_owned());
+    }
+    if effects.rolling_resistance {
+        return Some("rapier has no resistance against rolling".to_owned());
+    }
+    if scene.laws.iter().flatten().any(|law| law.is_hertz() && law.normal_damping != 0.0) {
+        let reason = "a mass-proportional dashpot on a Hertz contact gives a restitution that depends on speed, which a rigid \
+                      contact cannot; `restitution` can be run";
+        return Some(reason.to_owned());
+    }
+    if matches!(scene.duration, Duration::Cycles(_)) {
+        return Some(
+            "its duration is a number of calculation cycles, whose length is a fraction of the period of the contacts' \
+             springs; rigid contacts have none. A duration in seconds can be run"
+                .to_owned(),
+        );
+    }
+    let in_cycles = |moment: Moment| matches!(moment, Moment::Cycle(cycle) if cycle > 0);
+    let wall = scene
+        .walls
+        .iter()
+        .find(|wall| wall.motion.phases.iter().any(|phase| in_cycles(phase.start) || in_cycles(phase.stop)))?;
+    Some(format!(
+        "the motion of wall `{}` starts or stops at a calculation cycle, whose length is a fraction of the period of the \
+         contacts' springs; rigid contacts have none. Moments in seconds can be run",
+        wall.name
+    ))
+}

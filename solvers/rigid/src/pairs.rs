@@ -1,0 +1,137 @@
+//! Friction and restitution of every pair, from the scene's laws.
+
+use grainbench_scene::scene::{ContactLaw, Scene};
+
+/// One side of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// A grain, by place in the scene.
+    Grain(usize),
+    /// A wall, by place in the scene.
+    Wall(usize),
+}
+
+const WALL: u128 = 1 << 64;
+
+impl Side {
+    /// As a number that an engine carries along with a shape.
+    pub(crate) const fn tag(self) -> u128 {
+        match self {
+            Self::Grain(at) => at as u128,
+            Self::Wall(at) => WALL | at as u128,
+        }
+    }
+
+    /// From that number.
+    pub(crate) const fn of_tag(tag: u128) -> Self {
+        let at = tag as u64 as usize;
+        if tag & WALL == 0 { Self::Grain(at) } else { Self::Wall(at) }
+    }
+}
+
+/// What a rigid contact has of a law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Coefficients {
+    /// Friction μ.
+    pub(crate) friction: f64,
+    /// Coefficient of restitution e.
+    pub(crate) restitution: f64,
+}
+
+/// Materials, masses and laws of a scene.
+#[derive(Clone, Debug)]
+pub(crate) struct Pairs {
+    laws: Vec<Option<ContactLaw>>,
+    materials: usize,
+    grains: Vec<(u16, f64)>,
+    walls: Vec<u16>,
+}
+
+impl Pairs {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        Self {
+            laws: scene.laws.clone(),
+            materials: scene.materials.len(),
+            grains: scene.grains.iter().map(|grain| (grain.material, grain.mass)).collect(),
+            walls: scene.walls.iter().map(|wall| wall.material).collect(),
+        }
+    }
+
+    /// Material and inverse mass.
+    fn side(&self, side: Side) -> (u16, f64) {
+        match side {
+            Side::Grain(at) => (self.grains[at].0, 1.0 / self.grains[at].1),
+            Side::Wall(at) => (self.walls[at], 0.0),
+        }
+    }
+
+    /// The coefficients of a pair, if the scene has a law for it.
+    pub(crate) fn between(&self, one: Side, other: Side) -> Option<Coefficients> {
+        let ((a, inverse_a), (b, inverse_b)) = (self.side(one), self.side(other));
+        let law = self.laws[usize::from(a) * self.materials + usize::from(b)].as_ref()?;
+        Some(Coefficients { friction: law.friction, restitution: restitution(law, 1.0 / (inverse_a + inverse_b)) })
+    }
+
+    /// The coefficients that all pairs of the scene share; nothing where pairs differ.
+    pub(crate) fn shared(&self) -> Option<Coefficients> {
+        let mut kinds: Vec<(u16, f64)> = self.grains.clone();
+        kinds.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        kinds.dedup();
+        // Many sizes: some pair differs wherever there is damping, and asking each is quadratic.
+        if kinds.len() > MOST_KINDS {
+            return None;
+        }
+        let of_kind = |kind: &(u16, f64)| self.grains.iter().position(|grain| grain == kind);
+        let kinds: Vec<usize> = kinds.iter().filter_map(of_kind).collect();
+        let several = self.grains.len() > 1;
+        let grain_pairs = kinds.iter().enumerate().flat_map(|(at, &a)| {
+            kinds[at..].iter().map(move |&b| (Side::Grain(a), Side::Grain(b))).filter(move |_| several)
+        });
+        let walls = kinds.iter().flat_map(|&a| (0..self.walls.len()).map(move |w| (Side::Grain(a), Side::Wall(w))));
+        let mut all = grain_pairs.chain(walls).map(|(one, other)| self.between(one, other));
+        // A scene without any pair never asks.
+        let Some(first) = all.next() else { return Some(Coefficients { friction: 0.0, restitution: 0.0 }) };
+        let first = first?;
+        all.all(|next| next == Some(first)).then_some(first)
+    }
+}
+
+/// Kinds of grains, by material and mass, up to which pairs are asked one by one.
+const MOST_KINDS: usize = 16;
+
+/// Coefficient of restitution of the spring and dashpot that a law stands for: e = exp(−πζ/√(1−ζ²)), with the law's own
+/// damping ratio ζ and, for linear springs, c/(2√(k_n m)), c = β k_n + γ_n m for the effective mass m of the pair (the
+/// dashpot may pull until the overlap is gone); 1 without damping, 0 from critical damping on.
+fn restitution(law: &ContactLaw, mass: f64) -> f64 {
+    let viscosity = law.stiffness_damping * law.normal_stiffness + law.normal_damping * mass;
+    let linear = if viscosity == 0.0 { 0.0 } else { viscosity / (2.0 * (law.normal_stiffness * mass).sqrt()) };
+    let ratio = law.damping_ratio + linear;
+    if ratio == 0.0 {
+        return 1.0;
+    }
+    if ratio < 1.0 { (-std::f64::consts::PI * ratio / (1.0 - ratio * ratio).sqrt()).exp() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tags_tell_grains_from_walls() {
+        for side in [Side::Grain(0), Side::Wall(0), Side::Grain(70_000), Side::Wall(3)] {
+            assert_eq!(Side::of_tag(side.tag()), side);
+        }
+    }
+
+    #[test]
+    fn restitution_of_a_damping_ratio() {
+        // k m* = 1, so that ζ = c/2.
+        let law = ContactLaw { normal_stiffness: 2.0, normal_damping: 0.4, ..ContactLaw::default() };
+        let expected = (-std::f64::consts::PI * 0.1 / 0.99_f64.sqrt()).exp();
+        assert!((restitution(&law, 0.5) - expected).abs() < 1e-15);
+        let same = ContactLaw { stiffness_damping: 0.1, normal_damping: 0.0, ..law };
+        assert!((restitution(&same, 0.5) - expected).abs() < 1e-15);
+        assert_eq!(restitution(&ContactLaw { normal_damping: 0.0, ..law }, 0.5), 1.0);
+        assert_eq!(restitution(&ContactLaw { normal_damping: 40.0, ..law }, 0.5), 0.0);
+    }
+}

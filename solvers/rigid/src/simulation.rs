@@ -1,0 +1,241 @@
+//! Steps an engine, moves walls, finds out when a run breaks, and shows the state at a step.
+
+use crate::engine::{Engine, Moving, Placement, Stepping, Touch};
+use crate::pairs::{Pairs, Side};
+use grainbench_scene::overlap::distance;
+use grainbench_scene::record::{ContactState, Cost, GrainState, Look, Partner, Snapshot, WallState};
+use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
+use grainbench_scene::solver::{Broken, Cause};
+use nalgebra::Vector3;
+
+/// A friction impulse of at least this part of Coulomb's limit slips.
+const AT_LIMIT: f64 = 1.0 - 1e-9;
+
+/// A run.
+pub(crate) struct Simulation<'a> {
+    scene: &'a Scene,
+    stepping: Stepping,
+    engine: Box<dyn Engine>,
+    moving: Vec<usize>,
+    state: Vec<Moving>,
+    /// Rotation in the plane since the start, whole turns included (rad).
+    angles: Vec<f64>,
+    step: u64,
+    /// What it has cost so far, wall-clock time aside.
+    pub(crate) cost: Cost,
+}
+
+impl<'a> Simulation<'a> {
+    pub(crate) fn new(scene: &'a Scene, stepping: Stepping) -> Self {
+        let pairs = Pairs::of(scene);
+        let engine: Box<dyn Engine> = match scene.dimension {
+            Dimension::Two => Box::new(crate::plane::world::World::new(scene, pairs, &stepping)),
+            Dimension::Three => Box::new(crate::solid::world::World::new(scene, pairs, &stepping)),
+        };
+        let state: Vec<Moving> = (0..scene.grains.len()).map(|at| engine.grain(at)).collect();
+        Self {
+            scene,
+            stepping,
+            engine,
+            moving: (0..scene.walls.len()).filter(|&at| scene.walls[at].motion.is_moving()).collect(),
+            angles: vec![0.0; state.len()],
+            state,
+            step: 0,
+            cost: Cost::default(),
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.step as f64 * self.stepping.time_step
+    }
+
+    /// Takes a step.
+    ///
+    /// # Errors
+    /// When a grain is nowhere, or has moved so far that contacts may have been missed.
+    pub(crate) fn advance(&mut self) -> Result<(), Box<Broken>> {
+        self.step += 1;
+        let time = self.time();
+        let place = |&wall: &usize| {
+            let motion = &self.scene.walls[wall].motion;
+            let displacement = motion.displacement(time, self.stepping.time_step);
+            Placement { wall, centre: motion.centre + displacement.translation, rotation: displacement.rotation }
+        };
+        let walls: Vec<Placement> = self.moving.iter().map(place).collect();
+        self.engine.step(&walls);
+        for at in 0..self.state.len() {
+            let now = self.engine.grain(at);
+            self.check(at, &now)?;
+            if self.scene.dimension == Dimension::Two {
+                let turned = now.spin.z * self.stepping.time_step;
+                self.angles[at] += unwrapped(now.orientation - self.state[at].orientation, turned);
+            }
+            self.state[at] = now;
+        }
+        let (tested, solved) = self.engine.counts();
+        self.cost.steps += 1;
+        self.cost.particle_steps += self.state.len() as u64;
+        self.cost.pair_tests += tested;
+        self.cost.contact_evaluations += solved * self.stepping.iterations as u64;
+        Ok(())
+    }
+
+    fn check(&self, at: usize, now: &Moving) -> Result<(), Box<Broken>> {
+        let radius = self.scene.grains[at].radius;
+        let moved = (now.position - self.state[at].position).norm();
+        let finite = [now.position, now.velocity, now.spin].iter().flatten().all(|value: &f64| value.is_finite());
+        let cause = if !finite {
+            Cause::NotFinite
+        } else if moved > radius {
+            // Contacts are looked for once a step and only a little ahead: farther than this they may be missed.
+            Cause::Runaway { moved, radius }
+        } else {
+            return Ok(());
+        };
+        Err(Box::new(Broken {
+            time: self.time(),
+            step: self.step,
+            grain: at as u32 + 1,
+            position: self.state[at].position,
+            cause,
+            time_step: self.stepping.time_step,
+            // Rigid contacts have no period.
+            critical: f64::INFINITY,
+            advice: match cause {
+                Cause::Runaway { .. } => format!("{:.0} times as many substeps would do", (moved / radius).ceil()),
+                Cause::NotFinite => "more substeps may help".to_owned(),
+            },
+        }))
+    }
+
+    /// The state now: forces are impulses of the last step divided by its length.
+    pub(crate) fn look(&self) -> Look {
+        let displaced: Vec<WallShape> = self.scene.walls.iter().map(|wall| self.shape(wall)).collect();
+        let mut contacts: Vec<ContactState> =
+            self.engine.touches().iter().filter_map(|touch| self.contact(touch, &displaced)).collect();
+        let order = |contact: &ContactState| match contact.partner {
+            Partner::Grain(id) => (contact.grain, 0, id),
+            Partner::Wall(at) => (contact.grain, 1, u32::from(at)),
+        };
+        contacts.sort_by_key(order);
+        let mut grains: Vec<GrainState> = (0..self.state.len()).map(|at| self.grain(at)).collect();
+        let mut walls: Vec<WallState> =
+            self.scene.walls.iter().zip(&displaced).map(|(wall, shape)| wall_state(wall, shape)).collect();
+        for contact in &contacts {
+            let force = contact.shear_force - contact.normal * contact.normal_force;
+            push(&mut grains[contact.grain as usize - 1], force, contact.point);
+            match contact.partner {
+                Partner::Grain(id) => push(&mut grains[id as usize - 1], -force, contact.point),
+                Partner::Wall(at) => walls[usize::from(at)].force -= force,
+            }
+        }
+        let bounds = bounds(self.scene, &grains);
+        Look {
+            snapshot: Snapshot {
+                step: self.step,
+                time: self.time(),
+                bounds,
+                periodic: [false; 3],
+                grains,
+                contacts,
+                walls,
+            },
+            elastic_energy: 0.0,
+        }
+    }
+
+    fn shape(&self, wall: &Wall) -> WallShape {
+        let motion = &wall.motion;
+        let displacement = motion.displacement(self.time(), self.stepping.time_step);
+        let at = |point| motion.moved(point, &displacement);
+        let turned = |direction| motion.turned(direction, &displacement);
+        match wall.shape {
+            WallShape::Plane { point, normal } => WallShape::Plane { point: at(point), normal: turned(normal) },
+            WallShape::Segment { ends } => WallShape::Segment { ends: ends.map(at) },
+            WallShape::Rectangle { corner, edges } => {
+                WallShape::Rectangle { corner: at(corner), edges: edges.map(turned) }
+            }
+        }
+    }
+
+    fn grain(&self, at: usize) -> GrainState {
+        let (start, now) = (&self.scene.grains[at], &self.state[at]);
+        GrainState {
+            id: at as u32 + 1,
+            material: start.material,
+            radius: start.radius,
+            mass: start.mass,
+            position: now.position,
+            velocity: now.velocity,
+            spin: now.spin,
+            angle: self.angles[at],
+            force: Vector3::zeros(),
+            torque: Vector3::zeros(),
+        }
+    }
+
+    /// A contact as seen from its grain, or from the grain that comes first; overlap is that of the present positions.
+    fn contact(&self, touch: &Touch, walls: &[WallShape]) -> Option<ContactState> {
+        let (grain, other, sign) = match touch.sides {
+            [Side::Grain(a), Side::Grain(b)] if a > b => (b, Side::Grain(a), -1.0),
+            [Side::Grain(a), other] => (a, other, 1.0),
+            [other, Side::Grain(b)] => (b, other, -1.0),
+            [Side::Wall(_), Side::Wall(_)] => return None,
+        };
+        let radius = self.scene.grains[grain].radius;
+        let position = self.state[grain].position;
+        let (partner, overlap) = match other {
+            Side::Grain(b) => {
+                let gap = (self.state[b].position - position).norm() - radius - self.scene.grains[b].radius;
+                (Partner::Grain(b as u32 + 1), -gap)
+            }
+            Side::Wall(at) => (Partner::Wall(at as u16), radius - distance(position, &walls[at])),
+        };
+        let normal = touch.normal * sign;
+        let limit = touch.friction * touch.push;
+        Some(ContactState {
+            grain: grain as u32 + 1,
+            partner,
+            point: position + normal * (radius - 0.5 * overlap),
+            normal,
+            overlap,
+            normal_force: touch.push / self.stepping.time_step,
+            shear_force: touch.shear * (sign / self.stepping.time_step),
+            slipping: limit > 0.0 && touch.shear.norm() >= AT_LIMIT * limit,
+        })
+    }
+}
+
+/// The turn that differs from `wrapped` by whole turns and is nearest to `expected`.
+fn unwrapped(wrapped: f64, expected: f64) -> f64 {
+    wrapped + ((expected - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU
+}
+
+fn push(grain: &mut GrainState, force: Vector3<f64>, point: Vector3<f64>) {
+    grain.force += force;
+    grain.torque += (point - grain.position).cross(&force);
+}
+
+fn wall_state(wall: &Wall, shape: &WallShape) -> WallState {
+    let (corners, infinite) = match *shape {
+        WallShape::Plane { point, normal } => (vec![point, normal], true),
+        WallShape::Segment { ends } => (ends.to_vec(), false),
+        WallShape::Rectangle { corner, edges: [u, v] } => (vec![corner, corner + u, corner + u + v, corner + v], false),
+    };
+    WallState { name: wall.name.clone(), corners, infinite, force: Vector3::zeros() }
+}
+
+fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {
+    if let Some(domain) = scene.domain {
+        return (domain.low, domain.high);
+    }
+    let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    let (mut low, mut high) = grains.iter().fold(start, |(low, high), grain| {
+        let reach = Vector3::repeat(grain.radius);
+        (low.inf(&(grain.position - reach)), high.sup(&(grain.position + reach)))
+    });
+    if scene.dimension == Dimension::Two {
+        (low.z, high.z) = (-0.5, 0.5);
+    }
+    (low, high)
+}
