@@ -1,0 +1,139 @@
+//! A solitary wave in a chain of Hertz spheres.
+
+use crate::bench::Bench;
+use crate::case::{Case, PLAIN, Rung, fraction};
+use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::measure::slope;
+use crate::verdict::Evidence;
+use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::solver::{Resolution, RunError};
+use std::f64::consts::PI;
+
+const LADDER: &[Rung] = &[fraction("dt=.04", 0.04), fraction("dt=.02", 0.02)];
+/// The discrete chain's coefficient.
+const COEFFICIENT: f64 = 0.688_67;
+/// Speeds of the striker (m/s).
+const SPEEDS: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
+/// Beads between the two contacts that are watched.
+const BEADS: f64 = 40.0;
+
+pub(crate) static CASE: Case = Case {
+    name: "hertz-chain",
+    title: "A solitary wave in a chain of spheres",
+    claim: "A pulse in a chain of touching Hertz spheres travels at a speed ∝ F^{1/6} with the coefficient of the discrete \
+            chain.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "One dimension, no friction, no damping. A wrong E* changes speed and force together and is seen in the \
+               coefficient only by its cube root.",
+    ladder: LADDER,
+    default_rung: LADDER[1],
+    gates,
+    figures,
+};
+
+/// A strike at a speed, for as long as the wave takes. The step follows the stiffness at the wave's own overlap, a
+/// fraction of a hundredth of R: Δt ∝ v^{-1/5}.
+fn strike(speed: f64) -> Run {
+    let resolution = Resolution::CriticalFraction(0.02 * speed.powf(-0.2));
+    Run::new(PLAIN, "dem", resolution).adjusted(&format!("striker at {speed} m/s"), move |scene| {
+        if let Some(striker) = scene.grains.last_mut() {
+            striker.velocity.x = speed;
+        }
+        if let Duration::Seconds(duration) = scene.duration {
+            scene.duration = Duration::Seconds(4.0 * duration * speed.powf(-0.2));
+        }
+    })
+}
+
+/// When and how high a force peaks: the parabola through the highest sample and its neighbours.
+fn peak(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
+    let (time, values) = (&done.series().time, done.column(column)?);
+    let at = (1..values.len() - 1).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(1);
+    let (left, top, right) = (values[at - 1], values[at], values[at + 1]);
+    let bend = left - 2.0 * top + right;
+    let shift = if bend < 0.0 { 0.5 * (left - right) / bend } else { 0.0 };
+    Ok((time[at] + shift * (time[at] - time[at - 1]), top - 0.25 * (left - right) * shift))
+}
+
+/// Speed of the wave (m/s) and its force (N).
+fn wave(done: &Done) -> Result<(f64, f64), Missing> {
+    let (near, far) = (peak(done, "near.normal_force")?, peak(done, "far.normal_force")?);
+    let distance = BEADS * 2.0 * done.scene.grains[0].radius;
+    Ok((distance / (far.0 - near.0), 0.5 * (near.1 + far.1)))
+}
+
+/// (2E/(2Rρ^{3/2}(1−ν²)))^{1/3}, with E/(1−ν²) = 2E* between equal spheres.
+fn scale(scene: &Scene) -> f64 {
+    let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
+    let grain = &scene.grains[0];
+    let density = grain.mass / (4.0 / 3.0 * PI * grain.radius.powi(3));
+    (4.0 * law.effective_modulus / (2.0 * grain.radius * density.powf(1.5))).cbrt()
+}
+
+fn gates() -> Vec<Gate> {
+    let exponent = Gate {
+        quantity: "exponent of the speed in the force".to_owned(),
+        unit: "1",
+        evidence: Evidence::Analytic,
+        source: "scaling of F = kδ^{3/2} (derivation)",
+        allowed: 1e-3,
+        because: "discretisation of the pulse, the same at every speed but for rounding; relative to 1/6",
+        runs: SPEEDS.map(strike).to_vec(),
+        measure: measure(|done| {
+            let points: Result<Vec<(f64, f64)>, Missing> =
+                done.iter().map(|done| wave(done).map(|(speed, force)| (force, speed))).collect();
+            Ok(Measured::new(slope(&points?), 1.0 / 6.0, 1.0 / 6.0))
+        }),
+        control: Control::scene("a dashpot of γ = 2000/s, which does not scale", |scene| {
+            scene.change_laws(|law| law.normal_damping = 2000.0);
+        }),
+    };
+    let coefficient = Gate {
+        quantity: "coefficient of the speed".to_owned(),
+        unit: "1",
+        evidence: Evidence::Analytic,
+        source: "travelling wave of the discrete chain; Nesterenko's long-wave limit is .68024",
+        allowed: 1e-3,
+        because: "discretisation of the pulse; the long-wave limit is 1.2 % off",
+        runs: vec![strike(1.0)],
+        measure: measure(|done| {
+            let (speed, force) = wave(&done[0])?;
+            Ok(Measured::new(speed / (scale(&done[0].scene) * force.powf(1.0 / 6.0)), COEFFICIENT, COEFFICIENT))
+        }),
+        control: Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.effective_modulus *= 1.01)),
+    };
+    vec![exponent, coefficient]
+}
+
+fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let mut measured = Vec::new();
+    for speed in SPEEDS {
+        let done = bench.run(&strike(speed))?;
+        if let Ok((speed, force)) = wave(&done) {
+            measured.push((force, speed));
+        }
+    }
+    let scale = scale(&bench.scene(&strike(1.0))?);
+    let line = |coefficient: f64| -> Vec<(f64, f64)> {
+        let ends = [measured.first(), measured.last()];
+        ends.into_iter().flatten().map(|(force, _)| (*force, coefficient * scale * force.powf(1.0 / 6.0))).collect()
+    };
+    let (discrete, long_wave) = (line(COEFFICIENT), line(0.680_24));
+    let curve = |label: &str, stroke, points| Curve { label: label.to_owned(), stroke, points };
+    Ok(vec![Figure {
+        name: "speed".to_owned(),
+        title: "Speed of the solitary wave".to_owned(),
+        caption: "Against the force of the wave itself; steel beads of 20 mm.".to_owned(),
+        drawing: Drawing::Graph(Graph {
+            x: Axis { label: "peak force F (N)".to_owned(), logarithmic: true },
+            y: Axis { label: "speed V (m/s)".to_owned(), logarithmic: true },
+            curves: vec![
+                curve("dem", Stroke::Markers, measured),
+                curve("discrete chain, .68867", Stroke::Dashed, discrete),
+                curve("long-wave limit, .68024", Stroke::Dashed, long_wave),
+            ],
+        }),
+    }])
+}
