@@ -1,5 +1,7 @@
 //! What rapier makes of scenes whose answer is known, and what its errors are made of.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use grainbench_rigid::settings::Settings;
 use grainbench_rigid::solver::Rigid;
 use grainbench_scene::record::{Cost, Partner, Record};
