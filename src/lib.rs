@@ -1,6 +1,11 @@
 //! grainbench: how far to trust a solver of granular simulations, and what that trust costs.
 //!
-//! This façade is what a solver author uses; the crates behind it are for reading.
+//! This façade is what a solver author uses; the crates behind it are for reading. [`judge`] gives a solver of one's own
+//! the gates of the cases, [`conform`] the properties that any solver owes; `examples/own_solver.rs` shows a whole solver.
+
+pub mod own;
+
+pub use own::{Judgement, conform, judge};
 
 pub use grainbench_cases as cases;
 pub use grainbench_dem as dem;

@@ -8,6 +8,7 @@ use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::RunError;
@@ -60,6 +61,7 @@ fn gates() -> Vec<Gate> {
         quantity: format!("velocity of bead {n} at 20/ω₀"),
         unit: "m/s",
         evidence: Evidence::Analytic,
+        scope: Scope::AnySolver,
         source: SOURCE,
         allowed: 4e-4,
         because: "numerical dispersion of central differences at this step, in units of V",
@@ -71,6 +73,7 @@ fn gates() -> Vec<Gate> {
         quantity: "order in Δt, rms over the six beads".to_owned(),
         unit: "1",
         evidence: Evidence::Convergence,
+        scope: Scope::Named,
         source: "central differences are of second order",
         allowed: 0.05,
         because: "fitted over three halvings",
@@ -86,6 +89,7 @@ fn gates() -> Vec<Gate> {
         quantity: "mean force on the driver over the last half".to_owned(),
         unit: "N",
         evidence: Evidence::Analytic,
+        scope: Scope::AnySolver,
         source: "impedance of the chain, V√(km)",
         allowed: 1e-3,
         because: "the force rings about the impedance with J₀ and J₁ of 2ω₀t; the mean keeps a part",

@@ -4,6 +4,7 @@ use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::{ContactLaw, Scene};
 use grainbench_scene::solver::RunError;
@@ -87,6 +88,7 @@ fn elastic() -> Vec<Gate> {
     let gate = |variant: &'static str, quantity: &str, unit, of: fn(&Done) -> Result<Measured, Missing>| Gate {
         quantity: quantity.to_owned(),
         unit,
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: SOURCE,
         allowed: 1e-6,
@@ -133,6 +135,7 @@ fn restitution() -> Vec<Gate> {
     let gate = |variant: &'static str, restitution: f64| Gate {
         quantity: format!("rebound velocity over impact velocity, e = {restitution}"),
         unit: "1",
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: SOURCE,
         allowed: 2e-4,
@@ -178,6 +181,7 @@ fn oblique() -> Vec<Gate> {
     let gate = |variant: &'static str, degrees: f64, spin: bool| Gate {
         quantity: format!("{} at {degrees}°", if spin { "spin after impact" } else { "tangential restitution" }),
         unit: if spin { "rad/s" } else { "1" },
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: SOURCE,
         allowed: 2e-5,

@@ -5,6 +5,7 @@ use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::one_grain::{OneGrain, State, course};
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::RunError;
@@ -59,6 +60,7 @@ fn gates() -> Vec<Gate> {
     let gate = |quantity: &str, factor: f64, control| Gate {
         quantity: quantity.to_owned(),
         unit: "m/s²",
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: SOURCE,
         allowed: 1e-6,

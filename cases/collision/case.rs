@@ -6,6 +6,7 @@ use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
 use crate::rigid_rows;
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError};
@@ -102,6 +103,7 @@ fn restitution(variant: &'static str, solver: &'static str) -> Gate {
         quantity: "coefficient of restitution".to_owned(),
         unit: "1",
         evidence: Evidence::Analytic,
+        scope: Scope::Named,
         source: "damped oscillator with this release (derivation)",
         allowed: 3e-4,
         because: "release falls within a step and the dashpot is half a step late: first order in Δt",
@@ -126,6 +128,7 @@ fn convergence(variant: &'static str, solver: &'static str) -> Gate {
         quantity: "order in Δt of the restitution's error".to_owned(),
         unit: "1",
         evidence: Evidence::Convergence,
+        scope: Scope::Named,
         source: "dashpot half a step late: first order (derivation)",
         allowed: 0.15,
         because: "fitted over 16 steps: release falls anywhere within a step, which scatters the error by its own size",
@@ -149,6 +152,7 @@ fn momentum() -> Vec<Gate> {
         quantity: format!("momentum along {}, worst", ["x", "y"][axis]),
         unit: "kg m/s",
         evidence: Evidence::Invariant,
+        scope: Scope::AnySolver,
         source: "equal and opposite forces",
         allowed: 1e-12,
         because: "rounding, in units of one grain's momentum",
@@ -177,6 +181,7 @@ fn angular_momentum() -> Vec<Gate> {
         quantity: "angular momentum, arm R − overlap/2, worst".to_owned(),
         unit: "kg m²/s",
         evidence: Evidence::Invariant,
+        scope: Scope::Named,
         source: "tangential forces act at one point (derivation)",
         allowed: 1e-12,
         because: "rounding, in units of m v R",
@@ -192,6 +197,7 @@ fn angular_momentum() -> Vec<Gate> {
         quantity: "change of angular momentum, arm R, against Σ overlap × F_t Δt".to_owned(),
         unit: "kg m²/s",
         evidence: Evidence::Analytic,
+        scope: Scope::Named,
         source: "arms R on centres R₁ + R₂ − δ apart (derivation)",
         allowed: 1e-12,
         because: "rounding, in units of m v R",

@@ -5,6 +5,7 @@ use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::rigid_rows;
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Duration;
 use grainbench_scene::solver::RunError;
@@ -52,6 +53,7 @@ fn gates() -> Vec<Gate> {
         quantity: "total energy over 10⁵ steps, worst".to_owned(),
         unit: "J",
         evidence: Evidence::Invariant,
+        scope: Scope::AnySolver,
         source: "conservation of energy",
         allowed: 1e-4,
         because: "the kink of the force where contacts begin and end, at a hundredth of the critical step",
@@ -67,6 +69,7 @@ fn gates() -> Vec<Gate> {
         quantity: "number of discs in the box in the end".to_owned(),
         unit: "1",
         evidence: Evidence::Invariant,
+        scope: Scope::AnySolver,
         source: "walls keep the discs in",
         allowed: 0.0,
         because: "a count",

@@ -5,6 +5,7 @@ use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError};
@@ -76,6 +77,7 @@ fn gates() -> Vec<Gate> {
     let exponent = Gate {
         quantity: "exponent of the speed in the force".to_owned(),
         unit: "1",
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: "scaling of F = kδ^{3/2} (derivation)",
         allowed: 1e-3,
@@ -93,6 +95,7 @@ fn gates() -> Vec<Gate> {
     let coefficient = Gate {
         quantity: "coefficient of the speed".to_owned(),
         unit: "1",
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: "travelling wave of the discrete chain; Nesterenko's long-wave limit is .68024",
         allowed: 1e-3,

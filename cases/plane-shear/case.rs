@@ -5,6 +5,7 @@ use crate::case::{Case, PLAIN, Rung};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::rigid_rows;
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_reference::{StoredRun, ThermoRow};
 use grainbench_scene::solver::{Resolution, RunError};
@@ -56,6 +57,7 @@ fn gates() -> Vec<Gate> {
             quantity: "kinetic energy of translation over 2000 steps, worst".to_owned(),
             unit: "1",
             evidence: Evidence::OtherCode,
+            scope: Scope::Named,
             source: SOURCE,
             allowed: 1e-11,
             because: "order of sums; one ulp in one position is worth 2e-13 and LAMMPS prints 15 digits; relative to the \

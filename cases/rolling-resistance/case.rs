@@ -6,6 +6,7 @@ use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::incline::wrong_inertia;
 use crate::one_grain::{OneGrain, course};
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::RunError;
@@ -48,6 +49,7 @@ fn flat(variant: &'static str) -> Vec<Gate> {
     let gate = |quantity: &str, control, of_spin: bool| Gate {
         quantity: quantity.to_owned(),
         unit: "m/s²",
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: SOURCE,
         allowed: 1e-6,
@@ -92,6 +94,7 @@ fn threshold(variant: &'static str) -> Vec<Gate> {
     let gate = |quantity: &str, factor: f64, control| Gate {
         quantity: quantity.to_owned(),
         unit: "m/s²",
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: "at rest iff tan θ ≤ μ_r, else (derivation) dv/dt = g (sin θ − μ_r cos θ)/(1 + i)",
         allowed: 2e-5,

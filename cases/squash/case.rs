@@ -5,6 +5,7 @@ use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::rigid_rows;
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::solver::RunError;
@@ -66,6 +67,7 @@ fn gates() -> Vec<Gate> {
                 quantity: format!("normal force at {contact}, cycle {cycle}"),
                 unit: "N",
                 evidence: Evidence::Analytic,
+                scope: Scope::Named,
                 source: "Cundall & Strack 1979, eqs. 1-7",
                 allowed: 1e-12,
                 because: "rounding of positions of order R, in units of k v Δt with v Δt = 1e-3 R",
@@ -96,6 +98,7 @@ fn gates() -> Vec<Gate> {
         quantity: "normal force at A over 200 cycles, worst".to_owned(),
         unit: "N",
         evidence: Evidence::Analytic,
+        scope: Scope::Named,
         source: "closed solution of the paper's recurrence (derivation)",
         allowed: 1e-10,
         because: "rounding adds up over 200 cycles; in units of k v Δt",

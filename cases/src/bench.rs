@@ -2,6 +2,7 @@
 
 use crate::case::Case;
 use crate::gate::{Control, Done, Gate, Run, Wrong};
+use crate::scope::Scope;
 use crate::solvers;
 use crate::verdict::{self, Outcome, Verdict};
 use grainbench_dem::convention::Convention;
@@ -13,9 +14,10 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 type Slot = Arc<OnceLock<Result<Done, RunError>>>;
 
-/// The workbench of one case.
+/// The workbench of one case: of the solvers that its gates name, or of one solver in place of them all.
 pub struct Bench {
     case: &'static Case,
+    stranger: Option<Arc<dyn Solver>>,
     /// By [`Run::key`].
     runs: Mutex<BTreeMap<String, (Run, Slot)>>,
 }
@@ -24,7 +26,24 @@ impl Bench {
     /// A bench without runs.
     #[must_use]
     pub fn new(case: &'static Case) -> Self {
-        Self { case, runs: Mutex::new(BTreeMap::new()) }
+        Self { case, stranger: None, runs: Mutex::new(BTreeMap::new()) }
+    }
+
+    /// A bench on which one solver takes the place of every solver that the gates name. It is given their resolutions,
+    /// to be read as it sees fit.
+    #[must_use]
+    pub fn with_solver(case: &'static Case, solver: Arc<dyn Solver>) -> Self {
+        Self { stranger: Some(solver), ..Self::new(case) }
+    }
+
+    /// The gates of this bench: all of the case, or those that are fair to a stranger.
+    #[must_use]
+    pub fn gates(&self) -> Vec<Gate> {
+        let mut gates = (self.case.gates)();
+        if self.stranger.is_some() {
+            gates.retain(|gate| gate.scope == Scope::AnySolver);
+        }
+        gates
     }
 
     /// The case.
@@ -57,14 +76,14 @@ impl Bench {
     #[must_use]
     pub fn judge(&self, gate: &Gate) -> Verdict {
         let done: Result<Vec<Done>, RunError> = gate.runs.iter().map(|run| self.run(run)).collect();
-        conclude(self.case, gate, done)
+        self.conclude(gate, done)
     }
 
     /// Feeds a gate with its wrong physics.
     #[must_use]
     pub fn control(&self, gate: &Gate) -> verdict::Control {
         let done = gate.runs.iter().map(|run| self.simulate(run, Some(&gate.control))).collect();
-        let verdict = conclude(self.case, gate, done);
+        let verdict = self.conclude(gate, done);
         verdict::Control {
             case: verdict.case,
             variant: verdict.variant,
@@ -78,25 +97,21 @@ impl Bench {
     }
 
     fn simulate(&self, run: &Run, control: Option<&Control>) -> Result<Done, RunError> {
-        let unusable = |reason: String| RunError::Unsupported { solver: run.solver.to_owned(), reason };
-        let mut scene = self.case.variant(run.variant).map_err(|error| unusable(error.to_string()))?;
-        if let Some((_, change)) = &run.adjustment {
-            change(&mut scene);
-        }
+        let scene = self.scene(run)?;
         let mut given = scene.clone();
         let solver = match control.map(|control| &control.wrong) {
-            None => solver(run.solver),
+            None => self.solver(run.solver),
             Some(Wrong::Scene(change)) => {
                 change(&mut given);
-                solver(run.solver)
+                self.solver(run.solver)
             }
-            Some(Wrong::OtherSolver(name)) => solver(name),
+            Some(Wrong::OtherSolver(name)) => self.solver(name),
             Some(Wrong::Solver(defect)) => Convention::ALL
                 .into_iter()
                 .find(|convention| convention.name == run.solver)
-                .map(|convention| Box::new(Dem::new(convention).with_defect(*defect)) as Box<dyn Solver>),
+                .map(|convention| Arc::new(Dem::new(convention).with_defect(*defect)) as Arc<dyn Solver>),
         };
-        let solver = solver.ok_or_else(|| unusable("there is no such solver".to_owned()))?;
+        let solver = solver.ok_or_else(|| self.unusable(run, "there is no such solver".to_owned()))?;
         let record = solver.run(&given, &run.resolution, &mut ())?;
         Ok(Done { scene: Arc::new(scene), record: Arc::new(record) })
     }
@@ -106,47 +121,57 @@ impl Bench {
     /// # Errors
     /// When the scene file is wrong.
     pub fn scene(&self, run: &Run) -> Result<Scene, RunError> {
-        let mut scene = self
-            .case
-            .variant(run.variant)
-            .map_err(|error| RunError::Unsupported { solver: run.solver.to_owned(), reason: error.to_string() })?;
+        let variant = self.case.variant(run.variant);
+        let mut scene = variant.map_err(|error| self.unusable(run, error.to_string()))?;
         if let Some((_, change)) = &run.adjustment {
             change(&mut scene);
         }
         Ok(scene)
     }
+
+    /// The solver that does the runs of a name.
+    fn solver(&self, name: &str) -> Option<Arc<dyn Solver>> {
+        self.stranger.clone().or_else(|| solvers::by_name(name).map(Arc::from))
+    }
+
+    /// What rows call the solver of a run.
+    fn solver_name(&self, run: &Run) -> String {
+        self.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
+    }
+
+    fn unusable(&self, run: &Run, reason: String) -> RunError {
+        RunError::Unsupported { solver: self.solver_name(run), reason }
+    }
+
+    fn conclude(&self, gate: &Gate, done: Result<Vec<Done>, RunError>) -> Verdict {
+        let first = gate.runs.first();
+        let row = Verdict {
+            case: self.case.name.to_owned(),
+            variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
+            solver: first.map_or_else(String::new, |run| self.solver_name(run)),
+            resolution: gate.resolution(),
+            quantity: gate.quantity.clone(),
+            unit: gate.unit.to_owned(),
+            value: None,
+            expected: None,
+            scale: None,
+            error: None,
+            allowed: gate.allowed,
+            because: gate.because.to_owned(),
+            evidence: gate.evidence,
+            source: gate.source.to_owned(),
+            outcome: Outcome::Fail,
+            detail: None,
+        };
+        conclude(row, gate, done)
+    }
 }
 
-fn solver(name: &str) -> Option<Box<dyn Solver>> {
-    solvers::by_name(name)
-}
-
-fn conclude(case: &Case, gate: &Gate, done: Result<Vec<Done>, RunError>) -> Verdict {
-    let (variant, solver) = gate.runs.first().map_or(("", ""), |run| (run.variant, run.solver));
-    let mut verdict = Verdict {
-        case: case.name.to_owned(),
-        variant: variant.to_owned(),
-        solver: solver.to_owned(),
-        resolution: gate.resolution(),
-        quantity: gate.quantity.clone(),
-        unit: gate.unit.to_owned(),
-        value: None,
-        expected: None,
-        scale: None,
-        error: None,
-        allowed: gate.allowed,
-        because: gate.because.to_owned(),
-        evidence: gate.evidence,
-        source: gate.source.to_owned(),
-        outcome: Outcome::Fail,
-        detail: None,
-    };
+/// Completes a row with what was measured.
+fn conclude(mut verdict: Verdict, gate: &Gate, done: Result<Vec<Done>, RunError>) -> Verdict {
     match done {
         Err(error) => {
-            verdict.outcome = match error {
-                RunError::Unsupported { .. } => Outcome::Unsupported,
-                RunError::Resolution { .. } | RunError::Broken(_) => Outcome::Broken,
-            };
+            verdict.outcome = Outcome::from(&error);
             verdict.detail = Some(error.to_string());
         }
         Ok(done) => match (gate.measure)(&done) {

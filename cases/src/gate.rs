@@ -1,6 +1,7 @@
 //! A gate compares a quantity of one or more records with an expectation that has a source, and says why its
 //! tolerance is what it is. Every gate has a negative control: wrong physics that it must refuse.
 
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_dem::solver::Defect;
 use grainbench_scene::record::{Record, Series};
@@ -210,6 +211,8 @@ pub struct Gate {
     pub unit: &'static str,
     /// Kind of source.
     pub evidence: Evidence,
+    /// Whom it is fair to.
+    pub scope: Scope,
     /// Where the expectation comes from.
     pub source: &'static str,
     /// Largest |error| that passes.
@@ -232,6 +235,7 @@ impl Gate {
         Self {
             quantity: quantity.to_owned(),
             unit: "1",
+            scope: Scope::Named,
             evidence: Evidence::Invariant,
             source: "what the method is",
             allowed: 0.0,

@@ -5,6 +5,7 @@
 
 pub mod bench;
 pub mod case;
+pub mod conformance;
 pub mod figure;
 pub mod force_plot;
 pub mod gate;
@@ -13,5 +14,6 @@ pub mod measure;
 pub mod one_grain;
 pub mod registry;
 pub mod rigid_rows;
+pub mod scope;
 pub mod solvers;
 pub mod verdict;

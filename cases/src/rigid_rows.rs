@@ -21,6 +21,7 @@ use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::incline::{more_friction, wrong_inertia};
 use crate::measure::slope;
 use crate::one_grain::{OneGrain, State, last};
+use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_rigid::settings::Settings;
 use grainbench_scene::scene::{Duration, Scene};
@@ -84,6 +85,7 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, bec
     let gate = |quantity: &str, unit, allowed, because, control, pick: fn(State) -> f64| Gate {
         quantity: quantity.to_owned(),
         unit,
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: RIGID_SOURCE,
         allowed,
@@ -108,6 +110,7 @@ fn order(row: Row, allowed: f64, because: &'static str, exact: fn(&OneGrain, f64
     Gate {
         quantity: "order in Δt of the displacement's error".to_owned(),
         unit: "1",
+        scope: Scope::Named,
         evidence: Evidence::Convergence,
         source: ORDER_SOURCE,
         allowed,
@@ -160,6 +163,7 @@ fn final_velocity(row: Row) -> Gate {
     Gate {
         quantity: "velocity at 1 s, arm R − δ/2".to_owned(),
         unit: "m/s",
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: "v(1 + i(R/a)²) = g_t t with arm a = R − δ/2, δ = g_n/(2πf)² (derived beside the row)",
         allowed: 3e-6,
@@ -232,6 +236,7 @@ pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured
     Gate {
         quantity: "coefficient of restitution".to_owned(),
         unit: "1",
+        scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: "damped oscillator whose dashpot may pull (derivation)",
         allowed: 1e-12,
@@ -257,6 +262,7 @@ pub fn momentum(
     Gate {
         quantity,
         unit: "kg m/s",
+        scope: Scope::Named,
         evidence: Evidence::Invariant,
         source: "equal and opposite impulses",
         allowed: 1e-12,
@@ -276,6 +282,7 @@ pub fn angular_momentum(
     Gate {
         quantity: "angular momentum, worst".to_owned(),
         unit: "kg m²/s",
+        scope: Scope::Named,
         evidence: Evidence::Invariant,
         source: "equal and opposite impulses at one point",
         allowed: 1.5e-3,
@@ -298,6 +305,7 @@ pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Resul
     Gate {
         quantity: format!("total energy over {seconds} s, worst"),
         unit: "J",
+        scope: Scope::Named,
         evidence: Evidence::Invariant,
         source: "conservation of energy",
         allowed: 1.5e-2,

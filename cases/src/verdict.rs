@@ -1,5 +1,6 @@
 //! What a gate concluded: one row of every table the project prints.
 
+use grainbench_scene::solver::RunError;
 use serde::{Deserialize, Serialize};
 
 /// What kind of source the expected value has, strongest first.
@@ -55,6 +56,15 @@ impl Outcome {
             Self::Unsupported => "unsupported",
             Self::NotAvailable => "not-available",
             Self::Broken => "broken",
+        }
+    }
+}
+
+impl From<&RunError> for Outcome {
+    fn from(error: &RunError) -> Self {
+        match error {
+            RunError::Unsupported { .. } => Self::Unsupported,
+            RunError::Resolution { .. } | RunError::Broken(_) => Self::Broken,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::contact::rolling::Rolling;
 use crate::contact::tangential::{Rotation, Tangential};
 use crate::neighbours::wrapped;
 use crate::simulation::Kernel;
-use grainbench_scene::record::{ContactState, GrainState, Look, Snapshot, WallState};
+use grainbench_scene::record::{self, ContactState, GrainState, Look, Snapshot, WallState};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
@@ -32,7 +32,7 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
         .walls
         .iter()
         .map(|wall| {
-            let (corners, infinite) = wall.corners();
+            let (corners, infinite) = wall.shape.corners();
             WallState { name: wall.name().to_owned(), corners, infinite, force: S::embed(wall.force) }
         })
         .collect();
@@ -40,7 +40,7 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
         snapshot: Snapshot {
             step: kernel.step,
             time: kernel.step as f64 * kernel.time_step,
-            bounds: bounds(scene, &grains),
+            bounds: record::bounds(scene, &grains),
             periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
             grains,
             contacts,
@@ -95,19 +95,4 @@ fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
 fn free_spin(scene: &Scene, start: Vector3<f64>, time_step: f64, step: u64) -> Vector3<f64> {
     let half = 0.5 * scene.global_damping * time_step;
     start * ((1.0 - half) / (1.0 + half)).powf(step as f64)
-}
-
-fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {
-    if let Some(domain) = scene.domain {
-        return (domain.low, domain.high);
-    }
-    let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-    let (mut low, mut high) = grains.iter().fold(start, |(low, high), grain| {
-        let reach = Vector3::repeat(grain.radius);
-        (low.inf(&(grain.position - reach)), high.sup(&(grain.position + reach)))
-    });
-    if scene.dimension.count() == 2 {
-        (low.z, high.z) = (-0.5, 0.5);
-    }
-    (low, high)
 }

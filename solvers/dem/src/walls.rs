@@ -72,15 +72,7 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
         self.spin = (now.rotation - self.displacement.rotation) / time_step;
         self.displacement = now;
         self.centre = motion.centre + now.translation;
-        let at = |point: Vector3<f64>| motion.moved(point, &now);
-        let turn = |direction: Vector3<f64>| motion.turned(direction, &now);
-        self.shape = match self.wall.shape {
-            WallShape::Plane { point, normal } => WallShape::Plane { point: at(point), normal: turn(normal) },
-            WallShape::Segment { ends } => WallShape::Segment { ends: ends.map(at) },
-            WallShape::Rectangle { corner, edges } => {
-                WallShape::Rectangle { corner: at(corner), edges: edges.map(turn) }
-            }
-        };
+        self.shape = self.wall.shape.moved(motion, &now);
     }
 
     /// Bound on how far any part of the wall within `extent` (m) of its centre has moved since the list was made.
@@ -114,17 +106,6 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
         };
         let velocity = self.velocity + self.spin.cross(&(nearest - self.centre));
         Facing { normal: S::restrict(normal), distance, velocity: S::restrict(velocity) }
-    }
-
-    /// Corner points, or point and normal of a plane (see [`grainbench_scene::record::WallState`]).
-    pub(crate) fn corners(&self) -> (Vec<Vector3<f64>>, bool) {
-        match self.shape {
-            WallShape::Plane { point, normal } => (vec![point, normal], true),
-            WallShape::Segment { ends } => (ends.to_vec(), false),
-            WallShape::Rectangle { corner, edges: [u, v] } => {
-                (vec![corner, corner + u, corner + u + v, corner + v], false)
-            }
-        }
     }
 }
 

@@ -19,6 +19,9 @@ pub mod solver;
 pub mod source;
 pub mod space;
 
+/// The vectors of scenes and records, for who writes a solver.
+pub use nalgebra;
+
 /// The JSON schema of scene files.
 #[must_use]
 pub fn schema() -> schemars::Schema {

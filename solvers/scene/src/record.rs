@@ -1,5 +1,6 @@
 //! What a run leaves behind: time series, snapshots, cost, provenance.
 
+use crate::scene::{Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -57,6 +58,25 @@ pub struct GrainState {
     pub force: Vector3<f64>,
     /// Sum of all torques (N m; N for discs).
     pub torque: Vector3<f64>,
+}
+
+impl GrainState {
+    /// A grain as it starts, before any force was evaluated. Ids count from 1.
+    #[must_use]
+    pub fn start(id: u32, grain: &Grain) -> Self {
+        Self {
+            id,
+            material: grain.material,
+            radius: grain.radius,
+            mass: grain.mass,
+            position: grain.position,
+            velocity: grain.velocity,
+            spin: grain.spin,
+            angle: 0.0,
+            force: Vector3::zeros(),
+            torque: Vector3::zeros(),
+        }
+    }
 }
 
 /// The other side of a contact.
@@ -119,6 +139,45 @@ pub struct Snapshot {
     pub contacts: Vec<ContactState>,
     /// Walls in the order of the scene.
     pub walls: Vec<WallState>,
+}
+
+impl Snapshot {
+    /// What a solver shows that knows of grains alone: no contacts, and walls as far as they have moved, without forces.
+    #[must_use]
+    pub fn of_grains(scene: &Scene, step: u64, time: f64, grains: Vec<GrainState>) -> Self {
+        let time_step = if step == 0 { 0.0 } else { time / step as f64 };
+        let walls = scene.walls.iter().map(|wall| {
+            let displacement = wall.motion.displacement(time, time_step);
+            let (corners, infinite) = wall.shape.moved(&wall.motion, &displacement).corners();
+            WallState { name: wall.name.clone(), corners, infinite, force: Vector3::zeros() }
+        });
+        Self {
+            step,
+            time,
+            bounds: bounds(scene, &grains),
+            periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
+            walls: walls.collect(),
+            contacts: Vec::new(),
+            grains,
+        }
+    }
+}
+
+/// Corners of the domain (m), or of the box around all grains where the scene has none; z from −0.5 to 0.5 in the plane.
+#[must_use]
+pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {
+    if let Some(domain) = scene.domain {
+        return (domain.low, domain.high);
+    }
+    let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    let (mut low, mut high) = grains.iter().fold(start, |(low, high), grain| {
+        let reach = Vector3::repeat(grain.radius);
+        (low.inf(&(grain.position - reach)), high.sup(&(grain.position + reach)))
+    });
+    if scene.dimension.count() == 2 {
+        (low.z, high.z) = (-0.5, 0.5);
+    }
+    (low, high)
 }
 
 /// A simulation at one step, with what its probes need beside the snapshot.

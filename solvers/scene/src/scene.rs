@@ -1,7 +1,7 @@
 //! A scene made definite: every grain, wall and law, checked, in SI. Solvers read this and nothing else.
 
 use crate::file::GrainShape;
-use crate::motion::Motion;
+use crate::motion::{Displacement, Motion};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -148,6 +148,30 @@ pub enum WallShape {
         /// The perpendicular edges from it (m).
         edges: [Vector3<f64>; 2],
     },
+}
+
+impl WallShape {
+    /// The shape after its wall has moved.
+    #[must_use]
+    pub fn moved(&self, motion: &Motion, displacement: &Displacement) -> Self {
+        let at = |point: Vector3<f64>| motion.moved(point, displacement);
+        let turn = |direction: Vector3<f64>| motion.turned(direction, displacement);
+        match *self {
+            Self::Plane { point, normal } => Self::Plane { point: at(point), normal: turn(normal) },
+            Self::Segment { ends } => Self::Segment { ends: ends.map(at) },
+            Self::Rectangle { corner, edges } => Self::Rectangle { corner: at(corner), edges: edges.map(turn) },
+        }
+    }
+
+    /// Corner points, or point and normal of a plane, and which it is (see [`crate::record::WallState`]).
+    #[must_use]
+    pub fn corners(&self) -> (Vec<Vector3<f64>>, bool) {
+        match *self {
+            Self::Plane { point, normal } => (vec![point, normal], true),
+            Self::Segment { ends } => (ends.to_vec(), false),
+            Self::Rectangle { corner, edges: [u, v] } => (vec![corner, corner + u, corner + u + v, corner + v], false),
+        }
+    }
 }
 
 /// A wall with its prescribed motion.

@@ -1,0 +1,82 @@
+//! How a run ended, and how far two ends are apart.
+
+use grainbench_scene::record::{GrainState, Record};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError, Solver};
+
+/// The end of a run.
+#[derive(Clone, Debug)]
+pub(super) struct End {
+    pub(super) time: f64,
+    /// Grains in the order of the scene.
+    pub(super) grains: Vec<GrainState>,
+    pub(super) time_step: f64,
+    pub(super) steps: f64,
+}
+
+/// Why there is no end to compare.
+pub(super) enum NoEnd {
+    Run(RunError),
+    /// The record lacks something, or a scene is wrong, in words.
+    Record(String),
+}
+
+impl From<RunError> for NoEnd {
+    fn from(error: RunError) -> Self {
+        Self::Run(error)
+    }
+}
+
+impl End {
+    /// Runs a scene to its end.
+    pub(super) fn of(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<Self, NoEnd> {
+        Self::read(scene, &solver.run(scene, resolution, &mut ())?)
+    }
+
+    fn read(scene: &Scene, record: &Record) -> Result<Self, NoEnd> {
+        let missing = |what: &str| NoEnd::Record(format!("the record has no {what}"));
+        let last = record.snapshots.last().ok_or_else(|| missing("snapshot"))?;
+        if last.grains.len() != scene.grains.len() || last.step == 0 {
+            return Err(missing("snapshot of all grains at the end"));
+        }
+        let mut grains = last.grains.clone();
+        grains.sort_by_key(|grain| grain.id);
+        let time_step = record.provenance.time_step;
+        Ok(Self { time: last.time, grains, time_step, steps: last.step as f64 })
+    }
+
+    /// How far two ends are apart, as a speed (m/s): the worst grain's velocity, spin times radius, or position over the
+    /// time that led there.
+    pub(super) fn apart(&self, other: &Self) -> f64 {
+        let pairs = self.grains.iter().zip(&other.grains);
+        let worst = pairs.map(|(a, b)| {
+            let spin = (a.spin - b.spin).norm() * a.radius;
+            let place = (a.position - b.position).norm() / self.time;
+            // f64::max would swallow what is not a number.
+            [(a.velocity - b.velocity).norm(), spin, place].into_iter().fold(0.0, larger)
+        });
+        worst.fold((self.time - other.time).abs() / self.time, larger)
+    }
+
+    /// Farthest coordinate from the origin (m) and fastest point of any grain (m/s).
+    pub(super) fn reach(&self) -> (f64, f64) {
+        let far = self.grains.iter().map(|grain| grain.position.norm()).fold(0.0, larger);
+        let fast = self.grains.iter().map(|grain| grain.velocity.norm() + grain.spin.norm() * grain.radius);
+        (far, fast.fold(0.0, larger))
+    }
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// What rounding may add up to in a speed (m/s) between two runs of collisions: every step rounds positions of size L by
+/// εL, which is worth ω²εLΔt of velocity with the stiffest contact's ω = 2/Δt_crit, and velocities U by εU.
+pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
+    let rate = 2.0 / scene.critical_time_step();
+    let of = |end: &End| {
+        let (far, fast) = end.reach();
+        f64::EPSILON * (far * rate * rate * end.time + fast * end.steps)
+    };
+    of(ends[0]).max(of(ends[1]))
+}

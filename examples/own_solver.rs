@@ -1,0 +1,81 @@
+//! A solver of one's own, and the gates it must pass: one rigid grain on a fixed plane.
+//!
+//! In every step the friction impulse that would stop the slip is found and cut off at Coulomb's limit. Where the grain
+//! keeps sliding or keeps rolling, acceleration is constant and a step of any length exact.
+
+use grainbench::scene::nalgebra::Vector3;
+use grainbench::scene::record::{Cost, GrainState, Look, Provenance, Record, Snapshot};
+use grainbench::scene::recorder::Recorder;
+use grainbench::scene::scene::{Duration, Scene, WallShape};
+use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+
+struct Rigid;
+
+impl Solver for Rigid {
+    fn name(&self) -> String {
+        "my-rigid-grain".to_owned()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let unsupported = |reason: &str| RunError::Unsupported { solver: self.name(), reason: reason.to_owned() };
+        let ([grain], [wall]) = (&scene.grains[..], &scene.walls[..]) else {
+            return Err(unsupported("it knows one grain and one wall"));
+        };
+        let (WallShape::Plane { normal, .. }, false) = (wall.shape, wall.motion.is_moving()) else {
+            return Err(unsupported("it knows only planes at rest"));
+        };
+        let Duration::Seconds(duration) = scene.duration else {
+            return Err(unsupported("it has no calculation cycles"));
+        };
+        let Resolution::CriticalFraction(fraction) = *resolution else {
+            return Err(unsupported("it takes steps that are a fraction of the critical one"));
+        };
+        let steps = (duration / (fraction * scene.critical_time_step())).ceil() as u64;
+        let time_step = duration / steps as f64;
+
+        let friction = scene.law(grain.material, wall.material).map_or(0.0, |law| law.friction);
+        let onto = -scene.gravity.dot(&normal);
+        let along = scene.gravity + normal * onto;
+        let arm = -grain.radius * normal;
+        // What an impulse at the contact does to the slip there: it pushes the centre and turns the grain about it.
+        let mobility = 1.0 / grain.mass + grain.radius.powi(2) / grain.inertia;
+        let limit = friction * grain.mass * onto * time_step;
+
+        let (mut position, mut velocity, mut spin, mut angle) = (grain.position, grain.velocity, grain.spin, 0.0);
+        let mut recorder = Recorder::new(scene, time_step, steps);
+        for step in 0..=steps {
+            if recorder.is_due(step) {
+                let state = GrainState { position, velocity, spin, angle, ..GrainState::start(1, grain) };
+                let snapshot = Snapshot::of_grains(scene, step, step as f64 * time_step, vec![state]);
+                recorder.take(scene, Look { snapshot, elastic_energy: 0.0 });
+            }
+            let before = (velocity, spin);
+            velocity += along * time_step;
+            let slip: Vector3<f64> = velocity + spin.cross(&arm);
+            let impulse = (-slip / mobility).cap_magnitude(limit);
+            velocity += impulse / grain.mass;
+            spin += arm.cross(&impulse) / grain.inertia;
+            position += 0.5 * (before.0 + velocity) * time_step;
+            angle += 0.5 * (before.1 + spin).z * time_step;
+        }
+        watch.progress(steps, steps);
+        let (series, snapshots) = recorder.finish();
+        let provenance = Provenance {
+            scene: scene.title.clone(),
+            solver: self.name(),
+            resolution: resolution.to_string(),
+            time_step,
+            critical_time_step: None,
+            effects: vec!["friction and rotation".to_owned(), "gravity".to_owned()],
+            options: Vec::new(),
+        };
+        Ok(Record { provenance, series, snapshots, cost: Cost { steps, ..Cost::default() } })
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let judgement = grainbench::judge(Rigid, &["incline-disc", "incline-sphere", "backspin"])?;
+    println!("{judgement}");
+    judgement.require()?; // An error here is exit code 1.
+    Ok(())
+}
