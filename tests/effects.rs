@@ -1,0 +1,43 @@
+//! An effect that a scene does not call for is not simulated; where it is compiled in with values that do nothing, the
+//! answer is the same.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use grainbench::cases::registry;
+use grainbench::dem::convention::Convention;
+use grainbench::dem::solver::Dem;
+use grainbench::scene::effects::Effects;
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::{ContactLaw, Duration, Scene};
+use grainbench::scene::solver::{Resolution, Solver};
+
+/// Adds a material that no grain has, with friction and rolling resistance: kernels for both are picked, and do nothing.
+fn with_idle_friction(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let (law, count) = (scene.laws[0].unwrap(), scene.materials.len());
+    assert_eq!(count, 1, "a scene of one material");
+    let idle = ContactLaw { friction: 0.5, tangential_stiffness: law.normal_stiffness, rolling_friction: 0.1, ..law };
+    scene.materials.push("idle".to_owned());
+    scene.laws = vec![Some(law), None, None, Some(idle)];
+    scene
+}
+
+fn run(scene: &Scene) -> Record {
+    let dem = Dem::new(Convention::CUNDALL_STRACK);
+    dem.run(scene, &Resolution::CriticalFraction(0.05), &mut ()).unwrap()
+}
+
+#[test]
+fn friction_that_does_nothing_changes_nothing() {
+    let mut scene = registry::by_name("disc-gas").unwrap().variant("plain").unwrap();
+    scene.duration = Duration::Cycles(20_000);
+    let idle = with_idle_friction(&scene);
+    assert!(!Effects::of(&scene).friction && Effects::of(&idle).friction && Effects::of(&idle).rolling_resistance);
+    let (without, with) = (run(&scene), run(&idle));
+    let (without, with) = (without.snapshots.last().unwrap(), with.snapshots.last().unwrap());
+    assert!(without.grains.iter().any(|grain| grain.velocity != scene.grains[grain.id as usize - 1].velocity));
+    for (a, b) in without.grains.iter().zip(&with.grains) {
+        // Equality of numbers is that of bits but for the sign of zero.
+        assert!(a.position == b.position && a.velocity == b.velocity && a.force == b.force, "grain {}", a.id);
+    }
+}
