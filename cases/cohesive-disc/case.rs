@@ -63,7 +63,7 @@ fn gates() -> Vec<Gate> {
         scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: SOURCE,
-        allowed: 1e-6,
+        allowed: 1e-10,
         because: "once the spring has come to rest or has yielded the force is constant; in units of g sin θ",
         runs: vec![with_cohesion(factor)],
         measure: measure(|done| slip(&done[0])),
