@@ -345,3 +345,39 @@ fn reports_that_are_missing_or_damaged() {
     std::fs::write(directory.path().join("report.json"), "{\"provenance\": 3}").unwrap();
     insta::assert_snapshot!(refusal(directory.path(), &["report", "."]));
 }
+
+#[test]
+fn checkpoints() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), SCENE).unwrap();
+    let simulate = ["simulate", "scene.toml"];
+    let every = ["--checkpoint", "run.checkpoint", "--checkpoint-every", "3"];
+    assert_eq!(grainbench(path, &[&simulate[..], &["--solver", "dem"], &every].concat()).code, Some(0));
+    let whole = std::fs::read(path.join("run.checkpoint")).unwrap();
+    let restart = |name: &str, further: &[&str]| {
+        let solver: &[&str] = if further.contains(&"--solver") { &[] } else { &["--solver", "dem"] };
+        let message = refusal(path, &[&simulate[..], &["--restart", name, "--out", "new"], solver, further].concat());
+        message.lines().map(|line| line.trim_end().to_owned() + "\n").collect::<String>()
+    };
+    let stored = |name: &str, bytes: &[u8]| std::fs::write(path.join(name), bytes).unwrap();
+    stored("cut.checkpoint", &whole[..whole.len() / 2]);
+    stored("empty.checkpoint", b"");
+    stored("newer.checkpoint", &[b"grainbench checkpoint 7\n", &whole[24..]].concat());
+    let mut changed = whole.clone();
+    changed[whole.len() - 9] ^= 64;
+    stored("changed.checkpoint", &changed);
+    let refusals = [
+        ("absent", restart("nowhere.checkpoint", &[])),
+        ("truncated", restart("cut.checkpoint", &[])),
+        ("empty", restart("empty.checkpoint", &[])),
+        ("newer", restart("newer.checkpoint", &[])),
+        ("changed", restart("changed.checkpoint", &[])),
+        ("foreign", restart("scene.toml", &[])),
+        ("another step", restart("run.checkpoint", &["--time-step-fraction", "0.05"])),
+        ("another scene", restart("run.checkpoint", &["--set", "title=\"Another\""])),
+        ("another solver", restart("run.checkpoint", &["--solver", "dem:lammps"])),
+    ];
+    let shown: String = refusals.iter().map(|(what, message)| format!("{what}: {message}")).collect();
+    insta::assert_snapshot!("checkpoints", shown);
+}

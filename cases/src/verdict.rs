@@ -64,7 +64,7 @@ impl From<&RunError> for Outcome {
     fn from(error: &RunError) -> Self {
         match error {
             RunError::Unsupported { .. } => Self::Unsupported,
-            RunError::Resolution { .. } | RunError::Broken(_) => Self::Broken,
+            RunError::Resolution { .. } | RunError::Broken(_) | RunError::Checkpoint(_) => Self::Broken,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Commands: what can be asked for, and who answers.
 
+mod checkpoint;
 mod exit;
 mod list;
 mod progress;

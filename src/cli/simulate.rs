@@ -1,10 +1,12 @@
 //! `grainbench simulate`: one scene, one solver, one record.
 
+use super::checkpoint::{self, Store};
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
 use super::progress::Progress;
 use grainbench::cases::case::read_grains;
 use grainbench::cases::solvers;
 use grainbench::reports::{StagedDir, export, number};
+use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
 use grainbench::scene::record::{Cost, Provenance, Record, Snapshot};
 use grainbench::scene::scene::Scene;
@@ -45,6 +47,15 @@ pub(crate) struct Arguments {
     /// Take a time step of the critical one or above.
     #[arg(long)]
     allow_unstable: bool,
+    /// Leave a checkpoint here every so many steps, each in the place of the one before.
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Steps from one checkpoint to the next.
+    #[arg(long, value_name = "STEPS", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..), requires = "checkpoint")]
+    checkpoint_every: u64,
+    /// Continue from this checkpoint of the same run: the record is that of the whole run, in every bit but its times.
+    #[arg(long, value_name = "FILE")]
+    restart: Option<PathBuf>,
     /// Directory for the record.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
@@ -79,8 +90,14 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let resolution = resolution(arguments, &scene)?;
     check_writable(&arguments.out)?;
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
-    let mut watcher = Watcher { critical: scene.critical_time_step(), header, progress: None };
-    let record = solver.run(&scene, &resolution, &mut watcher).map_err(fault)?;
+    let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
+    let store = arguments.checkpoint.clone().map(|path| Store { path, every: arguments.checkpoint_every });
+    let mut watcher = Watcher { critical: scene.critical_time_step(), header, progress: None, store };
+    let record = match &from {
+        None => solver.run(&scene, &resolution, &mut watcher),
+        Some(checkpoint) => solver.restart(&scene, &resolution, checkpoint, &mut watcher),
+    };
+    let record = record.map_err(fault)?;
     drop(watcher);
     write(&record, arguments)?;
     if arguments.json {
@@ -121,7 +138,7 @@ fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault>
 fn fault(error: RunError) -> Fault {
     match error {
         RunError::Broken(broken) => Fault::Broken(broken.to_string()),
-        RunError::Unsupported { .. } | RunError::Resolution { .. } => Fault::input(error),
+        RunError::Unsupported { .. } | RunError::Resolution { .. } | RunError::Checkpoint(_) => Fault::input(error),
     }
 }
 
@@ -158,6 +175,7 @@ struct Watcher {
     critical: f64,
     header: Option<String>,
     progress: Option<Progress>,
+    store: Option<Store>,
 }
 
 impl Watch for Watcher {
@@ -180,6 +198,14 @@ impl Watch for Watcher {
         if let Some(progress) = &self.progress {
             progress.set(done, total);
         }
+    }
+
+    fn checkpoint_interval(&self) -> Option<u64> {
+        self.store.as_ref().map(|store| store.every)
+    }
+
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.store.as_ref().map_or(Ok(()), |store| store.put(&checkpoint))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Solvers that are wrong on purpose, each in one way and by about a billionth.
 
+use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Dimension, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
@@ -9,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Size of a flaw, as a fraction of the velocities.
 const SIZE: f64 = 1e-9;
 
-/// How a solver is wrong. All but the last two act on the velocities it starts from, which any solver can express.
+/// How a solver is wrong. All but the last three act on the velocities it starts from, which any solver can express.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
     /// Something holds every grain back, as if there were a medium at rest.
@@ -24,6 +25,8 @@ pub enum Flaw {
     FirstOrder,
     /// No run is like the one before.
     Irreproducible,
+    /// A run that is continued is not quite the run that was interrupted.
+    Restarted,
 }
 
 impl Flaw {
@@ -37,6 +40,7 @@ impl Flaw {
             Self::Listed => "the first grain in the list faster by a billionth",
             Self::FirstOrder => "positions and velocities off by the first order in the step",
             Self::Irreproducible => "a velocity that differs by a rounding from run to run",
+            Self::Restarted => "a velocity that differs by a rounding after a restart",
         }
     }
 
@@ -48,7 +52,7 @@ impl Flaw {
                 Self::Handed if flat => grain.velocity += SIZE * Vector3::z().cross(&grain.velocity),
                 Self::Handed => grain.velocity += SIZE * grain.radius * grain.spin,
                 Self::Anisotropic => grain.velocity.x *= 1.0 + SIZE,
-                Self::Listed | Self::FirstOrder | Self::Irreproducible => {}
+                Self::Listed | Self::FirstOrder | Self::Irreproducible | Self::Restarted => {}
             }
         }
         if let Some(grain) = scene.grains.first_mut() {
@@ -94,6 +98,22 @@ impl Solver for Flawed<'_> {
                 grain.position *= 1.0 + share;
                 grain.velocity *= 1.0 + share;
             });
+        }
+        Ok(record)
+    }
+
+    fn restart(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: &Checkpoint,
+        watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
+        let mut record = self.solver.restart(scene, resolution, from, watch)?;
+        if self.flaw == Flaw::Restarted
+            && let Some(grain) = record.snapshots.last_mut().and_then(|last| last.grains.first_mut())
+        {
+            grain.velocity *= 1.0 + 4.0 * f64::EPSILON;
         }
         Ok(record)
     }

@@ -1,8 +1,7 @@
 //! What every solver owes, whatever its method: conservation, symmetries, exact flight, order, determinism.
 //!
 //! A property runs scenes of its own, in two and three dimensions, with friction and without, and gives rows as gates do:
-//! measured value, tolerance and why. Every property has a [`Flaw`] that it must see in the same solver. Restart is not
-//! among them: [`Solver`] has no way to ask for it.
+//! measured value, tolerance and why. Every property has a [`Flaw`] that it must see in the same solver.
 
 mod end;
 mod flaw;
@@ -14,6 +13,7 @@ mod moved;
 mod order;
 mod permutation;
 mod rerun;
+mod restart;
 mod rotation;
 mod row;
 mod scenes;
@@ -102,7 +102,7 @@ impl Property {
 }
 
 /// Every property.
-pub const ALL: [Property; 8] = [
+pub const ALL: [Property; 9] = [
     momentum::PROPERTY,
     galilean::PROPERTY,
     mirror::PROPERTY,
@@ -111,6 +111,7 @@ pub const ALL: [Property; 8] = [
     free_flight::PROPERTY,
     order::PROPERTY,
     rerun::PROPERTY,
+    restart::PROPERTY,
 ];
 
 /// The rows of every property.

@@ -33,7 +33,7 @@ fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
 }
 
 /// A record without its times. Debug output tells every bit of a number but the sign of a NaN.
-fn lines(mut record: Record) -> Vec<String> {
+pub(super) fn lines(mut record: Record) -> Vec<String> {
     record.cost = Cost { wall_seconds: 0.0, ..record.cost };
     format!("{record:#?}").lines().map(str::to_owned).collect()
 }

@@ -3,23 +3,27 @@
 use crate::contact::tangential::Rotation;
 use grainbench_scene::scene::{Grain, Scene};
 use grainbench_scene::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// Where a grain is: read for every pair that is tested.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(crate) struct Place<S: Space> {
     pub(crate) position: S::Vector,
     pub(crate) radius: f64,
 }
 
 /// How it moves: read for every pair that touches.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(crate) struct Movement<S: Space> {
     pub(crate) velocity: S::Vector,
     pub(crate) inverse_mass: f64,
 }
 
 /// All grains. Index: slot; slots change when the grains are sorted, ids never.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(crate) struct Grains<S: Space, R: Rotation<S>> {
     pub(crate) place: Vec<Place<S>>,
     pub(crate) movement: Vec<Movement<S>>,

@@ -19,6 +19,7 @@ mod observe;
 mod simulation;
 pub mod solver;
 pub mod stability;
+mod state;
 mod walls;
 
 pub use simulation::Simulation;

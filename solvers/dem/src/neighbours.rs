@@ -10,9 +10,10 @@ use crate::grains::{Grains, Place};
 use grainbench_scene::scene::Domain;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Rows of pairs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Pairs<H> {
     /// First pair of every row, and the number of pairs at the end.
     pub(crate) start: Vec<u32>,
@@ -45,7 +46,8 @@ impl<H: Copy + Default> Pairs<H> {
 }
 
 /// The neighbour list.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound(serialize = "H: Serialize", deserialize = "H: Deserialize<'de>"))]
 pub(crate) struct Neighbours<S: Space, H> {
     /// Pairs that are near as they stand.
     pub(crate) near: Pairs<H>,

@@ -7,7 +7,9 @@ use crate::contact::{Options, Touch};
 use crate::grains::Grains;
 use crate::neighbours::Neighbours;
 use crate::walls::{MovingWall, NearWall};
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::record::{Cost, Look, Partner};
+use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{ContactLaw, Scene};
 use grainbench_scene::solver::{Broken, Cause};
 use grainbench_scene::space::Space;
@@ -75,6 +77,18 @@ pub trait Simulation: Send {
     fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>>;
     /// Forgets the history of every contact, as a restart without it would.
     fn forget_history(&mut self);
+    /// The state after the last step, with the record so far.
+    ///
+    /// # Errors
+    /// When it cannot be written down.
+    fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError>;
+    /// Goes to the state that a run of the same identity left; the record so far.
+    ///
+    /// # Errors
+    /// When the checkpoint is of another run or damaged.
+    fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Recorder, CheckpointError>;
+    /// What the simulation was compiled for, in words.
+    fn layout(&self) -> &'static str;
     /// Counts so far; no times.
     fn cost(&self) -> Cost;
     /// Cycles taken.
@@ -84,7 +98,7 @@ pub trait Simulation: Send {
 }
 
 /// What a contact remembers: the histories of its stages.
-type Memory<S, T, R> = (<T as Tangential<S>>::History, <R as Rolling<S>>::History);
+pub(crate) type Memory<S, T, R> = (<T as Tangential<S>>::History, <R as Rolling<S>>::History);
 
 /// A simulation in a space, with a normal, a tangential and a rolling stage.
 pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
@@ -93,7 +107,7 @@ pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
     material_count: usize,
     options: Options,
     pub(crate) grains: Grains<S, T::Rotation>,
-    neighbours: Neighbours<S, Memory<S, T, R>>,
+    pub(crate) neighbours: Neighbours<S, Memory<S, T, R>>,
     pub(crate) walls: Vec<MovingWall<S, Memory<S, T, R>>>,
     pub(crate) seen: Vec<Seen<S>>,
     gravity: S::Vector,
@@ -104,8 +118,8 @@ pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
     /// Farthest that any grain was from its reference at the last drift, squared (m²).
     moved_squared: f64,
     /// Bound on the distance from any wall's centre of rotation to any grain (m).
-    extent: f64,
-    cost: Cost,
+    pub(crate) extent: f64,
+    pub(crate) cost: Cost,
     stage: PhantomData<N>,
 }
 
@@ -565,6 +579,18 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Simulation for Kernel
         for wall in &mut self.walls {
             wall.near.iter_mut().for_each(|(_, history)| *history = Memory::<S, T, R>::default());
         }
+    }
+
+    fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
+        self.kept(identity, recorder)
+    }
+
+    fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Recorder, CheckpointError> {
+        self.recalled(identity, checkpoint)
+    }
+
+    fn layout(&self) -> &'static str {
+        std::any::type_name::<Self>()
     }
 
     fn cost(&self) -> Cost {

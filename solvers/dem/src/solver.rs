@@ -6,6 +6,7 @@ use crate::contact::rolling::{ElasticPlastic, FreeRolling};
 use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
 use crate::convention::{Convention, CoulombCap, History};
 use crate::simulation::{Kernel, Simulation};
+use grainbench_scene::checkpoint::{Checkpoint, RunIdentity};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Provenance, Record};
 use grainbench_scene::recorder::Recorder;
@@ -106,6 +107,12 @@ impl Dem {
         Ok(simulation)
     }
 
+    /// Which run a checkpoint belongs to.
+    fn identity(&self, scene: &Scene, time_step: f64, steps: u64, layout: &str) -> RunIdentity {
+        let solver = format!("{} ({})", self.name(), self.convention.words().join(", "));
+        RunIdentity::new(solver, scene, time_step, steps, layout)
+    }
+
     fn resolution_error(&self, reason: String) -> RunError {
         RunError::Resolution { solver: self.name(), reason }
     }
@@ -146,22 +153,60 @@ impl Solver for Dem {
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        self.go(scene, resolution, None, watch)
+    }
+
+    fn restart(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: &Checkpoint,
+        watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
+        self.go(scene, resolution, Some(from), watch)
+    }
+}
+
+impl Dem {
+    /// Runs from the start or from a checkpoint to the end.
+    fn go(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: Option<&Checkpoint>,
+        watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
         let (time_step, steps) = self.steps(scene, resolution)?;
-        watch.begin(time_step, steps);
         let mut simulation = self.start(scene, time_step)?;
-        let mut recorder = Recorder::new(scene, time_step, steps);
+        let identity = self.identity(scene, time_step, steps, simulation.layout());
+        let mut recorder = match from {
+            None => Recorder::new(scene, time_step, steps),
+            Some(checkpoint) => simulation.recall(&identity, checkpoint)?,
+        };
+        watch.begin(time_step, steps);
+        let first = simulation.step();
+        // No checkpoint is wanted of where the run begins.
+        let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
         let start = Instant::now();
         loop {
             let now = simulation.step();
-            if recorder.is_due(now) {
+            let is_new = from.is_none() || now > first;
+            if is_new && recorder.is_due(now) {
                 recorder.take(scene, simulation.look());
             }
             watch.progress(now, steps);
             if now == steps {
                 break;
             }
+            if now > first && now.is_multiple_of(between_checkpoints) {
+                watch.checkpoint(simulation.keep(&identity, &recorder)?)?;
+            }
             match self.defect {
-                None => simulation.advance((recorder.next(now) - now).min(STEPS_BETWEEN_PROGRESS))?,
+                None => {
+                    let checkpoint = (now / between_checkpoints + 1).saturating_mul(between_checkpoints);
+                    let stop = recorder.next(now).min(checkpoint).min(now + STEPS_BETWEEN_PROGRESS);
+                    simulation.advance(stop - now)?;
+                }
                 Some(Defect::ForgetsHistory) => {
                     simulation.advance(1)?;
                     simulation.forget_history();

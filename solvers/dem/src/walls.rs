@@ -5,6 +5,7 @@ use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_segment};
 use grainbench_scene::scene::{Wall, WallShape};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Slots or ids of grains near a wall, and the history of their contacts.
 pub(crate) type NearWall<H> = Vec<(u32, H)>;
@@ -25,6 +26,16 @@ pub(crate) struct MovingWall<S: Space, H> {
     pub(crate) near: NearWall<H>,
     /// Force of the grains on the wall in the last force evaluation (N).
     pub(crate) force: S::Vector,
+}
+
+/// What a wall must remember between two steps; the rest follows from its motion.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound(serialize = "H: Serialize", deserialize = "H: Deserialize<'de>"))]
+pub(crate) struct WallMemory<S: Space, H> {
+    displacement: Displacement,
+    at_list: Displacement,
+    near: NearWall<H>,
+    force: S::Vector,
 }
 
 /// What a grain sees of a wall.
@@ -61,6 +72,26 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
         &self.wall.name
     }
 
+    /// What it must remember between two steps.
+    pub(crate) fn memory(&self) -> WallMemory<S, H> {
+        WallMemory {
+            displacement: self.displacement,
+            at_list: self.at_list,
+            near: self.near.clone(),
+            force: self.force,
+        }
+    }
+
+    /// Takes up what it remembered.
+    pub(crate) fn recall(&mut self, memory: WallMemory<S, H>) {
+        if self.displacement != memory.displacement {
+            self.displaced_to(memory.displacement);
+        }
+        self.at_list = memory.at_list;
+        self.near = memory.near;
+        self.force = memory.force;
+    }
+
     /// Moves the wall to where it is at `time`, one step after the last call.
     pub(crate) fn move_to(&mut self, time: f64, time_step: f64) {
         let motion = &self.wall.motion;
@@ -70,9 +101,14 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
         let now = motion.displacement(time, time_step);
         self.velocity = (now.translation - self.displacement.translation) / time_step;
         self.spin = (now.rotation - self.displacement.rotation) / time_step;
-        self.displacement = now;
-        self.centre = motion.centre + now.translation;
-        self.shape = self.wall.shape.moved(motion, &now);
+        self.displaced_to(now);
+    }
+
+    fn displaced_to(&mut self, displacement: Displacement) {
+        let motion = &self.wall.motion;
+        self.displacement = displacement;
+        self.centre = motion.centre + displacement.translation;
+        self.shape = self.wall.shape.moved(motion, &displacement);
     }
 
     /// Bound on how far any part of the wall within `extent` (m) of its centre has moved since the list was made.

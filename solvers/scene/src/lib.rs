@@ -4,6 +4,7 @@
 //! given to a [`solver::Solver`], which leaves a [`record::Record`].
 
 mod check;
+pub mod checkpoint;
 pub mod effects;
 pub mod error;
 pub mod file;

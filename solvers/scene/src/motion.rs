@@ -1,6 +1,7 @@
 //! Prescribed motion of walls: exact positions at any time, so that a ramp ends where it should whatever the step.
 
 use nalgebra::{Rotation3, Unit, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// A moment that is given in seconds or in calculation cycles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +49,7 @@ pub struct Motion {
 }
 
 /// Where a wall is, relative to its start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Displacement {
     /// Translation (m).
     pub translation: Vector3<f64>,

@@ -3,9 +3,10 @@
 use crate::probe;
 use crate::record::{Look, Series, Snapshot};
 use crate::scene::{Sampling, Scene};
+use serde::{Deserialize, Serialize};
 
 /// The record of a run in the making.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Recorder {
     /// Steps between samples.
     interval: u64,

@@ -1,5 +1,6 @@
 //! What a solver is: something that takes a scene and a resolution and leaves a record.
 
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::record::Record;
 use crate::scene::Scene;
 use nalgebra::Vector3;
@@ -136,6 +137,9 @@ pub enum RunError {
     /// The simulation broke.
     #[error(transparent)]
     Broken(#[from] Box<Broken>),
+    /// It cannot be continued from this checkpoint, or its own checkpoint cannot be left.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
 }
 
 /// Someone who wants to know how far a run is.
@@ -144,6 +148,17 @@ pub trait Watch {
     fn begin(&mut self, _time_step: f64, _steps: u64) {}
     /// Called now and then with the number of steps done and to do.
     fn progress(&mut self, done: u64, total: u64);
+    /// Steps from one checkpoint to the next; asked for once, after [`Watch::begin`]. None when no checkpoint is wanted.
+    fn checkpoint_interval(&self) -> Option<u64> {
+        None
+    }
+    /// Called with every checkpoint.
+    ///
+    /// # Errors
+    /// When it cannot be stored: the run ends with this error.
+    fn checkpoint(&mut self, _checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        Ok(())
+    }
 }
 
 /// Nobody watches.
@@ -161,4 +176,20 @@ pub trait Solver: Send + Sync {
     /// # Errors
     /// When the scene cannot be expressed, the resolution makes no sense, or the simulation breaks.
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError>;
+
+    /// Continues a run of the same scene at the same resolution from a checkpoint that it left. The record is that of the
+    /// whole run, in every bit but its times.
+    ///
+    /// # Errors
+    /// As for [`Solver::run`], and when the checkpoint belongs to another run. A solver that leaves no checkpoints refuses.
+    fn restart(
+        &self,
+        _scene: &Scene,
+        _resolution: &Resolution,
+        _from: &Checkpoint,
+        _watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
+        let reason = "it leaves no checkpoints to continue from".to_owned();
+        Err(RunError::Unsupported { solver: self.name(), reason })
+    }
 }

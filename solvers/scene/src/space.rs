@@ -4,6 +4,8 @@
 //! carry no feature flag and no twin file.
 
 use nalgebra::{Vector2, Vector3};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -24,6 +26,8 @@ pub trait Linear:
     + Neg<Output = Self>
     + AddAssign
     + SubAssign
+    + Serialize
+    + DeserializeOwned
     + Send
     + Sync
     + 'static
@@ -40,6 +44,8 @@ impl<T> Linear for T where
         + Neg<Output = Self>
         + AddAssign
         + SubAssign
+        + Serialize
+        + DeserializeOwned
         + Send
         + Sync
         + 'static

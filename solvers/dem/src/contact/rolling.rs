@@ -3,6 +3,8 @@
 use super::Touch;
 use super::normal::{Normal, NormalForce};
 use grainbench_scene::space::Space;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 
 /// The rolling stage.
@@ -10,7 +12,7 @@ pub trait Rolling<S: Space>: Copy + Send + 'static {
     /// Whether there is a moment at all.
     const ACTIVE: bool;
     /// What a contact remembers from step to step.
-    type History: Copy + Debug + Default + Send;
+    type History: Copy + Debug + Default + Send + Serialize + DeserializeOwned;
 
     /// Moment on the first body (N m), from the angular velocity of the first body relative to the second (rad/s), the
     /// time that has passed since the last one (s) and the moment of inertia of the pair about the contact (kg m²).
@@ -65,7 +67,8 @@ impl<S: Space> Rolling<S> for FreeRolling {
 pub struct ElasticPlastic;
 
 /// The angle of a rolling spring (rad).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Angle<S: Space>(S::Spin);
 
 impl<S: Space> Default for Angle<S> {

@@ -3,13 +3,15 @@
 use super::Touch;
 use super::normal::{Normal, NormalForce};
 use grainbench_scene::space::{Linear, Space};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
 /// The rotation of a grain, or its absence.
-pub trait Rotation<S: Space>: Copy + Debug + Send {
+pub trait Rotation<S: Space>: Copy + Debug + Send + Serialize + DeserializeOwned {
     /// Torque on a grain, or its absence.
-    type Torque: Copy + Debug + Default + Send;
+    type Torque: Copy + Debug + Default + Send + Serialize + DeserializeOwned;
 
     /// At the start: angular velocity (rad/s) and 1/I.
     fn new(spin: S::Spin, inverse_inertia: f64) -> Self;
@@ -32,11 +34,11 @@ pub trait Rotation<S: Space>: Copy + Debug + Send {
 }
 
 /// A grain that cannot rotate: no memory, no arithmetic.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Rigid;
 
 /// No torque.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct NoTorque;
 
 impl<S: Space> Rotation<S> for Rigid {
@@ -68,7 +70,8 @@ impl<S: Space> Rotation<S> for Rigid {
 }
 
 /// A grain that rotates.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Rotating<S: Space> {
     spin: S::Spin,
     inverse_inertia: f64,
@@ -76,7 +79,8 @@ pub struct Rotating<S: Space> {
 }
 
 /// Torque on a rotating grain (N m).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Torque<S: Space>(S::Spin);
 
 impl<S: Space> Default for Torque<S> {
@@ -139,7 +143,7 @@ pub trait Tangential<S: Space>: Copy + Send + 'static {
     /// Whether there is a tangential force at all.
     const ACTIVE: bool;
     /// What a contact remembers from step to step: the stretch of its tangential spring (m).
-    type History: Copy + Debug + Default + Send;
+    type History: Copy + Debug + Default + Send + Serialize + DeserializeOwned;
     /// The rotation of a grain.
     type Rotation: Rotation<S>;
 
@@ -323,7 +327,8 @@ impl<S: Space> Carrying<S> for Projected {
 pub struct Coulomb<C: Cap, H>(PhantomData<(C, H)>);
 
 /// The stretch of a tangential spring (m).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Stretch<S: Space, H: Carrying<S>>(H::Stored);
 
 impl<S: Space, H: Carrying<S>> Default for Stretch<S, H> {

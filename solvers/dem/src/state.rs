@@ -1,0 +1,63 @@
+//! What a simulation must remember between two steps, to go on to the same bits.
+//!
+//! Not the neighbour list's pairs alone but their order too: sums of forces depend on it in their last bit.
+
+use crate::contact::normal::Normal;
+use crate::contact::rolling::Rolling;
+use crate::contact::tangential::Tangential;
+use crate::grains::Grains;
+use crate::neighbours::Neighbours;
+use crate::simulation::{Kernel, Memory};
+use crate::walls::WallMemory;
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::record::Cost;
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::space::Space;
+use serde::{Deserialize, Serialize};
+
+#[derive(Serialize, Deserialize)]
+#[serde(bound = "")]
+struct State<S: Space, T: Tangential<S>, R: Rolling<S>> {
+    grains: Grains<S, T::Rotation>,
+    neighbours: Neighbours<S, Memory<S, T, R>>,
+    walls: Vec<WallMemory<S, Memory<S, T, R>>>,
+    step: u64,
+    extent: f64,
+    cost: Cost,
+    recorder: Recorder,
+}
+
+impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
+    /// The state after the last step, with the record so far.
+    pub(crate) fn kept(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
+        let state = State::<S, T, R> {
+            grains: self.grains.clone(),
+            neighbours: self.neighbours.clone(),
+            walls: self.walls.iter().map(|wall| wall.memory()).collect(),
+            step: self.step,
+            extent: self.extent,
+            cost: self.cost,
+            recorder: recorder.clone(),
+        };
+        Checkpoint::keep(identity, self.step, &state)
+    }
+
+    /// Goes to a state that was kept; the record so far.
+    pub(crate) fn recalled(
+        &mut self,
+        identity: &RunIdentity,
+        checkpoint: &Checkpoint,
+    ) -> Result<Recorder, CheckpointError> {
+        let state: State<S, T, R> = checkpoint.state(identity)?;
+        if state.grains.len() != self.grains.len() || state.walls.len() != self.walls.len() {
+            return Err(CheckpointError::Damaged("it has another number of grains or walls".to_owned()));
+        }
+        self.grains = state.grains;
+        self.neighbours = state.neighbours;
+        self.walls.iter_mut().zip(state.walls).for_each(|(wall, memory)| wall.recall(memory));
+        self.step = state.step;
+        self.extent = state.extent;
+        self.cost = state.cost;
+        Ok(state.recorder)
+    }
+}

@@ -1,0 +1,256 @@
+//! The state of a run between two steps, from which it continues to the same bits.
+//!
+//! On disk: the line `grainbench checkpoint <format>`, the number of bytes that follow the hash (8 bytes, little end first),
+//! their BLAKE3 hash (32 bytes), and the bytes: a [`Checkpoint`] in postcard's format, which keeps every bit of a number.
+
+use crate::scene::Scene;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// What a checkpoint begins with, before the number of its format.
+const MAGIC: &[u8] = b"grainbench checkpoint ";
+/// The format that this program writes: to be raised whenever anything that is stored changes its meaning or its place.
+const FORMAT: u32 = 1;
+/// Length of the longest first line that a format of ours could have.
+const LONGEST_LINE: usize = MAGIC.len() + 11;
+
+/// Why a run cannot be continued from a checkpoint, or a checkpoint not be left.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum CheckpointError {
+    /// Some other file.
+    #[error("expected a checkpoint, which begins with `grainbench checkpoint`; found another kind of file")]
+    Foreign,
+    /// Written by a later version.
+    #[error(
+        "expected a checkpoint of format {FORMAT} or earlier, found format {found}: a newer version of the program wrote it"
+    )]
+    Newer {
+        /// Its format.
+        found: u32,
+    },
+    /// Cut off, or longer than it should be.
+    #[error("expected {expected} bytes after the first line, found {found}: the checkpoint is not whole")]
+    Length {
+        /// Bytes there should be.
+        expected: u64,
+        /// Bytes there are.
+        found: u64,
+    },
+    /// Its bytes are not those that were written.
+    #[error("the checkpoint is damaged: {0}")]
+    Damaged(String),
+    /// It belongs to another run.
+    #[error("the checkpoint is of another run: expected {what} {expected}, found {found}")]
+    OtherRun {
+        /// What differs.
+        what: &'static str,
+        /// Of the run that is to continue.
+        expected: String,
+        /// Of the checkpoint.
+        found: String,
+    },
+    /// It could not be stored.
+    #[error("{0}")]
+    NotStored(String),
+}
+
+/// Which run a checkpoint belongs to: it continues no other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunIdentity {
+    /// Solver and options, in words.
+    pub solver: String,
+    /// Title of the scene.
+    pub scene: String,
+    /// Hash of everything in the scene.
+    pub fingerprint: String,
+    /// Time step (s).
+    pub time_step: f64,
+    /// Steps of the whole run.
+    pub steps: u64,
+    /// What the solver keeps, in words that change when it does.
+    pub layout: String,
+}
+
+impl RunIdentity {
+    /// Of a run of `steps` steps of `time_step` (s).
+    #[must_use]
+    pub fn new(solver: String, scene: &Scene, time_step: f64, steps: u64, layout: &str) -> Self {
+        // Debug output tells every bit of a number.
+        let fingerprint = blake3::hash(format!("{scene:?}").as_bytes()).to_hex().to_string();
+        Self { solver, scene: scene.title.clone(), fingerprint, time_step, steps, layout: layout.to_owned() }
+    }
+
+    fn require(&self, found: &Self) -> Result<(), CheckpointError> {
+        let other = |what, expected: &dyn ToString, found: &dyn ToString| {
+            Err(CheckpointError::OtherRun { what, expected: expected.to_string(), found: found.to_string() })
+        };
+        if self.solver != found.solver {
+            return other("the solver", &self.solver, &found.solver);
+        }
+        if self.scene != found.scene {
+            return other("the scene", &self.scene, &found.scene);
+        }
+        if self.time_step.to_bits() != found.time_step.to_bits() {
+            return other("a time step (s) of", &self.time_step, &found.time_step);
+        }
+        if self.steps != found.steps {
+            return other("a number of steps of", &self.steps, &found.steps);
+        }
+        if self.fingerprint != found.fingerprint {
+            return other("a scene with the fingerprint", &self.fingerprint, &found.fingerprint);
+        }
+        if self.layout != found.layout {
+            return other("the state of", &self.layout, &found.layout);
+        }
+        Ok(())
+    }
+}
+
+/// The state of a run between two steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    identity: RunIdentity,
+    step: u64,
+    state: Vec<u8>,
+}
+
+impl Checkpoint {
+    /// Keeps a state.
+    ///
+    /// # Errors
+    /// When the state has a part that cannot be written down.
+    pub fn keep(identity: &RunIdentity, step: u64, state: &impl Serialize) -> Result<Self, CheckpointError> {
+        Ok(Self { identity: identity.clone(), step, state: written(state)? })
+    }
+
+    /// Steps that were taken.
+    #[must_use]
+    pub const fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// The state, for the run that it belongs to.
+    ///
+    /// # Errors
+    /// When it belongs to another run or cannot be read.
+    pub fn state<T: DeserializeOwned>(&self, identity: &RunIdentity) -> Result<T, CheckpointError> {
+        identity.require(&self.identity)?;
+        postcard::from_bytes(&self.state).map_err(|error| CheckpointError::Damaged(error.to_string()))
+    }
+
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// Never, as far as is known.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
+        let body = written(self)?;
+        let mut bytes = [MAGIC, FORMAT.to_string().as_bytes(), b"\n"].concat();
+        bytes.extend((body.len() as u64).to_le_bytes());
+        bytes.extend(blake3::hash(&body).as_bytes());
+        bytes.extend(body);
+        Ok(bytes)
+    }
+
+    /// A checkpoint from the bytes of a file.
+    ///
+    /// # Errors
+    /// When the file is of another kind, of a newer format, cut off or damaged.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let start = &bytes[..bytes.len().min(LONGEST_LINE)];
+        let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
+        let number = line.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
+        let after_line = bytes.get(line.len() + 1..).unwrap_or_default();
+        let format = std::str::from_utf8(number).ok().and_then(|digits| digits.parse().ok());
+        match format {
+            Some(FORMAT) => {}
+            Some(found) if found > FORMAT => return Err(CheckpointError::Newer { found }),
+            _ => return Err(CheckpointError::Foreign),
+        }
+        let whole = |expected: u64| CheckpointError::Length { expected, found: after_line.len() as u64 };
+        let (length, rest) = after_line.split_first_chunk::<8>().ok_or_else(|| whole(HEAD))?;
+        let (hash, body) = rest.split_first_chunk::<32>().ok_or_else(|| whole(HEAD))?;
+        let length = u64::from_le_bytes(*length);
+        if length != body.len() as u64 {
+            return Err(whole(HEAD.saturating_add(length)));
+        }
+        if blake3::hash(body).as_bytes() != hash {
+            return Err(CheckpointError::Damaged("its bytes are not those that were written".to_owned()));
+        }
+        postcard::from_bytes(body).map_err(|error| CheckpointError::Damaged(error.to_string()))
+    }
+}
+
+/// Bytes of length and hash.
+const HEAD: u64 = 40;
+
+fn written(value: &impl Serialize) -> Result<Vec<u8>, CheckpointError> {
+    postcard::to_allocvec(value).map_err(|error| CheckpointError::NotStored(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identity() -> RunIdentity {
+        RunIdentity {
+            solver: "dem".to_owned(),
+            scene: "A disc".to_owned(),
+            fingerprint: "0".to_owned(),
+            time_step: 0.1,
+            steps: 10,
+            layout: "numbers".to_owned(),
+        }
+    }
+
+    fn bytes() -> Vec<u8> {
+        Checkpoint::keep(&identity(), 3, &vec![0.1_f64, -0.0, f64::MIN_POSITIVE]).unwrap().to_bytes().unwrap()
+    }
+
+    #[test]
+    fn a_state_comes_back_in_every_bit() {
+        let checkpoint = Checkpoint::from_bytes(&bytes()).unwrap();
+        let state: Vec<f64> = checkpoint.state(&identity()).unwrap();
+        assert_eq!(checkpoint.step(), 3);
+        let bits: Vec<u64> = state.iter().map(|value| value.to_bits()).collect();
+        assert_eq!(bits, [0.1_f64, -0.0, f64::MIN_POSITIVE].map(f64::to_bits));
+    }
+
+    #[test]
+    fn wherever_it_is_cut_or_changed_it_is_refused() {
+        let whole = bytes();
+        for length in 0..whole.len() {
+            assert!(Checkpoint::from_bytes(&whole[..length]).is_err(), "cut at {length}");
+            let mut changed = whole.clone();
+            changed[length] ^= 1;
+            assert!(Checkpoint::from_bytes(&changed).is_err(), "changed at {length}");
+        }
+        let longer = [whole.as_slice(), b"x"].concat();
+        assert!(matches!(Checkpoint::from_bytes(&longer), Err(CheckpointError::Length { .. })));
+    }
+
+    #[test]
+    fn other_files_and_newer_formats_are_told_apart() {
+        assert_eq!(Checkpoint::from_bytes(b"ITEM: TIMESTEP\n0\n"), Err(CheckpointError::Foreign));
+        assert_eq!(Checkpoint::from_bytes(&[0; 100]), Err(CheckpointError::Foreign));
+        let newer = [b"grainbench checkpoint 2\n".as_slice(), &bytes()[24..]].concat();
+        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found: 2 }));
+    }
+
+    #[test]
+    fn it_continues_no_other_run() {
+        let checkpoint = Checkpoint::from_bytes(&bytes()).unwrap();
+        let others = [
+            RunIdentity { solver: "dem:lammps".to_owned(), ..identity() },
+            RunIdentity { scene: "Another".to_owned(), ..identity() },
+            RunIdentity { fingerprint: "1".to_owned(), ..identity() },
+            RunIdentity { time_step: 0.2, ..identity() },
+            RunIdentity { steps: 11, ..identity() },
+            RunIdentity { layout: "words".to_owned(), ..identity() },
+        ];
+        for other in others {
+            let refused = checkpoint.state::<Vec<f64>>(&other).unwrap_err();
+            assert!(matches!(refused, CheckpointError::OtherRun { .. }), "{other:?}");
+        }
+    }
+}

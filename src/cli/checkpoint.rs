@@ -1,0 +1,28 @@
+//! Checkpoints as files.
+
+use super::exit::Fault;
+use grainbench::reports::write_file;
+use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Where checkpoints go, each in the place of the one before.
+pub(crate) struct Store {
+    pub(crate) path: PathBuf,
+    /// Steps from one to the next.
+    pub(crate) every: u64,
+}
+
+impl Store {
+    /// Stores a checkpoint, whole or not at all.
+    pub(crate) fn put(&self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
+        write_file(&self.path, checkpoint.to_bytes()?).map_err(|error| CheckpointError::NotStored(error.to_string()))
+    }
+}
+
+/// Reads a checkpoint.
+pub(crate) fn read(path: &Path) -> Result<Checkpoint, Fault> {
+    let refused = |reason: String| Fault::input(format!("{}: {reason}", path.display()));
+    let bytes = fs::read(path).map_err(|error| refused(error.to_string()))?;
+    Checkpoint::from_bytes(&bytes).map_err(|error| refused(error.to_string()))
+}

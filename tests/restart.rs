@@ -1,0 +1,146 @@
+//! Restart equals straight run, in every bit: of every case's scene, and of a process that was killed.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{files, grainbench};
+use grainbench::cases::case::Case;
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::scene::record::{Cost, Record};
+use grainbench::scene::scene::{Duration, Sampling, Scene};
+use grainbench::scene::solver::{Resolution, Watch};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// Keeps every checkpoint of a run.
+struct Keeper {
+    every: u64,
+    kept: Vec<Checkpoint>,
+}
+
+impl Watch for Keeper {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(self.every)
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.kept.push(Checkpoint::from_bytes(&checkpoint.to_bytes()?)?);
+        Ok(())
+    }
+}
+
+/// A record without its times, in every bit.
+fn untimed(record: Record) -> String {
+    format!("{:?}", Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record })
+}
+
+/// The beginning of a scene, with samples at odd places.
+fn begun(mut scene: Scene) -> Scene {
+    let cycles = if scene.grains.len() > 1000 { 40 } else { 300 };
+    scene.duration = Duration::Cycles(cycles);
+    scene.sampling = Sampling::Cycles(7);
+    scene.snapshots = 3;
+    scene
+}
+
+/// Moving walls, periodic faces, Hertz, rolling resistance, cohesion, spheres: whatever the cases hold, in every convention.
+#[test]
+fn every_case_continues_to_the_same_bits() {
+    let mut compared = 0;
+    let variants = |case: &Case| -> Vec<Scene> {
+        case.variants().unwrap().iter().map(|variant| case.variant(variant).unwrap()).collect()
+    };
+    for (case, scene) in CASES.iter().flat_map(|case| variants(case).into_iter().map(move |scene| (case, scene))) {
+        let scene = begun(scene);
+        for solver in solvers::all().into_iter().filter(|solver| solver.name().starts_with("dem")) {
+            let resolution = Resolution::CriticalFraction(0.1);
+            let mut keeper = Keeper { every: 19, kept: Vec::new() };
+            let whole = untimed(solver.run(&scene, &resolution, &mut ()).unwrap());
+            let watched = untimed(solver.run(&scene, &resolution, &mut keeper).unwrap());
+            assert!(whole == watched, "{}: {} is another run when checkpoints are taken", case.name, solver.name());
+            let (first, last) = (keeper.kept.first().unwrap(), keeper.kept.last().unwrap());
+            for checkpoint in [first, last] {
+                let continued = untimed(solver.restart(&scene, &resolution, checkpoint, &mut ()).unwrap());
+                assert!(whole == continued, "{}: {} from step {}", case.name, solver.name(), checkpoint.step());
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 2 * CASES.len(), "{compared}");
+}
+
+/// A chain that oscillates for long enough to be killed in the middle.
+const LONG: &str = r#"title = "Discs in a box"
+dimension = 2
+duration_cycles = 1_000_000
+gravity = [0.0, -9.8]
+materials.rock.density = 1000.0
+
+[contacts.rock]
+between = ["rock", "rock"]
+normal_stiffness = 1e6
+tangential_stiffness = 5e5
+friction = 0.4
+
+[grains.all]
+material = "rock"
+radius = 0.1
+velocity = [1.0, 0.3]
+lattice = { origin = [0.15, 0.15], spacing = [0.25, 0.25], count = [3, 3] }
+
+[walls]
+left = { material = "rock", plane = { point = [0.0, 0.0], normal = [1.0, 0.0] } }
+right = { material = "rock", plane = { point = [1.0, 0.0], normal = [-1.0, 0.0] } }
+floor = { material = "rock", plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+lid = { material = "rock", plane = { point = [0.0, 1.0], normal = [0.0, -1.0] } }
+
+[output]
+every_cycles = 100_000
+snapshots = 2
+[probes]
+all = { system = true }
+"#;
+
+/// What a run left, but for the times in it.
+fn left(directory: &Path) -> Vec<(String, String)> {
+    let text = |name: &String| {
+        let text = std::fs::read_to_string(directory.join(name)).unwrap();
+        let lines = text.lines().filter(|line| !line.contains("wall_seconds"));
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    files(directory).iter().map(|name| (name.clone(), text(name))).collect()
+}
+
+#[test]
+fn a_killed_run_continues_to_the_same_files() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), LONG).unwrap();
+    let simulate = ["simulate", "scene.toml", "--solver", "dem"];
+    let straight = grainbench(path, &[&simulate[..], &["--out", "straight"]].concat());
+    assert_eq!(straight.code, Some(0), "{}", straight.err);
+
+    let checkpoints = ["--checkpoint", "run.checkpoint", "--checkpoint-every", "20000"];
+    let mut victim = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+        .current_dir(path)
+        .args(simulate.iter().chain(&checkpoints).chain(&["--out", "killed"]))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !path.join("run.checkpoint").exists() {
+        assert!(victim.try_wait().unwrap().is_none(), "it ended before its first checkpoint");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    victim.kill().unwrap();
+    victim.wait().unwrap();
+    assert!(!path.join("killed").exists(), "nothing half-written");
+
+    let restart = ["--restart", "run.checkpoint", "--out", "continued"];
+    let continued = grainbench(path, &[&simulate[..], &checkpoints, &restart].concat());
+    assert_eq!(continued.code, Some(0), "{}", continued.err);
+    assert_eq!(left(&path.join("straight")), left(&path.join("continued")));
+}
