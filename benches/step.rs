@@ -1,7 +1,7 @@
 //! Time of a DEM step and of the contact kernel: `cargo bench`.
 //!
 //! `particle-steps` are 10,000 sheared discs in the convention of LAMMPS with 4.7 contacts a disc, with the effects
-//! that the scene calls for and with friction taken out of it. `contact` is one pair that stays in touch. `lattice` is a
+//! that the scene calls for, with friction taken out of it, and with friction compiled in at μ = 0. `contact` is one pair that stays in touch. `lattice` is a
 //! square lattice of growing size: the time per grain must not grow.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -9,7 +9,7 @@ use grainbench::cases::registry;
 use grainbench::dem::Simulation;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
-use grainbench::scene::scene::Scene;
+use grainbench::scene::scene::{ContactLaw, Scene};
 use grainbench::scene::source::SceneSource;
 use std::hint::black_box;
 use std::path::Path;
@@ -40,6 +40,15 @@ grains.disc = {{ material = "disc", radius = 1.0, lattice = {{ origin = [0.0, 0.
         .expect("the scene is right")
 }
 
+/// Friction compiled in where it does nothing: a material that no grain has asks for it.
+fn with_idle_friction(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let law = scene.laws[0].expect("a scene of one material");
+    scene.materials.push("idle".to_owned());
+    scene.laws = vec![Some(law), None, None, Some(ContactLaw { friction: 0.5, ..law })];
+    scene
+}
+
 fn particle_steps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("particle-steps");
     group.sample_size(20);
@@ -47,7 +56,8 @@ fn particle_steps(criterion: &mut Criterion) {
     let mut without = with_friction.clone();
     without.change_laws(|law| law.friction = 0.0);
     group.throughput(Throughput::Elements(100 * with_friction.grains.len() as u64));
-    for (name, scene) in [("friction", &with_friction), ("frictionless", &without)] {
+    let idle = with_idle_friction(&without);
+    for (name, scene) in [("friction", &with_friction), ("frictionless", &without), ("friction at μ = 0", &idle)] {
         let mut simulation = start(scene, Convention::LAMMPS, 1e-4);
         group.bench_function(name, |bencher| bencher.iter(|| simulation.advance(black_box(100))));
     }

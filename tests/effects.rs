@@ -22,18 +22,30 @@ fn with_idle_friction(scene: &Scene) -> Scene {
     scene
 }
 
-fn run(scene: &Scene) -> Record {
-    let dem = Dem::new(Convention::CUNDALL_STRACK);
-    dem.run(scene, &Resolution::CriticalFraction(0.05), &mut ()).unwrap()
+fn run(scene: &Scene, resolution: Resolution) -> Record {
+    Dem::new(Convention::CUNDALL_STRACK).run(scene, &resolution, &mut ()).unwrap()
 }
 
 #[test]
-fn friction_that_does_nothing_changes_nothing() {
+fn friction_that_does_nothing_changes_nothing_in_a_gas() {
     let mut scene = registry::by_name("disc-gas").unwrap().variant("plain").unwrap();
     scene.duration = Duration::Cycles(20_000);
-    let idle = with_idle_friction(&scene);
-    assert!(!Effects::of(&scene).friction && Effects::of(&idle).friction && Effects::of(&idle).rolling_resistance);
-    let (without, with) = (run(&scene), run(&idle));
+    same_without(&scene, Resolution::CriticalFraction(0.05));
+}
+
+#[test]
+fn friction_that_does_nothing_changes_nothing_in_dense_shear() {
+    let mut scene = registry::by_name("plane-shear").unwrap().variant("plain").unwrap();
+    scene.change_laws(|law| (law.friction, law.tangential_damping) = (0.0, 0.0));
+    scene.duration = Duration::Cycles(200);
+    same_without(&scene, Resolution::TimeStep(1e-4));
+}
+
+/// A frictionless scene ends alike with the frictionless kernel and with friction that does nothing.
+fn same_without(scene: &Scene, resolution: Resolution) {
+    let idle = with_idle_friction(scene);
+    assert!(!Effects::of(scene).friction && Effects::of(&idle).friction && Effects::of(&idle).rolling_resistance);
+    let (without, with) = (run(scene, resolution), run(&idle, resolution));
     let (without, with) = (without.snapshots.last().unwrap(), with.snapshots.last().unwrap());
     assert!(without.grains.iter().any(|grain| grain.velocity != scene.grains[grain.id as usize - 1].velocity));
     for (a, b) in without.grains.iter().zip(&with.grains) {
