@@ -8,6 +8,7 @@ use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
+use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
@@ -105,7 +106,26 @@ fn gates() -> Vec<Gate> {
             scene.change_laws(|law| law.normal_stiffness *= 1.02);
         }),
     };
-    BEADS.into_iter().map(at_bead).chain([order, force]).collect()
+    BEADS.into_iter().map(at_bead).chain([order, force, rigid()]).collect()
+}
+
+/// Rigid beads have no dispersion, and no unique answer either: many beads touch at once.
+fn rigid() -> Gate {
+    Gate {
+        quantity: "velocity of bead 22 at 20/ω₀".to_owned(),
+        unit: "m/s",
+        evidence: Evidence::Analytic,
+        scope: Scope::Named,
+        source: SOURCE,
+        allowed: 4e-4,
+        because: "what a solver with springs reaches, in units of V",
+        runs: vec![Run::new(PLAIN, "rigid", rigid_rows::DEFAULT).known(
+            "contacts are rigid: an impulse passes through all beads in one step, and how many beads that touch at once share \
+             it is up to the order in which the engine solves them",
+        )],
+        measure: measure(|done| bead(&done[0], 22, "v22.vx")),
+        control: Control::without_the_error("dem in its place", "dem", FINEST.resolution),
+    }
 }
 
 /// Root mean square error of the six beads in units of V.

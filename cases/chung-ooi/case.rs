@@ -4,6 +4,7 @@ use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::{ContactLaw, Scene};
@@ -36,7 +37,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [elastic(), restitution(), oblique()].concat()
+    [elastic(), restitution(), oblique(), rigid()].concat()
 }
 
 /// The law of the contact that the scene is about: between spheres where there are two, else with the plane.
@@ -163,6 +164,11 @@ fn at_angle(variant: &'static str, degrees: f64) -> Run {
     })
 }
 
+/// Tangential velocity after impact over that before.
+fn tangential(done: &Done) -> Result<f64, Missing> {
+    Ok(done.last("a.vx")? / done.scene.grains[0].velocity.x)
+}
+
 /// μ(1+e) with the restitution that the law was given.
 fn impulse(scene: &Scene) -> f64 {
     let law = law(scene);
@@ -192,8 +198,7 @@ fn oblique() -> Vec<Gate> {
             if spin {
                 return Ok(Measured::new(done[0].last("a.omega_y")?, turn, turn));
             }
-            let along = done[0].scene.grains[0].velocity.x;
-            Ok(Measured::new(done[0].last("a.vx")? / along, restitution, 1.0))
+            Ok(Measured::new(tangential(&done[0])?, restitution, 1.0))
         }),
         control: if spin {
             Control::scene("a disc's inertia in a sphere", |scene| {
@@ -205,6 +210,52 @@ fn oblique() -> Vec<Gate> {
     };
     let angles = |variant: &'static str| ANGLES.into_iter().flat_map(move |angle| [gate(variant, angle, false), gate(variant, angle, true)]);
     OBLIQUE.into_iter().flat_map(angles).collect()
+}
+
+/// A rigid-body engine has neither overlap nor duration; restitution it gives back exactly. Friction it limits by the impulse
+/// that stops the approach, μ m v_n, and leaves out what restitution adds: μ(1+e) m v_n is Coulomb's.
+fn rigid() -> Vec<Gate> {
+    let gate = |quantity: &str, unit, run: Run, control, of: fn(&Done) -> Result<Measured, Missing>| Gate {
+        quantity: quantity.to_owned(),
+        unit,
+        scope: Scope::Named,
+        evidence: Evidence::Analytic,
+        source: SOURCE,
+        allowed: 1e-9,
+        because: "an impulse at one contact is solved to rounding",
+        runs: vec![Run { solver: "rigid", ..run.at(rigid_rows::DEFAULT) }],
+        measure: measure(move |done| of(&done[0])),
+        control,
+    };
+    let oblique = || at_angle(OBLIQUE[0], 60.0);
+    let known = gate(
+        "tangential restitution at 60°",
+        "1",
+        oblique().known("friction is limited by the impulse that stops the approach; what restitution adds to it is left out"),
+        Control::without_the_error("dem in its place", "dem", STEP.resolution),
+        |done| Ok(Measured::new(tangential(done)?, sliding(&done.scene).0, 1.0)),
+    );
+    vec![
+        gate(
+            "rebound velocity over impact velocity, e = 0.8",
+            "1",
+            with_restitution(DAMPED[0], 0.8),
+            Control::scene("e = .79", |scene| scene.change_laws(|law| law.damping_ratio = damping_ratio(0.79))),
+            |done| Ok(Measured::new(rebound(done)?, 0.8, 1.0)),
+        ),
+        gate(
+            "tangential restitution at 60° with friction μ m v_n",
+            "1",
+            oblique(),
+            Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)),
+            |done| {
+                let velocity = done.scene.grains[0].velocity;
+                let exact = 1.0 + law(&done.scene).friction * velocity.z / velocity.x;
+                Ok(Measured::new(tangential(done)?, exact, 1.0))
+            },
+        ),
+        Gate { allowed: 2e-5, because: "what a solver with springs reaches", ..known },
+    ]
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

@@ -4,7 +4,9 @@ use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+
 use crate::one_grain::{OneGrain, State, course};
+use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
@@ -69,7 +71,14 @@ fn gates() -> Vec<Gate> {
         measure: measure(|done| slip(&done[0])),
         control,
     };
+    let rigid = Gate::refused(
+        Run::new(PLAIN, "rigid", rigid_rows::DEFAULT),
+        "refusal of cohesion",
+        "rapier's contacts only push",
+        Control::scene("no cohesion", |scene| scene.change_laws(|law| law.cohesion = 0.0)),
+    );
     vec![
+        rigid,
         gate(
             "growth of slip, cohesion a thousandth above the threshold",
             1.001,

@@ -6,6 +6,7 @@ use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::incline::wrong_inertia;
 use crate::one_grain::{OneGrain, course};
+use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
@@ -42,7 +43,13 @@ fn acceleration(scene: &Scene) -> f64 {
 }
 
 fn gates() -> Vec<Gate> {
-    FLAT.into_iter().flat_map(flat).chain(SLOPE.into_iter().flat_map(threshold)).collect()
+    let rigid = Gate::refused(
+        Run::new(FLAT[0], "rigid", rigid_rows::DEFAULT),
+        "refusal of rolling resistance",
+        "rapier has no resistance against rolling",
+        Control::scene("no rolling resistance", |scene| scene.change_laws(|law| law.rolling_friction = 0.0)),
+    );
+    FLAT.into_iter().flat_map(flat).chain(SLOPE.into_iter().flat_map(threshold)).chain([rigid]).collect()
 }
 
 fn flat(variant: &'static str) -> Vec<Gate> {

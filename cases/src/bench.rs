@@ -1,7 +1,7 @@
 //! Does the runs of a case, each once, whoever asks for it.
 
 use crate::case::Case;
-use crate::gate::{Control, Done, Gate, Run, Wrong};
+use crate::gate::{Control, Done, Gate, Run, Standing, Wrong};
 use crate::scope::Scope;
 use crate::solvers;
 use crate::verdict::{self, Outcome, Verdict};
@@ -79,7 +79,7 @@ impl Bench {
         self.conclude(gate, done)
     }
 
-    /// Feeds a gate with its wrong physics.
+    /// Feeds a gate with its wrong physics; the row of a known error with a solver that does not have it.
     #[must_use]
     pub fn control(&self, gate: &Gate) -> verdict::Control {
         let done = gate.runs.iter().map(|run| self.simulate(run, Some(&gate.control))).collect();
@@ -92,7 +92,10 @@ impl Bench {
             wrong_physics: gate.control.name.to_owned(),
             error: verdict.error,
             allowed: verdict.allowed,
-            turned_red: matches!(verdict.outcome, Outcome::Fail | Outcome::Broken),
+            turned_red: match gate.standing() {
+                Standing::Known(_) => verdict.outcome == Outcome::Pass,
+                Standing::Passes | Standing::Refused => matches!(verdict.outcome, Outcome::Fail | Outcome::Broken),
+            },
         }
     }
 
@@ -105,14 +108,18 @@ impl Bench {
                 change(&mut given);
                 self.solver(run.solver)
             }
-            Some(Wrong::OtherSolver(name)) => self.solver(name),
+            Some(Wrong::OtherSolver(name) | Wrong::OtherRun(name, _)) => self.solver(name),
             Some(Wrong::Solver(defect)) => Convention::ALL
                 .into_iter()
                 .find(|convention| convention.name == run.solver)
                 .map(|convention| Arc::new(Dem::new(convention).with_defect(*defect)) as Arc<dyn Solver>),
         };
         let solver = solver.ok_or_else(|| self.unusable(run, "there is no such solver".to_owned()))?;
-        let record = solver.run(&given, &run.resolution, &mut ())?;
+        let resolution = match control.map(|control| &control.wrong) {
+            Some(Wrong::OtherRun(_, resolution)) => resolution,
+            _ => &run.resolution,
+        };
+        let record = solver.run(&given, resolution, &mut ())?;
         Ok(Done { scene: Arc::new(scene), record: Arc::new(record) })
     }
 
@@ -185,6 +192,9 @@ fn conclude(mut verdict: Verdict, gate: &Gate, done: Result<Vec<Done>, RunError>
                 verdict.error = finite(error);
                 if error.abs() <= gate.allowed {
                     verdict.outcome = Outcome::Pass;
+                } else if let (Standing::Known(reason), true) = (gate.standing(), error.is_finite()) {
+                    verdict.outcome = Outcome::Known;
+                    verdict.detail = Some(reason.to_owned());
                 } else {
                     let outside = |error: f64| error.is_nan() || error.abs() > gate.allowed;
                     verdict.detail = measured

@@ -25,15 +25,28 @@ pub struct Run {
     /// A change of the scene that belongs to the claim, such as another stiffness in a sweep: its name, which tells
     /// runs apart, and what it does.
     pub adjustment: Option<(String, Change)>,
-    /// Whether the solver must refuse the scene, because it cannot express it.
-    pub refused: bool,
+    /// What is expected of the row.
+    pub standing: Standing,
+}
+
+/// What is expected of a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Standing {
+    /// It passes.
+    #[default]
+    Passes,
+    /// The solver refuses the scene, because it cannot express it.
+    Refused,
+    /// The error of a method or program that is known to be off here, with the reason: shown amber for as long as it is
+    /// outside what is allowed.
+    Known(&'static str),
 }
 
 impl Run {
     /// A run of a variant as it stands.
     #[must_use]
     pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
-        Self { variant, solver, resolution, adjustment: None, refused: false }
+        Self { variant, solver, resolution, adjustment: None, standing: Standing::Passes }
     }
 
     /// The run with a change of the scene.
@@ -41,6 +54,12 @@ impl Run {
     pub fn adjusted(mut self, name: &str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         self.adjustment = Some((name.to_owned(), Arc::new(change)));
         self
+    }
+
+    /// The run of a method that is known to be off here.
+    #[must_use]
+    pub fn known(self, reason: &'static str) -> Self {
+        Self { standing: Standing::Known(reason), ..self }
     }
 
     /// The same run at another resolution.
@@ -168,6 +187,8 @@ pub enum Wrong {
     Solver(Defect),
     /// Another solver takes its place.
     OtherSolver(&'static str),
+    /// Another solver takes its place, at a resolution of its own.
+    OtherRun(&'static str, Resolution),
 }
 
 /// A negative control: what is made wrong, in words and in deed.
@@ -196,6 +217,12 @@ impl Control {
     #[must_use]
     pub const fn solver(name: &'static str, solver: &'static str) -> Self {
         Self { name, wrong: Wrong::OtherSolver(solver) }
+    }
+
+    /// Of a known error: a solver that does not have it, at a resolution of its own. The row must then pass.
+    #[must_use]
+    pub const fn without_the_error(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
+        Self { name, wrong: Wrong::OtherRun(solver, resolution) }
     }
 }
 
@@ -240,16 +267,16 @@ impl Gate {
             source: "what the method is",
             allowed: 0.0,
             because,
-            runs: vec![Run { refused: true, ..run }],
+            runs: vec![Run { standing: Standing::Refused, ..run }],
             measure: measure(|_| Err(Missing("refusal: the solver ran the scene".to_owned()))),
             control,
         }
     }
 
-    /// Whether the solver must refuse the scene.
+    /// What is expected of the row: that of its first run.
     #[must_use]
-    pub fn is_refused(&self) -> bool {
-        self.runs.iter().any(|run| run.refused)
+    pub fn standing(&self) -> Standing {
+        self.runs.first().map(|run| run.standing).unwrap_or_default()
     }
 
     /// Resolutions in words: one, or the first and the last of several.
