@@ -1,0 +1,242 @@
+//! Chains of discs, struck at one end (2001 paper, Figs 9 to 11): when the force arrives.
+
+#[path = "modal.rs"]
+mod modal;
+
+use crate::bench::Bench;
+use crate::case::{Case, Rung, fraction};
+use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::rigid_rows;
+use crate::scope::Scope;
+use crate::verdict::Evidence;
+use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::solver::RunError;
+use modal::Modes;
+
+const LADDER: &[Rung] = &[fraction("dt=.02", 0.02), fraction("dt=.01", 0.01), fraction("dt=.005", 0.005)];
+const STEP: Rung = LADDER[2];
+/// Force that counts as arrived, as a fraction of the impedance force V√(k m).
+const ARRIVED: f64 = 0.1;
+/// Longitudinal wave speed of the paper's material (m/s): the unit of time is the transit of one disc, d/c.
+const WAVE_SPEED: f64 = 10_208.355_710_680_81;
+const SMOOTH: &str = "zig-zag-smooth";
+const GLUED: &str = "zig-zag-glued";
+
+pub(crate) static CASE: Case = Case {
+    name: "disk-chains",
+    title: "Chains of discs, struck at one end",
+    claim: "Force arrives at every contact of a line and of a zig-zag of discs when the modes of the assembly say so; a zig-zag \
+            that sticks passes it on sooner than one that slips, and so does the line.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "A disc is one mass on springs here: it has no stress inside, and no fringes. When a contact is first felt is a \
+               matter of the stiffness that was put in. The paper states its order of speeds for fringes, and prints no \
+               arrival times.",
+    ladder: LADDER,
+    default_rung: STEP,
+    gates,
+    figures,
+};
+
+/// The two discs of a contact between neighbours, by their place in the scene: the odd ones come first there.
+fn pair(scene: &Scene, first: usize) -> [usize; 2] {
+    let odd = scene.grains.len().div_ceil(2);
+    let place = |number: usize| if number % 2 == 1 { number / 2 } else { odd + number / 2 - 1 };
+    let (a, b) = (place(first), place(first + 1));
+    [a.min(b), a.max(b)]
+}
+
+/// .1 V√(k m) (N).
+fn threshold(scene: &Scene) -> f64 {
+    let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness).fold(0.0, f64::max);
+    ARRIVED * scene.walls[0].motion.phases[0].velocity.norm() * (stiffness * scene.grains[0].mass).sqrt()
+}
+
+/// When a column first exceeds a threshold (s), between two samples.
+fn first_above(done: &Done, column: &str, threshold: f64) -> Result<f64, Missing> {
+    let (time, values) = (&done.series().time, done.column(column)?);
+    let at = values.iter().position(|&value| value > threshold).filter(|&at| at > 0);
+    let at = at.ok_or_else(|| Missing(format!("`{column}` above its threshold")))?;
+    let share = (threshold - values[at - 1]) / (values[at] - values[at - 1]);
+    Ok(time[at - 1] + share * (time[at] - time[at - 1]))
+}
+
+/// When the force arrives at the contact of a disc with the next (s).
+fn arrival(done: &Done, first: usize) -> Result<f64, Missing> {
+    first_above(done, &format!("{first}-{}.normal_force", first + 1), threshold(&done.scene))
+}
+
+fn duration(scene: &Scene) -> f64 {
+    match scene.duration {
+        Duration::Seconds(time) => time,
+        Duration::Cycles(_) => f64::NAN,
+    }
+}
+
+/// The striker at a thousandth of its speed, so that the geometry stays as the modes have it.
+fn gentle(variant: &'static str) -> Run {
+    Run::new(variant, "dem", STEP.resolution).adjusted("striker at a thousandth of its speed", |scene| {
+        scene.walls[0].motion.phases[0].velocity *= 1e-3;
+    })
+}
+
+fn gates() -> Vec<Gate> {
+    let contacts = [("line", 2..=3), (SMOOTH, 2..=4)];
+    let mut gates: Vec<Gate> =
+        contacts.into_iter().flat_map(|(variant, all)| all.map(move |first| exact(variant, first))).collect();
+    gates.push(glued());
+    gates.push(sooner(GLUED, "glued zig-zag over that of the slipping one"));
+    gates.push(sooner("line", "line over that of the slipping zig-zag"));
+    gates.push(rigid());
+    gates
+}
+
+/// Arrival at a contact against the modes.
+fn exact(variant: &'static str, first: usize) -> Gate {
+    Gate {
+        quantity: format!("arrival of force between discs {first} and {}", first + 1),
+        unit: "s",
+        scope: Scope::Named,
+        evidence: Evidence::Analytic,
+        source: "modes of the assembly (derivation)",
+        allowed: 5e-5,
+        because: "central differences at ω₀Δt = .01, and displacements of 2e-6 R turn the normals",
+        runs: vec![gentle(variant)],
+        measure: measure(move |done| {
+            let scene = &done[0].scene;
+            let modes = Modes::of(scene);
+            let exact = modes.arrival(pair(scene, first), threshold(scene), duration(scene));
+            Ok(Measured::new(arrival(&done[0], first)?, exact, exact))
+        }),
+        control: Control::scene("contacts 1 % too stiff", |scene| {
+            scene.change_laws(|law| law.normal_stiffness *= 1.01);
+        }),
+    }
+}
+
+/// The force of the first two discs where they stick, for as long as no contact of the assembly opens.
+fn glued() -> Gate {
+    Gate {
+        quantity: "force between discs 1 and 2 until a contact opens, worst".to_owned(),
+        unit: "N",
+        scope: Scope::Named,
+        evidence: Evidence::Analytic,
+        source: "modes of the assembly with sticking contacts (derivation)",
+        allowed: 1e-4,
+        because: "central differences at ω₀Δt = .01, and contacts that would pull by less than a hundredth of the striker's \
+                  way are taken for closed; in units of V√(k m)",
+        runs: vec![gentle(GLUED)],
+        measure: measure(move |done| {
+            let done = &done[0];
+            let scene = &done.scene;
+            let modes = Modes::of(scene);
+            let opens = modes.first_opening(duration(scene));
+            let (time, force) = (&done.series().time, done.column("1-2.normal_force")?);
+            let count = time.iter().take_while(|&&time| time < opens).count();
+            let exact = |time| modes.force(pair(scene, 1), time);
+            Ok(Measured::worst(&time[..count], &force[..count], exact, threshold(scene) / ARRIVED))
+        }),
+        control: Control::scene("tangential springs 1 % too soft", |scene| {
+            scene.change_laws(|law| law.tangential_stiffness *= 0.99);
+        }),
+    }
+}
+
+/// The paper's order: a variant passes force to the fourth disc sooner than the slipping zig-zag.
+fn sooner(variant: &'static str, of: &str) -> Gate {
+    Gate {
+        quantity: format!("arrival at disc 4 of the {of}"),
+        unit: "1",
+        scope: Scope::Named,
+        evidence: Evidence::Paper,
+        source: "Bardenhagen et al. 2001, text to Figs 10 and 11: the glued zig-zag and the line are faster than the slipping zig-zag",
+        allowed: 0.49,
+        because: "the paper states an order of fringes and no ratio: anything from .01 to .99",
+        runs: vec![Run::new(variant, "dem", STEP.resolution), Run::new("zig-zag", "dem", STEP.resolution)],
+        measure: measure(|done| Ok(Measured::new(arrival(&done[0], 3)? / arrival(&done[1], 3)?, 0.5, 1.0))),
+        control: Control::scene("the slipping zig-zag four times as stiff", |scene| {
+            let slips = scene.laws.iter().flatten().any(|law| law.friction == 0.5);
+            scene.change_laws(|law| law.normal_stiffness *= if slips { 4.0 } else { 1.0 });
+        }),
+    }
+}
+
+/// A rigid contact passes an impulse through the whole chain in one step.
+fn rigid() -> Gate {
+    let run = Run::new("line", "rigid", rigid_rows::DEFAULT);
+    Gate {
+        quantity: "time until disc 4 moves at a tenth of the striker's speed".to_owned(),
+        unit: "s",
+        scope: Scope::Named,
+        evidence: Evidence::Analytic,
+        source: "modes of the assembly (derivation)",
+        allowed: 1e-3,
+        because: "what a solver with springs reaches",
+        runs: vec![run.known(
+            "contacts are rigid: an impulse passes through all discs in one step, as if waves were infinitely fast",
+        )],
+        measure: measure(|done| {
+            let scene = &done[0].scene;
+            let speed = ARRIVED * scene.walls[0].motion.phases[0].velocity.norm();
+            let exact = Modes::of(scene).moving(pair(scene, 3)[1], speed, duration(scene));
+            Ok(Measured::new(first_above(&done[0], "fourth.vx", speed)?, exact, exact))
+        }),
+        control: Control::without_the_error("dem in its place", "dem", STEP.resolution),
+    }
+}
+
+fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let mut figures = Vec::new();
+    let mut arrivals = Vec::new();
+    for (variant, title) in [
+        ("line", "Forces along the line of four"),
+        ("zig-zag", "Forces along the zig-zag, μ = .5"),
+        (GLUED, "Forces along the glued zig-zag"),
+    ] {
+        let done = bench.run(&Run::new(variant, "dem", STEP.resolution))?;
+        let scene = &done.scene;
+        let unit = 2.0 * scene.grains[0].radius / WAVE_SPEED;
+        let impedance = threshold(scene) / ARRIVED;
+        let mut curves = Vec::new();
+        let mut points = Vec::new();
+        for first in 1..scene.grains.len() {
+            let force = done.series().column(&format!("{first}-{}.normal_force", first + 1)).unwrap_or_default();
+            let samples = done.series().time.iter().zip(force).step_by(4);
+            curves.push(Curve {
+                label: format!("discs {first} and {}", first + 1),
+                stroke: Stroke::Line,
+                points: samples.map(|(time, force)| (time / unit, force / impedance)).collect(),
+            });
+            if let Ok(time) = arrival(&done, first) {
+                points.push((first as f64 + 1.0, time / unit));
+            }
+        }
+        figures.push(graph(
+            variant,
+            title,
+            "Normal forces; they count as arrived at a tenth of the impedance force.",
+            ["time t c/d, transits of a disc", "normal force / V√(k m)"],
+            curves,
+        ));
+        arrivals.push(Curve { label: variant.to_owned(), stroke: Stroke::MarkedLine, points });
+    }
+    figures.push(graph(
+        "arrivals",
+        "Arrival of force",
+        "At the contact of every disc with the one before it.",
+        ["disc", "time of arrival t c/d"],
+        arrivals,
+    ));
+    Ok(figures)
+}
+
+fn graph(name: &str, title: &str, caption: &str, [x, y]: [&str; 2], curves: Vec<Curve>) -> Figure {
+    let axis = |label: &str| Axis { label: label.to_owned(), logarithmic: false };
+    Figure {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        caption: caption.to_owned(),
+        drawing: Drawing::Graph(Graph { x: axis(x), y: axis(y), curves }),
+    }
+}

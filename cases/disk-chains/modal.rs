@@ -1,0 +1,171 @@
+//! The exact motion of discs on linear springs, for displacements so small that the geometry stays as it is and for as long
+//! as no contact opens or slips: `M ü + K u = f V t`, by the eigenvectors of `M^{-1/2} K M^{-1/2}`.
+//!
+//! A contact at unit normal `e` (from i to j) with tangent `t = (e₂, −e₁)` is stretched by
+//!
+//! ```text
+//! overlap        e·(u_i − u_j)
+//! shear          t·(u_i − u_j) − s (R_i θ_i + R_j θ_j),   s = ω × e along t = −1 per unit of ω (counter-clockwise)
+//! ```
+//!
+//! and stores k/2 of its square; a wall is a disc that does not move, and has no shear here.
+
+use grainbench_scene::scene::{Scene, WallShape};
+use nalgebra::{DMatrix, DVector, Vector2};
+
+/// One spring: what stretches it, as a row of coefficients on (x, y, θ) of every disc, and its stiffness.
+struct Spring {
+    stretch: DVector<f64>,
+    stiffness: f64,
+    is_shear: bool,
+    /// The two discs of a spring between discs.
+    pair: Option<[usize; 2]>,
+    /// Overlap per unit of the striker's displacement.
+    driven: f64,
+}
+
+impl Spring {
+    /// Stretch (m) at the displacements of the discs (m, rad) and of the striker (m).
+    fn overlap(&self, displacement: &DVector<f64>, striker: f64) -> f64 {
+        self.stretch.dot(displacement) + self.driven * striker
+    }
+}
+
+/// The modes of a scene of touching discs, driven by its first wall.
+pub(super) struct Modes {
+    springs: Vec<Spring>,
+    /// Columns M^{-1/2} v of every mode.
+    shapes: DMatrix<f64>,
+    frequency: Vec<f64>,
+    /// Generalised force of the drive per unit of its displacement.
+    drive: Vec<f64>,
+    speed: f64,
+}
+
+impl Modes {
+    /// Of the contacts that a scene starts with; all of them stick where the law has friction.
+    pub(super) fn of(scene: &Scene) -> Self {
+        let count = scene.grains.len();
+        let springs = springs(scene);
+        let mut stiffness = DMatrix::zeros(3 * count, 3 * count);
+        let mut force = DVector::zeros(3 * count);
+        for spring in &springs {
+            stiffness += &spring.stretch * spring.stretch.transpose() * spring.stiffness;
+            force -= &spring.stretch * (spring.stiffness * spring.driven);
+        }
+        let root = DVector::from_iterator(
+            3 * count,
+            scene.grains.iter().flat_map(|grain| [grain.mass.sqrt(), grain.mass.sqrt(), grain.inertia.sqrt()]),
+        );
+        let scaled = DMatrix::from_fn(3 * count, 3 * count, |i, j| stiffness[(i, j)] / (root[i] * root[j]));
+        let eigen = scaled.symmetric_eigen();
+        let shapes = DMatrix::from_fn(3 * count, 3 * count, |i, mode| eigen.eigenvectors[(i, mode)] / root[i]);
+        let drive = (shapes.transpose() * force).iter().copied().collect();
+        let frequency = eigen.eigenvalues.iter().map(|value| value.max(0.0).sqrt()).collect();
+        let speed = scene.walls[0].motion.phases[0].velocity.norm();
+        Self { springs, shapes, frequency, drive, speed }
+    }
+
+    /// Displacements (m, rad) at a time (s): `q̈ + ω²q = gVt` gives `q = gV(t − sin ωt/ω)/ω²`.
+    fn displacement(&self, time: f64) -> DVector<f64> {
+        let fastest = self.frequency.iter().copied().fold(0.0, f64::max);
+        let amplitudes = self.frequency.iter().zip(&self.drive).map(|(&frequency, &drive)| {
+            // Rotations that stretch nothing are not driven either.
+            if frequency < 1e-6 * fastest {
+                0.0
+            } else {
+                drive * self.speed * (time - (frequency * time).sin() / frequency) / (frequency * frequency)
+            }
+        });
+        &self.shapes * DVector::from_iterator(self.frequency.len(), amplitudes)
+    }
+
+    /// Normal force between two discs (N).
+    pub(super) fn force(&self, pair: [usize; 2], time: f64) -> f64 {
+        let displacement = self.displacement(time);
+        let spring = self.springs.iter().find(|spring| !spring.is_shear && spring.pair == Some(pair));
+        spring.map_or(f64::NAN, |spring| spring.stiffness * spring.overlap(&displacement, self.speed * time))
+    }
+
+    /// When a contact of the assembly first pulls, so that it opens (s), within `until` (s).
+    pub(super) fn first_opening(&self, until: f64) -> f64 {
+        let pull = |time: f64| {
+            let displacement = self.displacement(time);
+            let normal = self.springs.iter().filter(|spring| !spring.is_shear);
+            // Far contacts pull a little before the force arrives: that much is no opening.
+            let felt = 1e-2 * self.speed * time;
+            normal.map(|spring| -spring.overlap(&displacement, self.speed * time) - felt).fold(f64::MIN, f64::max)
+        };
+        first_above(pull, 0.0, until)
+    }
+
+    /// When the normal force between two discs first exceeds a threshold (s), within `until` (s).
+    pub(super) fn arrival(&self, pair: [usize; 2], threshold: f64, until: f64) -> f64 {
+        first_above(|time| self.force(pair, time), threshold, until)
+    }
+
+    /// When a disc first moves along x faster than a threshold (m/s), within `until` (s).
+    pub(super) fn moving(&self, disc: usize, threshold: f64, until: f64) -> f64 {
+        let tick = 1e-6 * until;
+        let position = |time: f64| self.displacement(time)[3 * disc];
+        first_above(|time| (position(time + tick) - position(time - tick)) / (2.0 * tick), threshold, until)
+    }
+}
+
+/// When a function of time first exceeds a threshold: by a scan and bisection.
+fn first_above(value: impl Fn(f64) -> f64, threshold: f64, until: f64) -> f64 {
+    const SCAN: usize = 1000;
+    let time = |step: usize| until * step as f64 / SCAN as f64;
+    let Some(first) = (1..=SCAN).find(|&step| value(time(step)) > threshold) else { return f64::NAN };
+    let (mut before, mut after) = (time(first - 1), time(first));
+    for _ in 0..50 {
+        let middle = 0.5 * (before + after);
+        if value(middle) > threshold { after = middle } else { before = middle }
+    }
+    0.5 * (before + after)
+}
+
+fn springs(scene: &Scene) -> Vec<Spring> {
+    let count = scene.grains.len();
+    let mut springs = Vec::new();
+    let row = |entries: &[(usize, f64)]| {
+        let mut row = DVector::zeros(3 * count);
+        entries.iter().for_each(|&(at, value)| row[at] += value);
+        row
+    };
+    for (i, a) in scene.grains.iter().enumerate() {
+        for (j, b) in scene.grains.iter().enumerate().skip(i + 1) {
+            let between = (b.position - a.position).xy();
+            if between.norm() > (a.radius + b.radius) * (1.0 + 1e-9) {
+                continue;
+            }
+            let e: Vector2<f64> = between.normalize();
+            let Some(law) = scene.law(a.material, b.material) else { continue };
+            let normal = row(&[(3 * i, e.x), (3 * i + 1, e.y), (3 * j, -e.x), (3 * j + 1, -e.y)]);
+            let (pair, driven) = (Some([i, j]), 0.0);
+            springs.push(Spring { stretch: normal, stiffness: law.normal_stiffness, is_shear: false, pair, driven });
+            if law.has_friction() {
+                let t = Vector2::new(e.y, -e.x);
+                let shear = row(&[
+                    (3 * i, t.x),
+                    (3 * i + 1, t.y),
+                    (3 * i + 2, -a.radius),
+                    (3 * j, -t.x),
+                    (3 * j + 1, -t.y),
+                    (3 * j + 2, -b.radius),
+                ]);
+                springs.push(Spring { stretch: shear, stiffness: law.tangential_stiffness, is_shear: true, pair, driven });
+            }
+        }
+        for (number, wall) in scene.walls.iter().enumerate() {
+            let WallShape::Plane { point, normal } = wall.shape else { continue };
+            let touches = (a.position - point).dot(&normal) < a.radius * (1.0 + 1e-9);
+            if let (true, Some(law)) = (touches, scene.law(a.material, wall.material)) {
+                let stretch = row(&[(3 * i, -normal.x), (3 * i + 1, -normal.y)]);
+                let driven = if number == 0 { 1.0 } else { 0.0 };
+                springs.push(Spring { stretch, stiffness: law.normal_stiffness, is_shear: false, pair: None, driven });
+            }
+        }
+    }
+    springs
+}
