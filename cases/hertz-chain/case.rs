@@ -5,6 +5,7 @@ use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
+use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_scene::scene::{Duration, Scene};
@@ -107,7 +108,13 @@ fn gates() -> Vec<Gate> {
         }),
         control: Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.effective_modulus *= 1.01)),
     };
-    vec![exponent, coefficient]
+    let rigid = Gate::refused(
+        Run::new(PLAIN, "rigid", rigid_rows::DEFAULT),
+        "refusal of forces over time",
+        "momentum passes through rigid beads in one step: there is no wave whose force could peak",
+        Control::scene("no probes", |scene| scene.probes.clear()),
+    );
+    vec![exponent, coefficient, rigid]
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

@@ -329,9 +329,10 @@ pub fn refuses_cycles(variant: &'static str) -> Gate {
         Run::new(variant, RIGID, DEFAULT),
         "refusal of a length in calculation cycles",
         "a cycle is a fraction of the period of the contacts' springs, which rigid contacts do not have",
-        Control::scene("a length in seconds, walls at rest", |scene| {
+        Control::scene("a length in seconds, walls at rest, no forces asked for", |scene| {
             scene.duration = Duration::Seconds(0.1);
             scene.walls.iter_mut().for_each(|wall| wall.motion.phases.clear());
+            scene.probes.clear();
         }),
     )
 }

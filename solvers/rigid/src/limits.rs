@@ -2,7 +2,7 @@
 
 use grainbench_scene::effects::Effects;
 use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Scene};
 
 /// Why the scene cannot be run, if it cannot.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
@@ -27,6 +27,12 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
              springs; rigid contacts have none. A duration in seconds can be run"
                 .to_owned(),
         );
+    }
+    let of_contact = |probe: &Probe| !matches!(probe.target, ProbeTarget::Grain(_) | ProbeTarget::System);
+    if !scene.probes.is_empty() && scene.probes.iter().all(of_contact) {
+        let reason = "it asks for nothing but overlaps and forces over time, which rigid contacts do not have: theirs are impulses \
+                      within a step";
+        return Some(reason.to_owned());
     }
     let in_cycles = |moment: Moment| matches!(moment, Moment::Cycle(cycle) if cycle > 0);
     let wall = scene
