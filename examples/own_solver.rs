@@ -47,7 +47,7 @@ impl Solver for Rigid {
             if recorder.is_due(step) {
                 let state = GrainState { position, velocity, spin, angle, ..GrainState::start(1, grain) };
                 let snapshot = Snapshot::of_grains(scene, step, step as f64 * time_step, vec![state]);
-                recorder.take(scene, Look { snapshot, elastic_energy: 0.0 });
+                recorder.take(scene, Look::of_rigid(snapshot, 0.0));
             }
             let before = (velocity, spin);
             velocity += along * time_step;

@@ -40,6 +40,7 @@ fn fraction_of(rung: Rung) -> f64 {
         grainbench_scene::solver::Resolution::CriticalFraction(fraction) => fraction,
         grainbench_scene::solver::Resolution::TimeStep(step)
         | grainbench_scene::solver::Resolution::Rigid { step, .. } => step,
+        grainbench_scene::solver::Resolution::Grid { courant, .. } => courant,
     }
 }
 

@@ -15,7 +15,7 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
             let radius = |id: u32| snapshot.grains[id as usize - 1].radius;
             let beyond = match contact.partner {
                 Partner::Grain(other) => radius(other),
-                Partner::Wall(_) => 0.0,
+                Partner::Body(_) | Partner::Wall(_) => 0.0,
             };
             let force = contact.shear_force - contact.normal * contact.normal_force;
             let magnitude = force.norm();

@@ -55,6 +55,8 @@ pub(crate) fn snapshot() -> Snapshot {
             infinite: false,
             force: Vector3::new(0.0, -20.0, 0.0),
         }],
+        bodies: Vec::new(),
+        points: Vec::new(),
     }
 }
 

@@ -33,7 +33,7 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
 }
 
 /// Writes the contacts as lines from the grain's centre to its partner's, or to the contact point on a wall.
-/// `partner` is a grain's id, or −1 − the wall's place in the scene.
+/// `partner` is a grain's id, or −1 − the wall's place in the scene, or −2³¹ − the place of a body that is no grain.
 ///
 /// # Errors
 /// When `out` refuses.
@@ -53,6 +53,7 @@ pub fn write_contacts(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()
         all().map(|contact| match contact.partner {
             Partner::Grain(id) => i64::from(id),
             Partner::Wall(place) => -1 - i64::from(place),
+            Partner::Body(place) => i64::from(i32::MIN) - i64::from(place),
         }),
     )?;
     scalars(&mut out, "normal_force", all().map(|contact| contact.normal_force))?;
@@ -88,7 +89,7 @@ fn ends(contact: &ContactState, by_id: &HashMap<u32, &GrainState>) -> Option<[Ve
     let grain = by_id.get(&contact.grain)?;
     let length = match contact.partner {
         Partner::Grain(id) => grain.radius + by_id.get(&id)?.radius - contact.overlap,
-        Partner::Wall(_) => grain.radius - 0.5 * contact.overlap,
+        Partner::Body(_) | Partner::Wall(_) => grain.radius - 0.5 * contact.overlap,
     };
     Some([grain.position, grain.position + contact.normal * length])
 }

@@ -36,8 +36,8 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
             WallState { name: wall.name().to_owned(), corners, infinite, force: S::embed(wall.force) }
         })
         .collect();
-    Look {
-        snapshot: Snapshot {
+    Look::of_rigid(
+        Snapshot {
             step: kernel.step,
             time: kernel.step as f64 * kernel.time_step,
             bounds: record::bounds(scene, &grains),
@@ -45,9 +45,11 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
             grains,
             contacts,
             walls,
+            bodies: Vec::new(),
+            points: Vec::new(),
         },
-        elastic_energy: kernel.seen.iter().map(|seen| seen.elastic_energy).sum(),
-    }
+        kernel.seen.iter().map(|seen| seen.elastic_energy).sum(),
+    )
 }
 
 /// A grain with its velocity brought from half a step before to this step.

@@ -11,7 +11,7 @@ use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::record::{Cost, Look, Partner};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{ContactLaw, Scene};
-use grainbench_scene::solver::{Broken, Cause};
+use grainbench_scene::solver::{Broken, Cause, Subject};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -285,7 +285,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         Box::new(Broken {
             time: self.step as f64 * self.time_step,
             step: self.step,
-            grain: self.grains.id[slot] + 1,
+            subject: Subject::Grain(self.grains.id[slot] + 1),
             position,
             cause,
             time_step: self.time_step,

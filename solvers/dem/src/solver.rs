@@ -49,6 +49,7 @@ impl Dem {
     /// # Errors
     /// When the scene cannot be expressed or is broken from the start.
     pub fn start(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, RunError> {
+        self.refuse(scene)?;
         let simulation = match scene.dimension {
             Dimension::Two => self.start_in::<Plane>(scene, time_step),
             Dimension::Three => self.start_in::<Solid>(scene, time_step),
@@ -113,6 +114,18 @@ impl Dem {
         RunIdentity::new(solver, scene, time_step, steps, layout)
     }
 
+    /// What grains that are rigid, on springs, cannot express.
+    fn refuse(&self, scene: &Scene) -> Result<(), RunError> {
+        let unsupported = |reason: String| Err(RunError::Unsupported { solver: self.name(), reason });
+        if let Some(what) = scene.needs_deformable() {
+            return unsupported(format!("it has {what}, and grains are rigid here"));
+        }
+        if scene.laws.iter().flatten().any(|law| !law.has_stiffness()) {
+            return unsupported("a contact law gives friction and no stiffness".to_owned());
+        }
+        Ok(())
+    }
+
     fn resolution_error(&self, reason: String) -> RunError {
         RunError::Resolution { solver: self.name(), reason }
     }
@@ -123,7 +136,7 @@ impl Dem {
         let wanted = match *resolution {
             Resolution::CriticalFraction(fraction) => fraction * critical,
             Resolution::TimeStep(step) => step,
-            Resolution::Rigid { .. } => {
+            Resolution::Rigid { .. } | Resolution::Grid { .. } => {
                 return Err(self.resolution_error(format!("expected a time step, found {resolution}")));
             }
         };
@@ -176,6 +189,7 @@ impl Dem {
         from: Option<&Checkpoint>,
         watch: &mut dyn Watch,
     ) -> Result<Record, RunError> {
+        self.refuse(scene)?;
         let (time_step, steps) = self.steps(scene, resolution)?;
         let mut simulation = self.start(scene, time_step)?;
         let identity = self.identity(scene, time_step, steps, simulation.layout());

@@ -6,6 +6,9 @@ use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Scene};
 
 /// Why the scene cannot be run, if it cannot.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
+    if let Some(what) = scene.needs_deformable() {
+        return Some(format!("it has {what}, and rapier's grains are rigid"));
+    }
     let effects = Effects::of(scene);
     if effects.periodic {
         return Some("rapier has no periodic axes".to_owned());

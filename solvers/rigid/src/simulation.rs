@@ -5,7 +5,7 @@ use crate::pairs::{Pairs, Side};
 use grainbench_scene::overlap::distance;
 use grainbench_scene::record::{ContactState, Cost, GrainState, Look, Partner, Snapshot, WallState};
 use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
-use grainbench_scene::solver::{Broken, Cause};
+use grainbench_scene::solver::{Broken, Cause, Subject};
 use nalgebra::Vector3;
 
 /// A friction impulse of at least this part of Coulomb's limit slips.
@@ -95,7 +95,7 @@ impl<'a> Simulation<'a> {
         Err(Box::new(Broken {
             time: self.time(),
             step: self.step,
-            grain: at as u32 + 1,
+            subject: Subject::Grain(at as u32 + 1),
             position: self.state[at].position,
             cause,
             time_step: self.stepping.time_step,
@@ -103,7 +103,7 @@ impl<'a> Simulation<'a> {
             critical: f64::INFINITY,
             advice: match cause {
                 Cause::Runaway { .. } => format!("{:.0} times as many substeps would do", (moved / radius).ceil()),
-                Cause::NotFinite => "more substeps may help".to_owned(),
+                _ => "more substeps may help".to_owned(),
             },
         }))
     }
@@ -115,7 +115,8 @@ impl<'a> Simulation<'a> {
             self.engine.touches().iter().filter_map(|touch| self.contact(touch, &displaced)).collect();
         let order = |contact: &ContactState| match contact.partner {
             Partner::Grain(id) => (contact.grain, 0, id),
-            Partner::Wall(at) => (contact.grain, 1, u32::from(at)),
+            Partner::Body(at) => (contact.grain, 1, at),
+            Partner::Wall(at) => (contact.grain, 2, u32::from(at)),
         };
         contacts.sort_by_key(order);
         let mut grains: Vec<GrainState> = (0..self.state.len()).map(|at| self.grain(at)).collect();
@@ -127,11 +128,12 @@ impl<'a> Simulation<'a> {
             match contact.partner {
                 Partner::Grain(id) => push(&mut grains[id as usize - 1], -force, contact.point),
                 Partner::Wall(at) => walls[usize::from(at)].force -= force,
+                Partner::Body(_) => {}
             }
         }
         let bounds = bounds(self.scene, &grains);
-        Look {
-            snapshot: Snapshot {
+        Look::of_rigid(
+            Snapshot {
                 step: self.step,
                 time: self.time(),
                 bounds,
@@ -139,9 +141,11 @@ impl<'a> Simulation<'a> {
                 grains,
                 contacts,
                 walls,
+                bodies: Vec::new(),
+                points: Vec::new(),
             },
-            elastic_energy: 0.0,
-        }
+            0.0,
+        )
     }
 
     fn shape(&self, wall: &Wall) -> WallShape {

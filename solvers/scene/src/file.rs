@@ -2,6 +2,8 @@
 //!
 //! Doc comments here are the documentation of the keys: `grainbench schema` prints them.
 
+use crate::body::InitialPressure;
+use crate::manufactured::Manufactured;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -39,13 +41,30 @@ pub struct SceneFile {
     /// for intended. Default 0.1.
     #[serde(default = "default_largest_initial_overlap")]
     pub largest_initial_overlap: f64,
+    /// Length that resolutions of solvers with a grid refer to (m): the smallest radius, or the smallest edge of a body
+    /// where there are no grains, when absent.
+    #[serde(default)]
+    pub reference_length: Option<f64>,
+    /// Stress that deformable bodies start with; none when absent.
+    #[serde(default)]
+    pub initial_pressure: Option<InitialPressure>,
+    /// A damped phase before the clock starts, for deformable bodies.
+    #[serde(default)]
+    pub settle: Option<SettleSpec>,
+    /// A body force, and initial velocities, that make a chosen motion of neo-Hookean bodies the exact one.
+    #[serde(default)]
+    pub manufactured: Option<Manufactured>,
     /// Materials by name.
     pub materials: IndexMap<String, MaterialSpec>,
     /// Contact laws by name: the pair table. Every pair of materials that can meet needs one.
     #[serde(default)]
     pub contacts: IndexMap<String, ContactSpec>,
     /// Groups of grains by name. Grains are numbered from 1 in the order of the file.
+    #[serde(default)]
     pub grains: IndexMap<String, GrainsSpec>,
+    /// Deformable bodies that are no grains, by name.
+    #[serde(default)]
+    pub bodies: IndexMap<String, BodySpec>,
     /// Walls by name.
     #[serde(default)]
     pub walls: IndexMap<String, WallSpec>,
@@ -115,7 +134,8 @@ pub struct MaterialSpec {
     /// Density ρ (kg/m³); not needed for materials of walls, nor where a data file gives it.
     #[serde(default)]
     pub density: Option<f64>,
-    /// Young's modulus E (Pa); needed for Hertz contacts unless `rigid`.
+    /// Young's modulus E (Pa); needed for Hertz contacts unless `rigid`. With Poisson's ratio it makes bodies deformable
+    /// for solvers that resolve them.
     #[serde(default)]
     pub young_modulus: Option<f64>,
     /// Poisson's ratio ν, from −1 to 1/2; needed for Hertz contacts unless `rigid`.
@@ -124,6 +144,128 @@ pub struct MaterialSpec {
     /// Whether the material is rigid: its partner alone deforms in a Hertz contact.
     #[serde(default)]
     pub rigid: bool,
+    /// Bulk modulus K (Pa), with `shear_modulus` in place of Young's modulus and Poisson's ratio.
+    #[serde(default)]
+    pub bulk_modulus: Option<f64>,
+    /// Shear modulus G (Pa).
+    #[serde(default)]
+    pub shear_modulus: Option<f64>,
+    /// Law of a deformable material: `neo-hookean` (the default), `hypoelastic` or `von-mises`.
+    #[serde(default)]
+    pub constitutive: Option<ConstitutiveKind>,
+    /// Yield stress Y (Pa); needed for `von-mises`.
+    #[serde(default)]
+    pub yield_stress: Option<f64>,
+    /// Hardening modulus H (Pa) of `von-mises`. Default 0.
+    #[serde(default)]
+    pub hardening_modulus: Option<f64>,
+}
+
+/// Law of a deformable material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ConstitutiveKind {
+    /// The Jaumann rate of the stress is linear in the rate of deformation.
+    Hypoelastic,
+    /// Compressible: τ = λ ln J + G (b − 1).
+    NeoHookean,
+    /// Hypoelastic up to a yield stress, with linear isotropic hardening.
+    VonMises,
+}
+
+/// A deformable body that is no grain: exactly one of `box` and `annulus`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodySpec {
+    /// Material by name.
+    pub material: String,
+    /// A box along the axes.
+    #[serde(default, rename = "box")]
+    pub cuboid: Option<BoxSpec>,
+    /// A ring; two dimensions only.
+    #[serde(default)]
+    pub annulus: Option<AnnulusSpec>,
+    /// Velocity (m/s).
+    #[serde(default)]
+    pub velocity: Option<Vec<f64>>,
+    /// An initial velocity along x that grows from the lower end of a box as the sine of a mode of a held bar.
+    #[serde(default)]
+    pub wave: Option<WaveSpec>,
+    /// Sides of a box that do not move at all.
+    #[serde(default)]
+    pub fixed: Vec<SideSpec>,
+    /// Sides of a box that do not move along their normal.
+    #[serde(default)]
+    pub sliding: Vec<SideSpec>,
+}
+
+/// A box along the axes.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxSpec {
+    /// Lower corner (m).
+    pub low: Vec<f64>,
+    /// Upper corner (m).
+    pub high: Vec<f64>,
+}
+
+/// A ring.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AnnulusSpec {
+    /// Centre (m).
+    pub centre: Vec<f64>,
+    /// Inner radius (m).
+    pub inner: f64,
+    /// Outer radius (m).
+    pub outer: f64,
+}
+
+/// v₀ sin((2n − 1)π (x − x_low)/2L) along x.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WaveSpec {
+    /// Amplitude v₀ (m/s).
+    pub amplitude: f64,
+    /// Mode n, from 1.
+    #[serde(default = "first_mode")]
+    pub mode: u32,
+}
+
+const fn first_mode() -> u32 {
+    1
+}
+
+/// A side of a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SideSpec {
+    /// The side at the smallest x.
+    XLow,
+    /// The side at the largest x.
+    XHigh,
+    /// The side at the smallest y.
+    YLow,
+    /// The side at the largest y.
+    YHigh,
+    /// The side at the smallest z.
+    ZLow,
+    /// The side at the largest z.
+    ZHigh,
+}
+
+/// A damped phase before the clock starts, in which bodies at rest come to equilibrium; then they are given their
+/// velocities and spins and are released.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SettleSpec {
+    /// How long (s).
+    pub duration: f64,
+    /// Mass-proportional damping α (1/s).
+    pub damping: f64,
+    /// Gravity meanwhile; that of the scene when absent.
+    #[serde(default)]
+    pub gravity: Option<GravitySpec>,
 }
 
 /// Force law along the normal, and the tangential spring that goes with it.
@@ -135,6 +277,8 @@ pub enum LawKind {
     Linear,
     /// Hertz along the normal, Mindlin's spring along the tangent, from E and ν of both materials; spheres only.
     Hertz,
+    /// Coulomb friction and no spring: for bodies that deform themselves, or not at all.
+    Coulomb,
 }
 
 /// The law of a contact between two materials: a spring and dashpot along the normal, an incremental spring and dashpot
@@ -144,7 +288,7 @@ pub enum LawKind {
 pub struct ContactSpec {
     /// The two materials.
     pub between: [String; 2],
-    /// `linear` (the default) or `hertz`. One scene has one kind.
+    /// `linear` (the default), `hertz` or `coulomb`. One scene has one kind.
     #[serde(default)]
     pub law: LawKind,
     /// Normal stiffness k_n (N/m; N/m per metre for discs). Needed for linear laws.
@@ -346,7 +490,7 @@ pub struct OutputSpec {
     pub snapshots: u32,
 }
 
-/// A named time series: exactly one of `grain`, `contact`, `wall` and `system`.
+/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall` and `system`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeSpec {
@@ -354,6 +498,13 @@ pub struct ProbeSpec {
     /// omega (z; or omega_x, …), angle (two dimensions).
     #[serde(default)]
     pub grain: Option<String>,
+    /// A body that is no grain: the columns of a grain.
+    #[serde(default)]
+    pub body: Option<String>,
+    /// The material of a deformable grain or body at a place: columns ux, … (displacement), vx, …, sigma_xx, sigma_yy,
+    /// sigma_zz, sigma_xy (and sigma_yz, sigma_zx), plastic_strain, mean over the material points nearest to it at the start.
+    #[serde(default)]
+    pub point: Option<PointSpec>,
     /// A contact between a grain and a grain or wall. Columns overlap, normal_force, shear_force (signed in two
     /// dimensions), slipping (0 or 1).
     #[serde(default)]
@@ -365,4 +516,18 @@ pub struct ProbeSpec {
     /// about the origin, number of contacts.
     #[serde(default)]
     pub system: Option<bool>,
+}
+
+/// A place in the material of a grain or body.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointSpec {
+    /// A grain.
+    #[serde(default)]
+    pub grain: Option<String>,
+    /// Or a body that is no grain.
+    #[serde(default)]
+    pub body: Option<String>,
+    /// Place at the start (m).
+    pub at: Vec<f64>,
 }

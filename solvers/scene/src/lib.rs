@@ -3,12 +3,14 @@
 //! A scene names no solver. It is read from a file ([`source::SceneSource`]), made definite ([`scene::Scene`]), and
 //! given to a [`solver::Solver`], which leaves a [`record::Record`].
 
+pub mod body;
 mod check;
 pub mod checkpoint;
 pub mod effects;
 pub mod error;
 pub mod file;
 pub mod generate;
+pub mod manufactured;
 pub mod motion;
 pub mod overlap;
 mod probe;

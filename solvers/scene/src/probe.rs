@@ -1,10 +1,21 @@
 //! Time series of a scene's probes.
 
-use crate::record::{Column, ContactState, GrainState, Look, Partner, Series};
+use crate::record::{BodyState, Column, ContactState, GrainState, Look, Partner, Series};
 use crate::scene::{Dimension, Probe, ProbeTarget, Scene};
 use nalgebra::Vector3;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Components of the stress, in the order of [`crate::record::PointState::stress`].
+const STRESSES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
+
+/// How many of them there are: plane strain has four.
+const fn stresses(dimension: Dimension) -> usize {
+    match dimension {
+        Dimension::Two => 4,
+        Dimension::Three => 6,
+    }
+}
 
 /// The columns of every probe of a scene, still without samples.
 pub(crate) fn empty_series(scene: &Scene) -> Series {
@@ -47,13 +58,20 @@ fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static s
         if flat { plain(&[(name, unit)]) } else { named(&format!("{name}_"), unit) }
     };
     match target {
-        ProbeTarget::Grain(_) => {
+        ProbeTarget::Grain(_) | ProbeTarget::Body(_) => {
             let mut all = named("", "m");
             all.extend(named("v", "m/s"));
             all.extend(spins("omega", "rad/s"));
             if flat {
                 all.extend(plain(&[("angle", "rad")]));
             }
+            all
+        }
+        ProbeTarget::Point(_) => {
+            let mut all = named("u", "m");
+            all.extend(named("v", "m/s"));
+            all.extend(STRESSES[..stresses(dimension)].iter().map(|axes| (format!("sigma_{axes}"), "Pa")));
+            all.extend(plain(&[("plastic_strain", "1")]));
             all
         }
         ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) => {
@@ -93,23 +111,49 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
             }
             all
         }
+        ProbeTarget::Body(body) => {
+            let body = &snapshot.bodies[body];
+            let mut all = vector(&body.position);
+            all.extend(vector(&body.velocity));
+            all.extend(spin(&body.spin));
+            if flat {
+                all.push(body.angle);
+            }
+            all
+        }
+        ProbeTarget::Point(at) => {
+            let point = &look.spots[at];
+            let mut all = vector(&point.displacement);
+            all.extend(vector(&point.velocity));
+            all.extend(&point.stress[..stresses(scene.dimension)]);
+            all.push(point.plastic_strain);
+            all
+        }
         ProbeTarget::Pair(a, b) => contact_values(look, a, Partner::Grain(b as u32 + 1), flat),
         ProbeTarget::GrainWall(grain, wall) => contact_values(look, grain, Partner::Wall(wall as u16), flat),
         ProbeTarget::Wall(wall) => vector(&snapshot.walls[wall].force),
         ProbeTarget::System => {
-            let kinetic: f64 =
-                snapshot.grains.iter().map(|grain| 0.5 * grain.mass * grain.velocity.norm_squared()).sum();
+            let bodies = &snapshot.bodies;
+            let half_squared = |mass: f64, velocity: &Vector3<f64>| 0.5 * mass * velocity.norm_squared();
+            let of_grains: f64 = snapshot.grains.iter().map(|grain| half_squared(grain.mass, &grain.velocity)).sum();
+            let of_bodies: f64 = bodies.iter().map(|body| half_squared(body.mass, &body.velocity)).sum();
+            let kinetic = of_grains + (of_bodies + look.inner_kinetic_energy);
             let inertia = |grain: &GrainState| scene.grains[grain.id as usize - 1].inertia;
-            let rotational: f64 =
-                snapshot.grains.iter().map(|grain| 0.5 * inertia(grain) * grain.spin.norm_squared()).sum();
-            let gravitational: f64 =
-                snapshot.grains.iter().map(|grain| -grain.mass * scene.gravity.dot(&grain.position)).sum();
-            let momentum: Vector3<f64> = snapshot.grains.iter().map(|grain| grain.velocity * grain.mass).sum();
-            let angular: Vector3<f64> = snapshot
+            let of_grains: f64 = snapshot.grains.iter().map(|grain| half_squared(inertia(grain), &grain.spin)).sum();
+            let rotational = of_grains + bodies.iter().map(|body| half_squared(body.inertia, &body.spin)).sum::<f64>();
+            let height = |mass: f64, position: &Vector3<f64>| -mass * scene.gravity.dot(position);
+            let of_grains: f64 = snapshot.grains.iter().map(|grain| height(grain.mass, &grain.position)).sum();
+            let gravitational = of_grains + bodies.iter().map(|body| height(body.mass, &body.position)).sum::<f64>();
+            let mut momentum: Vector3<f64> = snapshot.grains.iter().map(|grain| grain.velocity * grain.mass).sum();
+            let mut angular: Vector3<f64> = snapshot
                 .grains
                 .iter()
                 .map(|grain| grain.position.cross(&(grain.velocity * grain.mass)) + grain.spin * inertia(grain))
                 .sum();
+            for BodyState { mass, inertia, position, velocity, spin, .. } in bodies {
+                momentum += velocity * *mass;
+                angular += position.cross(&(velocity * *mass)) + spin * *inertia;
+            }
             let total = kinetic + rotational + look.elastic_energy + gravitational;
             let mut all = vec![kinetic, rotational, look.elastic_energy, gravitational, total];
             all.extend(vector(&momentum));

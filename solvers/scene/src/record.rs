@@ -79,11 +79,62 @@ impl GrainState {
     }
 }
 
+/// One body that is no grain, as a snapshot shows it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyState {
+    /// Name in the scene.
+    pub name: String,
+    /// Mass (kg; per metre of depth in the plane).
+    pub mass: f64,
+    /// Moment of inertia about its centre of mass, mean over the axes it can turn about (kg m²).
+    pub inertia: f64,
+    /// Centre of mass (m).
+    pub position: Vector3<f64>,
+    /// Velocity of the centre of mass (m/s).
+    pub velocity: Vector3<f64>,
+    /// Angular momentum over moment of inertia (rad/s).
+    pub spin: Vector3<f64>,
+    /// Rotation since the start (rad), about z; zero in three dimensions.
+    pub angle: f64,
+    /// Sum of all forces of contacts (N).
+    pub force: Vector3<f64>,
+}
+
+/// Which body a material point belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Owner {
+    /// A grain, by id.
+    Grain(u32),
+    /// A body that is no grain, by its place in the scene, from 0.
+    Body(u32),
+}
+
+/// One material point of a deformable body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PointState {
+    /// Which body it belongs to.
+    pub owner: Owner,
+    /// Position (m).
+    pub position: Vector3<f64>,
+    /// Displacement since the start (m).
+    pub displacement: Vector3<f64>,
+    /// Velocity (m/s).
+    pub velocity: Vector3<f64>,
+    /// Cauchy stress xx, yy, zz, xy, yz, zx (Pa), tension positive.
+    pub stress: [f64; 6],
+    /// Equivalent plastic strain.
+    pub plastic_strain: f64,
+    /// Volume (m³; m² in the plane).
+    pub volume: f64,
+}
+
 /// The other side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Partner {
     /// A grain, by id.
     Grain(u32),
+    /// A body that is no grain, by its place in the scene, from 0.
+    Body(u32),
     /// A wall, by its place in the scene, from 0.
     Wall(u16),
 }
@@ -139,6 +190,12 @@ pub struct Snapshot {
     pub contacts: Vec<ContactState>,
     /// Walls in the order of the scene.
     pub walls: Vec<WallState>,
+    /// Bodies that are no grains, in the order of the scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodyState>,
+    /// Material points, where a solver has them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<PointState>,
 }
 
 impl Snapshot {
@@ -159,6 +216,8 @@ impl Snapshot {
             walls: walls.collect(),
             contacts: Vec::new(),
             grains,
+            bodies: Vec::new(),
+            points: Vec::new(),
         }
     }
 }
@@ -185,8 +244,20 @@ pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f6
 pub struct Look {
     /// Grains in order of id, contacts, walls.
     pub snapshot: Snapshot,
-    /// Energy in the springs (J).
+    /// Energy in the springs of contacts and in deformed material (J).
     pub elastic_energy: f64,
+    /// Kinetic energy beyond that of the rigid motion of grains and bodies (J).
+    pub inner_kinetic_energy: f64,
+    /// The material at the places that probes ask for, in the order of [`Scene::spots`].
+    pub spots: Vec<PointState>,
+}
+
+impl Look {
+    /// Of rigid grains.
+    #[must_use]
+    pub const fn of_rigid(snapshot: Snapshot, elastic_energy: f64) -> Self {
+        Self { snapshot, elastic_energy, inner_kinetic_energy: 0.0, spots: Vec::new() }
+    }
 }
 
 /// What a run cost: times depend on the machine, counts do not.
@@ -194,7 +265,7 @@ pub struct Look {
 pub struct Cost {
     /// Steps taken.
     pub steps: u64,
-    /// Steps times grains.
+    /// Steps times grains, or times material points.
     pub particle_steps: u64,
     /// Contact laws evaluated.
     pub contact_evaluations: u64,

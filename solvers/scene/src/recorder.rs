@@ -39,10 +39,16 @@ impl Recorder {
         step.is_multiple_of(self.interval) || step == self.steps
     }
 
+    /// Whether a snapshot is due at a step.
+    #[must_use]
+    pub fn is_snapshot(&self, step: u64) -> bool {
+        self.snapshot_steps.binary_search(&step).is_ok()
+    }
+
     /// Whether a sample or a snapshot is due at a step.
     #[must_use]
     pub fn is_due(&self, step: u64) -> bool {
-        self.is_sample(step) || self.snapshot_steps.binary_search(&step).is_ok()
+        self.is_sample(step) || self.is_snapshot(step)
     }
 
     /// The next step after `step` at which something is due; the last step when nothing is.

@@ -1,5 +1,7 @@
 //! A scene made definite: every grain, wall and law, checked, in SI. Solvers read this and nothing else.
 
+pub use crate::body::Block;
+use crate::body::{Deformable, Start};
 use crate::file::GrainShape;
 use crate::motion::{Displacement, Motion};
 use nalgebra::Vector3;
@@ -113,6 +115,12 @@ impl ContactLaw {
         self.effective_modulus > 0.0
     }
 
+    /// Whether it has springs; without them it says only what limits a tangential force.
+    #[must_use]
+    pub fn has_stiffness(&self) -> bool {
+        self.is_hertz() || self.normal_stiffness > 0.0
+    }
+
     /// Stiffness dF/dδ along the normal and along the tangent (N/m) at an overlap (m) of bodies with an effective radius
     /// R* = R₁R₂/(R₁+R₂) (m): S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and Mindlin, k_n and k_s for linear laws.
     #[must_use]
@@ -208,10 +216,14 @@ pub enum Sampling {
 }
 
 /// What a probe looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProbeTarget {
     /// A grain, by place in [`Scene::grains`].
     Grain(usize),
+    /// A body that is no grain, by place in [`Scene::bodies`].
+    Body(usize),
+    /// The material at a place, by place among the probes of this kind.
+    Point(usize),
     /// A contact between two grains.
     Pair(usize, usize),
     /// A contact between a grain and a wall, by place in [`Scene::walls`].
@@ -222,8 +234,26 @@ pub enum ProbeTarget {
     System,
 }
 
+/// A place in the material of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// Which body.
+    pub body: BodyName,
+    /// Place at the start (m).
+    pub at: Vector3<f64>,
+}
+
+/// A grain or another body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyName {
+    /// A grain, by place in [`Scene::grains`].
+    Grain(usize),
+    /// Another body, by place in [`Scene::bodies`].
+    Body(usize),
+}
+
 /// A named time series.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// Name; columns are called `name.quantity`.
     pub name: String,
@@ -263,8 +293,16 @@ pub struct Scene {
     pub materials: Vec<String>,
     /// The pair table: [`Scene::law`] reads it.
     pub laws: Vec<Option<ContactLaw>>,
+    /// What deformable materials are made of, in the order of `materials`; none where the scene does not say.
+    pub deformable: Vec<Option<Deformable>>,
     /// Grains; the id of a grain is its place here plus one.
     pub grains: Vec<Grain>,
+    /// Deformable bodies that are no grains.
+    pub bodies: Vec<Block>,
+    /// How deformable bodies start.
+    pub start: Start,
+    /// Length that the cells of a grid refer to (m).
+    pub reference_length: f64,
     /// Walls.
     pub walls: Vec<Wall>,
     /// How often probes are sampled.
@@ -273,6 +311,8 @@ pub struct Scene {
     pub snapshots: u32,
     /// Named time series.
     pub probes: Vec<Probe>,
+    /// Places that [`ProbeTarget::Point`] refers to.
+    pub spots: Vec<Spot>,
 }
 
 impl Scene {
@@ -280,6 +320,18 @@ impl Scene {
     #[must_use]
     pub fn law(&self, a: u16, b: u16) -> Option<&ContactLaw> {
         self.laws[usize::from(a) * self.materials.len() + usize::from(b)].as_ref()
+    }
+
+    /// What needs a solver of deformable bodies, in words, if anything does.
+    #[must_use]
+    pub fn needs_deformable(&self) -> Option<&'static str> {
+        if !self.bodies.is_empty() {
+            return Some("bodies that are no grains");
+        }
+        if !self.spots.is_empty() {
+            return Some("probes of the material inside grains");
+        }
+        self.start.needs_deformable()
     }
 
     /// Applies a change to every law of the pair table.

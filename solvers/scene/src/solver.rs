@@ -25,6 +25,15 @@ pub enum Resolution {
         /// Iterations of the constraint solver in each time step.
         iterations: u32,
     },
+    /// Of methods with a grid. The step is shortened so that a whole number of steps fits.
+    Grid {
+        /// Cells per reference length of the scene: of a grain's radius, where there are grains.
+        cells: f64,
+        /// Material points per cell and axis.
+        points: u32,
+        /// Courant number: step over the time that a longitudinal wave takes through a cell, c Δt/h.
+        courant: f64,
+    },
 }
 
 impl Resolution {
@@ -32,6 +41,15 @@ impl Resolution {
     pub const RIGID_STEP: f64 = 1.0 / 60.0;
     /// Iterations of its constraint solver, unless others are asked for.
     pub const RIGID_ITERATIONS: u32 = 4;
+
+    /// Courant number of a method with a grid, unless another one is asked for.
+    pub const COURANT: f64 = 0.4;
+
+    /// Cells per reference length and points per cell and axis of a method with a grid, all else as usual.
+    #[must_use]
+    pub const fn grid(cells: f64, points: u32) -> Self {
+        Self::Grid { cells, points, courant: Self::COURANT }
+    }
 
     /// Substeps of an engine for rigid bodies, all else as usual.
     #[must_use]
@@ -55,6 +73,9 @@ impl fmt::Display for Resolution {
                 }
                 Ok(())
             }
+            Self::Grid { cells, points, courant } => {
+                write!(formatter, "cells={} points={points} courant={}", rounded(*cells), rounded(*courant))
+            }
         }
     }
 }
@@ -76,6 +97,28 @@ pub enum Cause {
         /// Its radius (m).
         radius: f64,
     },
+    /// A material point moved farther than a cell in one step.
+    LeftCell {
+        /// Distance moved in the step (m).
+        moved: f64,
+        /// Length of a cell (m).
+        cell: f64,
+    },
+    /// A material point was turned inside out.
+    Inverted {
+        /// Its volume over that at the start.
+        volume_ratio: f64,
+    },
+    /// A cell lost all its volume in one step.
+    CollapsedCell {
+        /// Volume after the step over volume before.
+        volume_ratio: f64,
+    },
+    /// Bodies have spread farther than a grid can follow.
+    LeftGrid {
+        /// Cells that would be needed.
+        cells: f64,
+    },
 }
 
 impl fmt::Display for Cause {
@@ -85,6 +128,37 @@ impl fmt::Display for Cause {
             Self::Runaway { moved, radius } => {
                 write!(formatter, "it moved {moved:.3e} m in one step, more than its radius {radius:.3e} m")
             }
+            Self::LeftCell { moved, cell } => {
+                write!(formatter, "it moved {moved:.3e} m in one step, more than a cell of {cell:.3e} m")
+            }
+            Self::Inverted { volume_ratio } => {
+                write!(formatter, "it was turned inside out: its volume is {volume_ratio:.3e} of that at the start")
+            }
+            Self::CollapsedCell { volume_ratio } => {
+                write!(formatter, "its cell collapsed: one step changed its volume by a factor {volume_ratio:.3e}")
+            }
+            Self::LeftGrid { cells } => write!(formatter, "it left the grid, which would need {cells:.3e} cells"),
+        }
+    }
+}
+
+/// What broke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A grain, by id from 1.
+    Grain(u32),
+    /// A material point of a grain, by id of the grain from 1.
+    PointOfGrain(u32),
+    /// A material point of a body that is no grain, by place of the body from 1.
+    PointOfBody(u32),
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Grain(id) => write!(formatter, "grain {id}"),
+            Self::PointOfGrain(id) => write!(formatter, "a material point of grain {id}"),
+            Self::PointOfBody(place) => write!(formatter, "a material point of body {place}"),
         }
     }
 }
@@ -92,7 +166,7 @@ impl fmt::Display for Cause {
 /// A simulation that broke: when, where and why, and what would have been stable.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
-    "the simulation broke at t = {time:.6e} s (step {step}): grain {grain} at ({:.4e}, {:.4e}, {:.4e}) m: {cause}; the time step \
+    "the simulation broke at t = {time:.6e} s (step {step}): {subject} at ({:.4e}, {:.4e}, {:.4e}) m: {cause}; the time step \
      was {time_step:.4e} s, {:.3} of the critical {critical:.4e} s; {advice}",
     position.x, position.y, position.z, time_step / critical
 )]
@@ -101,8 +175,8 @@ pub struct Broken {
     pub time: f64,
     /// Step.
     pub step: u64,
-    /// Grain, by id from 1.
-    pub grain: u32,
+    /// What broke.
+    pub subject: Subject,
     /// Where it was last (m).
     pub position: Vector3<f64>,
     /// Why.

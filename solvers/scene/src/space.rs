@@ -3,7 +3,7 @@
 //! Everything that differs between the plane and space is a method of [`Space`]; solvers are generic over it and
 //! carry no feature flag and no twin file.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Debug;
@@ -66,8 +66,14 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     type Spin: Linear;
     /// Tangential displacement or force at a contact: a scalar in the plane.
     type Tangent: Linear;
+    /// Gradient of a vector.
+    type Matrix: Linear + Mul<Output = Self::Matrix> + Mul<Self::Vector, Output = Self::Vector>;
+    /// Symmetric tensor with its parts out of the plane (plane strain): xx, yy, zz, xy, (yz, zx).
+    type Symmetric: Copy + Debug + PartialEq + Default + Send + Sync + 'static;
     /// The vector zero.
     const ORIGIN: Self::Vector;
+    /// The gradient zero.
+    const NO_GRADIENT: Self::Matrix;
     /// The spin zero.
     const NO_SPIN: Self::Spin;
     /// The tangential displacement zero.
@@ -103,6 +109,20 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn embed_spin(spin: Self::Spin) -> Vector3<f64>;
     /// The spin without what this space does not have.
     fn restrict_spin(spin: Vector3<f64>) -> Self::Spin;
+    /// `a bᵀ`.
+    fn outer(a: Self::Vector, b: Self::Vector) -> Self::Matrix;
+    /// The gradient in three dimensions, zero out of the plane.
+    fn embed_gradient(gradient: Self::Matrix) -> Matrix3<f64>;
+    /// The gradient without what this space does not have.
+    fn restrict_gradient(gradient: Matrix3<f64>) -> Self::Matrix;
+    /// A symmetric tensor as a matrix.
+    fn embed_symmetric(tensor: Self::Symmetric) -> Matrix3<f64>;
+    /// The components of a symmetric matrix that this space keeps.
+    fn restrict_symmetric(tensor: Matrix3<f64>) -> Self::Symmetric;
+    /// A symmetric tensor times a vector of this space.
+    fn apply(tensor: Self::Symmetric, vector: Self::Vector) -> Self::Vector;
+    /// A component of a vector.
+    fn component(vector: Self::Vector, axis: usize) -> f64;
 }
 
 /// The plane: vectors (x, y), spin about z.
@@ -118,6 +138,9 @@ impl Space for Plane {
     type Vector = Vector2<f64>;
     type Spin = f64;
     type Tangent = f64;
+    type Matrix = Matrix2<f64>;
+    type Symmetric = [f64; 4];
+    const NO_GRADIENT: Matrix2<f64> = Matrix2::new(0.0, 0.0, 0.0, 0.0);
     const ORIGIN: Vector2<f64> = Vector2::new(0.0, 0.0);
     const NO_SPIN: f64 = 0.0;
     const NO_TANGENT: f64 = 0.0;
@@ -162,9 +185,11 @@ impl Space for Plane {
     fn spin_dot(a: f64, b: f64) -> f64 {
         a * b
     }
+    #[inline(always)]
     fn embed(vector: Vector2<f64>) -> Vector3<f64> {
         Vector3::new(vector.x, vector.y, 0.0)
     }
+    #[inline(always)]
     fn restrict(vector: Vector3<f64>) -> Vector2<f64> {
         vector.xy()
     }
@@ -174,6 +199,34 @@ impl Space for Plane {
     fn restrict_spin(spin: Vector3<f64>) -> f64 {
         spin.z
     }
+    #[inline(always)]
+    fn outer(a: Vector2<f64>, b: Vector2<f64>) -> Matrix2<f64> {
+        Matrix2::new(a.x * b.x, a.x * b.y, a.y * b.x, a.y * b.y)
+    }
+    #[inline(always)]
+    fn embed_gradient(g: Matrix2<f64>) -> Matrix3<f64> {
+        Matrix3::new(g.m11, g.m12, 0.0, g.m21, g.m22, 0.0, 0.0, 0.0, 0.0)
+    }
+    #[inline(always)]
+    fn restrict_gradient(g: Matrix3<f64>) -> Matrix2<f64> {
+        Matrix2::new(g.m11, g.m12, g.m21, g.m22)
+    }
+    #[inline(always)]
+    fn embed_symmetric([xx, yy, zz, xy]: [f64; 4]) -> Matrix3<f64> {
+        Matrix3::new(xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, zz)
+    }
+    #[inline(always)]
+    fn restrict_symmetric(t: Matrix3<f64>) -> [f64; 4] {
+        [t.m11, t.m22, t.m33, t.m12]
+    }
+    #[inline(always)]
+    fn apply([xx, yy, _, xy]: [f64; 4], v: Vector2<f64>) -> Vector2<f64> {
+        Vector2::new(xx * v.x + xy * v.y, xy * v.x + yy * v.y)
+    }
+    #[inline(always)]
+    fn component(vector: Vector2<f64>, axis: usize) -> f64 {
+        vector[axis]
+    }
 }
 
 impl Space for Solid {
@@ -181,6 +234,9 @@ impl Space for Solid {
     type Vector = Vector3<f64>;
     type Spin = Vector3<f64>;
     type Tangent = Vector3<f64>;
+    type Matrix = Matrix3<f64>;
+    type Symmetric = [f64; 6];
+    const NO_GRADIENT: Matrix3<f64> = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     const ORIGIN: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
     const NO_SPIN: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
     const NO_TANGENT: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
@@ -225,9 +281,11 @@ impl Space for Solid {
     fn spin_dot(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
         Self::dot(a, b)
     }
+    #[inline(always)]
     fn embed(vector: Vector3<f64>) -> Vector3<f64> {
         vector
     }
+    #[inline(always)]
     fn restrict(vector: Vector3<f64>) -> Vector3<f64> {
         vector
     }
@@ -236,6 +294,35 @@ impl Space for Solid {
     }
     fn restrict_spin(spin: Vector3<f64>) -> Vector3<f64> {
         spin
+    }
+    #[inline(always)]
+    fn outer(a: Vector3<f64>, b: Vector3<f64>) -> Matrix3<f64> {
+        let column = |scale: f64| a * scale;
+        Matrix3::from_columns(&[column(b.x), column(b.y), column(b.z)])
+    }
+    #[inline(always)]
+    fn embed_gradient(gradient: Matrix3<f64>) -> Matrix3<f64> {
+        gradient
+    }
+    #[inline(always)]
+    fn restrict_gradient(gradient: Matrix3<f64>) -> Matrix3<f64> {
+        gradient
+    }
+    #[inline(always)]
+    fn embed_symmetric([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
+        Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
+    }
+    #[inline(always)]
+    fn restrict_symmetric(t: Matrix3<f64>) -> [f64; 6] {
+        [t.m11, t.m22, t.m33, t.m12, t.m23, t.m31]
+    }
+    #[inline(always)]
+    fn apply([xx, yy, zz, xy, yz, zx]: [f64; 6], v: Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(xx * v.x + xy * v.y + zx * v.z, xy * v.x + yy * v.y + yz * v.z, zx * v.x + yz * v.y + zz * v.z)
+    }
+    #[inline(always)]
+    fn component(vector: Vector3<f64>, axis: usize) -> f64 {
+        vector[axis]
     }
 }
 

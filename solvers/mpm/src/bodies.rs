@@ -1,0 +1,188 @@
+//! From a scene to bodies: seeded, covered with tracers, pressed where the scene says so.
+
+use crate::grid::Lattice;
+use crate::material::{Hypoelastic, Law, NeoHookean, VonMises};
+use crate::options::Setting;
+use crate::points::Points;
+use crate::seed::{self, Patch, Seed};
+use crate::surface::Tracers;
+use crate::transfer::Part;
+use grainbench_scene::body::{Block, BlockShape, Constitutive, Deformable, Sides};
+use grainbench_scene::record::Owner;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::space::Space;
+use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
+
+/// The law of a body's material.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Material {
+    NeoHookean(NeoHookean),
+    Hypoelastic(Hypoelastic),
+    VonMises(VonMises),
+}
+
+impl Material {
+    pub(crate) const fn of(deformable: &Deformable, lame: f64) -> Self {
+        let &Deformable { bulk_modulus, shear_modulus, constitutive } = deformable;
+        let elastic = Hypoelastic { bulk_modulus, shear_modulus };
+        match constitutive {
+            Constitutive::NeoHookean => Self::NeoHookean(NeoHookean { lame, shear_modulus }),
+            Constitutive::Hypoelastic => Self::Hypoelastic(elastic),
+            Constitutive::VonMises { yield_stress, hardening_modulus } => {
+                Self::VonMises(VonMises { elastic, yield_stress, hardening_modulus })
+            }
+        }
+    }
+
+    fn under_pressure(&self, pressure: f64, dimensions: usize) -> (f64, Matrix3<f64>) {
+        match self {
+            Self::NeoHookean(law) => law.under_pressure(pressure, dimensions),
+            Self::Hypoelastic(law) => law.under_pressure(pressure, dimensions),
+            Self::VonMises(law) => law.under_pressure(pressure, dimensions),
+        }
+    }
+}
+
+/// A deformable body.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    pub(crate) owner: Owner,
+    /// Its points and where their nodes are.
+    pub(crate) part: Part,
+    /// Its tracers.
+    pub(crate) tracers: Range<usize>,
+    /// Place of its material in the scene.
+    pub(crate) material: u16,
+    pub(crate) law: Material,
+    pub(crate) density: f64,
+    pub(crate) deformable: Deformable,
+    /// Box around its points and tracers (m).
+    pub(crate) bounds: [Vector3<f64>; 2],
+    /// Rotation since the start (rad), as last looked at.
+    pub(crate) angle: f64,
+    /// Sides that are held, and where they are (m).
+    pub(crate) held: Option<(Sides, [Vector3<f64>; 2])>,
+}
+
+/// What a body looks like before it is seeded.
+struct Blank {
+    owner: Owner,
+    material: u16,
+    density: f64,
+    deformable: Deformable,
+    seeds: Vec<Seed>,
+    surfaces: Vec<Vec<Patch>>,
+    held: Option<(Sides, [Vector3<f64>; 2])>,
+}
+
+/// Seeds all bodies of a scene with `per_cell` points per cell and axis. Materials without moduli are left out: the
+/// scene was checked before.
+pub(crate) fn seed<S: Space>(
+    scene: &Scene,
+    setting: &Setting,
+    lattice: &Lattice,
+    per_cell: u32,
+) -> (Vec<Body>, Points<S>, Tracers<S>) {
+    let cell = lattice.shortest(S::DIMENSION);
+    let spacing = cell / f64::from(per_cell);
+    let between = cell / setting.tracers;
+    let deformable = |material: u16| scene.deformable.get(usize::from(material)).copied().flatten();
+    let grains = scene.grains.iter().enumerate().filter_map(|(at, grain)| {
+        let (centre, radius) = (grain.position, grain.radius);
+        let (seeds, surface) = if S::DIMENSION == 2 {
+            (seed::rings(centre, 0.0, radius, spacing), seed::circle(centre, radius, between, 1.0))
+        } else {
+            (seed::shells(centre, radius, spacing), seed::globe(centre, radius, between))
+        };
+        let volume: f64 = seeds.iter().map(|seed| seed.volume).sum();
+        Some(Blank {
+            owner: Owner::Grain(at as u32 + 1),
+            material: grain.material,
+            density: grain.mass / volume,
+            deformable: deformable(grain.material)?,
+            seeds,
+            surfaces: vec![surface],
+            held: None,
+        })
+    });
+    let blocks = scene.bodies.iter().enumerate().filter_map(|(at, block)| {
+        let (seeds, surfaces) = block_seeds::<S>(block, lattice, spacing, per_cell, between);
+        let held = match block.shape {
+            BlockShape::Box { low, high } => Some((block.sides, [low, high])),
+            BlockShape::Annulus { .. } => None,
+        };
+        Some(Blank {
+            owner: Owner::Body(at as u32),
+            material: block.material,
+            density: block.density,
+            deformable: deformable(block.material)?,
+            seeds,
+            surfaces,
+            held: held.filter(|(sides, _)| *sides != Sides::default()),
+        })
+    });
+    let (mut points, mut tracers) = (Points::new(), Tracers::new());
+    let half = 0.5 / f64::from(per_cell);
+    let bodies = grains
+        .chain(blocks)
+        .map(|blank| {
+            let first = (points.len(), tracers.len());
+            for seed in &blank.seeds {
+                points.push(S::restrict(seed.position), seed.volume, blank.density);
+            }
+            blank.surfaces.iter().for_each(|surface| tracers.add(surface));
+            Body {
+                owner: blank.owner,
+                part: Part { points: first.0..points.len(), window: crate::grid::Window::default(), half },
+                tracers: first.1..tracers.len(),
+                material: blank.material,
+                law: Material::of(&blank.deformable, blank.deformable.lame()),
+                density: blank.density,
+                deformable: blank.deformable,
+                bounds: [Vector3::zeros(); 2],
+                angle: 0.0,
+                held: blank.held,
+            }
+        })
+        .collect();
+    (bodies, points, tracers)
+}
+
+fn block_seeds<S: Space>(
+    block: &Block,
+    lattice: &Lattice,
+    spacing: f64,
+    per_cell: u32,
+    between: f64,
+) -> (Vec<Seed>, Vec<Vec<Patch>>) {
+    match block.shape {
+        BlockShape::Box { low, high } => {
+            let spacing = lattice.cell.map(|cell| cell / f64::from(per_cell));
+            let surface =
+                if S::DIMENSION == 2 { seed::rectangle(low, high, between) } else { seed::faces(low, high, between) };
+            (seed::lattice(low, high, spacing, S::DIMENSION), vec![surface])
+        }
+        BlockShape::Annulus { centre, inner, outer } => {
+            let surfaces = vec![seed::circle(centre, outer, between, 1.0), seed::circle(centre, inner, between, -1.0)];
+            (seed::rings(centre, inner, outer, spacing), surfaces)
+        }
+    }
+}
+
+/// The pressure of a fluid at rest under `gravity` (m/s²), zero at the highest point of each body.
+pub(crate) fn press<S: Space>(bodies: &[Body], points: &mut Points<S>, tracers: &Tracers<S>, gravity: Vector3<f64>) {
+    for body in bodies {
+        let depth = |position: S::Vector| S::embed(position).dot(&gravity);
+        let surface = tracers.position[body.tracers.clone()].iter().map(|&at| depth(at));
+        let top = surface.fold(f64::INFINITY, f64::min);
+        for at in body.part.points.clone() {
+            let pressure = body.density * (depth(points.position[at]) - top);
+            let (stretch, stress) = body.law.under_pressure(pressure, S::DIMENSION);
+            let deformation = S::restrict_gradient(Matrix3::from_diagonal_element(stretch));
+            points.deformation[at] = deformation;
+            points.reference_volume[at] = points.volume[at] / stretch.powi(S::DIMENSION as i32);
+            points.stress[at] = S::restrict_symmetric(stress);
+        }
+    }
+}

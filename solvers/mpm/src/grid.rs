@@ -1,0 +1,234 @@
+//! The grid: one lattice for all, of which every velocity field stores a window of its own.
+//!
+//! A field is a body, or all bodies together where they move as one. Its window is the box of nodes that its points
+//! reach, so memory and time grow with the bodies and not with the space between them, and a node at which three
+//! bodies meet is three nodes, one in each window.
+
+use crate::basis::{Axis, Basis};
+use grainbench_scene::space::Space;
+use nalgebra::Vector3;
+
+/// A node of a field.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node<S: Space> {
+    /// Mass (kg).
+    pub(crate) mass: f64,
+    /// Momentum (kg m/s) while points are scattered; velocity (m/s) after.
+    pub(crate) velocity: S::Vector,
+    /// Force (N) while points are scattered; change of the velocity in the step (m/s) after.
+    pub(crate) change: S::Vector,
+}
+
+impl<S: Space> Node<S> {
+    pub(crate) const EMPTY: Self = Self { mass: 0.0, velocity: S::ORIGIN, change: S::ORIGIN };
+}
+
+/// Which nodes of the lattice a field stores, and where.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Window {
+    /// First node along each axis.
+    pub(crate) low: [i32; 3],
+    /// Nodes along each axis.
+    pub(crate) size: [i32; 3],
+    /// Place of the first node among those of all fields.
+    pub(crate) start: usize,
+    /// Axes along which the window holds the whole period, so that nodes come again.
+    pub(crate) whole: [bool; 3],
+}
+
+impl Window {
+    pub(crate) const fn len(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize * self.size[2] as usize
+    }
+
+    /// Place along an axis of a node, within the window.
+    #[inline(always)]
+    fn along(&self, axis: usize, node: i32) -> usize {
+        let place = node - self.low[axis];
+        (if self.whole[axis] { place.rem_euclid(self.size[axis]) } else { place }) as usize
+    }
+
+    /// Place of a node among those of all fields. The node must be in the window.
+    #[inline(always)]
+    pub(crate) fn slot(&self, node: [i32; 3]) -> usize {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.along(axis, node[axis]));
+        self.start + (z * self.size[1] as usize + y) * self.size[0] as usize + x
+    }
+
+    /// Whether all nodes of a stencil of `width` nodes from `base` are in the window.
+    #[inline(always)]
+    pub(crate) fn holds(&self, dimensions: usize, base: [i32; 3], width: i32) -> bool {
+        (0..dimensions).all(|axis| {
+            let place = base[axis] - self.low[axis];
+            self.whole[axis] || (place >= 0 && place + width <= self.size[axis])
+        })
+    }
+
+    /// The node at a place within the window.
+    pub(crate) fn node(&self, place: usize) -> [i32; 3] {
+        let place = place as i32;
+        let [nx, ny, _] = self.size;
+        [self.low[0] + place % nx, self.low[1] + place / nx % ny, self.low[2] + place / (nx * ny)]
+    }
+}
+
+/// The lattice.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lattice {
+    /// Length of a cell along each axis (m).
+    pub(crate) cell: [f64; 3],
+    /// Place of node zero (m).
+    pub(crate) origin: [f64; 3],
+    /// Cells in a period, along periodic axes.
+    pub(crate) period: [Option<i32>; 3],
+}
+
+impl Lattice {
+    /// A position in cells along an axis.
+    #[inline(always)]
+    pub(crate) fn cells<S: Space>(&self, position: S::Vector, axis: usize) -> f64 {
+        (S::component(position, axis) - self.origin[axis]) / self.cell[axis]
+    }
+
+    /// Where a node is (m).
+    pub(crate) fn place<S: Space>(&self, node: [i32; 3]) -> S::Vector {
+        let at = |axis: usize| self.origin[axis] + f64::from(node[axis]) * self.cell[axis];
+        S::restrict(Vector3::new(at(0), at(1), at(2)))
+    }
+
+    /// Shortest cell length (m).
+    pub(crate) fn shortest(&self, dimensions: usize) -> f64 {
+        self.cell[..dimensions].iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The window that reaches all of a box of positions (m), not yet placed.
+    pub(crate) fn window<S: Space>(&self, low: S::Vector, high: S::Vector) -> Window {
+        let mut window = Window { size: [1; 3], ..Window::default() };
+        for axis in 0..S::DIMENSION {
+            let first = (self.cells::<S>(low, axis) - 0.5).floor() as i32;
+            let last = (self.cells::<S>(high, axis) - 0.5).floor() as i32 + 2;
+            window.low[axis] = first;
+            window.size[axis] = last - first + 1;
+            if let Some(period) = self.period[axis].filter(|&period| window.size[axis] >= period) {
+                (window.low[axis], window.size[axis], window.whole[axis]) = (0, period, true);
+            }
+        }
+        window
+    }
+
+    /// The node without its periods.
+    pub(crate) fn wrapped(&self, mut node: [i32; 3]) -> [i32; 3] {
+        for axis in 0..3 {
+            if let Some(period) = self.period[axis] {
+                node[axis] = node[axis].rem_euclid(period);
+            }
+        }
+        node
+    }
+}
+
+/// The nodes that reach a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stencil {
+    axes: [Axis; 3],
+    inverse: [f64; 3],
+    /// The point (cells).
+    at: [f64; 3],
+    cell: [f64; 3],
+}
+
+/// A node as a point sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reached<S: Space> {
+    /// Place of the node.
+    pub(crate) slot: usize,
+    /// Basis function at the point.
+    pub(crate) weight: f64,
+    axes: [usize; 3],
+    _space: std::marker::PhantomData<S>,
+}
+
+impl Stencil {
+    /// The nodes around a position (m) of a point that reaches `half` (cells) to both sides.
+    #[inline(always)]
+    pub(crate) fn new<S: Space, B: Basis>(lattice: &Lattice, position: S::Vector, half: f64) -> Self {
+        let mut stencil = Self { axes: [Axis::default(); 3], inverse: [0.0; 3], at: [0.0; 3], cell: lattice.cell };
+        for axis in 0..S::DIMENSION {
+            let inverse = 1.0 / lattice.cell[axis];
+            let at = (S::component(position, axis) - lattice.origin[axis]) * inverse;
+            stencil.axes[axis] = B::axis(at, half);
+            stencil.inverse[axis] = inverse;
+            stencil.at[axis] = at;
+        }
+        stencil
+    }
+
+    pub(crate) const fn base(&self) -> [i32; 3] {
+        [self.axes[0].base, self.axes[1].base, self.axes[2].base]
+    }
+
+    /// Visits every node.
+    #[inline(always)]
+    pub(crate) fn each<S: Space, B: Basis>(&self, window: &Window, mut visit: impl FnMut(Reached<S>)) {
+        let solid = S::DIMENSION == 3;
+        let row = window.size[0] as usize;
+        let layer = row * window.size[1] as usize;
+        let mut x = [0; 3];
+        for (i, x) in x.iter_mut().enumerate().take(B::WIDTH) {
+            *x = window.start + window.along(0, self.axes[0].base + i as i32);
+        }
+        for k in 0..if solid { B::WIDTH } else { 1 } {
+            let (z, across) = if solid {
+                (window.along(2, self.axes[2].base + k as i32) * layer, self.axes[2].value[k])
+            } else {
+                (0, 1.0)
+            };
+            for j in 0..B::WIDTH {
+                let y = z + window.along(1, self.axes[1].base + j as i32) * row;
+                let weight = across * self.axes[1].value[j];
+                for i in 0..B::WIDTH {
+                    visit(Reached {
+                        slot: y + x[i],
+                        weight: weight * self.axes[0].value[i],
+                        axes: [i, j, k],
+                        _space: std::marker::PhantomData,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Product over the axes of the functions' values, but along each axis in turn of `other`, per length (1/m).
+    #[inline(always)]
+    fn along<S: Space>(&self, node: &Reached<S>, other: impl Fn(&Axis) -> &[f64; 3]) -> S::Vector {
+        let [i, j, k] = node.axes;
+        let [a, b, c] = &self.axes;
+        let (x, y) = (a.value[i], b.value[j]);
+        let z = if S::DIMENSION == 3 { c.value[k] } else { 1.0 };
+        S::restrict(Vector3::new(
+            other(a)[i] * y * z * self.inverse[0],
+            x * other(b)[j] * z * self.inverse[1],
+            x * y * other(c)[k] * self.inverse[2],
+        ))
+    }
+
+    /// Gradient of the node's function at the point (1/m).
+    #[inline(always)]
+    pub(crate) fn gradient<S: Space>(&self, node: &Reached<S>) -> S::Vector {
+        self.along(node, |axis| &axis.slope)
+    }
+
+    /// What the node's velocity adds to the affine part at the point (1/m).
+    #[inline(always)]
+    pub(crate) fn affine<S: Space>(&self, node: &Reached<S>) -> S::Vector {
+        self.along(node, |axis| &axis.affine)
+    }
+
+    /// From the point to the node (m).
+    #[inline(always)]
+    pub(crate) fn arm<S: Space>(&self, node: &Reached<S>) -> S::Vector {
+        let along =
+            |axis: usize| (f64::from(self.axes[axis].base + node.axes[axis] as i32) - self.at[axis]) * self.cell[axis];
+        S::restrict(Vector3::new(along(0), along(1), if S::DIMENSION == 3 { along(2) } else { 0.0 }))
+    }
+}

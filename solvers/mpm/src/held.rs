@@ -1,0 +1,144 @@
+//! Sides of boxes that are held: the body goes on as its mirror image beyond the side, so that the side stays where it is
+//! to the order of the basis. A side stands on the nodes nearest to it.
+
+use crate::bodies::Body;
+use crate::grid::{Lattice, Node, Window};
+use grainbench_scene::body::Hold;
+use grainbench_scene::space::Space;
+use nalgebra::Vector3;
+
+/// One held side.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    body: usize,
+    axis: usize,
+    /// Node on the side along the axis.
+    node: i32,
+    /// +1 when the body lies above it.
+    inward: i32,
+    /// Whether tangential motion is held too.
+    fixed: bool,
+}
+
+/// All held sides.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Held {
+    sides: Vec<Side>,
+}
+
+impl Held {
+    pub(crate) fn new(bodies: &[Body], lattice: &Lattice) -> Self {
+        let mut sides = Vec::new();
+        for (body, held) in bodies.iter().enumerate().filter_map(|(at, body)| Some((at, body.held?))) {
+            let (holds, corners) = held;
+            for axis in 0..3 {
+                for end in 0..2 {
+                    if holds[axis][end] != Hold::Free {
+                        let node = ((corners[end][axis] - lattice.origin[axis]) / lattice.cell[axis]).round() as i32;
+                        let inward = if end == 0 { 1 } else { -1 };
+                        sides.push(Side { body, axis, node, inward, fixed: holds[axis][end] == Hold::Fixed });
+                    }
+                }
+            }
+        }
+        Self { sides }
+    }
+
+    /// What the mirror image brings to the nodes inside, before velocities are known.
+    pub(crate) fn fold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>]) {
+        for side in &self.sides {
+            side.each_beyond(&bodies[side.body].part.window, |beyond, inside| {
+                let from = nodes[beyond];
+                let to = &mut nodes[inside];
+                to.mass += from.mass;
+                to.velocity += side.mirrored::<S>(from.velocity);
+                to.change += side.mirrored::<S>(from.change);
+                nodes[beyond].mass = to_mass(nodes[inside].mass, from.mass);
+            });
+        }
+    }
+
+    /// The same for projected momenta.
+    pub(crate) fn fold_projected<S: Space>(&self, bodies: &[Body], projected: &mut [S::Vector]) {
+        for side in &self.sides {
+            side.each_beyond(&bodies[side.body].part.window, |beyond, inside| {
+                let from = side.mirrored::<S>(projected[beyond]);
+                projected[inside] += from;
+            });
+        }
+    }
+
+    /// Velocities on held sides and beyond them.
+    pub(crate) fn hold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>]) {
+        for side in &self.sides {
+            let window = &bodies[side.body].part.window;
+            side.each_on(window, |slot| {
+                nodes[slot].velocity = side.kept::<S>(nodes[slot].velocity);
+                nodes[slot].change = side.kept::<S>(nodes[slot].change);
+            });
+            side.each_beyond(window, |beyond, inside| {
+                nodes[beyond].velocity = side.mirrored::<S>(nodes[inside].velocity);
+                nodes[beyond].change = side.mirrored::<S>(nodes[inside].change);
+            });
+        }
+    }
+
+    /// The same for projected velocities.
+    pub(crate) fn hold_projected<S: Space>(&self, bodies: &[Body], projected: &mut [S::Vector]) {
+        for side in &self.sides {
+            let window = &bodies[side.body].part.window;
+            side.each_on(window, |slot| projected[slot] = side.kept::<S>(projected[slot]));
+            side.each_beyond(window, |beyond, inside| projected[beyond] = side.mirrored::<S>(projected[inside]));
+        }
+    }
+}
+
+/// A node beyond the side carries mass when its image does, so that points which reach it see its velocity.
+fn to_mass(inside: f64, beyond: f64) -> f64 {
+    if beyond > 0.0 { inside } else { 0.0 }
+}
+
+impl Side {
+    /// A vector in the mirror; without its tangential parts reversed where only the normal is held.
+    fn mirrored<S: Space>(&self, vector: S::Vector) -> S::Vector {
+        if self.fixed {
+            return -vector;
+        }
+        let mut mirrored = S::embed(vector);
+        mirrored[self.axis] = -mirrored[self.axis];
+        S::restrict(mirrored)
+    }
+
+    /// What is left of a velocity on the side.
+    fn kept<S: Space>(&self, vector: S::Vector) -> S::Vector {
+        if self.fixed {
+            return S::ORIGIN;
+        }
+        let mut kept: Vector3<f64> = S::embed(vector);
+        kept[self.axis] = 0.0;
+        S::restrict(kept)
+    }
+
+    fn each_on(&self, window: &Window, mut visit: impl FnMut(usize)) {
+        for place in 0..window.len() {
+            let node = window.node(place);
+            if node[self.axis] == self.node {
+                visit(window.start + place);
+            }
+        }
+    }
+
+    /// Visits the nodes beyond the side with the nodes they mirror, where both are in the window.
+    fn each_beyond(&self, window: &Window, mut visit: impl FnMut(usize, usize)) {
+        for place in 0..window.len() {
+            let node = window.node(place);
+            let away = (node[self.axis] - self.node) * self.inward;
+            let mut image = node;
+            image[self.axis] = 2 * self.node - node[self.axis];
+            let inside = image[self.axis] - window.low[self.axis];
+            if away < 0 && (0..window.size[self.axis]).contains(&inside) {
+                visit(window.start + place, window.slot(image));
+            }
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! The material point method: deformable grains in frictional contact, in two dimensions (plane strain) and three.
+//!
+//! Explicit, with lumped mass, f64. A body is a cloud of material points that carry mass, velocity, deformation and
+//! stress, and a surface of massless tracers. In each step
+//!
+//! 1. points bring mass, momentum and internal force to the nodes of their body's window of the grid;
+//! 2. contact acts, as springs where surfaces have met or as a condition on the velocities of nodes;
+//! 3. nodes take the step, and points take velocity and way from them;
+//! 4. velocity gradients give deformation and stress (MUSL: from velocities that the points bring to the nodes anew).
+//!
+//! Type parameters stand for space, basis, transfer and material, each only in the loops over points that need it, and an
+//! enum chooses between the stages; so kernels add and do not multiply.
+
+mod basis;
+mod bodies;
+mod contact;
+mod grid;
+mod held;
+mod limits;
+pub mod material;
+mod observe;
+pub mod options;
+mod points;
+pub mod seed;
+mod simulation;
+pub mod solver;
+mod stress;
+mod surface;
+mod transfer;
+mod walls;

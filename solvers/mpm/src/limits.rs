@@ -1,0 +1,48 @@
+//! What the method cannot express, each with its reason.
+
+use crate::options::{Contact, Setting};
+use grainbench_scene::file::GrainShape;
+use grainbench_scene::motion::Moment;
+use grainbench_scene::scene::{Duration, Scene, WallShape};
+
+/// Why the scene cannot be run, if it cannot.
+pub(crate) fn reason(scene: &Scene, setting: &Setting) -> Option<String> {
+    let flat = scene.dimension.count() == 2;
+    if flat && scene.grain_shape == GrainShape::Sphere && !scene.grains.is_empty() {
+        return Some("a sphere kept in the plane is neither a disc in plane strain nor free".to_owned());
+    }
+    let used = scene.grains.iter().map(|grain| grain.material).chain(scene.bodies.iter().map(|body| body.material));
+    let bare =
+        used.into_iter().find(|&material| scene.deformable.get(usize::from(material)).is_none_or(Option::is_none));
+    if let Some(material) = bare {
+        return Some(format!(
+            "material `{}` has no elastic moduli (`young_modulus` and `poisson_ratio`, or `bulk_modulus` and \
+             `shear_modulus`), and grains deform here",
+            scene.materials[usize::from(material)]
+        ));
+    }
+    if let Some(wall) = scene.walls.iter().find(|wall| !matches!(wall.shape, WallShape::Plane { .. })) {
+        return Some(format!("wall `{}` is no plane", wall.name));
+    }
+    if scene.laws.iter().flatten().any(|law| law.cohesion != 0.0) {
+        return Some("its contacts only push: it has no cohesion".to_owned());
+    }
+    if scene.laws.iter().flatten().any(|law| law.rolling_friction > 0.0) {
+        return Some("resistance against rolling comes from the deformation here, not from a coefficient".to_owned());
+    }
+    if matches!(scene.duration, Duration::Cycles(_)) {
+        return Some("its duration is a number of calculation cycles of another method; seconds can be run".to_owned());
+    }
+    let in_cycles = |moment: Moment| matches!(moment, Moment::Cycle(cycle) if cycle > 0);
+    let phases = scene.walls.iter().flat_map(|wall| &wall.motion.phases);
+    if phases.into_iter().any(|phase| in_cycles(phase.start) || in_cycles(phase.stop)) {
+        return Some("a wall starts or stops at a calculation cycle of another method; seconds can be run".to_owned());
+    }
+    let several = scene.grains.len() + scene.bodies.len() > 1;
+    if !flat && several && matches!(setting.contact, Contact::Penalty | Contact::Gap) {
+        return Some(
+            "contact between deformable bodies in space needs surfaces that only the plane has so far".to_owned(),
+        );
+    }
+    None
+}

@@ -1,0 +1,40 @@
+//! Constitutive laws, three by three in both dimensions: in the plane the strain out of it is zero, the stress is not.
+
+mod hypoelastic;
+mod neo_hookean;
+mod von_mises;
+
+pub use hypoelastic::Hypoelastic;
+pub use neo_hookean::NeoHookean;
+pub use von_mises::VonMises;
+
+use nalgebra::Matrix3;
+
+/// The state of a material point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Deformation gradient F.
+    pub deformation: Matrix3<f64>,
+    /// Cauchy stress σ (Pa), tension positive.
+    pub stress: Matrix3<f64>,
+    /// Equivalent plastic strain.
+    pub plastic_strain: f64,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self { deformation: Matrix3::identity(), stress: Matrix3::zeros(), plastic_strain: 0.0 }
+    }
+}
+
+/// A law between deformation and stress.
+pub trait Law: Copy + Send + Sync + 'static {
+    /// The stress after a step with the displacement gradient `increment` = Δt ∇v, of which `state` holds the
+    /// deformation after the step and the stress before it; `volume_ratio` is the determinant of the deformation.
+    fn update(&self, increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State);
+    /// Elastic energy per volume at the start (J/m³).
+    fn energy(&self, state: &State) -> f64;
+    /// The deformation, equal along the axes that can deform, at which a pressure (Pa) acts along them, as a stretch;
+    /// and the stress then.
+    fn under_pressure(&self, pressure: f64, dimensions: usize) -> (f64, Matrix3<f64>);
+}

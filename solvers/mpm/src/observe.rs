@@ -1,0 +1,293 @@
+//! What is seen of a simulation at a step.
+
+use crate::bodies::Body;
+use crate::contact::{Other, Touch};
+use crate::material::State;
+use crate::simulation::{Simulation, energy_density};
+use crate::stress::embed_deformation;
+use grainbench_scene::record::{
+    self, BodyState, ContactState, GrainState, Look, Owner, Partner, PointState, Snapshot, WallState,
+};
+use grainbench_scene::scene::{BodyName, WallShape};
+use grainbench_scene::space::Space;
+use nalgebra::{Matrix3, Vector3};
+
+/// A body as a whole.
+struct Whole {
+    mass: f64,
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    spin: Vector3<f64>,
+    inertia: f64,
+    /// Kinetic energy of all points (J).
+    kinetic: f64,
+    angle: f64,
+}
+
+impl<S: Space> Simulation<S> {
+    /// The simulation now; with `points`, every material point.
+    pub(crate) fn look(&mut self, with_points: bool) -> Look {
+        let wholes: Vec<Whole> = (0..self.bodies.len()).map(|body| self.whole(body)).collect();
+        let mut elastic_energy = self.spring_energy();
+        let mut inner_kinetic_energy = 0.0;
+        let (mut grains, mut bodies) = (Vec::new(), Vec::new());
+        for (body, whole) in self.bodies.iter().zip(&wholes) {
+            elastic_energy += self.elastic_energy(body);
+            let mut inertia = whole.inertia;
+            match body.owner {
+                Owner::Grain(id) => {
+                    let grain = &self.scene.grains[id as usize - 1];
+                    inertia = grain.inertia;
+                    grains.push(GrainState {
+                        position: self.inside(whole.position),
+                        velocity: whole.velocity,
+                        spin: whole.spin,
+                        angle: whole.angle,
+                        ..GrainState::start(id, grain)
+                    });
+                }
+                Owner::Body(at) => bodies.push(BodyState {
+                    name: self.scene.bodies[at as usize].name.clone(),
+                    mass: whole.mass,
+                    inertia,
+                    position: whole.position,
+                    velocity: whole.velocity,
+                    spin: whole.spin,
+                    angle: whole.angle,
+                    force: Vector3::zeros(),
+                }),
+            }
+            let rigid = whole.mass * whole.velocity.norm_squared() + inertia * whole.spin.norm_squared();
+            inner_kinetic_energy += whole.kinetic - 0.5 * rigid;
+        }
+        for touch in &self.touches {
+            let force = S::embed(touch.push + touch.shear);
+            let mut push = |body: u32, force: Vector3<f64>| match self.bodies[body as usize].owner {
+                Owner::Grain(id) => {
+                    let arm = S::embed(touch.point) - wholes[body as usize].position;
+                    let grain: &mut GrainState = &mut grains[id as usize - 1];
+                    grain.force += force;
+                    grain.torque += arm.cross(&force);
+                }
+                Owner::Body(at) => bodies[at as usize].force += force,
+            };
+            push(touch.body, force);
+            if let Other::Body(other) = touch.other {
+                push(other, -force);
+            }
+        }
+        let points = if with_points {
+            self.bodies.iter().flat_map(|body| body.part.points.clone().map(|at| self.point(body, at))).collect()
+        } else {
+            Vec::new()
+        };
+        Look {
+            elastic_energy,
+            inner_kinetic_energy,
+            spots: self.spots(),
+            snapshot: Snapshot {
+                step: self.step,
+                time: self.step as f64 * self.time_step,
+                bounds: record::bounds(&self.scene, &grains),
+                periodic: self.scene.domain.map_or([false; 3], |domain| domain.periodic),
+                contacts: self.contacts(),
+                walls: self.wall_states(),
+                grains,
+                bodies,
+                points,
+            },
+        }
+    }
+
+    /// Along periodic axes, the place within the domain.
+    fn inside(&self, mut position: Vector3<f64>) -> Vector3<f64> {
+        if let Some(domain) = self.scene.domain {
+            for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
+                let length = domain.high[axis] - domain.low[axis];
+                position[axis] = domain.low[axis] + (position[axis] - domain.low[axis]).rem_euclid(length);
+            }
+        }
+        position
+    }
+
+    fn whole(&mut self, body: usize) -> Whole {
+        let points = &self.points;
+        let range = self.bodies[body].part.points.clone();
+        let (mut mass, mut position, mut momentum) = (0.0, Vector3::zeros(), Vector3::zeros());
+        for at in range.clone() {
+            mass += points.mass[at];
+            position += S::embed(points.position[at]) * points.mass[at];
+            momentum += S::embed(points.velocity[at]) * points.mass[at];
+        }
+        position /= mass;
+        let velocity = momentum / mass;
+        let (mut angular, mut inertia, mut kinetic) = (Vector3::zeros(), Matrix3::zeros(), 0.0);
+        let mut mean = Matrix3::zeros();
+        for at in range {
+            let arm = S::embed(points.position[at]) - position;
+            let own = S::embed(points.velocity[at]);
+            let share = points.mass[at];
+            angular += arm.cross(&own) * share;
+            inertia += (Matrix3::from_diagonal_element(arm.norm_squared()) - arm * arm.transpose()) * share;
+            kinetic += 0.5 * share * own.norm_squared();
+            mean += S::embed_gradient(points.deformation[at]) * share;
+        }
+        let (spin, inertia) = if S::DIMENSION == 2 {
+            (Vector3::new(0.0, 0.0, angular.z / inertia.m33), inertia.m33)
+        } else {
+            (inertia.try_inverse().map_or_else(Vector3::zeros, |inverse| inverse * angular), inertia.trace() / 3.0)
+        };
+        let angle = if S::DIMENSION == 2 {
+            // Of the turns that the deformation may have made, the one nearest to that of the last look and the spin since.
+            let wrapped = (mean.m21 - mean.m12).atan2(mean.m11 + mean.m22);
+            let expected = self.bodies[body].angle + spin.z * self.time_step * (self.step - self.looked) as f64;
+            wrapped + ((expected - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU
+        } else {
+            0.0
+        };
+        self.bodies[body].angle = angle;
+        if body + 1 == self.bodies.len() {
+            self.looked = self.step;
+        }
+        Whole { mass, position, velocity, spin, inertia, kinetic, angle }
+    }
+
+    fn state(&self, at: usize) -> State {
+        State {
+            deformation: embed_deformation::<S>(self.points.deformation[at]),
+            stress: S::embed_symmetric(self.points.stress[at]),
+            plastic_strain: self.points.plastic_strain[at],
+        }
+    }
+
+    fn elastic_energy(&self, body: &Body) -> f64 {
+        let range = body.part.points.clone();
+        range.map(|at| self.points.reference_volume[at] * energy_density(&body.law, &self.state(at))).sum()
+    }
+
+    fn point(&self, body: &Body, at: usize) -> PointState {
+        let points = &self.points;
+        let stress = S::embed_symmetric(points.stress[at]);
+        PointState {
+            owner: body.owner,
+            position: S::embed(points.position[at]),
+            displacement: S::embed(points.position[at] - points.start[at]),
+            velocity: S::embed(points.velocity[at]),
+            stress: [stress.m11, stress.m22, stress.m33, stress.m12, stress.m23, stress.m31],
+            plastic_strain: points.plastic_strain[at],
+            volume: points.volume[at],
+        }
+    }
+
+    /// Means over the points that were nearest to each place at the start.
+    fn spots(&self) -> Vec<PointState> {
+        let mut spots = Vec::with_capacity(self.scene.spots.len());
+        for spot in &self.scene.spots {
+            let owner = match spot.body {
+                BodyName::Grain(grain) => Owner::Grain(grain as u32 + 1),
+                BodyName::Body(body) => Owner::Body(body as u32),
+            };
+            let Some(body) = self.bodies.iter().find(|body| body.owner == owner) else { continue };
+            let away = |at: usize| (S::embed(self.points.start[at]) - spot.at).norm();
+            let nearest = body.part.points.clone().map(away).fold(f64::INFINITY, f64::min);
+            let reach = nearest + 1e-6 * self.lattice.shortest(S::DIMENSION);
+            let mut found: Vec<(u32, PointState)> = body
+                .part
+                .points
+                .clone()
+                .filter(|&at| away(at) <= reach)
+                .map(|at| (self.points.id[at], self.point(body, at)))
+                .collect();
+            // In an order that does not depend on where the points are now.
+            found.sort_by_key(|(id, _)| *id);
+            spots.extend(mean(&found));
+        }
+        spots
+    }
+
+    /// Energy in the springs of contacts, as the last step had them (J).
+    fn spring_energy(&self) -> f64 {
+        self.touches.iter().map(|touch| touch.energy).sum()
+    }
+
+    fn wall_states(&self) -> Vec<WallState> {
+        let walls = self.scene.walls.iter().zip(&self.walls);
+        walls
+            .map(|(wall, plane)| {
+                let shape = WallShape::Plane { point: S::embed(plane.point), normal: S::embed(plane.normal) };
+                let (corners, infinite) = shape.corners();
+                WallState { name: wall.name.clone(), corners, infinite, force: S::embed(plane.force) }
+            })
+            .collect()
+    }
+
+    /// What touches, one contact for each pair: forces of all tracers, at their centre of force.
+    fn contacts(&self) -> Vec<ContactState> {
+        let mut touches: Vec<(u32, Other, Touch<S>)> = Vec::new();
+        for touch in &self.touches {
+            let swap = matches!(touch.other, Other::Body(other) if other < touch.body);
+            match touch.other {
+                Other::Body(other) if swap => touches.push((
+                    other,
+                    Other::Body(touch.body),
+                    Touch { push: -touch.push, shear: -touch.shear, ..*touch },
+                )),
+                other => touches.push((touch.body, other, *touch)),
+            }
+        }
+        touches.sort_by_key(|&(body, other, _)| (body, other));
+        touches
+            .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
+            .filter_map(|group| {
+                let (body, other) = (group[0].0, group[0].1);
+                let Owner::Grain(grain) = self.bodies[body as usize].owner else { return None };
+                let partner = match other {
+                    Other::Wall(wall) => Partner::Wall(wall),
+                    Other::Body(body) => match self.bodies[body as usize].owner {
+                        Owner::Grain(id) => Partner::Grain(id),
+                        Owner::Body(place) => Partner::Body(place),
+                    },
+                };
+                let size = |touch: &Touch<S>| S::dot(touch.push, touch.push).sqrt();
+                let total: f64 = group.iter().map(|(_, _, touch)| size(touch)).sum();
+                let push: Vector3<f64> = group.iter().map(|(_, _, touch)| S::embed(touch.push)).sum();
+                let shear = group.iter().map(|(_, _, touch)| S::embed(touch.shear)).sum();
+                let point = group.iter().map(|(_, _, touch)| S::embed(touch.point) * size(touch)).sum::<Vector3<f64>>();
+                let sliding: f64 =
+                    group.iter().filter(|(_, _, touch)| touch.slipping).map(|(_, _, touch)| size(touch)).sum();
+                let normal_force = push.norm();
+                (total > 0.0 && normal_force > 0.0).then(|| ContactState {
+                    grain,
+                    partner,
+                    point: point / total,
+                    normal: -push / normal_force,
+                    overlap: group.iter().map(|(_, _, touch)| touch.depth).fold(0.0, f64::max),
+                    normal_force,
+                    shear_force: shear,
+                    slipping: sliding > 0.5 * total,
+                })
+            })
+            .collect()
+    }
+}
+
+fn mean(found: &[(u32, PointState)]) -> Option<PointState> {
+    let mut all = found.iter().map(|(_, point)| *point);
+    let first = all.next()?;
+    let mut sum = all.fold(first, |mut sum, point| {
+        sum.position += point.position;
+        sum.displacement += point.displacement;
+        sum.velocity += point.velocity;
+        sum.stress.iter_mut().zip(point.stress).for_each(|(sum, stress)| *sum += stress);
+        sum.plastic_strain += point.plastic_strain;
+        sum.volume += point.volume;
+        sum
+    });
+    let share = 1.0 / found.len() as f64;
+    sum.position *= share;
+    sum.displacement *= share;
+    sum.velocity *= share;
+    sum.stress.iter_mut().for_each(|stress| *stress *= share);
+    sum.plastic_strain *= share;
+    Some(sum)
+}

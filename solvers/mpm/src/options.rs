@@ -1,0 +1,153 @@
+//! Options of the method, and the settings that have names.
+
+use std::fmt;
+
+/// Basis functions of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// Hat functions.
+    Linear,
+    /// Quadratic B-splines.
+    Quadratic,
+    /// Hat functions averaged over points of fixed extent.
+    Gimp,
+}
+
+/// How velocities travel between points and nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Transfer {
+    /// Points take on the change of the nodes' velocity, blended with `pic` of the velocity itself.
+    Flip {
+        /// Fraction of the velocity itself in each step, 0 for none.
+        pic: f64,
+    },
+    /// Points carry the affine part of the velocity.
+    Apic,
+}
+
+/// When the stress follows the velocities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StressUpdate {
+    /// First: from the velocities that the points bring to the nodes.
+    First,
+    /// Last: from the nodes' velocities at the end of the step.
+    Last,
+    /// Last, from velocities that the points bring to the nodes once more (MUSL: Sulsky, Zhou & Schreyer 1995).
+    ModifiedLast,
+}
+
+/// How bodies touch each other and walls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contact {
+    /// One velocity field for all bodies, which walls carry along.
+    NoSlip,
+    /// Nodes at which bodies approach (Bardenhagen, Brackbill & Sulsky 2000): released on departure, each body along its
+    /// own normal, from a density smoothed as in their eq. 24.
+    Kinematic,
+    /// Nodes at which the normal traction is compressive (Bardenhagen et al. 2001), each body along its own normal; the
+    /// impulse is scaled to keep cells from collapsing (eq. 22, whose `max` must read `min`).
+    Traction,
+    /// Nodes at which surfaces have met, found from tracers on them: bodies pair by pair along a common normal, while they
+    /// approach or press.
+    Gap,
+    /// Springs between tracers on the surfaces, with a Coulomb-limited spring along them, that act where surfaces meet and
+    /// not at nodes.
+    Penalty,
+}
+
+/// A setting of the method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Basis functions.
+    pub basis: Basis,
+    /// Transfer of velocities.
+    pub transfer: Transfer,
+    /// When the stress follows.
+    pub stress_update: StressUpdate,
+    /// Contact.
+    pub contact: Contact,
+    /// Springs of [`Contact::Penalty`]: stiffness per area in E'/h, with E' = E/(1 − ν²), harmonic mean of both bodies.
+    pub penalty: f64,
+    /// Tracers on a surface per cell length.
+    pub tracers: f64,
+    /// Where nodes stand: shift of the grid in cells along each axis.
+    pub phase: [f64; 3],
+}
+
+impl Setting {
+    /// One setting for all scenes: the best known.
+    pub const BEST: Self = Self {
+        basis: Basis::Gimp,
+        transfer: Transfer::Flip { pic: 0.0 },
+        stress_update: StressUpdate::ModifiedLast,
+        contact: Contact::Penalty,
+        penalty: 2.2,
+        tracers: 2.0,
+        phase: [0.0; 3],
+    };
+
+    /// What the papers used, with another contact.
+    #[must_use]
+    pub const fn classic(contact: Contact) -> Self {
+        Self { basis: Basis::Linear, contact, ..Self::BEST }
+    }
+
+    /// The setting in words.
+    #[must_use]
+    pub fn words(&self) -> Vec<String> {
+        let mut words = vec![self.basis.to_string(), self.transfer.to_string(), self.stress_update.to_string()];
+        words.push(self.contact.to_string());
+        if self.contact == Contact::Penalty {
+            words.push(format!("contact stiffness {} E'/h per area", self.penalty));
+        }
+        if matches!(self.contact, Contact::Penalty | Contact::Gap) {
+            words.push(format!("{} tracers per cell on surfaces", self.tracers));
+        }
+        if self.phase != [0.0; 3] {
+            words.push(format!("grid shifted by {:?} cells", self.phase));
+        }
+        words
+    }
+}
+
+impl fmt::Display for Basis {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Linear => "linear basis",
+            Self::Quadratic => "quadratic B-splines",
+            Self::Gimp => "uGIMP basis",
+        })
+    }
+}
+
+impl fmt::Display for Transfer {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flip { pic: 0.0 } => formatter.write_str("FLIP"),
+            Self::Flip { pic } => write!(formatter, "FLIP with {pic} PIC"),
+            Self::Apic => formatter.write_str("APIC"),
+        }
+    }
+}
+
+impl fmt::Display for StressUpdate {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::First => "stress updated first",
+            Self::Last => "stress updated last",
+            Self::ModifiedLast => "stress updated last from reprojected velocities (MUSL)",
+        })
+    }
+}
+
+impl fmt::Display for Contact {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NoSlip => "no slip: one velocity field",
+            Self::Kinematic => "nodal contact on approach (2000)",
+            Self::Traction => "nodal contact under compressive traction (2001)",
+            Self::Gap => "nodal contact where surfaces have met",
+            Self::Penalty => "springs between surfaces",
+        })
+    }
+}

@@ -1,0 +1,101 @@
+//! Material points: structure of arrays, grouped by body and kept in cell order within a body.
+
+use grainbench_scene::space::Space;
+use std::ops::Range;
+
+/// All material points of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Points<S: Space> {
+    /// Number at the start, which stays with the point.
+    pub(crate) id: Vec<u32>,
+    /// Position at the start (m).
+    pub(crate) start: Vec<S::Vector>,
+    /// Position (m).
+    pub(crate) position: Vec<S::Vector>,
+    /// Position at the end of the step under way (m).
+    pub(crate) next: Vec<S::Vector>,
+    /// Velocity (m/s).
+    pub(crate) velocity: Vec<S::Vector>,
+    /// Affine part of the velocity (1/s); zero unless the transfer carries it.
+    pub(crate) affine: Vec<S::Matrix>,
+    /// Mass (kg).
+    pub(crate) mass: Vec<f64>,
+    /// Volume in the undeformed state (m³).
+    pub(crate) reference_volume: Vec<f64>,
+    /// Volume (m³).
+    pub(crate) volume: Vec<f64>,
+    /// Deformation gradient.
+    pub(crate) deformation: Vec<S::Matrix>,
+    /// Cauchy stress (Pa).
+    pub(crate) stress: Vec<S::Symmetric>,
+    /// Equivalent plastic strain.
+    pub(crate) plastic_strain: Vec<f64>,
+    /// Velocity gradient of the step under way (1/s).
+    pub(crate) gradient: Vec<S::Matrix>,
+}
+
+impl<S: Space> Points<S> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            id: Vec::new(),
+            start: Vec::new(),
+            position: Vec::new(),
+            next: Vec::new(),
+            velocity: Vec::new(),
+            affine: Vec::new(),
+            mass: Vec::new(),
+            reference_volume: Vec::new(),
+            volume: Vec::new(),
+            deformation: Vec::new(),
+            stress: Vec::new(),
+            plastic_strain: Vec::new(),
+            gradient: Vec::new(),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Adds an undeformed point at rest.
+    pub(crate) fn push(&mut self, position: S::Vector, volume: f64, density: f64) {
+        self.id.push(self.id.len() as u32);
+        self.start.push(position);
+        self.position.push(position);
+        self.next.push(position);
+        self.velocity.push(S::ORIGIN);
+        self.affine.push(S::NO_GRADIENT);
+        self.mass.push(density * volume);
+        self.reference_volume.push(volume);
+        self.volume.push(volume);
+        self.deformation.push(S::restrict_gradient(nalgebra::Matrix3::identity()));
+        self.stress.push(S::Symmetric::default());
+        self.plastic_strain.push(0.0);
+        self.gradient.push(S::NO_GRADIENT);
+    }
+
+    /// Puts the points of a body in the order of `key`, of equal keys in the order they have.
+    pub(crate) fn sort<K: Ord>(&mut self, range: Range<usize>, key: impl Fn(S::Vector) -> K) {
+        let mut order: Vec<usize> = range.clone().collect();
+        order.sort_by_key(|&at| key(self.position[at]));
+        let start = range.start;
+        reorder(&mut self.id[range.clone()], &order, start);
+        reorder(&mut self.start[range.clone()], &order, start);
+        reorder(&mut self.position[range.clone()], &order, start);
+        reorder(&mut self.velocity[range.clone()], &order, start);
+        reorder(&mut self.affine[range.clone()], &order, start);
+        reorder(&mut self.mass[range.clone()], &order, start);
+        reorder(&mut self.reference_volume[range.clone()], &order, start);
+        reorder(&mut self.volume[range.clone()], &order, start);
+        reorder(&mut self.deformation[range.clone()], &order, start);
+        reorder(&mut self.stress[range.clone()], &order, start);
+        reorder(&mut self.plastic_strain[range], &order, start);
+    }
+}
+
+fn reorder<T: Copy>(values: &mut [T], order: &[usize], start: usize) {
+    let old = values.to_vec();
+    for (value, &from) in values.iter_mut().zip(order) {
+        *value = old[from - start];
+    }
+}

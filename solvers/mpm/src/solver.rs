@@ -1,0 +1,197 @@
+//! The material point method as a solver: settings with names, the step, and the record of a run.
+
+use crate::grid::Lattice;
+use crate::limits;
+use crate::options::{Contact, Setting};
+use crate::simulation::Simulation;
+use grainbench_scene::body::{BlockShape, Hold};
+use grainbench_scene::effects::Effects;
+use grainbench_scene::record::{Provenance, Record};
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::{Dimension, Duration, Scene};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::space::{Plane, Solid, Space};
+use std::time::Instant;
+
+/// The material point method in one setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mpm {
+    /// Name, such as `mpm:gap`.
+    pub name: &'static str,
+    /// The setting.
+    pub setting: Setting,
+}
+
+impl Mpm {
+    /// The best known setting, one for all scenes.
+    pub const BEST: Self = Self { name: "mpm", setting: Setting::BEST };
+    /// All settings with names.
+    pub const ALL: [Self; 6] = [
+        Self::BEST,
+        Self { name: "mpm:2000", setting: Setting::classic(Contact::Kinematic) },
+        Self { name: "mpm:2001", setting: Setting::classic(Contact::Traction) },
+        Self { name: "mpm:gap", setting: Setting::classic(Contact::Gap) },
+        Self { name: "mpm:penalty", setting: Setting::classic(Contact::Penalty) },
+        Self { name: "mpm:no-slip", setting: Setting::classic(Contact::NoSlip) },
+    ];
+
+    /// The setting of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mpm| mpm.name == name)
+    }
+
+    /// Another setting under the same name, for cases that say why.
+    #[must_use]
+    pub fn with(self, change: impl FnOnce(&mut Setting)) -> Self {
+        let mut changed = self;
+        change(&mut changed.setting);
+        changed
+    }
+
+    fn resolution_error(&self, reason: String) -> RunError {
+        RunError::Resolution { solver: self.name(), reason }
+    }
+
+    /// The plan of a run, for callers who want to know what it would cost.
+    ///
+    /// # Errors
+    /// When the scene cannot be expressed or the resolution makes no sense.
+    pub fn plan(&self, scene: &Scene, resolution: &Resolution) -> Result<Plan, RunError> {
+        if let Some(reason) = limits::reason(scene, &self.setting) {
+            return Err(RunError::Unsupported { solver: self.name(), reason });
+        }
+        let Resolution::Grid { cells, points, courant } = *resolution else {
+            return Err(self.resolution_error(format!(
+                "expected cells per length, points per cell and a Courant number, found {resolution}"
+            )));
+        };
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        if !(positive(cells) && positive(courant) && (1..=64).contains(&points)) {
+            return Err(self.resolution_error(format!("expected positive numbers, found {resolution}")));
+        }
+        let lattice = lattice(scene, &self.setting, scene.reference_length / cells);
+        let speed = fastest_wave(scene);
+        let critical = lattice.shortest(scene.dimension.count()) / speed;
+        let Duration::Seconds(time) = scene.duration else {
+            return Err(self.resolution_error("expected a duration in seconds".to_owned()));
+        };
+        // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
+        let steps = (time / (courant * critical) * (1.0 - 1e-12)).ceil().max(1.0);
+        if !(steps < 1e15) {
+            return Err(self.resolution_error(format!("expected a number of steps below 1e15, found {steps:e}")));
+        }
+        Ok(Plan { lattice, points, time_step: time / steps, steps: steps as u64, critical })
+    }
+
+    fn run_in<S: Space>(&self, scene: &Scene, plan: &Plan, watch: &mut dyn Watch) -> Result<Done, RunError> {
+        let &Plan { lattice, points, time_step, steps, critical } = plan;
+        let mut simulation = Simulation::<S>::new(scene, self.setting, lattice, points, time_step, critical)?;
+        let mut recorder = Recorder::new(scene, time_step, steps);
+        let start = Instant::now();
+        loop {
+            let now = simulation.step;
+            if recorder.is_due(now) {
+                recorder.take(scene, simulation.look(recorder.is_snapshot(now)));
+            }
+            watch.progress(now, steps);
+            if now == steps {
+                break;
+            }
+            simulation.advance((recorder.next(now) - now).min(STEPS_BETWEEN_PROGRESS))?;
+        }
+        let mut cost = simulation.cost;
+        cost.wall_seconds = start.elapsed().as_secs_f64();
+        Ok(Done { recorder, cost })
+    }
+}
+
+/// Steps after which a watcher hears of progress at the latest.
+const STEPS_BETWEEN_PROGRESS: u64 = 500;
+
+struct Done {
+    recorder: Recorder,
+    cost: grainbench_scene::record::Cost,
+}
+
+/// Grid and steps of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    lattice: Lattice,
+    points: u32,
+    /// Time step (s).
+    pub time_step: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// Time that the fastest wave takes through a cell (s).
+    pub critical: f64,
+}
+
+/// Speed of longitudinal waves in the stiffest material in use, √((K + 4G/3)/ρ) (m/s).
+fn fastest_wave(scene: &Scene) -> f64 {
+    let dimensions = scene.dimension.count();
+    let of = |material: u16, density: f64| {
+        let deformable = scene.deformable.get(usize::from(material)).copied().flatten();
+        deformable.map_or(0.0, |deformable| (deformable.longitudinal_modulus() / density).sqrt())
+    };
+    let volume = |radius: f64| match dimensions {
+        2 => std::f64::consts::PI * radius * radius,
+        _ => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+    };
+    let grains = scene.grains.iter().map(|grain| of(grain.material, grain.mass / volume(grain.radius)));
+    let bodies = scene.bodies.iter().map(|body| of(body.material, body.density));
+    grains.chain(bodies).fold(0.0, f64::max)
+}
+
+/// Cells of about `cell` (m): along periodic axes a whole number of them. Nodes stand on the faces of the domain along
+/// periodic axes, else on the first held side, else at zero, shifted by the phase of the setting.
+fn lattice(scene: &Scene, setting: &Setting, cell: f64) -> Lattice {
+    let mut lattice = Lattice { cell: [cell; 3], origin: [0.0; 3], period: [None; 3] };
+    for axis in 0..scene.dimension.count() {
+        let held = scene.bodies.iter().find_map(|body| match body.shape {
+            BlockShape::Box { low, .. } if body.sides[axis][0] != Hold::Free => Some(low[axis]),
+            BlockShape::Box { high, .. } if body.sides[axis][1] != Hold::Free => Some(high[axis]),
+            _ => None,
+        });
+        lattice.origin[axis] = held.unwrap_or(0.0);
+        if let Some(domain) = scene.domain.filter(|domain| domain.periodic[axis]) {
+            let length = domain.high[axis] - domain.low[axis];
+            let count = (length / cell).round().max(4.0);
+            lattice.cell[axis] = length / count;
+            lattice.period[axis] = Some(count as i32);
+            lattice.origin[axis] = domain.low[axis];
+        }
+        lattice.origin[axis] += setting.phase[axis] * lattice.cell[axis];
+    }
+    lattice
+}
+
+impl Solver for Mpm {
+    fn name(&self) -> String {
+        self.name.to_owned()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let plan = self.plan(scene, resolution)?;
+        watch.begin(plan.time_step, plan.steps);
+        let Done { recorder, cost } = match scene.dimension {
+            Dimension::Two => self.run_in::<Plane>(scene, &plan, watch)?,
+            Dimension::Three => self.run_in::<Solid>(scene, &plan, watch)?,
+        };
+        let (series, snapshots) = recorder.finish();
+        Ok(Record {
+            provenance: Provenance {
+                scene: scene.title.clone(),
+                solver: self.name(),
+                resolution: resolution.to_string(),
+                time_step: plan.time_step,
+                critical_time_step: Some(plan.critical),
+                effects: Effects::of(scene).words(),
+                options: self.setting.words(),
+            },
+            series,
+            snapshots,
+            cost,
+        })
+    }
+}

@@ -1,0 +1,174 @@
+//! Loops over material points and the nodes that reach them. Each is compiled for a basis and, where it matters, a
+//! transfer; the stages between them are chosen at run time.
+
+use crate::basis::Basis;
+use crate::grid::{Lattice, Node, Stencil, Window};
+use crate::points::Points;
+use grainbench_scene::space::Space;
+use std::ops::Range;
+
+/// How velocities travel between points and nodes.
+pub(crate) trait Transfer: Copy + Send + 'static {
+    /// Velocity that a point shows to a node `arm` (m) away.
+    fn shown<S: Space>(velocity: S::Vector, affine: S::Matrix, arm: S::Vector) -> S::Vector;
+    /// Velocity of a point after the step, from that before, the velocity of the nodes around it and their change.
+    fn taken<S: Space>(&self, before: S::Vector, around: S::Vector, change: S::Vector) -> S::Vector;
+    /// Whether points carry the affine part of the velocity.
+    const AFFINE: bool;
+}
+
+/// Points keep their velocity and take on its change (Brackbill & Ruppel 1986), blended with a fraction of [`Apic`]
+/// without its affine part: v ← (1 − α)(v + Δv) + α v_grid.
+#[derive(Clone, Copy)]
+pub(crate) struct Flip {
+    /// Fraction α.
+    pub(crate) pic: f64,
+}
+
+impl Transfer for Flip {
+    const AFFINE: bool = false;
+
+    #[inline(always)]
+    fn shown<S: Space>(velocity: S::Vector, _affine: S::Matrix, _arm: S::Vector) -> S::Vector {
+        velocity
+    }
+    #[inline(always)]
+    fn taken<S: Space>(&self, before: S::Vector, around: S::Vector, change: S::Vector) -> S::Vector {
+        (before + change) * (1.0 - self.pic) + around * self.pic
+    }
+}
+
+/// Points carry the affine part of the velocity (Jiang et al. 2015), which keeps angular momentum.
+#[derive(Clone, Copy)]
+pub(crate) struct Apic;
+
+impl Transfer for Apic {
+    const AFFINE: bool = true;
+
+    #[inline(always)]
+    fn shown<S: Space>(velocity: S::Vector, affine: S::Matrix, arm: S::Vector) -> S::Vector {
+        velocity + affine * arm
+    }
+    #[inline(always)]
+    fn taken<S: Space>(&self, _before: S::Vector, around: S::Vector, _change: S::Vector) -> S::Vector {
+        around
+    }
+}
+
+/// The points of one body and the window they share.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    /// The points.
+    pub(crate) points: Range<usize>,
+    /// Where their field keeps its nodes.
+    pub(crate) window: Window,
+    /// Half the extent of a point (cells), for uGIMP.
+    pub(crate) half: f64,
+}
+
+/// Mass, momentum and internal force, −Vσ∇N, of a body's points to its nodes.
+pub(crate) fn scatter<S: Space, B: Basis, T: Transfer>(
+    lattice: &Lattice,
+    part: &Part,
+    points: &Points<S>,
+    nodes: &mut [Node<S>],
+) {
+    for at in part.points.clone() {
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let (mass, velocity, affine) = (points.mass[at], points.velocity[at], points.affine[at]);
+        let (stress, volume) = (points.stress[at], -points.volume[at]);
+        stencil.each::<S, B>(&part.window, |node| {
+            let shown = if T::AFFINE { T::shown::<S>(velocity, affine, stencil.arm(&node)) } else { velocity };
+            let share = node.weight * mass;
+            let to = &mut nodes[node.slot];
+            to.mass += share;
+            to.velocity += shown * share;
+            to.change += S::apply(stress, stencil.gradient(&node)) * volume;
+        });
+    }
+}
+
+/// Internal force alone, after the stress has changed.
+pub(crate) fn scatter_force<S: Space, B: Basis>(
+    lattice: &Lattice,
+    part: &Part,
+    points: &Points<S>,
+    nodes: &mut [Node<S>],
+) {
+    for at in part.points.clone() {
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let (stress, volume) = (points.stress[at], -points.volume[at]);
+        stencil.each::<S, B>(&part.window, |node| {
+            nodes[node.slot].change += S::apply(stress, stencil.gradient(&node)) * volume;
+        });
+    }
+}
+
+/// A force (N) on each point, such as that of a manufactured solution, to the nodes.
+pub(crate) fn scatter_body_force<S: Space, B: Basis>(
+    lattice: &Lattice,
+    part: &Part,
+    points: &Points<S>,
+    force: impl Fn(usize) -> S::Vector,
+    nodes: &mut [Node<S>],
+) {
+    for at in part.points.clone() {
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let force = force(at);
+        stencil.each::<S, B>(&part.window, |node| nodes[node.slot].change += force * node.weight);
+    }
+}
+
+/// Velocity and next position of a body's points from its nodes; and, with `PROJECT`, the momentum of the points with
+/// their new velocity back to the nodes (MUSL).
+pub(crate) fn gather<S: Space, B: Basis, T: Transfer, const PROJECT: bool>(
+    lattice: &Lattice,
+    part: &Part,
+    transfer: T,
+    time_step: f64,
+    points: &mut Points<S>,
+    nodes: &[Node<S>],
+    projected: &mut [S::Vector],
+) {
+    for at in part.points.clone() {
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let (mut around, mut change, mut affine) = (S::ORIGIN, S::ORIGIN, S::NO_GRADIENT);
+        stencil.each::<S, B>(&part.window, |node| {
+            let from = &nodes[node.slot];
+            around += from.velocity * node.weight;
+            if T::AFFINE {
+                affine += S::outer(from.velocity, stencil.affine(&node));
+            } else {
+                change += from.change * node.weight;
+            }
+        });
+        let velocity = transfer.taken::<S>(points.velocity[at], around, change);
+        points.velocity[at] = velocity;
+        points.affine[at] = affine;
+        points.next[at] = points.position[at] + around * time_step;
+        if PROJECT {
+            let mass = points.mass[at];
+            stencil.each::<S, B>(&part.window, |node| {
+                let shown = if T::AFFINE { T::shown::<S>(velocity, affine, stencil.arm(&node)) } else { velocity };
+                projected[node.slot] += shown * (node.weight * mass);
+            });
+        }
+    }
+}
+
+/// Velocity gradients at a body's points.
+pub(crate) fn gradients<S: Space, B: Basis>(
+    lattice: &Lattice,
+    part: &Part,
+    points: &mut Points<S>,
+    velocity: impl Fn(usize) -> S::Vector,
+) {
+    for at in part.points.clone() {
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let mut gradient = S::NO_GRADIENT;
+        stencil.each::<S, B>(&part.window, |node| {
+            gradient += S::outer(velocity(node.slot), stencil.gradient(&node));
+        });
+        points.gradient[at] = gradient;
+    }
+}

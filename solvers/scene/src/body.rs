@@ -1,0 +1,192 @@
+//! Deformable bodies: what a material is made of, bodies that are no grains, and how they start.
+
+use crate::manufactured::Manufactured;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// The law between deformation and stress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Constitutive {
+    /// Hypoelastic: the Jaumann rate of the Cauchy stress is linear in the rate of deformation.
+    Hypoelastic,
+    /// Compressible neo-Hookean: τ = λ ln J + G (b − 1).
+    NeoHookean,
+    /// Hypoelastic up to the yield stress of von Mises, with linear isotropic hardening.
+    VonMises {
+        /// Yield stress Y (Pa).
+        yield_stress: f64,
+        /// Hardening modulus H (Pa): the yield stress grows by H for each unit of plastic strain.
+        hardening_modulus: f64,
+    },
+}
+
+/// A deformable material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deformable {
+    /// Bulk modulus K (Pa).
+    pub bulk_modulus: f64,
+    /// Shear modulus G (Pa).
+    pub shear_modulus: f64,
+    /// The law.
+    pub constitutive: Constitutive,
+}
+
+impl Deformable {
+    /// Lamé's λ = K − 2G/3 (Pa).
+    #[must_use]
+    pub fn lame(&self) -> f64 {
+        self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus
+    }
+
+    /// Modulus of longitudinal waves M = K + 4G/3 (Pa); their speed is √(M/ρ).
+    #[must_use]
+    pub fn longitudinal_modulus(&self) -> f64 {
+        self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus
+    }
+
+    /// Young's modulus of plane strain E' = E/(1 − ν²) = 4G (K + G/3)/(K + 4G/3) (Pa).
+    #[must_use]
+    pub fn plane_modulus(&self) -> f64 {
+        4.0 * self.shear_modulus * (self.bulk_modulus + self.shear_modulus / 3.0) / self.longitudinal_modulus()
+    }
+}
+
+/// Shape of a body that is no grain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BlockShape {
+    /// A box along the axes.
+    Box {
+        /// Lower corner (m).
+        low: Vector3<f64>,
+        /// Upper corner (m).
+        high: Vector3<f64>,
+    },
+    /// A ring, in the plane.
+    Annulus {
+        /// Centre (m).
+        centre: Vector3<f64>,
+        /// Inner radius (m).
+        inner: f64,
+        /// Outer radius (m).
+        outer: f64,
+    },
+}
+
+impl BlockShape {
+    /// Volume (m³; m² in the plane).
+    #[must_use]
+    pub fn volume(&self, dimensions: usize) -> f64 {
+        match self {
+            Self::Box { low, high } => (0..dimensions).map(|axis| high[axis] - low[axis]).product(),
+            Self::Annulus { inner, outer, .. } => std::f64::consts::PI * (outer * outer - inner * inner),
+        }
+    }
+
+    /// Middle (m).
+    #[must_use]
+    pub fn centre(&self) -> Vector3<f64> {
+        match self {
+            Self::Box { low, high } => (low + high) * 0.5,
+            Self::Annulus { centre, .. } => *centre,
+        }
+    }
+
+    /// Length that says how large it is: the shortest edge, or the width of the ring (m).
+    #[must_use]
+    pub fn length(&self, dimensions: usize) -> f64 {
+        match self {
+            Self::Box { low, high } => (0..dimensions).map(|axis| high[axis] - low[axis]).fold(f64::INFINITY, f64::min),
+            Self::Annulus { inner, outer, .. } => outer - inner,
+        }
+    }
+}
+
+/// What the sides of a box may do, by axis: the lower side and the upper one.
+pub type Sides = [[Hold; 2]; 3];
+
+/// Whether a side of a box is held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hold {
+    /// Free to move.
+    #[default]
+    Free,
+    /// Kept from moving along the normal of the side.
+    Sliding,
+    /// Kept from moving at all.
+    Fixed,
+}
+
+/// An initial velocity along x of v₀ sin(β (x − x_low)), β = (2n − 1)π/2L: mode n of a bar that is held at its lower end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// Amplitude v₀ (m/s).
+    pub amplitude: f64,
+    /// Wave number β (1/m).
+    pub wave_number: f64,
+}
+
+/// A deformable body that is no grain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Name in the file.
+    pub name: String,
+    /// Place in [`crate::scene::Scene::materials`].
+    pub material: u16,
+    /// Density ρ (kg/m³).
+    pub density: f64,
+    /// Shape at the start.
+    pub shape: BlockShape,
+    /// Velocity (m/s).
+    pub velocity: Vector3<f64>,
+    /// Sides that are held.
+    pub sides: Sides,
+    /// A velocity on top of it that varies along x.
+    pub wave: Option<Wave>,
+}
+
+/// A damped phase before the clock starts: bodies at rest come to equilibrium, then they are given their velocities and
+/// spins and are released.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settle {
+    /// How long (s).
+    pub duration: f64,
+    /// Mass-proportional damping α (1/s) meanwhile.
+    pub damping: f64,
+    /// Gravity meanwhile (m/s²).
+    pub gravity: Vector3<f64>,
+}
+
+/// The stress that bodies start with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum InitialPressure {
+    /// That of a fluid at rest: ∇p = ρ g, zero at the highest point of each body.
+    Hydrostatic,
+}
+
+/// How deformable bodies start and what drives them, beside gravity and contacts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// A damped phase before the clock starts.
+    pub settle: Option<Settle>,
+    /// Stress at the start.
+    pub initial_pressure: Option<InitialPressure>,
+    /// A body force that makes a chosen motion the exact one.
+    pub manufactured: Option<Manufactured>,
+}
+
+impl Start {
+    /// What is asked for here, in words, for solvers that have no deformable bodies.
+    #[must_use]
+    pub fn needs_deformable(&self) -> Option<&'static str> {
+        if self.settle.is_some() {
+            Some("a phase of settling before the clock starts")
+        } else if self.initial_pressure.is_some() {
+            Some("an initial pressure inside bodies")
+        } else if self.manufactured.is_some() {
+            Some("a manufactured body force")
+        } else {
+            None
+        }
+    }
+}

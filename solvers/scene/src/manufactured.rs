@@ -1,0 +1,191 @@
+//! Manufactured solutions: a motion is chosen, and the body force that makes it exact in a neo-Hookean material.
+
+use nalgebra::{Vector2, Vector3};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Which motion. Both are exact for τ = λ ln J + G (b − 1) (Kamojjala, Brannon, Sadeghirad & Guilkey 2015).
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Manufactured {
+    /// u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ₀), in a periodic box of length L along x.
+    AxisAligned {
+        /// Amplitude A (m), below L/2π.
+        amplitude: f64,
+        /// Length L of the box (m).
+        #[serde(default = "one")]
+        length: f64,
+    },
+    /// Rotation of each circle R about the origin by α = A sin(Bπt) h(R), h = (1 − 16 (R − 1)²)² for .75 m < R < 1.25 m
+    /// and zero elsewhere.
+    Vortex {
+        /// Largest angle A (rad).
+        amplitude: f64,
+        /// B (1/s): the motion has the period 2/B.
+        rate: f64,
+    },
+}
+
+const fn one() -> f64 {
+    1.0
+}
+
+/// The material a body force is made for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium {
+    /// Density ρ₀ (kg/m³).
+    pub density: f64,
+    /// Lamé's λ (Pa).
+    pub lame: f64,
+    /// Shear modulus G (Pa).
+    pub shear_modulus: f64,
+}
+
+impl Medium {
+    /// √(E/ρ₀), E = G (3λ + 2G)/(λ + G) (m/s).
+    fn bar_speed(&self) -> f64 {
+        let (lame, shear) = (self.lame, self.shear_modulus);
+        (shear * (3.0 * lame + 2.0 * shear) / (lame + shear) / self.density).sqrt()
+    }
+}
+
+impl Manufactured {
+    /// Where the material point that started at `at` (m) is at `time` (s), relative to its start (m).
+    #[must_use]
+    pub fn displacement(&self, medium: &Medium, at: Vector3<f64>, time: f64) -> Vector3<f64> {
+        match *self {
+            Self::AxisAligned { amplitude, length } => {
+                let phase = medium.bar_speed() * PI * time / length;
+                Vector3::new(amplitude * (2.0 * PI * at.x / length).sin() * phase.sin(), 0.0, 0.0)
+            }
+            Self::Vortex { amplitude, rate } => {
+                let radius = at.xy().norm();
+                turned(at.xy(), amplitude * (rate * PI * time).sin() * bump(radius)[0]) - Vector3::new(at.x, at.y, 0.0)
+            }
+        }
+    }
+
+    /// Velocity of the material point that started at `at` (m), at `time` (m/s).
+    #[must_use]
+    pub fn velocity(&self, medium: &Medium, at: Vector3<f64>, time: f64) -> Vector3<f64> {
+        match *self {
+            Self::AxisAligned { amplitude, length } => {
+                let rate = medium.bar_speed() * PI / length;
+                let speed = amplitude * (2.0 * PI * at.x / length).sin() * rate * (rate * time).cos();
+                Vector3::new(speed, 0.0, 0.0)
+            }
+            Self::Vortex { amplitude, rate } => {
+                let shape = bump(at.xy().norm())[0];
+                let angle = amplitude * (rate * PI * time).sin() * shape;
+                let spin = amplitude * rate * PI * (rate * PI * time).cos() * shape;
+                Vector3::new(0.0, 0.0, spin).cross(&turned(at.xy(), angle))
+            }
+        }
+    }
+
+    /// Body force per unit mass on the material point that started at `at` (m), at `time` (m/s²).
+    ///
+    /// Axis-aligned, with F = 1 + ∂u/∂X: b = (π²u/ρ₀L²)[4G − c²ρ₀ − 4(λ(ln F − 1) − G)/F²].
+    /// Vortex, along the radius and across it at the present angle: ρb_r = −ρRα_t² + GRα'²,
+    /// ρb_θ = ρRα_tt − G(3α' + Rα'').
+    #[must_use]
+    pub fn body_force(&self, medium: &Medium, at: Vector3<f64>, time: f64) -> Vector3<f64> {
+        let &Medium { density, lame, shear_modulus: shear } = medium;
+        match *self {
+            Self::AxisAligned { amplitude, length } => {
+                let (wave, speed) = (2.0 * PI / length, medium.bar_speed());
+                let swing = (speed * PI * time / length).sin();
+                let displacement = amplitude * (wave * at.x).sin() * swing;
+                let stretch = 1.0 + wave * amplitude * (wave * at.x).cos() * swing;
+                let bracket = 4.0 * shear
+                    - speed * speed * density
+                    - 4.0 * (lame * (stretch.ln() - 1.0) - shear) / (stretch * stretch);
+                Vector3::new((PI / length).powi(2) * displacement / density * bracket, 0.0, 0.0)
+            }
+            Self::Vortex { amplitude, rate } => {
+                let radius = at.xy().norm();
+                if radius == 0.0 {
+                    return Vector3::zeros();
+                }
+                let [shape, slope, curvature] = bump(radius);
+                let phase = rate * PI * time;
+                let spin = amplitude * rate * PI * phase.cos() * shape;
+                let spin_rate = -amplitude * (rate * PI).powi(2) * phase.sin() * shape;
+                let (slope, curvature) = (amplitude * phase.sin() * slope, amplitude * phase.sin() * curvature);
+                let stiffness = shear / density;
+                let outward = radius * (stiffness * slope * slope - spin * spin);
+                let across = radius * spin_rate - stiffness * (3.0 * slope + radius * curvature);
+                let direction = turned(at.xy() / radius, amplitude * phase.sin() * shape);
+                direction * outward + Vector3::z().cross(&direction) * across
+            }
+        }
+    }
+}
+
+fn turned(vector: Vector2<f64>, angle: f64) -> Vector3<f64> {
+    let (sine, cosine) = angle.sin_cos();
+    Vector3::new(vector.x * cosine - vector.y * sine, vector.x * sine + vector.y * cosine, 0.0)
+}
+
+/// h, h' and h''.
+fn bump(radius: f64) -> [f64; 3] {
+    let away = radius - 1.0;
+    let inside = 1.0 - 16.0 * away * away;
+    if inside <= 0.0 {
+        return [0.0; 3];
+    }
+    [inside * inside, -64.0 * away * inside, -64.0 * inside + 2048.0 * away * away]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MEDIUM: Medium = Medium { density: 1000.0, lame: 576.923, shear_modulus: 384.615 };
+
+    fn stress(motion: &Manufactured, at: Vector3<f64>, time: f64) -> nalgebra::Matrix3<f64> {
+        let step = 1e-4;
+        let mut gradient = nalgebra::Matrix3::identity();
+        for axis in 0..3 {
+            let mut there = Vector3::zeros();
+            there[axis] = step;
+            let column = |x| motion.displacement(&MEDIUM, x, time);
+            gradient
+                .set_column(axis, &(gradient.column(axis) + (column(at + there) - column(at - there)) / (2.0 * step)));
+        }
+        let volume = gradient.determinant();
+        let finger = gradient * gradient.transpose();
+        let one = nalgebra::Matrix3::identity();
+        let kirchhoff = one * (MEDIUM.lame * volume.ln()) + (finger - one) * MEDIUM.shear_modulus;
+        kirchhoff * gradient.try_inverse().unwrap_or(one).transpose()
+    }
+
+    /// ρ₀ a = Div P + ρ₀ b, with derivatives by differences.
+    #[test]
+    fn body_force_balances_the_motion() {
+        let motions = [
+            Manufactured::AxisAligned { amplitude: 0.05, length: 1.0 },
+            Manufactured::Vortex { amplitude: 0.7, rate: 0.9 },
+        ];
+        for motion in motions {
+            for at in [Vector3::new(0.83, 0.21, 0.0), Vector3::new(-0.5, 0.95, 0.0), Vector3::new(0.93, -0.3, 0.0)] {
+                let (time, step) = (0.37, 1e-3);
+                let mut divergence = Vector3::zeros();
+                for axis in 0..3 {
+                    let mut there = Vector3::zeros();
+                    there[axis] = step;
+                    let change = stress(&motion, at + there, time) - stress(&motion, at - there, time);
+                    divergence += change.column(axis) / (2.0 * step);
+                }
+                let velocity = |t| motion.velocity(&MEDIUM, at, t);
+                let acceleration = (velocity(time + step) - velocity(time - step)) / (2.0 * step);
+                let force = acceleration - divergence / MEDIUM.density;
+                let given = motion.body_force(&MEDIUM, at, time);
+                assert!(
+                    (force - given).norm() < 2e-3 * given.norm().max(0.1),
+                    "{motion:?} at {at:?}: {force:?} {given:?}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Deformable bodies that are no grains.
+
+use super::Resolver;
+use crate::body::{Block, BlockShape, Hold, Sides, Wave};
+use crate::error::SceneError;
+use crate::file::{BodySpec, SideSpec};
+use crate::scene::{Dimension, Grain};
+use std::f64::consts::PI;
+
+impl Resolver<'_> {
+    pub(super) fn bodies(&self) -> Result<Vec<Block>, SceneError> {
+        self.file.bodies.iter().map(|(name, spec)| self.body(name, spec)).collect()
+    }
+
+    fn body(&self, name: &str, spec: &BodySpec) -> Result<Block, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("bodies.{name}.{part}");
+        let material = self.material(&key("material"), &spec.material)?;
+        let Some(density) = self.file.materials[usize::from(material)].density else {
+            return Err(check.error(&format!("materials.{}", spec.material), "the key `density`", "none"));
+        };
+        check.exactly_one(
+            &format!("bodies.{name}"),
+            &[("box", spec.cuboid.is_some()), ("annulus", spec.annulus.is_some())],
+        )?;
+        let shape = self.block_shape(name, spec)?;
+        let wave = match (&spec.wave, shape) {
+            (None, _) => None,
+            (Some(wave), BlockShape::Box { low, high }) if wave.mode > 0 => Some(Wave {
+                amplitude: check.finite(&key("wave.amplitude"), wave.amplitude, "velocity (m/s)")?,
+                wave_number: (2.0 * f64::from(wave.mode) - 1.0) * PI / (2.0 * (high.x - low.x)),
+            }),
+            (Some(_), _) => return Err(check.error(&key("wave"), "a mode from 1 on, of a box", "something else")),
+        };
+        Ok(Block {
+            name: name.to_owned(),
+            material,
+            density,
+            shape,
+            velocity: check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?,
+            sides: self.sides(name, spec)?,
+            wave,
+        })
+    }
+
+    fn block_shape(&self, name: &str, spec: &BodySpec) -> Result<BlockShape, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("bodies.{name}.{part}");
+        if let Some(ring) = &spec.annulus {
+            if check.dimension == Dimension::Three {
+                return Err(check.error(&key("annulus"), "a `box` in three dimensions", "a ring"));
+            }
+            let inner = check.positive(&key("annulus.inner"), ring.inner, "radius (m)")?;
+            let outer = check.positive(&key("annulus.outer"), ring.outer, "radius (m)")?;
+            if outer <= inner {
+                let found = format!("{inner} to {outer}");
+                return Err(check.error(&key("annulus.outer"), "a radius above `inner`", &found));
+            }
+            return Ok(BlockShape::Annulus {
+                centre: check.vector(&key("annulus.centre"), &ring.centre)?,
+                inner,
+                outer,
+            });
+        }
+        let Some(corners) = &spec.cuboid else {
+            return Err(check.error(&format!("bodies.{name}"), "a shape", "none"));
+        };
+        let low = check.vector(&key("box.low"), &corners.low)?;
+        let high = check.vector(&key("box.high"), &corners.high)?;
+        if (0..check.dimension.count()).any(|axis| high[axis] <= low[axis]) {
+            let found = format!("{:?} to {:?}", corners.low, corners.high);
+            return Err(check.error(&key("box.high"), "a corner above `low`", &found));
+        }
+        Ok(BlockShape::Box { low, high })
+    }
+
+    fn sides(&self, name: &str, spec: &BodySpec) -> Result<Sides, SceneError> {
+        let mut sides = Sides::default();
+        for (list, held, what) in [(&spec.sliding, Hold::Sliding, "sliding"), (&spec.fixed, Hold::Fixed, "fixed")] {
+            for side in list {
+                let (axis, end) = match side {
+                    SideSpec::XLow => (0, 0),
+                    SideSpec::XHigh => (0, 1),
+                    SideSpec::YLow => (1, 0),
+                    SideSpec::YHigh => (1, 1),
+                    SideSpec::ZLow => (2, 0),
+                    SideSpec::ZHigh => (2, 1),
+                };
+                if spec.annulus.is_some() || axis >= self.check.dimension.count() {
+                    let key = format!("bodies.{name}.{what}");
+                    return Err(self.check.error(&key, "sides that the body has", &format!("{side:?}")));
+                }
+                sides[axis][end] = held;
+            }
+        }
+        Ok(sides)
+    }
+
+    /// The length that is given, or that of the smallest grain, or of the smallest body.
+    pub(super) fn reference_length(&self, grains: &[Grain], bodies: &[Block]) -> Result<f64, SceneError> {
+        if let Some(length) = self.file.reference_length {
+            return self.check.positive("reference_length", length, "length (m)");
+        }
+        let smallest = grains.iter().map(|grain| grain.radius).reduce(f64::min);
+        let dimensions = self.check.dimension.count();
+        let edge = || bodies.iter().map(|body| body.shape.length(dimensions)).fold(f64::INFINITY, f64::min);
+        Ok(smallest.unwrap_or_else(edge))
+    }
+}

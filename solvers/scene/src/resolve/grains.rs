@@ -1,0 +1,211 @@
+//! Grains of the file, one by one.
+
+use super::{Groups, Resolver};
+use crate::error::SceneError;
+use crate::file::{FileSpec, GrainShape, GrainsSpec};
+use crate::generate;
+use crate::overlap::{self, Deepest};
+use crate::scene::{Domain, Grain, Wall};
+use indexmap::IndexMap;
+
+impl Resolver<'_> {
+    pub(super) fn grains(
+        &self,
+        shape: GrainShape,
+        domain: Option<&Domain>,
+    ) -> Result<(Vec<Grain>, Groups), SceneError> {
+        let mut grains = Vec::new();
+        let mut groups = IndexMap::new();
+        for (name, spec) in &self.file.grains {
+            let start = grains.len();
+            self.group(name, spec, shape, domain, &mut grains)?;
+            self.refuse_beyond_numbers(name, &grains[start..])?;
+            groups.insert(name.clone(), start..grains.len());
+        }
+        Ok((grains, groups))
+    }
+
+    fn group(
+        &self,
+        name: &str,
+        spec: &GrainsSpec,
+        shape: GrainShape,
+        domain: Option<&Domain>,
+        grains: &mut Vec<Grain>,
+    ) -> Result<(), SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("grains.{name}.{part}");
+        check.exactly_one(
+            &format!("grains.{name}"),
+            &[
+                ("position", spec.position.is_some()),
+                ("lattice", spec.lattice.is_some()),
+                ("random", spec.random.is_some()),
+                ("file", spec.file.is_some()),
+            ],
+        )?;
+        let material = self.material(&key("material"), &spec.material)?;
+        let velocity = check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?;
+        let spin = check.spin(&key("spin"), spec.spin.as_ref())?;
+        let radius = || match spec.radius {
+            Some(radius) => check.positive(&key("radius"), radius, "radius (m)"),
+            None => Err(check.error(&format!("grains.{name}"), "the key `radius`", "none")),
+        };
+        let density = || {
+            self.file.materials[usize::from(material)]
+                .density
+                .ok_or_else(|| check.error(&format!("materials.{}", spec.material), "the key `density`", "none"))
+        };
+        let grain = |position, radius: f64, density: f64, velocity| {
+            let mass = shape.mass(radius, density);
+            let inertia = shape.inertia_factor() * mass * radius * radius;
+            Grain { material, radius, mass, inertia, position, velocity, spin }
+        };
+        if let Some(position) = &spec.position {
+            grains.push(grain(check.vector(&key("position"), position)?, radius()?, density()?, velocity));
+        }
+        if let Some(lattice) = &spec.lattice {
+            let key = |part: &str| format!("grains.{name}.lattice.{part}");
+            let origin = check.vector(&key("origin"), &lattice.origin)?;
+            let spacing = check.vector(&key("spacing"), &lattice.spacing)?;
+            let dimensions = check.dimension.count();
+            if lattice.count.len() != dimensions || lattice.count.contains(&0) {
+                let expected = format!("{dimensions} counts of one or more");
+                return Err(check.error(&key("count"), &expected, &format!("{:?}", lattice.count)));
+            }
+            let total = lattice.count.iter().fold(1_u128, |total, &count| total * u128::from(count));
+            self.refuse_too_many(&key("count"), total)?;
+            let count = [lattice.count[0], lattice.count[1], lattice.count.get(2).copied().unwrap_or(1)];
+            let (radius, density) = (radius()?, density()?);
+            let centres = generate::lattice(origin, spacing, count);
+            grains.extend(centres.into_iter().map(|centre| grain(centre, radius, density, velocity)));
+        }
+        if let Some(random) = &spec.random {
+            let key = |part: &str| format!("grains.{name}.random.{part}");
+            self.refuse_too_many(&key("count"), u128::from(random.count))?;
+            let Some(domain) = domain else {
+                return Err(check.error(&key("count"), "a `domain` to place grains in", "none"));
+            };
+            let radii = match random.radius_range {
+                Some([small, large]) => {
+                    check.positive(&key("radius_range"), small, "radius (m)")?;
+                    if !large.is_finite() || large < small {
+                        return Err(check.error(
+                            &key("radius_range"),
+                            "a range upwards",
+                            &format!("{small} to {large}"),
+                        ));
+                    }
+                    [small, large]
+                }
+                None => [radius()?; 2],
+            };
+            let speed = check.not_negative(&key("speed"), random.speed, "speed (m/s)")?;
+            let density = density()?;
+            let placed = generate::random(random.count, random.seed, radii, speed, domain, check.dimension)
+                .ok_or_else(|| {
+                    check.error(&key("count"), "room for all grains in the domain", &random.count.to_string())
+                })?;
+            grains.extend(
+                placed.into_iter().map(|place| grain(place.position, place.radius, density, velocity + place.velocity)),
+            );
+        }
+        if let Some(file) = &spec.file {
+            self.grains_from_file(name, file, shape, material, grains)?;
+        }
+        Ok(())
+    }
+
+    /// Radius, density and domain may each be a fine number and still give a grain without one.
+    fn refuse_beyond_numbers(&self, group: &str, grains: &[Grain]) -> Result<(), SceneError> {
+        let key = format!("grains.{group}");
+        for grain in grains {
+            if !(grain.inertia > 0.0 && grain.inertia.is_finite()) {
+                let found = format!("mass {:e} and moment of inertia {:e}", grain.mass, grain.inertia);
+                return Err(self.check.error(&key, "a positive, finite mass and moment of inertia", &found));
+            }
+            if grain.position.iter().any(|value| !value.is_finite()) {
+                return Err(self.check.error(&key, "finite positions", &format!("{:?}", grain.position.as_slice())));
+            }
+        }
+        Ok(())
+    }
+
+    /// Memory for more grains than any machine steps is asked for by mistake.
+    fn refuse_too_many(&self, key: &str, count: u128) -> Result<(), SceneError> {
+        if count > 100_000_000 {
+            return Err(self.check.error(key, "at most 100 million grains", &count.to_string()));
+        }
+        Ok(())
+    }
+
+    fn grains_from_file(
+        &self,
+        name: &str,
+        file: &FileSpec,
+        shape: GrainShape,
+        material: u16,
+        grains: &mut Vec<Grain>,
+    ) -> Result<(), SceneError> {
+        let key = format!("grains.{name}.file.path");
+        let types: Vec<u16> = file
+            .types
+            .iter()
+            .map(|material| self.material(&format!("grains.{name}.file.types"), material))
+            .collect::<Result<_, _>>()?;
+        let path = self.check.source.directory.join(&file.path);
+        let read = (self.read_grains)(&path).map_err(|message| {
+            self.check.error(&key, "a LAMMPS data file of atom style sphere", &format!("`{message}`"))
+        })?;
+        for atom in read {
+            let material = if types.is_empty() {
+                material
+            } else {
+                *usize::try_from(atom.type_number)
+                    .ok()
+                    .and_then(|number| types.get(number.wrapping_sub(1)))
+                    .ok_or_else(|| {
+                        self.check.error(
+                            &key,
+                            &format!("atom types 1 to {}", types.len()),
+                            &atom.type_number.to_string(),
+                        )
+                    })?
+            };
+            grains.push(Grain {
+                material,
+                radius: self.check.positive(&key, atom.radius, "radius (m)")?,
+                mass: self.check.positive(&key, atom.mass, "mass (kg)")?,
+                inertia: shape.inertia_factor() * atom.mass * atom.radius * atom.radius,
+                position: atom.position,
+                velocity: atom.velocity,
+                spin: atom.spin,
+            });
+        }
+        Ok(())
+    }
+
+    pub(super) fn refuse_deep_overlap(
+        &self,
+        grains: &[Grain],
+        walls: &[Wall],
+        domain: Option<&Domain>,
+        groups: &Groups,
+    ) -> Result<(), SceneError> {
+        let bound = self.file.largest_initial_overlap;
+        self.check.not_negative("largest_initial_overlap", bound, "ratio")?;
+        let Some(deepest) = overlap::deepest(grains, walls, domain).filter(|deepest| deepest.ratio() > bound) else {
+            return Ok(());
+        };
+        let group_of =
+            |grain: usize| groups.iter().find(|(_, range)| range.contains(&grain)).map_or("", |(name, _)| name);
+        let (grain, pair) = match deepest {
+            Deepest::Grains(a, b, _) => (a, format!("grains {} and {}", a + 1, b + 1)),
+            Deepest::GrainWall(grain, wall, _) => (grain, format!("grain {} and wall {}", grain + 1, walls[wall].name)),
+        };
+        let found = format!("{pair} overlapping by {:.4} of the radius", deepest.ratio());
+        let key = format!("grains.{}", group_of(grain));
+        let expected = format!("initial overlaps of at most {bound} of the smaller radius");
+        Err(self.check.source.error(&key, &expected, &found, Some("or a larger `largest_initial_overlap`".to_owned())))
+    }
+}

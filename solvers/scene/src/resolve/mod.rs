@@ -1,0 +1,219 @@
+//! From a scene file to a scene: every name looked up, every number checked, every grain placed.
+
+use crate::body::{Settle, Start};
+use crate::check::Checker;
+use crate::error::SceneError;
+use crate::file::{DomainSpec, GrainShape, GravitySpec, SceneFile, SettleSpec};
+use crate::scene::{Dimension, Domain, Duration, Sampling, Scene, Wall};
+use crate::source::SceneSource;
+use indexmap::IndexMap;
+use nalgebra::Vector3;
+use probes::Names;
+use std::ops::Range;
+use std::path::Path;
+
+mod bodies;
+mod grains;
+mod laws;
+mod materials;
+mod probes;
+mod walls;
+
+/// A grain as a data file describes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FileGrain {
+    /// Atom type, from 1.
+    pub type_number: u32,
+    /// Radius (m).
+    pub radius: f64,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Centre (m).
+    pub position: Vector3<f64>,
+    /// Velocity (m/s).
+    pub velocity: Vector3<f64>,
+    /// Angular velocity (rad/s).
+    pub spin: Vector3<f64>,
+}
+
+/// Reads grains from a data file; the error says file, line, expected and found.
+pub type ReadGrains<'a> = &'a dyn Fn(&Path) -> Result<Vec<FileGrain>, String>;
+
+impl SceneSource {
+    /// The scene: parsed, with variant and overrides, checked and complete.
+    ///
+    /// # Errors
+    /// When anything in the file is wrong; the error names file, line, key, what was expected and what was found.
+    pub fn scene(&self, read_grains: ReadGrains<'_>) -> Result<Scene, SceneError> {
+        let file = self.scene_file()?;
+        let dimension = match file.dimension {
+            2 => Dimension::Two,
+            3 => Dimension::Three,
+            other => return Err(self.error("dimension", "2 or 3", &other.to_string(), None)),
+        };
+        let check = Checker { source: self, dimension };
+        Resolver { check, file: &file, read_grains }.scene()
+    }
+}
+
+/// Which grains belong to which group of the file.
+type Groups = IndexMap<String, Range<usize>>;
+
+struct Resolver<'a> {
+    check: Checker<'a>,
+    file: &'a SceneFile,
+    read_grains: ReadGrains<'a>,
+}
+
+impl Resolver<'_> {
+    fn scene(&self) -> Result<Scene, SceneError> {
+        let (check, file) = (&self.check, self.file);
+        let grain_shape = self.grain_shape()?;
+        let domain = file.domain.as_ref().map(|domain| self.domain(domain)).transpose()?;
+        for (name, material) in &file.materials {
+            if let Some(density) = material.density {
+                check.positive(&format!("materials.{name}.density"), density, "density (kg/m³)")?;
+            }
+        }
+        let (grains, groups) = self.grains(grain_shape, domain.as_ref())?;
+        let deformable = self.deformable()?;
+        let bodies = self.bodies()?;
+        if grains.is_empty() && bodies.is_empty() {
+            return Err(check.error("grains", "at least one grain or body", "none"));
+        }
+        let walls: Vec<Wall> = file.walls.iter().map(|(name, wall)| self.wall(name, wall)).collect::<Result<_, _>>()?;
+        let laws = self.laws(&grains, &bodies, &walls)?;
+        self.refuse_deep_overlap(&grains, &walls, domain.as_ref(), &groups)?;
+        let names = Names { groups: &groups, bodies: &bodies, walls: &walls };
+        let mut spots = Vec::new();
+        let probes = file
+            .probes
+            .iter()
+            .map(|(name, probe)| self.probe(name, probe, &names, &mut spots))
+            .collect::<Result<_, _>>()?;
+        let gravity = self.gravity()?;
+        Ok(Scene {
+            title: file.title.clone(),
+            dimension: check.dimension,
+            grain_shape,
+            gravity,
+            domain,
+            global_damping: check.not_negative("global_damping", file.global_damping, "damping (1/s)")?,
+            duration: self.duration()?,
+            materials: file.materials.keys().cloned().collect(),
+            laws,
+            sampling: self.sampling()?,
+            snapshots: file.output.snapshots,
+            probes,
+            spots,
+            deformable,
+            start: self.start(gravity)?,
+            reference_length: self.reference_length(&grains, &bodies)?,
+            grains,
+            bodies,
+            walls,
+        })
+    }
+
+    fn grain_shape(&self) -> Result<GrainShape, SceneError> {
+        match (self.file.grain_shape, self.check.dimension) {
+            (None, Dimension::Two) => Ok(GrainShape::Disc),
+            (None, Dimension::Three) | (Some(GrainShape::Sphere), _) => Ok(GrainShape::Sphere),
+            (Some(GrainShape::Disc), Dimension::Two) => Ok(GrainShape::Disc),
+            (Some(GrainShape::Disc), Dimension::Three) => {
+                Err(self.check.error("grain_shape", "`sphere` in three dimensions", "`disc`"))
+            }
+        }
+    }
+
+    fn gravity(&self) -> Result<Vector3<f64>, SceneError> {
+        self.file.gravity.as_ref().map_or(Ok(Vector3::zeros()), |gravity| self.acceleration("gravity", gravity))
+    }
+
+    fn acceleration(&self, key: &str, gravity: &GravitySpec) -> Result<Vector3<f64>, SceneError> {
+        let check = &self.check;
+        match gravity {
+            GravitySpec::Vector(values) => check.vector(key, values),
+            GravitySpec::Slope(slope) => {
+                let part = |part: &str| format!("{key}.{part}");
+                let magnitude = check.not_negative(&part("magnitude"), slope.magnitude, "acceleration (m/s²)")?;
+                let angle = check.finite(&part("slope_deg"), slope.slope_deg, "angle (degrees)")?.to_radians();
+                let down = match check.dimension {
+                    Dimension::Two => Vector3::new(angle.sin(), -angle.cos(), 0.0),
+                    Dimension::Three => Vector3::new(angle.sin(), 0.0, -angle.cos()),
+                };
+                Ok(down * magnitude)
+            }
+        }
+    }
+
+    fn start(&self, gravity: Vector3<f64>) -> Result<Start, SceneError> {
+        let settle = self.file.settle.as_ref().map(|settle| self.settle(settle, gravity)).transpose()?;
+        Ok(Start { settle, initial_pressure: self.file.initial_pressure, manufactured: self.file.manufactured })
+    }
+
+    fn settle(&self, settle: &SettleSpec, gravity: Vector3<f64>) -> Result<Settle, SceneError> {
+        let check = &self.check;
+        Ok(Settle {
+            duration: check.positive("settle.duration", settle.duration, "time (s)")?,
+            damping: check.not_negative("settle.damping", settle.damping, "damping (1/s)")?,
+            gravity: match &settle.gravity {
+                Some(gravity) => self.acceleration("settle.gravity", gravity)?,
+                None => gravity,
+            },
+        })
+    }
+
+    fn domain(&self, spec: &DomainSpec) -> Result<Domain, SceneError> {
+        let check = &self.check;
+        let mut low = check.vector("domain.low", &spec.low)?;
+        let mut high = check.vector("domain.high", &spec.high)?;
+        for axis in 0..check.dimension.count() {
+            if high[axis] <= low[axis] {
+                let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+                return Err(check.error("domain.high", "a corner above `low`", &found));
+            }
+        }
+        if check.dimension == Dimension::Two {
+            (low.z, high.z) = (-0.5, 0.5);
+        }
+        let mut periodic = [false; 3];
+        if !spec.periodic.is_empty() {
+            if spec.periodic.len() != check.dimension.count() {
+                let expected = format!("{} values", check.dimension.count());
+                return Err(check.error("domain.periodic", &expected, &format!("{:?}", spec.periodic)));
+            }
+            periodic[..spec.periodic.len()].copy_from_slice(&spec.periodic);
+        }
+        Ok(Domain { low, high, periodic })
+    }
+
+    fn duration(&self) -> Result<Duration, SceneError> {
+        let check = &self.check;
+        check.exactly_one(
+            "duration",
+            &[("duration", self.file.duration.is_some()), ("duration_cycles", self.file.duration_cycles.is_some())],
+        )?;
+        match (self.file.duration, self.file.duration_cycles) {
+            (Some(seconds), _) => Ok(Duration::Seconds(check.positive("duration", seconds, "time (s)")?)),
+            (None, Some(0) | None) => Err(check.error("duration_cycles", "one cycle or more", "0")),
+            (None, Some(cycles)) => Ok(Duration::Cycles(cycles)),
+        }
+    }
+
+    fn sampling(&self) -> Result<Sampling, SceneError> {
+        let (check, output) = (&self.check, &self.file.output);
+        match (output.every, output.every_cycles) {
+            (Some(_), Some(_)) => Err(check.error("output", "one of `every` and `every_cycles`", "both")),
+            (Some(every), None) => Ok(Sampling::Seconds(check.positive("output.every", every, "time (s)")?)),
+            (None, Some(0)) => Err(check.error("output.every_cycles", "one cycle or more", "0")),
+            (None, Some(every)) => Ok(Sampling::Cycles(every)),
+            (None, None) => Ok(Sampling::Count(200)),
+        }
+    }
+
+    fn material(&self, key: &str, name: &str) -> Result<u16, SceneError> {
+        let place = self.check.place_of(key, name, "a material of this scene", self.file.materials.keys())?;
+        u16::try_from(place).map_err(|_| self.check.error(key, "at most 65535 materials", &place.to_string()))
+    }
+}

@@ -1,0 +1,88 @@
+//! Probes, and the names they refer to.
+
+use super::{Groups, Resolver};
+use crate::check::Checker;
+use crate::error::SceneError;
+use crate::file::ProbeSpec;
+use crate::scene::{Block, BodyName, Probe, ProbeTarget, Spot, Wall};
+
+impl Resolver<'_> {
+    pub(super) fn probe(
+        &self,
+        name: &str,
+        spec: &ProbeSpec,
+        names: &Names<'_>,
+        spots: &mut Vec<Spot>,
+    ) -> Result<Probe, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("probes.{name}.{part}");
+        check.exactly_one(
+            &format!("probes.{name}"),
+            &[
+                ("grain", spec.grain.is_some()),
+                ("body", spec.body.is_some()),
+                ("point", spec.point.is_some()),
+                ("contact", spec.contact.is_some()),
+                ("wall", spec.wall.is_some()),
+                ("system", spec.system == Some(true)),
+            ],
+        )?;
+        let target = if let Some(grain) = &spec.grain {
+            ProbeTarget::Grain(names.grain(check, &key("grain"), grain)?)
+        } else if let Some(body) = &spec.body {
+            ProbeTarget::Body(names.body(check, &key("body"), body)?)
+        } else if let Some(point) = &spec.point {
+            let body = match (&point.grain, &point.body) {
+                (Some(grain), None) => BodyName::Grain(names.grain(check, &key("point.grain"), grain)?),
+                (None, Some(body)) => BodyName::Body(names.body(check, &key("point.body"), body)?),
+                _ => return Err(check.error(&key("point"), "one of `grain` and `body`", "both or none")),
+            };
+            spots.push(Spot { body, at: check.vector(&key("point.at"), &point.at)? });
+            ProbeTarget::Point(spots.len() - 1)
+        } else if let Some([first, second]) = &spec.contact {
+            let grain = names.grain(check, &key("contact"), first)?;
+            match names.walls.iter().position(|wall| &wall.name == second) {
+                Some(wall) => ProbeTarget::GrainWall(grain, wall),
+                None => ProbeTarget::Pair(grain, names.grain(check, &key("contact"), second)?),
+            }
+        } else if let Some(wall) = &spec.wall {
+            let known = names.walls.iter().map(|wall| &wall.name);
+            ProbeTarget::Wall(check.place_of(&key("wall"), wall, "a wall of this scene", known)?)
+        } else {
+            ProbeTarget::System
+        };
+        Ok(Probe { name: name.to_owned(), target })
+    }
+}
+
+/// What probes can refer to.
+pub(super) struct Names<'a> {
+    pub(super) groups: &'a Groups,
+    pub(super) bodies: &'a [Block],
+    pub(super) walls: &'a [Wall],
+}
+
+impl Names<'_> {
+    fn body(&self, check: &Checker<'_>, key: &str, name: &str) -> Result<usize, SceneError> {
+        check.place_of(key, name, "a body of this scene", self.bodies.iter().map(|body| &body.name))
+    }
+
+    /// The grain called `group` (when the group has one) or `group.k`.
+    fn grain(&self, check: &Checker<'_>, key: &str, name: &str) -> Result<usize, SceneError> {
+        let (group, number) = match name.rsplit_once('.').and_then(|(group, k)| Some((group, k.parse::<usize>().ok()?)))
+        {
+            Some((group, number)) if self.groups.contains_key(group) => (group, Some(number)),
+            _ => (name, None),
+        };
+        let place = check.place_of(key, group, "a group of grains", self.groups.keys())?;
+        let range = &self.groups[place];
+        match number {
+            Some(number) if (1..=range.len()).contains(&number) => Ok(range.start + number - 1),
+            Some(_) => Err(check.error(key, &format!("{group}.1 to {group}.{}", range.len()), &format!("`{name}`"))),
+            None if range.len() == 1 => Ok(range.start),
+            None => {
+                Err(check.error(key, &format!("{group}.k, with k from 1 to {}", range.len()), &format!("`{name}`")))
+            }
+        }
+    }
+}

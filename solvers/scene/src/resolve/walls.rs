@@ -1,0 +1,104 @@
+//! Walls and how they move.
+
+use super::Resolver;
+use crate::error::SceneError;
+use crate::file::{MotionSpec, WallSpec};
+use crate::motion::{Moment, Motion, Phase};
+use crate::scene::{Dimension, Wall, WallShape};
+use nalgebra::Vector3;
+
+impl Resolver<'_> {
+    pub(super) fn wall(&self, name: &str, spec: &WallSpec) -> Result<Wall, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("walls.{name}.{part}");
+        check.exactly_one(
+            &format!("walls.{name}"),
+            &[
+                ("plane", spec.plane.is_some()),
+                ("segment", spec.segment.is_some()),
+                ("rectangle", spec.rectangle.is_some()),
+            ],
+        )?;
+        let shape = if let Some(plane) = &spec.plane {
+            let normal = check.vector(&key("plane.normal"), &plane.normal)?;
+            let length = normal.norm();
+            if !(length > 0.0 && length.is_finite()) {
+                let found = format!("a vector of length {length}");
+                return Err(check.error(&key("plane.normal"), "a direction", &found));
+            }
+            WallShape::Plane { point: check.vector(&key("plane.point"), &plane.point)?, normal: normal.normalize() }
+        } else if let Some([from, to]) = &spec.segment {
+            if check.dimension == Dimension::Three {
+                return Err(check.error(&key("segment"), "a `rectangle` or `plane` in three dimensions", "a segment"));
+            }
+            let ends = [check.vector(&key("segment"), from)?, check.vector(&key("segment"), to)?];
+            if ends[0] == ends[1] {
+                return Err(check.error(&key("segment"), "two different points", "the same point twice"));
+            }
+            WallShape::Segment { ends }
+        } else if let Some(rectangle) = &spec.rectangle {
+            if check.dimension == Dimension::Two {
+                return Err(check.error(&key("rectangle"), "a `segment` or `plane` in two dimensions", "a rectangle"));
+            }
+            let corner = check.vector(&key("rectangle.corner"), &rectangle.corner)?;
+            let edges = [
+                check.vector(&key("rectangle.edges"), &rectangle.edges[0])?,
+                check.vector(&key("rectangle.edges"), &rectangle.edges[1])?,
+            ];
+            let lengths = edges[0].norm() * edges[1].norm();
+            if lengths == 0.0 || edges[0].dot(&edges[1]).abs() > 1e-9 * lengths {
+                let found = format!("{:?} and {:?}", rectangle.edges[0], rectangle.edges[1]);
+                return Err(check.error(&key("rectangle.edges"), "two perpendicular edges", &found));
+            }
+            WallShape::Rectangle { corner, edges }
+        } else {
+            return Err(check.error(&format!("walls.{name}"), "a shape", "none"));
+        };
+        let material = self.material(&key("material"), &spec.material)?;
+        Ok(Wall { name: name.to_owned(), material, shape, motion: self.motion(name, &spec.motion)? })
+    }
+
+    fn motion(&self, wall: &str, specs: &[MotionSpec]) -> Result<Motion, SceneError> {
+        let check = &self.check;
+        let mut motion = Motion::default();
+        let mut centre_of: Option<Vector3<f64>> = None;
+        for (number, spec) in specs.iter().enumerate() {
+            let key = |part: &str| format!("walls.{wall}.motion[{number}].{part}");
+            let spin = check.spin(&key("spin"), spec.spin.as_ref())?;
+            if spec.spin.is_some() {
+                let Some(centre) = &spec.centre else {
+                    return Err(check.error(&key("centre"), "a centre to rotate about", "none"));
+                };
+                let centre = check.vector(&key("centre"), centre)?;
+                if centre_of.is_some_and(|other| other != centre) {
+                    return Err(check.error(&key("centre"), "one centre for all phases of a wall", "another one"));
+                }
+                if motion.phases.iter().any(|phase: &Phase| phase.spin.cross(&spin).norm() > 0.0) {
+                    return Err(check.error(&key("spin"), "one axis for all phases of a wall", "another one"));
+                }
+                centre_of = Some(centre);
+            }
+            let start = self.moment(&key("start"), spec.start, spec.start_cycle, Moment::Seconds(0.0))?;
+            let stop = self.moment(&key("stop"), spec.stop, spec.stop_cycle, Moment::Never)?;
+            let velocity = check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?;
+            motion.phases.push(Phase { velocity, spin, start, stop });
+        }
+        motion.centre = centre_of.unwrap_or_default();
+        Ok(motion)
+    }
+
+    fn moment(
+        &self,
+        key: &str,
+        seconds: Option<f64>,
+        cycle: Option<u64>,
+        otherwise: Moment,
+    ) -> Result<Moment, SceneError> {
+        match (seconds, cycle) {
+            (Some(_), Some(_)) => Err(self.check.error(key, "a time or a cycle", "both")),
+            (Some(seconds), None) => Ok(Moment::Seconds(self.check.not_negative(key, seconds, "time (s)")?)),
+            (None, Some(cycle)) => Ok(Moment::Cycle(cycle)),
+            (None, None) => Ok(otherwise),
+        }
+    }
+}
