@@ -9,6 +9,7 @@ pub use own::{Judgement, conform, judge};
 
 pub use grainbench_cases as cases;
 pub use grainbench_dem as dem;
+pub use grainbench_mpm as mpm;
 pub use grainbench_reference as reference;
 pub use grainbench_reports as reports;
 pub use grainbench_scene as scene;

@@ -2,18 +2,92 @@
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
+use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
+use grainbench_mpm::solver::Mpm;
 use grainbench_rigid::solver::Rigid;
-use grainbench_scene::solver::Solver;
+use grainbench_scene::checkpoint::Checkpoint;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
 
 /// Every solver, by name.
 #[must_use]
 pub fn all() -> Vec<Box<dyn Solver>> {
     let dem = Convention::ALL.into_iter().map(|convention| Box::new(Dem::new(convention)) as Box<dyn Solver>);
-    dem.chain([Box::new(Rigid::new()) as Box<dyn Solver>]).collect()
+    let mpm = Mpm::ALL.into_iter().map(|setting| Box::new(setting) as Box<dyn Solver>);
+    dem.chain([Box::new(Rigid::new()) as Box<dyn Solver>]).chain(mpm).collect()
 }
 
-/// The solver of a name.
+/// The solver of a name. The material point method may be given words that change its setting, such as
+/// `mpm+quadratic+apic`.
 #[must_use]
 pub fn by_name(name: &str) -> Option<Box<dyn Solver>> {
-    all().into_iter().find(|solver| solver.name() == name)
+    let Some((base, words)) = name.split_once('+') else {
+        return all().into_iter().find(|solver| solver.name() == name);
+    };
+    let mut mpm = Mpm::named(base)?;
+    for word in words.split('+') {
+        change(&mut mpm.setting, word)?;
+    }
+    Some(Box::new(Varied { name: name.to_owned(), mpm }))
+}
+
+/// Changes a setting by a word; none when there is no such word.
+fn change(setting: &mut Setting, word: &str) -> Option<()> {
+    match word {
+        "linear" => setting.basis = Basis::Linear,
+        "quadratic" => setting.basis = Basis::Quadratic,
+        "gimp" => setting.basis = Basis::Gimp,
+        "flip" => setting.transfer = Transfer::Flip { pic: 0.0 },
+        "apic" => setting.transfer = Transfer::Apic,
+        "usf" => setting.stress_update = StressUpdate::First,
+        "usl" => setting.stress_update = StressUpdate::Last,
+        "musl" => setting.stress_update = StressUpdate::ModifiedLast,
+        _ => {
+            let (key, value) = word.split_once('=')?;
+            let value = value.parse::<f64>().ok().filter(|value| value.is_finite())?;
+            match key {
+                "pic" if (0.0..=1.0).contains(&value) => setting.transfer = Transfer::Flip { pic: value },
+                "penalty" if value > 0.0 => setting.penalty = value,
+                "tracers" if value > 0.0 => setting.tracers = value,
+                "phase" => setting.phase = [value; 3],
+                _ => return None,
+            }
+        }
+    }
+    Some(())
+}
+
+/// The material point method in a setting that is spelt out in its name.
+struct Varied {
+    name: String,
+    mpm: Mpm,
+}
+
+impl Varied {
+    fn named(&self, record: Record) -> Record {
+        let mut record = record;
+        record.provenance.solver.clone_from(&self.name);
+        record
+    }
+}
+
+impl Solver for Varied {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        Ok(self.named(self.mpm.run(scene, resolution, watch)?))
+    }
+
+    fn restart(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: &Checkpoint,
+        watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
+        Ok(self.named(self.mpm.restart(scene, resolution, from, watch)?))
+    }
 }

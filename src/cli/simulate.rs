@@ -44,6 +44,15 @@ pub(crate) struct Arguments {
     /// Time step in seconds.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     time_step: Option<f64>,
+    /// Cells per reference length, of solvers with a grid: per radius, where there are grains.
+    #[arg(long, value_name = "NUMBER", default_value_t = 8.0, value_parser = positive)]
+    cells: f64,
+    /// Material points per cell and axis, of solvers with a grid.
+    #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=64))]
+    points: u32,
+    /// Courant number c Δt/h, of solvers with a grid.
+    #[arg(long, value_name = "NUMBER", default_value_t = Resolution::COURANT, value_parser = positive)]
+    courant: f64,
     /// Take a time step of the critical one or above.
     #[arg(long)]
     allow_unstable: bool,
@@ -117,6 +126,15 @@ fn solver(name: &str) -> Result<Box<dyn Solver>, Fault> {
 
 /// The resolution asked for, unless it is above the critical step and nobody said that this is meant.
 fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault> {
+    if arguments.solver.starts_with("mpm") {
+        let &Arguments { cells, points, courant, .. } = arguments;
+        if courant >= 1.0 && !arguments.allow_unstable {
+            return Err(Fault::input(format!(
+                "Courant number: expected less than 1, found {courant} (--allow-unstable takes it all the same)"
+            )));
+        }
+        return Ok(Resolution::Grid { cells, points, courant });
+    }
     let critical = scene.critical_time_step();
     let (resolution, step) = match arguments.time_step {
         Some(step) => (Resolution::TimeStep(step), step),
