@@ -14,6 +14,8 @@ pub(crate) struct Axis {
     /// What a velocity field is multiplied by to get its affine part (per cell): w (i − x)/D with D = Σ w (i − x)²
     /// (Jiang, Schroeder & Teran 2017). Linear in the field, exact for affine ones.
     pub(crate) affine: [f64; 3],
+    /// D = Σ w (i − x)² (cells²).
+    pub(crate) spread: f64,
 }
 
 /// A family of functions.
@@ -36,7 +38,7 @@ impl Basis for Linear {
         let base = at.floor();
         let s = at - base;
         let slope = [-1.0, 1.0, 0.0];
-        Axis { base: base as i32, value: [1.0 - s, s, 0.0], slope, affine: slope }
+        Axis { base: base as i32, value: [1.0 - s, s, 0.0], slope, affine: slope, spread: s * (1.0 - s) }
     }
 }
 
@@ -54,7 +56,7 @@ impl Basis for Quadratic {
         let value = [0.5 * (1.5 - s) * (1.5 - s), 0.75 - (s - 1.0) * (s - 1.0), 0.5 * (s - 0.5) * (s - 0.5)];
         // D = 1/4 wherever the point is.
         let affine = [-4.0 * value[0] * s, 4.0 * value[1] * (1.0 - s), 4.0 * value[2] * (2.0 - s)];
-        Axis { base: base as i32, value, slope: [s - 1.5, 2.0 - 2.0 * s, s - 0.5], affine }
+        Axis { base: base as i32, value, slope: [s - 1.5, 2.0 - 2.0 * s, s - 0.5], affine, spread: 0.25 }
     }
 }
 
@@ -70,7 +72,6 @@ impl Basis for Gimp {
         let base = (at - 0.5).floor();
         let s = at - base;
         let mut axis = Axis { base: base as i32, ..Axis::default() };
-        let mut spread = 0.0;
         for node in 0..3 {
             let away = s - node as f64;
             let (distance, sign) = (away.abs(), -away.signum());
@@ -87,8 +88,9 @@ impl Basis for Gimp {
             axis.value[node] = value;
             axis.slope[node] = sign * slope;
             axis.affine[node] = -value * away;
-            spread += value * away * away;
+            axis.spread += value * away * away;
         }
+        let spread = axis.spread;
         axis.affine.iter_mut().for_each(|affine| *affine /= spread);
         axis
     }

@@ -52,6 +52,8 @@ pub(crate) struct Body {
     pub(crate) part: Part,
     /// Its tracers.
     pub(crate) tracers: Range<usize>,
+    /// The runs its tracers are cut into.
+    pub(crate) chunks: Range<usize>,
     /// Place of its material in the scene.
     pub(crate) material: u16,
     pub(crate) law: Material,
@@ -136,6 +138,7 @@ pub(crate) fn seed<S: Space>(
                 owner: blank.owner,
                 part: Part { points: first.0..points.len(), window: crate::grid::Window::default(), half },
                 tracers: first.1..tracers.len(),
+                chunks: tracers.cut(first.1..tracers.len()),
                 material: blank.material,
                 law: Material::of(&blank.deformable, blank.deformable.lame()),
                 density: blank.density,

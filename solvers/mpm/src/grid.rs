@@ -224,6 +224,12 @@ impl Stencil {
         self.along(node, |axis| &axis.affine)
     }
 
+    /// Σ w r² along an axis, r from the point to the node (m²).
+    #[inline(always)]
+    pub(crate) fn spread(&self, axis: usize) -> f64 {
+        self.axes[axis].spread * self.cell[axis] * self.cell[axis]
+    }
+
     /// From the point to the node (m).
     #[inline(always)]
     pub(crate) fn arm<S: Space>(&self, node: &Reached<S>) -> S::Vector {

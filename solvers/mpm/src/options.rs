@@ -21,8 +21,10 @@ pub enum Transfer {
         /// Fraction of the velocity itself in each step, 0 for none.
         pic: f64,
     },
-    /// Points carry the affine part of the velocity.
+    /// Points carry the affine part of the nodes' velocity.
     Apic,
+    /// Points take on the change of the nodes' velocity and of its spin.
+    Spin,
 }
 
 /// When the stress follows the velocities.
@@ -77,19 +79,19 @@ pub struct Setting {
 impl Setting {
     /// One setting for all scenes: the best known.
     pub const BEST: Self = Self {
-        basis: Basis::Gimp,
-        transfer: Transfer::Flip { pic: 0.0 },
+        basis: Basis::Linear,
+        transfer: Transfer::Spin,
         stress_update: StressUpdate::ModifiedLast,
         contact: Contact::Penalty,
         penalty: 2.2,
-        tracers: 2.0,
+        tracers: 4.0,
         phase: [0.0; 3],
     };
 
     /// What the papers used, with another contact.
     #[must_use]
     pub const fn classic(contact: Contact) -> Self {
-        Self { basis: Basis::Linear, contact, ..Self::BEST }
+        Self { transfer: Transfer::Flip { pic: 0.0 }, contact, ..Self::BEST }
     }
 
     /// The setting in words.
@@ -126,6 +128,7 @@ impl fmt::Display for Transfer {
             Self::Flip { pic: 0.0 } => formatter.write_str("FLIP"),
             Self::Flip { pic } => write!(formatter, "FLIP with {pic} PIC"),
             Self::Apic => formatter.write_str("APIC"),
+            Self::Spin => formatter.write_str("FLIP with spin"),
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::basis::{Gimp, Linear, Quadratic};
 use crate::bodies::{Body, Material, press, seed};
-use crate::contact::penalty::{self, WallSprings};
+use crate::contact::pairs::Pairs;
+use crate::contact::penalty::{self, Rules, Springs};
 use crate::contact::{FrictionTable, Touch};
 use crate::grid::{Lattice, Node, Window};
 use crate::held::Held;
@@ -11,7 +12,7 @@ use crate::options::{Basis, Contact, Setting, StressUpdate, Transfer};
 use crate::points::Points;
 use crate::stress::{self, Failure};
 use crate::surface::Tracers;
-use crate::transfer::{self, Apic, Flip, Part};
+use crate::transfer::{self, Apic, Flip, Part, Spin};
 use crate::walls::RigidPlane;
 use grainbench_scene::manufactured::Medium;
 use grainbench_scene::record::{Cost, Owner};
@@ -67,7 +68,8 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) used: usize,
     friction: FrictionTable,
     held: Held,
-    wall_stretches: Vec<Vec<S::Vector>>,
+    springs: Springs<S>,
+    pairs: Pairs<S>,
     pub(crate) touches: Vec<Touch<S>>,
     pub(crate) time_step: f64,
     pub(crate) critical: f64,
@@ -101,7 +103,8 @@ impl<S: Space> Simulation<S> {
         let mut simulation = Self {
             held: Held::new(&bodies, &lattice),
             friction: FrictionTable::of(scene),
-            wall_stretches: vec![vec![S::ORIGIN; tracers.len()]; walls.len()],
+            springs: Springs::new(tracers.len()),
+            pairs: Pairs::new(),
             gravity: S::restrict(scene.gravity),
             damping: scene.global_damping,
             scene: scene.clone(),
@@ -209,7 +212,7 @@ impl<S: Space> Simulation<S> {
             self.scatter_force_again();
         }
         self.body_force(time);
-        self.springs(record);
+        self.spring_forces(record);
         self.held.fold(&self.bodies, &mut self.nodes);
         self.step_nodes();
         self.gather();
@@ -293,6 +296,7 @@ impl<S: Space> Simulation<S> {
             with_basis!(setting.basis, B => match setting.transfer {
                 Transfer::Flip { .. } => transfer::scatter::<S, B, Flip>(lattice, &body.part, points, nodes),
                 Transfer::Apic => transfer::scatter::<S, B, Apic>(lattice, &body.part, points, nodes),
+                Transfer::Spin => transfer::scatter::<S, B, Spin>(lattice, &body.part, points, nodes),
             });
         }
     }
@@ -338,24 +342,33 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Forces of springs between surfaces.
-    fn springs(&mut self, record: bool) {
+    fn spring_forces(&mut self, record: bool) {
         if self.setting.contact != Contact::Penalty {
             return;
         }
         self.touches.clear();
-        let mut springs = WallSprings {
+        self.springs.begin();
+        self.pairs.find(&self.bodies, &self.lattice, 0.0);
+        let rules = Rules {
             lattice: &self.lattice,
             friction: &self.friction,
             penalty: self.setting.penalty,
             time_step: self.time_step,
-            stretches: &mut self.wall_stretches,
         };
-        let touches = record.then_some(&mut self.touches);
-        with_basis!(self.setting.basis, B => {
-            penalty::at_walls::<S, B>(
-                &mut springs, &self.bodies, &self.tracers, &mut self.walls, &mut self.nodes, touches,
-            );
+        let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, .. } = self;
+        let mut touches = record.then_some(touches);
+        with_basis!(setting.basis, B => {
+            penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, touches.as_deref_mut());
+            if !pairs.found.is_empty() {
+                tracers.find_boxes();
+            }
+            for pair in &pairs.found {
+                for pair in [*pair, pair.exchanged()] {
+                    penalty::between::<S, B>(&rules, bodies, &pair, tracers, springs, nodes, touches.as_deref_mut());
+                }
+            }
         });
+        cost.pair_tests += pairs.found.len() as u64;
     }
 
     /// Momenta and forces of the nodes become velocities after the step and their change.
@@ -382,28 +395,23 @@ impl<S: Space> Simulation<S> {
     fn gather(&mut self) {
         let project = self.setting.stress_update == StressUpdate::ModifiedLast;
         let Self { lattice, bodies, points, nodes, projected, setting, time_step, .. } = self;
-        if project {
-            for body in bodies.iter() {
-                with_basis!(setting.basis, B => match setting.transfer {
-                    Transfer::Flip { pic } => transfer::gather::<S, B, Flip, true>(
-                        lattice, &body.part, Flip { pic }, *time_step, points, nodes, projected,
-                    ),
-                    Transfer::Apic => transfer::gather::<S, B, Apic, true>(
-                        lattice, &body.part, Apic, *time_step, points, nodes, projected,
-                    ),
-                });
-            }
-        } else {
-            for body in bodies.iter() {
-                with_basis!(setting.basis, B => match setting.transfer {
-                    Transfer::Flip { pic } => transfer::gather::<S, B, Flip, false>(
-                        lattice, &body.part, Flip { pic }, *time_step, points, nodes, projected,
-                    ),
-                    Transfer::Apic => transfer::gather::<S, B, Apic, false>(
-                        lattice, &body.part, Apic, *time_step, points, nodes, projected,
-                    ),
-                });
-            }
+        macro_rules! gather {
+            ($B:ty, $T:ty, $transfer:expr, $part:expr) => {
+                if project {
+                    transfer::gather::<S, $B, $T, true>(lattice, $part, $transfer, *time_step, points, nodes, projected)
+                } else {
+                    transfer::gather::<S, $B, $T, false>(
+                        lattice, $part, $transfer, *time_step, points, nodes, projected,
+                    )
+                }
+            };
+        }
+        for body in bodies.iter() {
+            with_basis!(setting.basis, B => match setting.transfer {
+                Transfer::Flip { pic } => gather!(B, Flip, Flip { pic }, &body.part),
+                Transfer::Apic => gather!(B, Apic, Apic, &body.part),
+                Transfer::Spin => gather!(B, Spin, Spin, &body.part),
+            });
         }
     }
 

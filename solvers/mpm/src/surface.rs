@@ -6,6 +6,7 @@ use crate::grid::{Lattice, Node, Stencil};
 use crate::seed::Patch;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// Tracers of all bodies, structure of arrays.
 #[derive(Clone, Debug)]
@@ -16,11 +17,59 @@ pub(crate) struct Tracers<S: Space> {
     pub(crate) area: Vec<S::Vector>,
     /// In the plane, the neighbours along the surface: the one before and the one after.
     pub(crate) neighbours: Vec<[u32; 2]>,
+    /// Runs of tracers with the boxes around them.
+    pub(crate) chunks: Vec<Chunk<S>>,
 }
+
+/// A run of tracers.
+#[derive(Clone, Debug)]
+pub(crate) struct Chunk<S: Space> {
+    pub(crate) tracers: Range<usize>,
+    low: S::Vector,
+    high: S::Vector,
+}
+
+impl<S: Space> Chunk<S> {
+    /// Whether its box meets another.
+    #[inline(always)]
+    pub(crate) fn meets(&self, low: S::Vector, high: S::Vector) -> bool {
+        (0..S::DIMENSION).all(|axis| {
+            let at = |vector: S::Vector| S::component(vector, axis);
+            at(self.low) <= at(high) && at(low) <= at(self.high)
+        })
+    }
+
+    /// Squared distance from a position to its box (m²).
+    #[inline(always)]
+    fn away(&self, position: S::Vector) -> f64 {
+        let mut squared = 0.0;
+        for axis in 0..S::DIMENSION {
+            let at = S::component(position, axis);
+            let beyond = (S::component(self.low, axis) - at).max(at - S::component(self.high, axis)).max(0.0);
+            squared += beyond * beyond;
+        }
+        squared
+    }
+}
+
+/// The surface of a body next to a position.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near<S: Space> {
+    /// Distance above the surface (m), negative inside.
+    pub(crate) gap: f64,
+    /// Unit normal out of the body.
+    pub(crate) normal: S::Vector,
+}
+
+/// Tracers in a run.
+const RUN: usize = 16;
+
+/// Cosine between two surfaces' normals above which they do not face each other.
+const FACING: f64 = -0.2;
 
 impl<S: Space> Tracers<S> {
     pub(crate) const fn new() -> Self {
-        Self { position: Vec::new(), area: Vec::new(), neighbours: Vec::new() }
+        Self { position: Vec::new(), area: Vec::new(), neighbours: Vec::new(), chunks: Vec::new() }
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -35,6 +84,88 @@ impl<S: Space> Tracers<S> {
             self.area.push(S::restrict(patch.area));
             self.neighbours.push([start + (number + count - 1) % count, start + (number + 1) % count]);
         }
+    }
+
+    /// Cuts the tracers of a body, the last that were added, into runs; which runs they are.
+    pub(crate) fn cut(&mut self, tracers: Range<usize>) -> Range<usize> {
+        let first = self.chunks.len();
+        let mut start = tracers.start;
+        while start < tracers.end {
+            let end = (start + RUN).min(tracers.end);
+            self.chunks.push(Chunk { tracers: start..end, low: S::ORIGIN, high: S::ORIGIN });
+            start = end;
+        }
+        first..self.chunks.len()
+    }
+
+    /// Boxes around all runs.
+    pub(crate) fn find_boxes(&mut self) {
+        for chunk in &mut self.chunks {
+            let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+            let (low, high) = self.position[chunk.tracers.clone()].iter().fold(start, |(low, high), &at| {
+                let at = S::embed(at);
+                (low.inf(&at), high.sup(&at))
+            });
+            (chunk.low, chunk.high) = (S::restrict(low), S::restrict(high));
+        }
+    }
+
+    /// Outward unit normal at a tracer.
+    #[inline(always)]
+    pub(crate) fn normal(&self, at: usize) -> S::Vector {
+        let area = self.area[at];
+        area * (1.0 / S::dot(area, area).sqrt())
+    }
+
+    /// The surface made of some runs, next to a position and facing the given normal; none when no tracer of it is within
+    /// `reach` (m) and half a spacing.
+    #[inline(always)]
+    pub(crate) fn nearest(
+        &self,
+        chunks: &Range<usize>,
+        position: S::Vector,
+        normal: S::Vector,
+        reach: f64,
+    ) -> Option<Near<S>> {
+        let (mut best, mut squared) = (usize::MAX, 2.0 * reach * reach);
+        for chunk in &self.chunks[chunks.clone()] {
+            if chunk.away(position) >= squared {
+                continue;
+            }
+            for at in chunk.tracers.clone() {
+                let between = position - self.position[at];
+                let distance = S::dot(between, between);
+                if distance < squared && S::dot(self.area[at], normal) < 0.0 {
+                    (best, squared) = (at, distance);
+                }
+            }
+        }
+        if best == usize::MAX {
+            return None;
+        }
+        let [before, after] = self.neighbours[best].map(|neighbour| neighbour as usize);
+        let [one, two] = [self.on_chord(before, best, position), self.on_chord(best, after, position)];
+        let near = if one.1 <= two.1 { one.0 } else { two.0 };
+        let faces = S::dot(near.normal, normal) < FACING;
+        (faces && near.gap.abs() < reach).then_some(near)
+    }
+
+    /// The surface between two tracers next to a position, and the squared distance to their chord: the cubic that has
+    /// the tracers' normals at its ends.
+    #[inline(always)]
+    fn on_chord(&self, from: usize, to: usize, position: S::Vector) -> (Near<S>, f64) {
+        let chord = self.position[to] - self.position[from];
+        let squared = S::dot(chord, chord);
+        let way = position - self.position[from];
+        let part = (S::dot(way, chord) / squared).clamp(0.0, 1.0);
+        let [first, last] = [self.normal(from), self.normal(to)];
+        let mean = first * (1.0 - part) + last * part;
+        let normal = mean * (1.0 / S::dot(mean, mean).sqrt());
+        // Slopes of the surface against the chord, times its length, at both ends.
+        let slope = |end: S::Vector| -S::dot(end, chord) / S::dot(end, normal);
+        let bump = slope(first) * part * (1.0 - part) * (1.0 - part) - slope(last) * part * part * (1.0 - part);
+        let off = way - chord * part;
+        (Near { gap: S::dot(off, normal) - bump, normal }, S::dot(off, off))
     }
 
     /// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that

@@ -5,20 +5,23 @@ use crate::basis::Basis;
 use crate::grid::{Lattice, Node, Stencil, Window};
 use crate::points::Points;
 use grainbench_scene::space::Space;
+use nalgebra::Vector3;
 use std::ops::Range;
 
 /// How velocities travel between points and nodes.
 pub(crate) trait Transfer: Copy + Send + 'static {
-    /// Velocity that a point shows to a node `arm` (m) away.
-    fn shown<S: Space>(velocity: S::Vector, affine: S::Matrix, arm: S::Vector) -> S::Vector;
+    /// Whether points carry the affine part of the velocity, or its spin.
+    const AFFINE: bool;
     /// Velocity of a point after the step, from that before, the velocity of the nodes around it and their change.
     fn taken<S: Space>(&self, before: S::Vector, around: S::Vector, change: S::Vector) -> S::Vector;
-    /// Whether points carry the affine part of the velocity.
-    const AFFINE: bool;
+    /// What of a node makes the affine part: its velocity or its change.
+    fn source<S: Space>(node: &Node<S>) -> S::Vector;
+    /// Affine part after the step, from that before and the one that the nodes make.
+    fn carried<S: Space>(before: S::Matrix, made: S::Matrix, stencil: &Stencil) -> S::Matrix;
 }
 
-/// Points keep their velocity and take on its change (Brackbill & Ruppel 1986), blended with a fraction of [`Apic`]
-/// without its affine part: v ← (1 − α)(v + Δv) + α v_grid.
+/// Points keep their velocity and take on its change (Brackbill & Ruppel 1986), blended with the velocity itself:
+/// v ← (1 − α)(v + Δv) + α v_grid.
 #[derive(Clone, Copy)]
 pub(crate) struct Flip {
     /// Fraction α.
@@ -29,16 +32,21 @@ impl Transfer for Flip {
     const AFFINE: bool = false;
 
     #[inline(always)]
-    fn shown<S: Space>(velocity: S::Vector, _affine: S::Matrix, _arm: S::Vector) -> S::Vector {
-        velocity
-    }
-    #[inline(always)]
     fn taken<S: Space>(&self, before: S::Vector, around: S::Vector, change: S::Vector) -> S::Vector {
         (before + change) * (1.0 - self.pic) + around * self.pic
     }
+    #[inline(always)]
+    fn source<S: Space>(_node: &Node<S>) -> S::Vector {
+        S::ORIGIN
+    }
+    #[inline(always)]
+    fn carried<S: Space>(before: S::Matrix, _made: S::Matrix, _stencil: &Stencil) -> S::Matrix {
+        before
+    }
 }
 
-/// Points carry the affine part of the velocity (Jiang et al. 2015), which keeps angular momentum.
+/// Points carry the affine part of the velocity (Jiang et al. 2015), which keeps angular momentum and damps what is
+/// shorter than a few cells.
 #[derive(Clone, Copy)]
 pub(crate) struct Apic;
 
@@ -46,12 +54,53 @@ impl Transfer for Apic {
     const AFFINE: bool = true;
 
     #[inline(always)]
-    fn shown<S: Space>(velocity: S::Vector, affine: S::Matrix, arm: S::Vector) -> S::Vector {
-        velocity + affine * arm
-    }
-    #[inline(always)]
     fn taken<S: Space>(&self, _before: S::Vector, around: S::Vector, _change: S::Vector) -> S::Vector {
         around
+    }
+    #[inline(always)]
+    fn source<S: Space>(node: &Node<S>) -> S::Vector {
+        node.velocity
+    }
+    #[inline(always)]
+    fn carried<S: Space>(_before: S::Matrix, made: S::Matrix, _stencil: &Stencil) -> S::Matrix {
+        made
+    }
+}
+
+/// Points keep their velocity and a spin, and take on the change of both: FLIP that does not lose the angular momentum
+/// which points of finite extent have, and, unlike APIC, damps nothing.
+///
+/// The change of the spin is that of the rigid rotation with the angular momentum that the nodes' change has about the
+/// point: Δω = Σ w r × Δv / Σ w |r|² about each axis, r from the point to the node and its lengths across that axis.
+#[derive(Clone, Copy)]
+pub(crate) struct Spin;
+
+impl Transfer for Spin {
+    const AFFINE: bool = true;
+
+    #[inline(always)]
+    fn taken<S: Space>(&self, before: S::Vector, _around: S::Vector, change: S::Vector) -> S::Vector {
+        before + change
+    }
+    #[inline(always)]
+    fn source<S: Space>(node: &Node<S>) -> S::Vector {
+        node.change
+    }
+    #[inline(always)]
+    fn carried<S: Space>(before: S::Matrix, made: S::Matrix, stencil: &Stencil) -> S::Matrix {
+        // The affine part is B D⁻¹ with B = Σ w Δv rᵀ and D = Σ w r rᵀ, which is diagonal.
+        let made = S::embed_gradient(made);
+        let about = |a: usize, b: usize| {
+            let spread = [stencil.spread(a), stencil.spread(b)];
+            let total = spread[0] + spread[1];
+            if total > 0.0 { (made[(b, a)] * spread[0] - made[(a, b)] * spread[1]) / total } else { 0.0 }
+        };
+        let spin = if S::DIMENSION == 2 {
+            Vector3::new(0.0, 0.0, about(0, 1))
+        } else {
+            Vector3::new(about(1, 2), about(2, 0), about(0, 1))
+        };
+        before + S::restrict_gradient(spin.cross_matrix())
     }
 }
 
@@ -78,7 +127,7 @@ pub(crate) fn scatter<S: Space, B: Basis, T: Transfer>(
         let (mass, velocity, affine) = (points.mass[at], points.velocity[at], points.affine[at]);
         let (stress, volume) = (points.stress[at], -points.volume[at]);
         stencil.each::<S, B>(&part.window, |node| {
-            let shown = if T::AFFINE { T::shown::<S>(velocity, affine, stencil.arm(&node)) } else { velocity };
+            let shown = if T::AFFINE { velocity + affine * stencil.arm(&node) } else { velocity };
             let share = node.weight * mass;
             let to = &mut nodes[node.slot];
             to.mass += share;
@@ -136,20 +185,22 @@ pub(crate) fn gather<S: Space, B: Basis, T: Transfer, const PROJECT: bool>(
         stencil.each::<S, B>(&part.window, |node| {
             let from = &nodes[node.slot];
             around += from.velocity * node.weight;
+            change += from.change * node.weight;
             if T::AFFINE {
-                affine += S::outer(from.velocity, stencil.affine(&node));
-            } else {
-                change += from.change * node.weight;
+                affine += S::outer(T::source::<S>(from), stencil.affine(&node));
             }
         });
         let velocity = transfer.taken::<S>(points.velocity[at], around, change);
         points.velocity[at] = velocity;
-        points.affine[at] = affine;
+        if T::AFFINE {
+            affine = T::carried::<S>(points.affine[at], affine, &stencil);
+            points.affine[at] = affine;
+        }
         points.next[at] = points.position[at] + around * time_step;
         if PROJECT {
             let mass = points.mass[at];
             stencil.each::<S, B>(&part.window, |node| {
-                let shown = if T::AFFINE { T::shown::<S>(velocity, affine, stencil.arm(&node)) } else { velocity };
+                let shown = if T::AFFINE { velocity + affine * stencil.arm(&node) } else { velocity };
                 projected[node.slot] += shown * (node.weight * mass);
             });
         }

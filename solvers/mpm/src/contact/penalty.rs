@@ -3,6 +3,7 @@
 //! the slip and limited by Coulomb friction (Cundall & Strack 1979). Forces act where the surfaces meet, at the same point
 //! on both, so linear momentum is kept to rounding and torques are right.
 
+use super::pairs::Pair;
 use super::{FrictionTable, Other, Touch};
 use crate::basis::Basis;
 use crate::bodies::Body;
@@ -11,6 +12,9 @@ use crate::surface::Tracers;
 use crate::transfer::Part;
 use crate::walls::RigidPlane;
 use grainbench_scene::space::Space;
+
+/// Depth at which surfaces are taken to have passed through each other, and are let go (cells).
+const DEEPEST: f64 = 0.8;
 
 /// A body as a point on its surface sees it: the nodes around that carry mass.
 pub(crate) struct Grip<S: Space> {
@@ -78,65 +82,103 @@ pub(crate) fn rub<S: Space>(
     }
 }
 
-/// What springs at walls need to know.
-pub(crate) struct WallSprings<'a, S: Space> {
+/// Springs along the surface that a tracer can have at a time.
+const AT_ONCE: usize = 4;
+
+/// A spring along the surface, stretched since `stamp` − some steps.
+#[derive(Clone, Copy, Debug)]
+struct Spring<S: Space> {
+    /// What the tracer touches.
+    other: Other,
+    /// Evaluation at which it last touched.
+    stamp: u64,
+    stretch: S::Vector,
+}
+
+/// Springs along the surface of every tracer; one that did not touch at the last evaluation has been forgotten.
+#[derive(Clone, Debug)]
+pub(crate) struct Springs<S: Space> {
+    of: Vec<[Spring<S>; AT_ONCE]>,
+    now: u64,
+}
+
+impl<S: Space> Springs<S> {
+    pub(crate) fn new(tracers: usize) -> Self {
+        let none = Spring { other: Other::Wall(u16::MAX), stamp: 0, stretch: S::ORIGIN };
+        Self { of: vec![[none; AT_ONCE]; tracers], now: 1 }
+    }
+
+    /// Begins an evaluation.
+    pub(crate) fn begin(&mut self) {
+        self.now += 1;
+    }
+
+    /// Stretch of the spring of a tracer to what it touches; it counts as touching now.
+    #[inline(always)]
+    fn stretch(&mut self, tracer: usize, other: Other) -> &mut S::Vector {
+        let (now, springs) = (self.now, &mut self.of[tracer]);
+        let same = springs.iter().position(|spring| spring.other == other);
+        let oldest = || (1..AT_ONCE).fold(0, |a, b| if springs[b].stamp < springs[a].stamp { b } else { a });
+        let at = same.unwrap_or_else(oldest);
+        let spring = &mut springs[at];
+        if same.is_none() || spring.stamp + 1 < now {
+            *spring = Spring { other, stamp: now, stretch: S::ORIGIN };
+        }
+        spring.stamp = now;
+        &mut spring.stretch
+    }
+}
+
+/// What all springs need to know.
+pub(crate) struct Rules<'a> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) friction: &'a FrictionTable,
     /// Stiffness per area in E'/h.
     pub(crate) penalty: f64,
     pub(crate) time_step: f64,
-    /// Stretch of the springs of each tracer, wall by wall.
-    pub(crate) stretches: &'a mut [Vec<S::Vector>],
 }
 
 /// Springs between bodies and walls; what touches is added to `touches` when it is asked for.
 pub(crate) fn at_walls<S: Space, B: Basis>(
-    springs: &mut WallSprings<'_, S>,
+    rules: &Rules<'_>,
     bodies: &[Body],
     tracers: &Tracers<S>,
+    springs: &mut Springs<S>,
     walls: &mut [RigidPlane<S>],
     nodes: &mut [Node<S>],
     mut touches: Option<&mut Vec<Touch<S>>>,
 ) {
-    let cell = springs.lattice.shortest(S::DIMENSION);
-    for (number, (wall, stretches)) in walls.iter_mut().zip(springs.stretches.iter_mut()).enumerate() {
+    let cell = rules.lattice.shortest(S::DIMENSION);
+    for (number, wall) in walls.iter_mut().enumerate() {
+        let other = Other::Wall(number as u16);
         for (place, body) in bodies.iter().enumerate() {
             if lowest::<S>(body, wall) > 0.0 {
                 continue;
             }
-            let friction = springs.friction.between(body.material, wall.material);
-            let stiffness = springs.penalty * body.deformable.plane_modulus() / cell;
+            let friction = rules.friction.between(body.material, wall.material);
+            let stiffness = rules.penalty * body.deformable.plane_modulus() / cell;
             for at in body.tracers.clone() {
                 let position = tracers.position[at];
                 let depth = -wall.height(position);
                 if depth <= 0.0 {
-                    stretches[at] = S::ORIGIN;
                     continue;
                 }
-                let Some(grip) = Grip::<S>::new::<B>(springs.lattice, &body.part, position, nodes) else { continue };
+                let Some(grip) = Grip::<S>::new::<B>(rules.lattice, &body.part, position, nodes) else { continue };
                 let area = S::dot(tracers.area[at], tracers.area[at]).sqrt();
                 let spring = stiffness * area;
                 let push = wall.normal * (spring * depth);
-                let slip = (grip.velocity - wall.velocity(position)) * springs.time_step;
-                let (shear, stretch, slipping) =
-                    rub::<S>(stretches[at], slip, wall.normal, spring, friction * spring * depth);
-                stretches[at] = stretch;
+                let slip = (grip.velocity - wall.velocity(position)) * rules.time_step;
+                let stretch = springs.stretch(at, other);
+                let (shear, stretched, slipping) =
+                    rub::<S>(*stretch, slip, wall.normal, spring, friction * spring * depth);
+                *stretch = stretched;
                 let force = push + shear;
                 grip.push::<B>(&body.part, force, nodes);
                 wall.force -= force;
                 if let Some(touches) = touches.as_mut() {
-                    let other = Other::Wall(number as u16);
-                    let energy = 0.5 * spring * (depth * depth + S::dot(stretch, stretch));
-                    touches.push(Touch {
-                        body: place as u32,
-                        other,
-                        point: position,
-                        push,
-                        shear,
-                        depth,
-                        slipping,
-                        energy,
-                    });
+                    let energy = 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
+                    let body = place as u32;
+                    touches.push(Touch { body, other, point: position, push, shear, depth, slipping, energy });
                 }
             }
         }
@@ -149,4 +191,61 @@ fn lowest<S: Space>(body: &Body, wall: &RigidPlane<S>) -> f64 {
     let [low, high] = &body.bounds;
     let corner = normal.zip_zip_map(low, high, |n, low, high| if n > 0.0 { low } else { high });
     (corner - S::embed(wall.point)).dot(&normal)
+}
+
+/// Springs between two bodies, from the tracers of `first` that have gone through the surface of `second`: half of the
+/// stiffness, since the tracers of the second do the same.
+pub(crate) fn between<S: Space, B: Basis>(
+    rules: &Rules<'_>,
+    bodies: &[Body],
+    pair: &Pair<S>,
+    tracers: &Tracers<S>,
+    springs: &mut Springs<S>,
+    nodes: &mut [Node<S>],
+    mut touches: Option<&mut Vec<Touch<S>>>,
+) {
+    let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
+    let cell = rules.lattice.shortest(S::DIMENSION);
+    let moduli = [first, second].map(|body| body.deformable.plane_modulus());
+    let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
+    let stiffness = 0.5 * rules.penalty * harmonic / cell;
+    let friction = rules.friction.between(first.material, second.material);
+    let reach = DEEPEST * cell;
+    let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
+    for chunk in &tracers.chunks[first.chunks.clone()] {
+        if !chunk.meets(low, high) {
+            continue;
+        }
+        for at in chunk.tracers.clone() {
+            let position = tracers.position[at] - pair.shift;
+            let normal = tracers.normal(at);
+            let Some(near) = tracers.nearest(&second.chunks, position, normal, reach) else { continue };
+            let depth = -near.gap;
+            if depth <= 0.0 {
+                continue;
+            }
+            // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
+            let out = near.normal - normal;
+            let out = out * (1.0 / S::dot(out, out).sqrt());
+            let middle = position + near.normal * (0.5 * depth);
+            let there = middle + pair.shift;
+            let Some(one) = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes) else { continue };
+            let Some(two) = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes) else { continue };
+            let spring = stiffness * S::dot(tracers.area[at], tracers.area[at]).sqrt();
+            let push = out * (spring * depth);
+            let slip = (one.velocity - two.velocity) * rules.time_step;
+            let other = Other::Body(pair.second);
+            let stretch = springs.stretch(at, other);
+            let (shear, stretched, slipping) = rub::<S>(*stretch, slip, out, spring, friction * spring * depth);
+            *stretch = stretched;
+            let force = push + shear;
+            one.push::<B>(&first.part, force, nodes);
+            two.push::<B>(&second.part, -force, nodes);
+            if let Some(touches) = touches.as_mut() {
+                let energy = 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
+                let body = pair.first;
+                touches.push(Touch { body, other, point: there, push, shear, depth, slipping, energy });
+            }
+        }
+    }
 }
