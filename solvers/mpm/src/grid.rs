@@ -105,7 +105,8 @@ impl Lattice {
     pub(crate) fn window<S: Space>(&self, low: S::Vector, high: S::Vector) -> Window {
         let mut window = Window { size: [1; 3], ..Window::default() };
         for axis in 0..S::DIMENSION {
-            let first = (self.cells::<S>(low, axis) - 0.5).floor() as i32;
+            // The smoothed density of cells reaches one node further down than any basis.
+            let first = (self.cells::<S>(low, axis) - 0.5).floor() as i32 - 1;
             let last = (self.cells::<S>(high, axis) - 0.5).floor() as i32 + 2;
             window.low[axis] = first;
             window.size[axis] = last - first + 1;
@@ -146,6 +147,13 @@ pub(crate) struct Reached<S: Space> {
     pub(crate) weight: f64,
     axes: [usize; 3],
     _space: std::marker::PhantomData<S>,
+}
+
+impl<S: Space> Reached<S> {
+    /// Which of the stencil's nodes along an axis it is.
+    pub(crate) const fn offset(&self, axis: usize) -> i32 {
+        self.axes[axis] as i32
+    }
 }
 
 impl Stencil {

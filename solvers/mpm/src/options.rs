@@ -84,7 +84,7 @@ impl Setting {
         stress_update: StressUpdate::ModifiedLast,
         contact: Contact::Penalty,
         penalty: 2.2,
-        tracers: 4.0,
+        tracers: 3.0,
         phase: [0.0; 3],
     };
 

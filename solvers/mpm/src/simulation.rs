@@ -2,8 +2,10 @@
 
 use crate::basis::{Gimp, Linear, Quadratic};
 use crate::bodies::{Body, Material, press, seed};
+use crate::contact::nodal;
 use crate::contact::pairs::Pairs;
 use crate::contact::penalty::{self, Rules, Springs};
+use crate::contact::shared::{Projected, Shared, Stepped};
 use crate::contact::{FrictionTable, Touch};
 use crate::grid::{Lattice, Node, Window};
 use crate::held::Held;
@@ -69,6 +71,7 @@ pub(crate) struct Simulation<S: Space> {
     friction: FrictionTable,
     held: Held,
     springs: Springs<S>,
+    shared: Shared<S>,
     pairs: Pairs<S>,
     pub(crate) touches: Vec<Touch<S>>,
     pub(crate) time_step: f64,
@@ -105,6 +108,7 @@ impl<S: Space> Simulation<S> {
             friction: FrictionTable::of(scene),
             springs: Springs::new(tracers.len()),
             pairs: Pairs::new(),
+            shared: Shared::new(),
             gravity: S::restrict(scene.gravity),
             damping: scene.global_damping,
             scene: scene.clone(),
@@ -206,6 +210,7 @@ impl<S: Space> Simulation<S> {
         self.sort();
         self.place_windows()?;
         self.scatter();
+        self.find_shared();
         if self.setting.stress_update == StressUpdate::First {
             self.project_momentum();
             self.update_stress(Velocities::Projected)?;
@@ -317,6 +322,49 @@ impl<S: Space> Simulation<S> {
             *projected = if node.mass > 0.0 { *projected * (1.0 / node.mass) } else { S::ORIGIN };
         }
         held.hold_projected::<S>(bodies, projected);
+        if self.is_nodal() {
+            let Self { lattice, friction, setting, time_step, bodies, shared, walls, projected, .. } = self;
+            let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
+            match setting.contact {
+                Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, walls, &mut Projected(projected)),
+                _ => nodal::apply(&rules, bodies, shared, walls, &mut Projected(projected)),
+            }
+        }
+    }
+
+    /// Whether contact is a condition at nodes, and anything can touch.
+    fn is_nodal(&self) -> bool {
+        let several = self.bodies.len() > 1 && self.setting.contact != Contact::NoSlip;
+        self.setting.contact != Contact::Penalty && (several || !self.walls.is_empty())
+    }
+
+    /// Finds the nodes at which bodies meet, for conditions at nodes.
+    fn find_shared(&mut self) {
+        if !self.is_nodal() {
+            return;
+        }
+        let cell = self.lattice.shortest(S::DIMENSION);
+        let Self { lattice, setting, bodies, shared, pairs, walls, nodes, points, tracers, used, .. } = self;
+        let margin = if setting.contact == Contact::Gap { 0.0 } else { 3.0 * cell };
+        let fields = if setting.contact == Contact::NoSlip { 1 } else { bodies.len() };
+        pairs.found.clear();
+        if fields > 1 {
+            pairs.find(bodies, lattice, margin);
+        }
+        if setting.contact == Contact::Gap {
+            tracers.find_boxes();
+            shared.find_meetings(lattice, bodies, &pairs.found, tracers, walls, nodes);
+        } else {
+            shared.find(lattice, bodies, fields, &pairs.found, walls, nodes);
+        }
+        if setting.contact == Contact::NoSlip {
+            return;
+        }
+        shared.find_touching(bodies.len());
+        with_basis!(setting.basis, B => shared.find_faces::<B>(lattice, bodies, *used, points));
+        if setting.contact == Contact::Kinematic {
+            shared.smooth_normals(lattice, bodies, *used, points);
+        }
     }
 
     fn scatter_force_again(&mut self) {
@@ -387,6 +435,14 @@ impl<S: Space> Simulation<S> {
             }
         }
         self.held.hold(&self.bodies, &mut self.nodes);
+        if self.is_nodal() {
+            let Self { lattice, friction, setting, time_step, bodies, shared, walls, nodes, .. } = self;
+            let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
+            match setting.contact {
+                Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, walls, &mut Stepped(nodes)),
+                _ => nodal::apply(&rules, bodies, shared, walls, &mut Stepped(nodes)),
+            }
+        }
         for node in &mut self.nodes[..self.used] {
             node.change = node.velocity - node.change;
         }

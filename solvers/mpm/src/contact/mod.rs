@@ -1,7 +1,9 @@
 //! How bodies touch: springs between surfaces, or conditions at nodes.
 
+pub(crate) mod nodal;
 pub(crate) mod pairs;
 pub(crate) mod penalty;
+pub(crate) mod shared;
 
 use grainbench_scene::space::Space;
 

@@ -1,0 +1,184 @@
+//! The papers' contact: at nodes that several bodies or a wall share, each body is held against the common velocity.
+//!
+//! The common velocity is that of the centre of mass (of the wall, where there is one), v. Where a body of velocity vᵍ is
+//! in contact, with its own outward normal n, Δv = vᵍ − v and t along its tangential part,
+//! vᵍ ← vᵍ − Δv_n (n + μ' t), μ' = min(μ, Δv_t/Δv_n) (Bardenhagen, Brackbill & Sulsky 2000, eqs. 20–23; Bardenhagen
+//! et al. 2001, eq. 10). Contact means
+//!
+//! - 2000: approach, Δv_n > 0;
+//! - 2001: compression, n·σn < 0, whichever way the body moves; departing, the quotient above is negative and the body
+//!   sticks, as the equation has it. The impulse is scaled by min(γ/(ε̇Δt), 1), γ = 1/2, with ε̇ the rate of strain that it
+//!   would give a cell (eqs. 17–22; eq. 22 prints `max`, which would enlarge it).
+//!
+//! At a wall the normal is the wall's. Between bodies normals are not common, so momentum is kept only as far as they are
+//! opposite.
+
+use super::shared::{Field, Shared};
+use super::{FrictionTable, Other};
+use crate::bodies::Body;
+use crate::grid::Lattice;
+use crate::options::Contact;
+use crate::walls::RigidPlane;
+use grainbench_scene::space::Space;
+
+/// Safety factor γ of eq. 21.
+const COLLAPSE: f64 = 0.5;
+
+/// What the rules need to know.
+pub(crate) struct Rules<'a> {
+    pub(crate) lattice: &'a Lattice,
+    pub(crate) friction: &'a FrictionTable,
+    pub(crate) contact: Contact,
+    pub(crate) time_step: f64,
+}
+
+/// Velocities after contact at all shared nodes; walls feel what is taken from the bodies, as a force over the step.
+pub(crate) fn apply<S: Space, F: Field<S>>(
+    rules: &Rules<'_>,
+    bodies: &[Body],
+    shared: &Shared<S>,
+    walls: &mut [RigidPlane<S>],
+    field: &mut F,
+) {
+    for group in shared.groups() {
+        let members = &shared.members[group.members.clone()];
+        let (mut mass, mut momentum) = (0.0, S::ORIGIN);
+        for member in members {
+            mass += member.mass;
+            momentum += field.velocity(member.slot) * member.mass;
+        }
+        let common = match group.wall {
+            Some(wall) => walls[wall].velocity(group.position),
+            None => momentum * (1.0 / mass),
+        };
+        for member in members {
+            let velocity = field.velocity(member.slot);
+            let away = velocity - common;
+            let change = if rules.contact == Contact::NoSlip {
+                away
+            } else {
+                let body = &bodies[member.body as usize];
+                let friction = match group.wall {
+                    Some(wall) => rules.friction.between(body.material, walls[wall].material),
+                    None => {
+                        let other = members.iter().find(|other| other.body != member.body);
+                        other.map_or(0.0, |other| {
+                            rules.friction.between(body.material, bodies[other.body as usize].material)
+                        })
+                    }
+                };
+                let face = &shared.faces[member.slot];
+                let own = match group.wall {
+                    Some(wall) => -walls[wall].normal,
+                    None => face.normal,
+                };
+                let length = S::dot(own, own).sqrt();
+                if !(length > 0.0) {
+                    continue;
+                }
+                let normal = own * (1.0 / length);
+                let along = S::dot(away, normal);
+                let touching = match rules.contact {
+                    Contact::Traction => S::dot(normal, face.stress * normal) < 0.0,
+                    _ => along > 0.0,
+                };
+                if !touching {
+                    continue;
+                }
+                let tangential = away - normal * along;
+                let size = S::dot(tangential, tangential).sqrt();
+                // Departing, Δv_t/Δv_n is below μ whatever it is.
+                let kept = if along > 0.0 && size > friction * along { friction * along / size } else { 1.0 };
+                let change = normal * along + tangential * kept;
+                let wanted = if rules.contact == Contact::Traction {
+                    let others = if group.wall.is_some() { f64::INFINITY } else { mass - member.mass };
+                    let worse = (member.mass / others).max(1.0);
+                    let rate = (0..S::DIMENSION)
+                        .map(|axis| worse * S::component(change, axis).abs() / rules.lattice.cell[axis])
+                        .fold(0.0, f64::max);
+                    (COLLAPSE / (rate * rules.time_step)).min(1.0)
+                } else {
+                    1.0
+                };
+                change * wanted
+            };
+            field.set(member.slot, velocity - change);
+            if let Some(wall) = group.wall.filter(|_| F::COUNTS) {
+                walls[wall].force += change * (member.mass / rules.time_step);
+            }
+        }
+    }
+}
+
+/// Pairs of bodies, and of bodies and walls, that have met at a node: pushed apart along their common normal while they
+/// approach or press, with Coulomb friction, by projected Gauss–Seidel over the pairs of each node. Impulses are equal and
+/// opposite, so momentum is kept to rounding however many bodies meet.
+pub(crate) fn apply_pairs<S: Space, F: Field<S>>(
+    rules: &Rules<'_>,
+    bodies: &[Body],
+    shared: &mut Shared<S>,
+    walls: &mut [RigidPlane<S>],
+    field: &mut F,
+) {
+    let Shared { meetings, faces, .. } = shared;
+    for node in meetings.chunk_by_mut(|a, b| a.key == b.key) {
+        let single = node.len() == 1;
+        node.iter_mut().for_each(|meeting| meeting.impulse = S::ORIGIN);
+        for _ in 0..if single { 1 } else { SWEEPS } {
+            let mut largest = 0.0_f64;
+            for meeting in node.iter_mut() {
+                let (one, normal) = (meeting.slots[0], meeting.normal);
+                let body = &bodies[meeting.body as usize];
+                let (velocity, inverse, friction, traction) = match meeting.other {
+                    Other::Wall(wall) => {
+                        let wall = &walls[usize::from(wall)];
+                        let friction = rules.friction.between(body.material, wall.material);
+                        (wall.velocity(meeting.position), 0.0, friction, S::NO_GRADIENT)
+                    }
+                    Other::Body(other) => {
+                        let friction = rules.friction.between(body.material, bodies[other as usize].material);
+                        let two = meeting.slots[1];
+                        (field.velocity(two), 1.0 / meeting.masses[1], friction, faces[two].stress)
+                    }
+                };
+                let apart = field.velocity(one) - velocity;
+                let along = S::dot(apart, normal);
+                let stress = faces[one].stress + traction;
+                let pressing = S::dot(normal, stress * normal) < 0.0;
+                let effective = 1.0 / (1.0 / meeting.masses[0] + inverse);
+                let before = meeting.impulse;
+                if along <= 0.0 && !pressing && S::dot(before, normal) <= 0.0 {
+                    continue;
+                }
+                // Impulse on the other along the normal: what stops the approach, and pulls only while the bodies press.
+                let sum = S::dot(before, normal) + effective * along;
+                let push = if pressing { sum } else { sum.max(0.0) };
+                let rubbed = before - normal * S::dot(before, normal) + (apart - normal * along) * effective;
+                let size = S::dot(rubbed, rubbed).sqrt();
+                let limit = friction * push.max(0.0);
+                let rub = if size > limit { rubbed * (limit / size) } else { rubbed };
+                let impulse = normal * push + rub;
+                let change = impulse - before;
+                meeting.impulse = impulse;
+                field.set(one, field.velocity(one) - change * (1.0 / meeting.masses[0]));
+                match meeting.other {
+                    Other::Body(_) => {
+                        let two = meeting.slots[1];
+                        field.set(two, field.velocity(two) + change * inverse);
+                    }
+                    Other::Wall(wall) if F::COUNTS => {
+                        walls[usize::from(wall)].force += change * (1.0 / rules.time_step);
+                    }
+                    Other::Wall(_) => {}
+                }
+                largest = largest.max(S::dot(change, change) / (effective * effective));
+            }
+            if largest <= 1e-28 {
+                break;
+            }
+        }
+    }
+}
+
+/// Sweeps over the pairs of a node at most.
+const SWEEPS: usize = 12;

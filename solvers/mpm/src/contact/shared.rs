@@ -1,0 +1,388 @@
+//! Nodes that several bodies, or a body and a wall, share.
+
+use super::Other;
+use super::pairs::Pair;
+use crate::basis::{Basis, Linear, Quadratic};
+use crate::bodies::Body;
+use crate::grid::{Lattice, Node, Stencil, Window};
+use crate::points::Points;
+use crate::surface::Tracers;
+use crate::walls::RigidPlane;
+use grainbench_scene::space::Space;
+use std::ops::Range;
+
+/// Velocities of nodes: those of the step, or those that were projected once more.
+pub(crate) trait Field<S: Space> {
+    /// Whether what walls take counts as their force.
+    const COUNTS: bool;
+    fn velocity(&self, slot: usize) -> S::Vector;
+    fn set(&mut self, slot: usize, velocity: S::Vector);
+}
+
+/// Velocities of the step.
+pub(crate) struct Stepped<'a, S: Space>(pub(crate) &'a mut [Node<S>]);
+
+impl<S: Space> Field<S> for Stepped<'_, S> {
+    const COUNTS: bool = true;
+    #[inline(always)]
+    fn velocity(&self, slot: usize) -> S::Vector {
+        self.0[slot].velocity
+    }
+    #[inline(always)]
+    fn set(&mut self, slot: usize, velocity: S::Vector) {
+        self.0[slot].velocity = velocity;
+    }
+}
+
+/// Projected velocities.
+pub(crate) struct Projected<'a, S: Space>(pub(crate) &'a mut [S::Vector]);
+
+impl<S: Space> Field<S> for Projected<'_, S> {
+    const COUNTS: bool = false;
+    #[inline(always)]
+    fn velocity(&self, slot: usize) -> S::Vector {
+        self.0[slot]
+    }
+    #[inline(always)]
+    fn set(&mut self, slot: usize, velocity: S::Vector) {
+        self.0[slot] = velocity;
+    }
+}
+
+/// A body at a shared node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Member {
+    key: u64,
+    pub(crate) body: u32,
+    pub(crate) slot: usize,
+    pub(crate) mass: f64,
+}
+
+/// The surface of a body as a node sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Face<S: Space> {
+    /// Outward, of any length.
+    pub(crate) normal: S::Vector,
+    /// Σ w V σ: the stress, times a volume (Pa m³).
+    pub(crate) stress: S::Matrix,
+}
+
+/// A body that has met another or a wall, at a node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Meeting<S: Space> {
+    pub(crate) key: u64,
+    pub(crate) body: u32,
+    pub(crate) other: Other,
+    /// Where the node is (m).
+    pub(crate) position: S::Vector,
+    /// The node of the body and that of the other.
+    pub(crate) slots: [usize; 2],
+    pub(crate) masses: [f64; 2],
+    /// Unit normal from the body to the other.
+    pub(crate) normal: S::Vector,
+    /// Impulse on the other so far (N s).
+    pub(crate) impulse: S::Vector,
+}
+
+/// A shared node.
+pub(crate) struct Group<S: Space> {
+    pub(crate) members: Range<usize>,
+    /// The wall it is behind.
+    pub(crate) wall: Option<usize>,
+    pub(crate) position: S::Vector,
+}
+
+/// All shared nodes of a step.
+#[derive(Clone, Debug)]
+pub(crate) struct Shared<S: Space> {
+    pub(crate) members: Vec<Member>,
+    groups: Vec<(Range<usize>, Option<usize>, S::Vector)>,
+    pub(crate) faces: Vec<Face<S>>,
+    pub(crate) meetings: Vec<Meeting<S>>,
+    densities: Vec<f64>,
+    /// Whether a body shares any node.
+    touching: Vec<bool>,
+}
+
+/// One number for a node.
+fn key(node: [i32; 3]) -> u64 {
+    const BIAS: i64 = 1 << 20;
+    let part = |axis: usize| (i64::from(node[axis]) + BIAS) as u64 & 0x1f_ffff;
+    part(2) << 42 | part(1) << 21 | part(0)
+}
+
+impl<S: Space> Shared<S> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            members: Vec::new(),
+            groups: Vec::new(),
+            faces: Vec::new(),
+            meetings: Vec::new(),
+            densities: Vec::new(),
+            touching: Vec::new(),
+        }
+    }
+
+    pub(crate) fn groups(&self) -> impl Iterator<Item = Group<S>> + '_ {
+        self.groups.iter().map(|(members, wall, position)| Group {
+            members: members.clone(),
+            wall: *wall,
+            position: *position,
+        })
+    }
+
+    /// Finds the nodes that bodies share with each other or with a wall.
+    pub(crate) fn find(
+        &mut self,
+        lattice: &Lattice,
+        bodies: &[Body],
+        fields: usize,
+        pairs: &[Pair<S>],
+        walls: &[RigidPlane<S>],
+        nodes: &[Node<S>],
+    ) {
+        self.members.clear();
+        let behind = |position: S::Vector| {
+            walls.iter().position(|wall| wall.height(position) <= 1e-9 * lattice.shortest(S::DIMENSION))
+        };
+        if !walls.is_empty() {
+            for (place, body) in bodies.iter().enumerate().take(fields) {
+                let window = &body.part.window;
+                for at in 0..window.len() {
+                    let (slot, node) = (window.start + at, window.node(at));
+                    if nodes[slot].mass > 0.0 && behind(lattice.place::<S>(node)).is_some() {
+                        self.add(lattice, place, node, slot, nodes);
+                    }
+                }
+            }
+        }
+        for pair in pairs {
+            let [one, two] = [pair.first, pair.second].map(|body| bodies[body as usize].part.window);
+            let periods = [0, 1, 2].map(|axis| {
+                let shift = if axis < S::DIMENSION { S::component(pair.shift, axis) } else { 0.0 };
+                (shift / lattice.cell[axis]).round() as i32
+            });
+            each_common(&one, &two, periods, |node, other, first, second| {
+                if nodes[first].mass > 0.0 && nodes[second].mass > 0.0 {
+                    self.add(lattice, pair.first as usize, node, first, nodes);
+                    self.add(lattice, pair.second as usize, other, second, nodes);
+                }
+            });
+        }
+        self.members.sort_unstable_by_key(|member| (member.key, member.body));
+        self.members.dedup_by_key(|member| (member.key, member.body));
+        self.groups.clear();
+        let mut start = 0;
+        for group in self.members.chunk_by(|a, b| a.key == b.key) {
+            let first = &group[0];
+            let window = &bodies[first.body as usize].part.window;
+            let position = lattice.place::<S>(window.node(first.slot - window.start));
+            self.groups.push((start..start + group.len(), behind(position), position));
+            start += group.len();
+        }
+    }
+
+    fn add(&mut self, lattice: &Lattice, body: usize, node: [i32; 3], slot: usize, nodes: &[Node<S>]) {
+        let key = key(lattice.wrapped(node));
+        self.members.push(Member { key, body: body as u32, slot, mass: nodes[slot].mass });
+    }
+
+    /// Which bodies share nodes.
+    pub(crate) fn find_touching(&mut self, bodies: usize) {
+        self.touching.clear();
+        self.touching.resize(bodies, false);
+        for member in &self.members {
+            self.touching[member.body as usize] = true;
+        }
+        for meeting in &self.meetings {
+            self.touching[meeting.body as usize] = true;
+            if let Other::Body(other) = meeting.other {
+                self.touching[other as usize] = true;
+            }
+        }
+    }
+
+    /// Normals from the gradient of mass, and stresses, of all bodies that share nodes.
+    pub(crate) fn find_faces<B: Basis>(&mut self, lattice: &Lattice, bodies: &[Body], used: usize, points: &Points<S>) {
+        self.faces.clear();
+        self.faces.resize(used, Face { normal: S::ORIGIN, stress: S::NO_GRADIENT });
+        for (place, body) in bodies.iter().enumerate() {
+            if !self.touching[place] {
+                continue;
+            }
+            for at in body.part.points.clone() {
+                let stencil = Stencil::new::<S, B>(lattice, points.position[at], body.part.half);
+                let (mass, volume) = (points.mass[at], points.volume[at]);
+                let stress = S::restrict_gradient(S::embed_symmetric(points.stress[at])) * volume;
+                stencil.each::<S, B>(&body.part.window, |node| {
+                    let face = &mut self.faces[node.slot];
+                    face.normal += stencil.gradient(&node) * mass;
+                    face.stress += stress * node.weight;
+                });
+            }
+        }
+    }
+
+    /// Normals from a density at the middles of cells, smoothed by a quadratic B-spline (2000, eq. 24), and its gradient at
+    /// the nodes.
+    pub(crate) fn smooth_normals(&mut self, lattice: &Lattice, bodies: &[Body], used: usize, points: &Points<S>) {
+        self.densities.clear();
+        self.densities.resize(used, 0.0);
+        let mut middles = *lattice;
+        (0..S::DIMENSION).for_each(|axis| middles.origin[axis] += 0.5 * lattice.cell[axis]);
+        for (place, body) in bodies.iter().enumerate() {
+            if !self.touching[place] {
+                continue;
+            }
+            for at in body.part.points.clone() {
+                let stencil = Stencil::new::<S, Quadratic>(&middles, points.position[at], body.part.half);
+                let mass = points.mass[at];
+                stencil.each::<S, Quadratic>(&body.part.window, |node| {
+                    self.densities[node.slot] += node.weight * mass;
+                });
+            }
+        }
+        // The middle of the cell above node i has its number; at the node itself hats of middles have their kinks, and
+        // the gradient is the mean over the cells around it.
+        for member in &self.members {
+            let window = &bodies[member.body as usize].part.window;
+            let node = window.node(member.slot - window.start);
+            let mut gradient = [0.0; 3];
+            for corner in 0..1 << S::DIMENSION {
+                let low = [0, 1, 2].map(|axis| i32::from(axis < S::DIMENSION && corner >> axis & 1 == 0));
+                let cell = [0, 1, 2].map(|axis| node[axis] - low[axis]);
+                if window.holds(S::DIMENSION, cell, 1) {
+                    let density = self.densities[window.slot(cell)];
+                    (0..S::DIMENSION).for_each(|axis| {
+                        gradient[axis] += density * f64::from(1 - 2 * low[axis]) / lattice.cell[axis];
+                    });
+                }
+            }
+            self.faces[member.slot].normal = -S::restrict(nalgebra::Vector3::from(gradient));
+        }
+    }
+
+    /// Finds the nodes around tracers that have gone through another surface or a wall, with the normals there.
+    pub(crate) fn find_meetings(
+        &mut self,
+        lattice: &Lattice,
+        bodies: &[Body],
+        pairs: &[Pair<S>],
+        tracers: &Tracers<S>,
+        walls: &[RigidPlane<S>],
+        nodes: &[Node<S>],
+    ) {
+        self.meetings.clear();
+        for (number, wall) in walls.iter().enumerate() {
+            for (place, body) in bodies.iter().enumerate() {
+                for at in body.tracers.clone() {
+                    let position = tracers.position[at];
+                    if wall.height(position) <= 0.0 {
+                        let other = Other::Wall(number as u16);
+                        self.meet(lattice, bodies, place, other, position, -wall.normal, S::ORIGIN, nodes);
+                    }
+                }
+            }
+        }
+        let reach = 0.8 * lattice.shortest(S::DIMENSION);
+        for pair in pairs.iter().flat_map(|pair| [*pair, pair.exchanged()]) {
+            let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
+            let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
+            for chunk in tracers.chunks[first.chunks.clone()].iter().filter(|chunk| chunk.meets(low, high)) {
+                for at in chunk.tracers.clone() {
+                    let normal = tracers.normal(at);
+                    let position = tracers.position[at];
+                    let near = tracers.nearest(&second.chunks, position - pair.shift, normal, reach);
+                    let Some(near) = near.filter(|near| near.gap <= 0.0) else { continue };
+                    // The lower body comes first, so that both passes find the same pair.
+                    let (out, swap) = (normal - near.normal, pair.second < pair.first);
+                    let (body, other) = if swap { (pair.second, pair.first) } else { (pair.first, pair.second) };
+                    let (position, shift) =
+                        if swap { (position - pair.shift, -pair.shift) } else { (position, pair.shift) };
+                    let out = if swap { -out } else { out };
+                    self.meet(lattice, bodies, body as usize, Other::Body(other), position, out, shift, nodes);
+                }
+            }
+        }
+        self.meetings.sort_by_key(|meeting| (meeting.key, meeting.body, meeting.other));
+        self.meetings.dedup_by(|next, kept| {
+            let same = (next.key, next.body, next.other) == (kept.key, kept.body, kept.other);
+            if same {
+                kept.normal += next.normal;
+            }
+            same
+        });
+        for meeting in &mut self.meetings {
+            let length = S::dot(meeting.normal, meeting.normal).sqrt();
+            meeting.normal = meeting.normal * (1.0 / length);
+        }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "all of it is one meeting")]
+    fn meet(
+        &mut self,
+        lattice: &Lattice,
+        bodies: &[Body],
+        body: usize,
+        other: Other,
+        position: S::Vector,
+        normal: S::Vector,
+        shift: S::Vector,
+        nodes: &[Node<S>],
+    ) {
+        let window = bodies[body].part.window;
+        let stencil = Stencil::new::<S, Linear>(lattice, position, 0.0);
+        if !window.holds(S::DIMENSION, stencil.base(), Linear::WIDTH as i32) {
+            return;
+        }
+        let base = stencil.base();
+        stencil.each::<S, Linear>(&window, |node| {
+            let place = [0, 1, 2].map(|axis| base[axis] + node.offset(axis));
+            let mass = nodes[node.slot].mass;
+            let (slots, masses) = match other {
+                Other::Wall(_) => ([node.slot; 2], [mass, f64::INFINITY]),
+                Other::Body(other) => {
+                    let window = bodies[other as usize].part.window;
+                    let there = [0, 1, 2].map(|axis| {
+                        let away = if axis < S::DIMENSION { S::component(shift, axis) } else { 0.0 };
+                        place[axis] - (away / lattice.cell[axis]).round() as i32
+                    });
+                    if !window.holds(S::DIMENSION, there, 1) {
+                        return;
+                    }
+                    let slot = window.slot(there);
+                    ([node.slot, slot], [mass, nodes[slot].mass])
+                }
+            };
+            if masses[0] > 0.0 && masses[1] > 0.0 {
+                self.meetings.push(Meeting {
+                    key: key(lattice.wrapped(place)),
+                    body: body as u32,
+                    other,
+                    position: lattice.place::<S>(place),
+                    slots,
+                    masses,
+                    normal: normal * node.weight,
+                    impulse: S::ORIGIN,
+                });
+            }
+        });
+    }
+}
+
+/// Visits the nodes that two windows share, the second one's `periods` nodes further on: the node in the first, in the
+/// second, and their places.
+fn each_common(one: &Window, two: &Window, periods: [i32; 3], mut visit: impl FnMut([i32; 3], [i32; 3], usize, usize)) {
+    let low = [0, 1, 2].map(|axis| one.low[axis].max(two.low[axis] + periods[axis]));
+    let high =
+        [0, 1, 2].map(|axis| (one.low[axis] + one.size[axis]).min(two.low[axis] + two.size[axis] + periods[axis]));
+    for z in low[2]..high[2] {
+        for y in low[1]..high[1] {
+            for x in low[0]..high[0] {
+                let node = [x, y, z];
+                let other = [x - periods[0], y - periods[1], z - periods[2]];
+                visit(node, other, one.slot(node), two.slot(other));
+            }
+        }
+    }
+}
