@@ -7,7 +7,7 @@
 pub(crate) struct Axis {
     /// The first node.
     pub(crate) base: i32,
-    /// Value at the point; for uGIMP, mean over the point's extent.
+    /// Value at the point; for GIMP, mean over the point's extent.
     pub(crate) value: [f64; 3],
     /// Derivative (per cell), or its mean.
     pub(crate) slope: [f64; 3],
@@ -22,6 +22,8 @@ pub(crate) struct Axis {
 pub(crate) trait Basis: Copy + Send + 'static {
     /// Nodes along an axis that reach a point.
     const WIDTH: usize;
+    /// Whether the extent of a point matters.
+    const EXTENDED: bool = false;
     /// The functions at `at` for a point that reaches `half` to both sides.
     fn axis(at: f64, half: f64) -> Axis;
 }
@@ -60,12 +62,13 @@ impl Basis for Quadratic {
     }
 }
 
-/// Hat functions averaged over a point of fixed extent (uGIMP: Bardenhagen & Kober 2004; Wallstedt & Guilkey 2008).
+/// Hat functions averaged over the extent of a point (Bardenhagen & Kober 2004; Wallstedt & Guilkey 2008).
 #[derive(Clone, Copy)]
 pub(crate) struct Gimp;
 
 impl Basis for Gimp {
     const WIDTH: usize = 3;
+    const EXTENDED: bool = true;
 
     #[inline(always)]
     fn axis(at: f64, half: f64) -> Axis {

@@ -157,14 +157,14 @@ impl<S: Space> Reached<S> {
 }
 
 impl Stencil {
-    /// The nodes around a position (m) of a point that reaches `half` (cells) to both sides.
+    /// The nodes around a position (m) of a point that reaches `half` (cells) to both sides along each axis.
     #[inline(always)]
-    pub(crate) fn new<S: Space, B: Basis>(lattice: &Lattice, position: S::Vector, half: f64) -> Self {
+    pub(crate) fn new<S: Space, B: Basis>(lattice: &Lattice, position: S::Vector, half: [f64; 3]) -> Self {
         let mut stencil = Self { axes: [Axis::default(); 3], inverse: [0.0; 3], at: [0.0; 3], cell: lattice.cell };
         for axis in 0..S::DIMENSION {
             let inverse = 1.0 / lattice.cell[axis];
             let at = (S::component(position, axis) - lattice.origin[axis]) * inverse;
-            stencil.axes[axis] = B::axis(at, half);
+            stencil.axes[axis] = B::axis(at, half[axis]);
             stencil.inverse[axis] = inverse;
             stencil.at[axis] = at;
         }

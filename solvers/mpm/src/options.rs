@@ -9,7 +9,7 @@ pub enum Basis {
     Linear,
     /// Quadratic B-splines.
     Quadratic,
-    /// Hat functions averaged over points of fixed extent.
+    /// Hat functions averaged over the extent of points, which grows with the stretch along each axis (GIMP).
     Gimp,
 }
 
@@ -117,7 +117,7 @@ impl fmt::Display for Basis {
         formatter.write_str(match self {
             Self::Linear => "linear basis",
             Self::Quadratic => "quadratic B-splines",
-            Self::Gimp => "uGIMP basis",
+            Self::Gimp => "GIMP basis",
         })
     }
 }

@@ -155,8 +155,12 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Gives every point the velocity that the scene asks for.
+    /// Gives every point the velocity that the scene asks for, half a step before the clock starts, so that every step is
+    /// alike: what balances the bodies at rest does so then too, and gravity beyond that acts from the start.
     fn set_moving(&mut self) {
+        let half = 0.5 * self.time_step;
+        let balanced = self.scene.start.settle.map_or_else(Vector3::zeros, |settle| settle.gravity);
+        let lag = (self.scene.gravity - balanced) * half;
         for body in &self.bodies {
             let medium = medium(body);
             for at in body.part.points.clone() {
@@ -177,9 +181,9 @@ impl<S: Space> Simulation<S> {
                     }
                 };
                 if let Some(motion) = &self.scene.start.manufactured {
-                    velocity += motion.velocity(&medium, position, 0.0);
+                    velocity += motion.velocity(&medium, position, -half);
                 }
-                self.points.velocity[at] = S::restrict(velocity);
+                self.points.velocity[at] = S::restrict(velocity - lag);
             }
         }
     }

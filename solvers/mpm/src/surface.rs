@@ -180,7 +180,7 @@ impl<S: Space> Tracers<S> {
     ) {
         let window = &body.part.window;
         for at in body.tracers.clone() {
-            let stencil = Stencil::new::<S, B>(lattice, self.position[at], body.part.half);
+            let stencil = Stencil::new::<S, B>(lattice, self.position[at], [body.part.half; 3]);
             if !window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
                 continue;
             }

@@ -111,8 +111,24 @@ pub(crate) struct Part {
     pub(crate) points: Range<usize>,
     /// Where their field keeps its nodes.
     pub(crate) window: Window,
-    /// Half the extent of a point (cells), for uGIMP.
+    /// Half the extent of a point (cells), for GIMP.
     pub(crate) half: f64,
+}
+
+impl Part {
+    /// Half the extent of a point along each axis (cells): it grows with the material lines along the axis, √b_ii, which
+    /// keeps points contiguous where the stretch is along the axes and does not change under rotation.
+    #[inline(always)]
+    pub(crate) fn extent<S: Space, B: Basis>(&self, deformation: S::Matrix) -> [f64; 3] {
+        if !B::EXTENDED {
+            return [self.half; 3];
+        }
+        let f = S::embed_gradient(deformation);
+        [0, 1, 2].map(|axis| {
+            let stretch = (f[(axis, 0)].powi(2) + f[(axis, 1)].powi(2) + f[(axis, 2)].powi(2)).sqrt();
+            (self.half * stretch).clamp(1e-3, 0.5)
+        })
+    }
 }
 
 /// Mass, momentum and internal force, −Vσ∇N, of a body's points to its nodes.
@@ -123,7 +139,7 @@ pub(crate) fn scatter<S: Space, B: Basis, T: Transfer>(
     nodes: &mut [Node<S>],
 ) {
     for at in part.points.clone() {
-        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
         let (mass, velocity, affine) = (points.mass[at], points.velocity[at], points.affine[at]);
         let (stress, volume) = (points.stress[at], -points.volume[at]);
         stencil.each::<S, B>(&part.window, |node| {
@@ -145,7 +161,7 @@ pub(crate) fn scatter_force<S: Space, B: Basis>(
     nodes: &mut [Node<S>],
 ) {
     for at in part.points.clone() {
-        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
         let (stress, volume) = (points.stress[at], -points.volume[at]);
         stencil.each::<S, B>(&part.window, |node| {
             nodes[node.slot].change += S::apply(stress, stencil.gradient(&node)) * volume;
@@ -162,7 +178,7 @@ pub(crate) fn scatter_body_force<S: Space, B: Basis>(
     nodes: &mut [Node<S>],
 ) {
     for at in part.points.clone() {
-        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
         let force = force(at);
         stencil.each::<S, B>(&part.window, |node| nodes[node.slot].change += force * node.weight);
     }
@@ -180,7 +196,7 @@ pub(crate) fn gather<S: Space, B: Basis, T: Transfer, const PROJECT: bool>(
     projected: &mut [S::Vector],
 ) {
     for at in part.points.clone() {
-        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
         let (mut around, mut change, mut affine) = (S::ORIGIN, S::ORIGIN, S::NO_GRADIENT);
         stencil.each::<S, B>(&part.window, |node| {
             let from = &nodes[node.slot];
@@ -215,7 +231,7 @@ pub(crate) fn gradients<S: Space, B: Basis>(
     velocity: impl Fn(usize) -> S::Vector,
 ) {
     for at in part.points.clone() {
-        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.half);
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
         let mut gradient = S::NO_GRADIENT;
         stencil.each::<S, B>(&part.window, |node| {
             gradient += S::outer(velocity(node.slot), stencil.gradient(&node));

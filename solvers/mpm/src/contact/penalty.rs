@@ -34,7 +34,7 @@ impl<S: Space> Grip<S> {
         position: S::Vector,
         nodes: &[Node<S>],
     ) -> Option<Self> {
-        let stencil = Stencil::new::<S, B>(lattice, position, part.half);
+        let stencil = Stencil::new::<S, B>(lattice, position, [part.half; 3]);
         if !part.window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
             return None;
         }

@@ -211,7 +211,8 @@ impl<S: Space> Shared<S> {
                 continue;
             }
             for at in body.part.points.clone() {
-                let stencil = Stencil::new::<S, B>(lattice, points.position[at], body.part.half);
+                let extent = body.part.extent::<S, B>(points.deformation[at]);
+                let stencil = Stencil::new::<S, B>(lattice, points.position[at], extent);
                 let (mass, volume) = (points.mass[at], points.volume[at]);
                 let stress = S::restrict_gradient(S::embed_symmetric(points.stress[at])) * volume;
                 stencil.each::<S, B>(&body.part.window, |node| {
@@ -235,7 +236,7 @@ impl<S: Space> Shared<S> {
                 continue;
             }
             for at in body.part.points.clone() {
-                let stencil = Stencil::new::<S, Quadratic>(&middles, points.position[at], body.part.half);
+                let stencil = Stencil::new::<S, Quadratic>(&middles, points.position[at], [body.part.half; 3]);
                 let mass = points.mass[at];
                 stencil.each::<S, Quadratic>(&body.part.window, |node| {
                     self.densities[node.slot] += node.weight * mass;
@@ -331,7 +332,7 @@ impl<S: Space> Shared<S> {
         nodes: &[Node<S>],
     ) {
         let window = bodies[body].part.window;
-        let stencil = Stencil::new::<S, Linear>(lattice, position, 0.0);
+        let stencil = Stencil::new::<S, Linear>(lattice, position, [0.0; 3]);
         if !window.holds(S::DIMENSION, stencil.base(), Linear::WIDTH as i32) {
             return;
         }
