@@ -5,7 +5,7 @@ mod modal;
 
 use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::rigid_rows;
 use crate::scope::Scope;
@@ -199,44 +199,31 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         let unit = 2.0 * scene.grains[0].radius / WAVE_SPEED;
         let impedance = threshold(scene) / ARRIVED;
         let mut curves = Vec::new();
-        let mut points = Vec::new();
+        let mut arrived = Vec::new();
         for first in 1..scene.grains.len() {
             let force = done.series().column(&format!("{first}-{}.normal_force", first + 1)).unwrap_or_default();
             let samples = done.series().time.iter().zip(force).step_by(4);
-            curves.push(Curve {
-                label: format!("discs {first} and {}", first + 1),
-                stroke: Stroke::Line,
-                points: samples.map(|(time, force)| (time / unit, force / impedance)).collect(),
-            });
+            let points = samples.map(|(time, force)| (time / unit, force / impedance)).collect();
+            curves.push(Curve::new(format!("discs {first} and {}", first + 1), Stroke::Line, points));
             if let Ok(time) = arrival(&done, first) {
-                points.push((first as f64 + 1.0, time / unit));
+                arrived.push((first as f64 + 1.0, time / unit));
             }
         }
-        figures.push(graph(
+        figures.push(Figure::graph(
             variant,
             title,
             "Normal forces; they count as arrived at a tenth of the impedance force.",
-            ["time t c/d, transits of a disc", "normal force / V√(k m)"],
+            [Axis::linear("time t c/d, transits of a disc"), Axis::linear("normal force / V√(k m)")],
             curves,
         ));
-        arrivals.push(Curve { label: variant.to_owned(), stroke: Stroke::MarkedLine, points });
+        arrivals.push(Curve::new(variant, Stroke::MarkedLine, arrived));
     }
-    figures.push(graph(
+    figures.push(Figure::graph(
         "arrivals",
         "Arrival of force",
         "At the contact of every disc with the one before it.",
-        ["disc", "time of arrival t c/d"],
+        [Axis::linear("disc"), Axis::linear("time of arrival t c/d")],
         arrivals,
     ));
     Ok(figures)
-}
-
-fn graph(name: &str, title: &str, caption: &str, [x, y]: [&str; 2], curves: Vec<Curve>) -> Figure {
-    let axis = |label: &str| Axis { label: label.to_owned(), logarithmic: false };
-    Figure {
-        name: name.to_owned(),
-        title: title.to_owned(),
-        caption: caption.to_owned(),
-        drawing: Drawing::Graph(Graph { x: axis(x), y: axis(y), curves }),
-    }
 }

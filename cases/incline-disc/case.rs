@@ -1,5 +1,8 @@
 //! A disc released from rest on an inclined plane (2000 paper).
 
+#[path = "elastic.rs"]
+mod elastic;
+
 use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
 use crate::figure::Figure;
@@ -42,11 +45,12 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID)].concat()
+    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID), elastic::gates()].concat()
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
     let mut figures = incline::figures(bench, SLOPES)?;
     figures.push(rigid_rows::figure(bench, RIGID, OneGrain::rigid_incline)?);
+    figures.extend(elastic::figures(bench)?);
     Ok(figures)
 }

@@ -26,6 +26,12 @@ pub const fn fraction(name: &'static str, fraction: f64) -> Rung {
     Rung { name, resolution: Resolution::CriticalFraction(fraction) }
 }
 
+/// Cells per reference length and material points per cell and axis, of a method with a grid.
+#[must_use]
+pub const fn cells(name: &'static str, cells: f64, points: u32) -> Rung {
+    Rung { name, resolution: Resolution::grid(cells, points) }
+}
+
 /// A benchmark case. Its folder holds scene, gates and derivation.
 pub struct Case {
     /// Name, as on the command line and as its folder.

@@ -11,6 +11,20 @@ pub struct Axis {
     pub logarithmic: bool,
 }
 
+impl Axis {
+    /// An even axis.
+    #[must_use]
+    pub fn linear(label: &str) -> Self {
+        Self { label: label.to_owned(), logarithmic: false }
+    }
+
+    /// A logarithmic axis.
+    #[must_use]
+    pub fn log(label: &str) -> Self {
+        Self { label: label.to_owned(), logarithmic: true }
+    }
+}
+
 /// How a curve is drawn. Colour follows the order of the curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stroke {
@@ -33,6 +47,14 @@ pub struct Curve {
     pub stroke: Stroke,
     /// Points (x, y) in the units of the axes.
     pub points: Vec<(f64, f64)>,
+}
+
+impl Curve {
+    /// A curve with a name.
+    #[must_use]
+    pub fn new(label: impl Into<String>, stroke: Stroke, points: Vec<(f64, f64)>) -> Self {
+        Self { label: label.into(), stroke, points }
+    }
 }
 
 /// A graph with axes.
@@ -90,4 +112,17 @@ pub struct Figure {
     pub caption: String,
     /// The drawing.
     pub drawing: Drawing,
+}
+
+impl Figure {
+    /// A graph.
+    #[must_use]
+    pub fn graph(name: &str, title: &str, caption: &str, [x, y]: [Axis; 2], curves: Vec<Curve>) -> Self {
+        Self {
+            name: name.to_owned(),
+            title: title.to_owned(),
+            caption: caption.to_owned(),
+            drawing: Drawing::Graph(Graph { x, y, curves }),
+        }
+    }
 }

@@ -40,6 +40,7 @@ fn change(setting: &mut Setting, word: &str) -> Option<()> {
         "gimp" => setting.basis = Basis::Gimp,
         "flip" => setting.transfer = Transfer::Flip { pic: 0.0 },
         "apic" => setting.transfer = Transfer::Apic,
+        "spin" => setting.transfer = Transfer::Spin,
         "usf" => setting.stress_update = StressUpdate::First,
         "usl" => setting.stress_update = StressUpdate::Last,
         "musl" => setting.stress_update = StressUpdate::ModifiedLast,
