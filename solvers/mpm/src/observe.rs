@@ -117,7 +117,7 @@ impl<S: Space> Simulation<S> {
         for at in range.clone() {
             mass += points.mass[at];
             position += S::embed(points.position[at]) * points.mass[at];
-            momentum += S::embed(points.velocity[at]) * points.mass[at];
+            momentum += self.velocity(at) * points.mass[at];
         }
         position /= mass;
         let velocity = momentum / mass;
@@ -125,7 +125,7 @@ impl<S: Space> Simulation<S> {
         let mut mean = Matrix3::zeros();
         for at in range {
             let arm = S::embed(points.position[at]) - position;
-            let own = S::embed(points.velocity[at]);
+            let own = self.velocity(at);
             let share = points.mass[at];
             angular += arm.cross(&own) * share;
             inertia += (Matrix3::from_diagonal_element(arm.norm_squared()) - arm * arm.transpose()) * share;
@@ -152,6 +152,12 @@ impl<S: Space> Simulation<S> {
         Whole { mass, position, velocity, spin, inertia, kinetic, angle }
     }
 
+    /// Velocity of a point at the time of the look, half a step on.
+    fn velocity(&self, at: usize) -> Vector3<f64> {
+        let now = self.points.velocity[at];
+        S::embed(now + (now - self.before[at]) * 0.5)
+    }
+
     fn state(&self, at: usize) -> State {
         State {
             deformation: embed_deformation::<S>(self.points.deformation[at]),
@@ -172,7 +178,7 @@ impl<S: Space> Simulation<S> {
             owner: body.owner,
             position: S::embed(points.position[at]),
             displacement: S::embed(points.position[at] - points.start[at]),
-            velocity: S::embed(points.velocity[at]),
+            velocity: self.velocity(at),
             stress: [stress.m11, stress.m22, stress.m33, stress.m12, stress.m23, stress.m31],
             plastic_strain: points.plastic_strain[at],
             volume: points.volume[at],

@@ -83,6 +83,8 @@ pub(crate) struct Simulation<S: Space> {
     settling: bool,
     /// Way since the points were last put in order, of the fastest (m).
     travelled: f64,
+    /// Velocities of the points a step before those of the last look (m/s): velocities are half a step behind positions.
+    pub(crate) before: Vec<S::Vector>,
     /// Step of the last look.
     pub(crate) looked: u64,
     pub(crate) cost: Cost,
@@ -127,6 +129,7 @@ impl<S: Space> Simulation<S> {
             step: 0,
             settling: false,
             travelled: f64::INFINITY,
+            before: Vec::new(),
             looked: 0,
             cost: Cost::default(),
         };
@@ -161,6 +164,7 @@ impl<S: Space> Simulation<S> {
         let half = 0.5 * self.time_step;
         let balanced = self.scene.start.settle.map_or_else(Vector3::zeros, |settle| settle.gravity);
         let lag = (self.scene.gravity - balanced) * half;
+        self.before.resize(self.points.len(), S::ORIGIN);
         for body in &self.bodies {
             let medium = medium(body);
             for at in body.part.points.clone() {
@@ -180,10 +184,13 @@ impl<S: Space> Simulation<S> {
                         block.velocity + Vector3::new(wave, 0.0, 0.0)
                     }
                 };
+                let mut behind = velocity - lag;
                 if let Some(motion) = &self.scene.start.manufactured {
-                    velocity += motion.velocity(&medium, position, -half);
+                    velocity += motion.velocity(&medium, position, 0.0);
+                    behind += motion.velocity(&medium, position, -half);
                 }
-                self.points.velocity[at] = S::restrict(velocity - lag);
+                self.points.velocity[at] = S::restrict(behind);
+                self.before[at] = S::restrict(behind * 3.0 - velocity * 2.0);
             }
         }
     }
@@ -212,6 +219,9 @@ impl<S: Space> Simulation<S> {
             }
         }
         self.sort();
+        if record {
+            self.before.copy_from_slice(&self.points.velocity);
+        }
         self.place_windows()?;
         self.scatter();
         self.find_shared();

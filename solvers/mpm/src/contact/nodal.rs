@@ -24,6 +24,9 @@ use grainbench_scene::space::Space;
 /// Safety factor γ of eq. 21.
 const COLLAPSE: f64 = 0.5;
 
+/// Traction, over the modulus, below which a surface counts as free of it.
+const UNSTRESSED: f64 = 1e-9;
+
 /// What the rules need to know.
 pub(crate) struct Rules<'a> {
     pub(crate) lattice: &'a Lattice,
@@ -79,7 +82,12 @@ pub(crate) fn apply<S: Space, F: Field<S>>(
                 let normal = own * (1.0 / length);
                 let along = S::dot(away, normal);
                 let touching = match rules.contact {
-                    Contact::Traction => S::dot(normal, face.stress * normal) < 0.0,
+                    Contact::Traction => {
+                        // A surface that nothing has pressed yet is held while bodies approach, or nothing ever would.
+                        let none = UNSTRESSED * body.deformable.longitudinal_modulus() * member.mass / body.density;
+                        let traction = S::dot(normal, face.stress * normal);
+                        traction < if along > 0.0 { none } else { 0.0 }
+                    }
                     _ => along > 0.0,
                 };
                 if !touching {

@@ -1,0 +1,109 @@
+//! Deformable against deformable: two discs, three, and what is kept.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_scene::record::Record;
+use support::{collision, column, last, run};
+
+const SPEED: f64 = 0.042_426_406_871_192_85;
+
+fn energy(record: &Record) -> f64 {
+    let energy = column(record, "all.total_energy");
+    energy[energy.len() - 1] / energy[0]
+}
+
+fn momentum_drift(record: &Record) -> f64 {
+    let pair = column(record, "all.momentum_x").iter().zip(column(record, "all.momentum_y"));
+    pair.map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max) / (std::f64::consts::PI * SPEED)
+}
+
+/// Head on without friction: energy is kept, restitution is that of the converged elastic answer, .98.
+#[test]
+fn springs_keep_energy_and_momentum() {
+    for (cells, energy_allowed, restitution_allowed) in [(4.0, 0.005, 0.025), (8.0, 0.005, 0.015)] {
+        let record = run("mpm", &collision(2.0 / cells, 0.0, 0.0), cells, 3);
+        assert!((energy(&record) - 1.0).abs() < energy_allowed, "{cells}: {}", energy(&record));
+        let restitution = -last(&record, "a.vx") / SPEED;
+        assert!((restitution - 0.98).abs() < restitution_allowed, "{cells}: {restitution}");
+        assert!(momentum_drift(&record) < 1e-12);
+        assert!((last(&record, "a.omega") / SPEED).abs() < 0.01);
+    }
+}
+
+/// Off centre with strong friction: ωR/v₀ = .40 at eight cells.
+#[test]
+fn friction_turns_discs() {
+    let record = run("mpm", &collision(0.25, 0.9, 0.5), 8.0, 3);
+    assert!((last(&record, "a.omega") / SPEED - 0.40).abs() < 0.012, "{}", last(&record, "a.omega") / SPEED);
+    assert!((last(&record, "a.omega") - last(&record, "b.omega")).abs() < 1e-9);
+    assert!(momentum_drift(&record) < 1e-12);
+}
+
+/// The gap contact never makes energy and keeps momentum; release on departure makes it, and the 2001 criterion does not.
+#[test]
+fn nodal_contacts_do_what_they_are_known_for() {
+    let gap = run("mpm:gap", &collision(0.5, 0.0, 0.0), 8.0, 3);
+    assert!((0.97..1.002).contains(&energy(&gap)), "{}", energy(&gap));
+    assert!((-last(&gap, "a.vx") / SPEED - 0.962).abs() < 0.02);
+    assert!(momentum_drift(&gap) < 1e-12);
+    let kinematic = run("mpm:2000", &collision(0.5, 0.0, 0.0), 8.0, 3);
+    assert!(energy(&kinematic) > 1.05, "{}", energy(&kinematic));
+    let traction = run("mpm:2001", &collision(0.5, 0.0, 0.0), 8.0, 3);
+    assert!(energy(&traction) < energy(&kinematic));
+}
+
+/// Three discs that meet at a point keep momentum, and all are thrown back alike.
+#[test]
+fn three_discs_keep_momentum() {
+    let at = |number: f64| {
+        let angle = (90.0 + 120.0 * number).to_radians();
+        let away = 2.0 / 3.0_f64.sqrt() + 0.05;
+        (away * angle.cos(), away * angle.sin(), -SPEED * angle.cos(), -SPEED * angle.sin())
+    };
+    let mut text = "dimension = 2\nduration = 10.0\n\
+        materials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
+        contacts.m = { between = ['m', 'm'], law = 'coulomb', friction = 0.3 }\n\
+        probes.all.system = true\nprobes.a.grain = 'g0'\nprobes.b.grain = 'g1'\n"
+        .to_owned();
+    for number in 0..3 {
+        let (x, y, vx, vy) = at(f64::from(number));
+        text += &format!(
+            "[grains.g{number}]\nmaterial = 'm'\nradius = 1.0\nposition = [{x}, {y}]\nvelocity = [{vx}, {vy}]\n"
+        );
+    }
+    for solver in ["mpm", "mpm:gap"] {
+        let record = run(solver, &text, 8.0, 2);
+        assert!(momentum_drift(&record) < 1e-12);
+        assert!((0.95..1.01).contains(&energy(&record)), "{solver}: {}", energy(&record));
+        let back =
+            |name: &str| last(&record, &format!("{name}.vx")).hypot(last(&record, &format!("{name}.vy"))) / SPEED;
+        assert!((back("a") - back("b")).abs() < 0.1 && back("a") > 0.8, "{solver}: {} {}", back("a"), back("b"));
+    }
+}
+
+/// A pair that meets across a periodic face does as in the middle.
+#[test]
+fn a_periodic_face_is_not_felt() {
+    let scene = |shift: f64| {
+        format!(
+            "dimension = 2\nduration = 8.0\ndomain = {{ low = [0.0, 0.0], high = [8.0, 8.0], periodic = [true, true] }}\n\
+             materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
+             contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.3 }}\n\
+             [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [{}, 4.0]\nvelocity = [0.05, 0.0]\n\
+             [grains.b]\nmaterial = 'm'\nradius = 1.0\nposition = [{}, 4.5]\nvelocity = [-0.05, 0.0]\n\
+             [probes]\na.grain = 'a'\n",
+            (shift - 1.0_f64).rem_euclid(8.0),
+            (shift + 1.0_f64).rem_euclid(8.0)
+        )
+    };
+    // Where a node's traction is nearly zero, rounding decides whether the 2001 criterion holds there.
+    for (solver, allowed) in [("mpm", 1e-7), ("mpm:gap", 1e-7), ("mpm:2001", 2e-3)] {
+        let [middle, face] = [4.0, 8.0].map(|shift| run(solver, &scene(shift), 4.0, 2));
+        for name in ["a.vx", "a.vy", "a.omega"] {
+            let [one, two] = [&middle, &face].map(|record| last(record, name));
+            assert!((one - two).abs() < allowed, "{solver} {name}: {one} {two}");
+        }
+        assert!(last(&middle, "a.vx") < 0.03, "{solver}: they met");
+    }
+}

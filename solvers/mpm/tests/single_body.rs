@@ -1,0 +1,133 @@
+//! One body without contact: flight, rotation, vibration, manufactured motion, failures.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_mpm::options::{Basis, StressUpdate, Transfer};
+use grainbench_scene::manufactured::Medium;
+use grainbench_scene::solver::{Cause, Resolution, RunError};
+use support::{column, last, run, scene, try_run};
+
+/// A disc (a sphere) in free fall, turning: the fall is exact up to the step, the spin is kept.
+#[test]
+fn free_flight_keeps_momentum() {
+    for (dimension, position, velocity, spin, gravity, cells) in [
+        (2, "[0.0, 3.0]", "[0.5, 0.2]", "0.3", "[0.0, -0.1]", 6.0),
+        (3, "[0.0, 0.0, 3.0]", "[0.5, 0.2, 0.0]", "[0.1, 0.2, 0.3]", "[0.0, 0.0, -0.1]", 3.0),
+    ] {
+        let text = format!(
+            "dimension = {dimension}\nduration = 1.0\ngravity = {gravity}\n\
+             materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
+             [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = {position}\nvelocity = {velocity}\nspin = {spin}\n\
+             [probes]\ng.grain = 'g'\nall.system = true\n"
+        );
+        let record = run("mpm", &text, cells, 2);
+        assert!((last(&record, "g.x") - 0.5).abs() < 1e-12);
+        let (height, spin) = if dimension == 2 { ("g.y", "g.omega") } else { ("g.z", "g.omega_z") };
+        let fallen = 3.0 + if dimension == 2 { 0.2 } else { 0.0 } - 0.05;
+        assert!((last(&record, height) - fallen).abs() < 1e-12, "{}", last(&record, height));
+        let spins = column(&record, spin);
+        assert!((spins[0] - 0.3).abs() < 1e-12);
+        // Lumped mass spreads a body over its nodes: spin is kept to that order.
+        assert!((last(&record, spin) / 0.3 - 1.0).abs() < 5e-3, "{}", last(&record, spin));
+        if dimension == 2 {
+            assert!((last(&record, "g.angle") - 0.3).abs() < 2e-3, "{}", last(&record, "g.angle"));
+        }
+    }
+}
+
+/// Fixed–free bar, ν = 0: period 10 s and mean velocity .063662 cos ωt (exact).
+#[test]
+fn a_bar_vibrates_at_its_period() {
+    let text = "dimension = 2\nduration = 10.0\nreference_length = 25.0\n\
+        materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.0, constitutive = 'hypoelastic' }\n\
+        [bodies.b]\nmaterial = 'm'\nbox = { low = [0.3, 0.1], high = [25.3, 2.1] }\nfixed = ['x-low']\n\
+        wave = { amplitude = 0.1 }\n[probes]\nb.body = 'b'\nall.system = true\n\
+        p.point = { body = 'b', at = [25.3, 1.1] }\n";
+    let quadratic = |setting: &mut grainbench_mpm::options::Setting| {
+        setting.basis = Basis::Quadratic;
+        setting.transfer = Transfer::Flip { pic: 0.0 };
+    };
+    let record = try_run("mpm", quadratic, text, Resolution::grid(25.0, 2)).unwrap();
+    let velocity = column(&record, "b.vx");
+    assert!((velocity[0] / 0.063_662 - 1.0).abs() < 1e-4);
+    let crossings: Vec<f64> = (1..velocity.len())
+        .filter(|&at| velocity[at - 1] * velocity[at] < 0.0)
+        .map(|at| {
+            let time = &record.series.time;
+            let part = velocity[at - 1] / (velocity[at - 1] - velocity[at]);
+            time[at - 1] + (time[at] - time[at - 1]) * part
+        })
+        .collect();
+    assert!((2.0 * (crossings[1] - crossings[0]) / 10.0 - 1.0).abs() < 2e-3, "{crossings:?}");
+    let energy = column(&record, "all.total_energy");
+    assert!(energy.iter().all(|now| (now / energy[0] - 1.0).abs() < 5e-3));
+    // The free end swings by v₀/ω.
+    let swing = column(&record, "p.ux").iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+    assert!((swing / (0.1 * 10.0 / std::f64::consts::TAU) - 1.0).abs() < 0.02, "{swing}");
+}
+
+/// Root mean square of the error in displacement of a manufactured motion.
+fn manufactured_error(basis: Basis, cells: f64, points: u32) -> f64 {
+    let text = "dimension = 2\nduration = 0.5\nreference_length = 1.0\n\
+        manufactured = { kind = 'axis-aligned', amplitude = 0.05 }\n\
+        domain = { low = [0.0, 0.0], high = [1.0, 1.0], periodic = [true, true] }\n\
+        materials.m = { density = 1000.0, young_modulus = 1000.0, poisson_ratio = 0.3 }\n\
+        [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\n";
+    let flip = |setting: &mut grainbench_mpm::options::Setting| {
+        setting.basis = basis;
+        setting.transfer = Transfer::Flip { pic: 0.0 };
+    };
+    let record = try_run("mpm", flip, text, Resolution::grid(cells, points)).unwrap();
+    let scene = scene(text);
+    let material = scene.deformable[0].unwrap();
+    let medium = Medium { density: 1000.0, lame: material.lame(), shear_modulus: material.shear_modulus };
+    let motion = scene.start.manufactured.unwrap();
+    let snapshot = record.snapshots.last().unwrap();
+    let (sum, volume) = snapshot.points.iter().fold((0.0, 0.0), |(sum, volume), point| {
+        let exact = motion.displacement(&medium, point.position - point.displacement, snapshot.time);
+        (sum + (point.displacement - exact).norm_squared() * point.volume, volume + point.volume)
+    });
+    (sum / volume).sqrt()
+}
+
+/// Second order for GIMP; hats stall, since points cross cells.
+#[test]
+fn manufactured_motion_converges_at_second_order() {
+    let order = |basis, points| {
+        (manufactured_error(basis, 16.0, points) / manufactured_error(basis, 64.0, points)).log2() / 2.0
+    };
+    let gimp = order(Basis::Gimp, 2);
+    assert!(gimp > 1.88, "{gimp}");
+    let hats = order(Basis::Linear, 2);
+    assert!(hats < 0.5, "{hats}");
+    let splines =
+        (manufactured_error(Basis::Quadratic, 8.0, 4) / manufactured_error(Basis::Quadratic, 32.0, 4)).log2() / 2.0;
+    assert!(splines > 1.55, "{splines}");
+}
+
+/// Hats with the stress updated last blow up whatever the step, and say so.
+#[test]
+fn hats_with_stress_last_break_typed() {
+    let last = |setting: &mut grainbench_mpm::options::Setting| setting.stress_update = StressUpdate::Last;
+    let at = Resolution::grid(4.0, 3);
+    let error = try_run("mpm:penalty", last, &support::incline(60.0, 0.3, 1.0, false), at).unwrap_err();
+    let RunError::Broken(broken) = error else { panic!("{error}") };
+    let typed = matches!(
+        broken.cause,
+        Cause::LeftCell { .. } | Cause::Inverted { .. } | Cause::CollapsedCell { .. } | Cause::NotFinite
+    );
+    assert!(typed && broken.step < 2000, "{broken}");
+}
+
+/// Scenes and resolutions that make no sense here are refused with their reason.
+#[test]
+fn what_cannot_be_run_is_refused() {
+    let bare = "dimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
+        [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0]\n";
+    let refused = |text: &str, at| try_run("mpm", |_| (), text, at).unwrap_err();
+    assert!(matches!(refused(bare, Resolution::grid(4.0, 2)), RunError::Unsupported { .. }));
+    let incline = support::incline(30.0, 0.5, 1.0, true);
+    assert!(matches!(refused(&incline, Resolution::TimeStep(1e-3)), RunError::Resolution { .. }));
+    assert!(matches!(refused(&incline, Resolution::grid(f64::NAN, 2)), RunError::Resolution { .. }));
+}

@@ -1,0 +1,71 @@
+//! Scenes of the tests.
+#![allow(dead_code, unreachable_pub, reason = "each test file takes what it needs")]
+
+use grainbench_mpm::options::Setting;
+use grainbench_mpm::solver::Mpm;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError, Solver};
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+
+pub fn scene(text: &str) -> Scene {
+    SceneSource::from_text("test", Path::new(""), &format!("title = 'test'\n{text}"))
+        .scene(&|_| Err("no files".to_owned()))
+        .unwrap()
+}
+
+pub fn try_run(
+    solver: &str,
+    change: impl FnOnce(&mut Setting),
+    text: &str,
+    at: Resolution,
+) -> Result<Record, RunError> {
+    Mpm::named(solver).unwrap().with(change).run(&scene(text), &at, &mut ())
+}
+
+pub fn run(solver: &str, text: &str, cells: f64, points: u32) -> Record {
+    try_run(solver, |_| (), text, Resolution::grid(cells, points)).unwrap()
+}
+
+pub fn column<'a>(record: &'a Record, name: &str) -> &'a [f64] {
+    record.series.column(name).unwrap()
+}
+
+pub fn last(record: &Record, name: &str) -> f64 {
+    *column(record, name).last().unwrap()
+}
+
+/// The disc on an incline of Bardenhagen, Brackbill & Sulsky (2000), set down at t = 0 or settled before.
+pub fn incline(slope_deg: f64, friction: f64, duration: f64, settled: bool) -> String {
+    let start = if settled {
+        let pull = -9.8 * slope_deg.to_radians().cos();
+        format!("settle = {{ duration = 0.3, damping = 60.0, gravity = [0.0, {pull}] }}")
+    } else {
+        "initial_pressure = 'hydrostatic'".to_owned()
+    };
+    format!(
+        "dimension = 2\nduration = {duration}\ngravity = {{ magnitude = 9.8, slope_deg = {slope_deg} }}\n{start}\n\
+         materials.m = {{ density = 3000.0, bulk_modulus = 1.0e7, shear_modulus = 2.5e6 }}\n\
+         contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = {friction} }}\n\
+         [grains.g]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.5]\n\
+         [walls.w]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n\
+         [probes]\ng.grain = 'g'\nw.wall = 'w'\nall.system = true\n"
+    )
+}
+
+/// Two equal elastic discs of radius 1 that approach at .01 c each from a gap (m), and what becomes of them.
+pub fn collision(gap: f64, friction: f64, offset: f64) -> String {
+    let speed = 0.01 * 18.0_f64.sqrt();
+    let half = 0.5 * ((2.0 + gap).powi(2) - (2.0 * offset).powi(2)).sqrt();
+    let duration = 0.5 * gap / speed + 40.0 / 18.0_f64.sqrt();
+    format!(
+        "dimension = 2\nduration = {duration}\n\
+         materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
+         contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = {friction} }}\n\
+         [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [{}, {}]\nvelocity = [{speed}, 0.0]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 1.0\nposition = [{half}, {offset}]\nvelocity = [{}, 0.0]\n\
+         [probes]\na.grain = 'a'\nb.grain = 'b'\nall.system = true\n",
+        -half, -offset, -speed
+    )
+}
