@@ -1,15 +1,17 @@
 //! Plain or compressed: decided by the first bytes, never by the name.
 
-use std::io::{self, BufRead, BufReader, Cursor, Read};
+use std::io::{self, BufRead, Cursor, Read};
 
 use flate2::bufread::MultiGzDecoder;
+use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};
+use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
 const GZIP: &[u8] = &[0x1f, 0x8b];
+const ZSTD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
 /// Compressions that are recognised in order to say so, rather than to complain about bytes that are no text.
-const UNREADABLE: [(&[u8], &str); 4] = [
+const UNREADABLE: [(&[u8], &str); 3] = [
     (&[0xfd, b'7', b'z', b'X', b'Z', 0], "xz (unpack it with `xz -dk`)"),
-    (&[0x28, 0xb5, 0x2f, 0xfd], "zstd (unpack it with `zstd -dk`)"),
     (b"BZh", "bzip2 (unpack it with `bzip2 -dk`)"),
     (b"PK\x03\x04", "zip (unpack it with `unzip`)"),
 ];
@@ -19,25 +21,74 @@ const MARK: u64 = 6;
 
 /// What the first bytes of an input announce.
 pub(crate) enum Decoded<'r> {
-    /// Text, decompressed on the way where it was gzip.
-    Text(Box<dyn BufRead + 'r>),
+    /// Text, decompressed on the way where it was gzip or zstd.
+    Text(Box<dyn Read + 'r>),
     /// A compression that is not read here, by name.
     Unreadable(&'static str),
 }
 
-/// Looks at the first bytes of `reader` and unpacks gzip.
+/// Looks at the first bytes of `reader` and unpacks gzip and zstd.
 pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<Decoded<'r>> {
     let mut head = Vec::new();
     reader.by_ref().take(MARK).read_to_end(&mut head)?;
     if let Some((_, name)) = UNREADABLE.iter().find(|(mark, _)| head.starts_with(mark)) {
         return Ok(Decoded::Unreadable(name));
     }
-    let is_gzip = head.starts_with(GZIP);
+    let is = |mark: &[u8]| head.starts_with(mark);
+    let (gzip, zstd) = (is(GZIP), is(ZSTD));
     let whole = Cursor::new(head).chain(reader);
-    Ok(Decoded::Text(if is_gzip {
+    Ok(Decoded::Text(if gzip {
         // A gzip file may be several ones in a row, as `cat a.gz b.gz` leaves it.
-        Box::new(BufReader::new(MultiGzDecoder::new(whole)))
+        Box::new(MultiGzDecoder::new(whole))
+    } else if zstd {
+        Box::new(ZstdFrames::new(whole))
     } else {
         Box::new(whole)
     }))
+}
+
+/// A zstd file, which may be several frames in a row.
+struct ZstdFrames<R: BufRead> {
+    decoder: FrameDecoder,
+    source: R,
+    inside: bool,
+}
+
+impl<R: BufRead> ZstdFrames<R> {
+    fn new(source: R) -> Self {
+        Self { decoder: FrameDecoder::new(), source, inside: false }
+    }
+}
+
+impl<R: BufRead> Read for ZstdFrames<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        loop {
+            if !self.inside {
+                if self.source.fill_buf()?.is_empty() {
+                    return Ok(0);
+                }
+                match self.decoder.reset(&mut self.source) {
+                    Ok(()) => self.inside = true,
+                    Err(FrameDecoderError::ReadFrameHeaderError(ReadFrameHeaderError::SkipFrame {
+                        length, ..
+                    })) => {
+                        io::copy(&mut self.source.by_ref().take(u64::from(length)), &mut io::sink())?;
+                        continue;
+                    }
+                    Err(error) => return Err(io::Error::new(io::ErrorKind::InvalidData, error)),
+                }
+            }
+            let count = self.decoder.read(out)?;
+            if count > 0 || out.is_empty() {
+                return Ok(count);
+            }
+            if self.decoder.is_finished() {
+                self.inside = false;
+                continue;
+            }
+            let blocks = BlockDecodingStrategy::UptoBlocks(1);
+            let decoded = self.decoder.decode_blocks(&mut self.source, blocks);
+            decoded.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
+        }
+    }
 }

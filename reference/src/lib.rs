@@ -4,24 +4,38 @@
 //! expected there and what was found. Nothing here panics on an input, however damaged.
 
 mod atom;
+mod blocks;
 mod data_file;
 mod data_header;
 mod data_parser;
 mod decoding;
+mod digits;
+mod dump;
+mod dump_header;
 mod fields;
 mod file_hash;
 mod line_reader;
+mod log;
+mod numbers;
 mod provenance;
 mod read_error;
+mod snapshot;
 mod stored;
 mod stored_error;
+mod table;
 mod thermo;
 
 pub use atom::Atom;
 pub use data_file::{DataFile, parse_data, read_data_file};
+pub use digits::Digits;
+pub use dump::DumpReader;
 pub use file_hash::hash_file;
+pub use log::{Log, LoggedRun, LoopTime, parse_log, read_log};
+pub use numbers::{NotFinite, NumberColumn};
 pub use provenance::Provenance;
 pub use read_error::ReadError;
+pub use snapshot::{Coordinate, DumpKind, DumpSnapshot};
 pub use stored::StoredRun;
 pub use stored_error::StoredError;
+pub use table::{Table, parse_table, read_table};
 pub use thermo::{ThermoRow, parse_thermo, read_thermo};

@@ -117,7 +117,7 @@ fn gzip_is_recognised_by_its_bytes() {
 fn other_compressions_are_named() {
     assert_eq!(
         fault(b"\xfd7zXZ\x00rest"),
-        "data:1: expected plain text or gzip, found a file compressed by xz (unpack it with `xz -dk`)"
+        "data:1: expected plain text, gzip or zstd, found a file compressed by xz (unpack it with `xz -dk`)"
     );
 }
 
@@ -262,7 +262,7 @@ fn the_fields_of_a_velocity() {
 
 #[test]
 fn a_line_without_end_is_refused_before_it_fills_the_memory() {
-    let expected = "data:2: expected a line of at most 4096 bytes, found a longer one";
+    let expected = "data:2: expected a line of at most 65536 bytes, found a longer one";
     let endless = BufReader::new((&b"title\n"[..]).chain(std::io::repeat(b'7')));
     assert_eq!(parse_data(endless, "data").unwrap_err().to_string(), expected);
     let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());

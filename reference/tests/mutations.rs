@@ -1,9 +1,12 @@
 //! No damage to a file makes its reader panic, and every refusal names its place on one line.
 
+#![allow(clippy::panic, reason = "a test fails by panicking")]
+
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
-use grainbench_reference::{parse_data, parse_thermo};
+use grainbench_reference::{DumpReader, DumpSnapshot, ReadError, parse_data, parse_log, parse_table, parse_thermo};
 use proptest::prelude::*;
 
 const DATA: &str = "\
@@ -30,7 +33,15 @@ Velocities
 ";
 
 /// Pieces that mean something to a reader, or to the functions it calls.
-const PIECES: [&str; 24] = [
+const PIECES: [&str; 32] = [
+    "ITEM: ",
+    "ITEM: TIMESTEP\n",
+    "ITEM: NUMBER OF ENTRIES\n99999999\n",
+    "ITEM: BOX BOUNDS xy xz yz\n",
+    "Step Time\n",
+    "Loop time of 1 on 1 procs for 1 steps with 1 atoms\n",
+    "\t",
+    "\"",
     "\n",
     "\n\n",
     " ",
@@ -114,8 +125,66 @@ fn well_said(error: &grainbench_reference::ReadError) -> Result<(), TestCaseErro
     Ok(())
 }
 
+/// How many files of each kind: a few hundred, more with `GRAINBENCH_LONG`, or as many as `PROPTEST_CASES` says.
+fn config() -> ProptestConfig {
+    let said = std::env::var("PROPTEST_CASES").ok().and_then(|count| count.parse().ok());
+    let usual = if std::env::var_os("GRAINBENCH_LONG").is_some() { 50_000 } else { 500 };
+    ProptestConfig { cases: said.unwrap_or(usual), failure_persistence: None, ..ProptestConfig::default() }
+}
+
+/// Files that the programs wrote, or that were stored from what they wrote.
+fn stored(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Reads a dump to its end; the numbers it has shown are finite, and each row is whole.
+fn read_dump(bytes: &[u8]) -> Result<bool, ReadError> {
+    let mut reader = DumpReader::new(bytes, "f")?;
+    let mut snapshot = DumpSnapshot::default();
+    let mut sound = true;
+    while reader.read(&mut snapshot)? {
+        for row in 0..snapshot.rows() {
+            let row = snapshot.row(row);
+            let mut numbers = row.iter().zip(&snapshot.columns).filter(|(_, column)| !column.is_text);
+            sound &= row.len() == snapshot.columns.len() && numbers.all(|(value, _)| value.is_finite());
+        }
+    }
+    Ok(sound)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config())]
+
+    #[test]
+    fn of_a_dump(file in 0_usize..5, damages in damages()) {
+        let names = ["lammps-nine.dump", "lammps-nine.local", "lammps-scaled-six-digits.dump", "liggghts-nine.dump", "liggghts-nine.local"];
+        static TEXTS: OnceLock<Vec<String>> = OnceLock::new();
+        let texts = TEXTS.get_or_init(|| names.iter().map(|name| stored(&format!("tests/data/{name}"))).collect());
+        match read_dump(&apply(&texts[file], &damages)) {
+            Ok(sound) => prop_assert!(sound),
+            Err(error) => well_said(&error)?,
+        }
+    }
+
+    #[test]
+    fn of_a_log(file in 0_usize..2, damages in damages()) {
+        static TEXTS: OnceLock<[String; 2]> = OnceLock::new();
+        let texts = TEXTS.get_or_init(|| ["lammps-two-runs", "liggghts"].map(|name| stored(&format!("tests/data/{name}.log"))));
+        if let Err(error) = parse_log(&apply(&texts[file], &damages)[..], "f") {
+            well_said(&error)?;
+        }
+    }
+
+    #[test]
+    fn of_a_table(damages in damages()) {
+        static TEXT: OnceLock<String> = OnceLock::new();
+        let text = TEXT.get_or_init(|| stored("lammps/plane-shear-10k/thermo.csv"));
+        match parse_table(&apply(text, &damages)[..], "f") {
+            Ok(table) => prop_assert!(table.rows() > 0),
+            Err(error) => well_said(&error)?,
+        }
+    }
 
     #[test]
     fn of_a_data_file(damages in damages()) {
@@ -132,17 +201,21 @@ proptest! {
 
     #[test]
     fn of_a_stored_series(damages in damages()) {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("lammps/plane-shear-10k/thermo.csv");
-        let text = fs::read_to_string(path).map_err(|error| TestCaseError::fail(error.to_string()))?;
-        if let Err(error) = parse_thermo(&apply(&text, &damages)[..], "f") {
+        static TEXT: OnceLock<String> = OnceLock::new();
+        let text = TEXT.get_or_init(|| stored("lammps/plane-shear-10k/thermo.csv"));
+        if let Err(error) = parse_thermo(&apply(text, &damages)[..], "f") {
             well_said(&error)?;
         }
     }
 
     #[test]
-    fn of_bytes_at_random(bytes in prop::collection::vec(any::<u8>(), 0..200), gzip in any::<bool>()) {
-        let head: &[u8] = if gzip { &[0x1f, 0x8b, 8, 0] } else { b"" };
-        if let Err(error) = parse_data(&[head, &bytes].concat()[..], "f") {
+    fn of_bytes_at_random(bytes in prop::collection::vec(any::<u8>(), 0..200), head in 0_usize..3) {
+        let head = [&b""[..], &[0x1f, 0x8b, 8, 0], &[0x28, 0xb5, 0x2f, 0xfd]][head];
+        let bytes = [head, &bytes].concat();
+        if let Err(error) = parse_data(&bytes[..], "f") {
+            well_said(&error)?;
+        }
+        if let Err(error) = read_dump(&bytes) {
             well_said(&error)?;
         }
     }

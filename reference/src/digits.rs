@@ -1,0 +1,136 @@
+//! With how many digits a column was printed, hence how far a printed number may be from the one that was meant.
+
+/// Values of a column that are looked at whatever their length; after them only those longer than all before.
+const LOOKED_AT: u32 = 32;
+
+/// `%g` prints this many digits unless it is told otherwise.
+const USUAL: u32 = 6;
+
+/// What the texts of a column's numbers tell of their format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Digits {
+    looked_at: u32,
+    longest: usize,
+    significant: u32,
+    /// Fewest and most digits behind the point, of numbers without an exponent.
+    decimals: Option<(u32, u32)>,
+    /// Whether a number ended in a zero behind the point, which a general format never leaves.
+    padded: bool,
+}
+
+impl Digits {
+    /// Most significant digits of a number of the column.
+    #[must_use]
+    pub fn significant(&self) -> u32 {
+        self.significant
+    }
+
+    /// Takes the text of one number into account.
+    #[inline]
+    pub(crate) fn see(&mut self, text: &[u8]) {
+        if self.looked_at < LOOKED_AT || text.len() > self.longest {
+            self.look(text);
+        }
+    }
+
+    #[cold]
+    fn look(&mut self, text: &[u8]) {
+        self.looked_at = self.looked_at.saturating_add(1);
+        self.longest = self.longest.max(text.len());
+        let exponent = text.iter().position(|byte| matches!(byte, b'e' | b'E'));
+        let mantissa = &text[..exponent.unwrap_or(text.len())];
+        let digits = mantissa.iter().filter(|byte| byte.is_ascii_digit());
+        // Zeros in front say nothing, except for zero itself.
+        let counted = digits.skip_while(|byte| **byte == b'0').count();
+        self.significant = self.significant.max(u32::try_from(counted).unwrap_or(u32::MAX));
+        let point = mantissa.iter().position(|byte| *byte == b'.');
+        if exponent.is_none() {
+            self.padded |= point.is_some() && mantissa.last() == Some(&b'0');
+            let behind = point.map_or(0, |point| mantissa.len() - point - 1);
+            let behind = u32::try_from(behind).unwrap_or(u32::MAX);
+            let (fewest, most) = self.decimals.unwrap_or((behind, behind));
+            self.decimals = Some((fewest.min(behind), most.max(behind)));
+        }
+    }
+
+    /// Half a unit of the last printed place of `value`: how far the number that was printed may be from it.
+    ///
+    /// A general format drops zeros at the end, so that a column of round numbers seems to have few digits; such a
+    /// column is taken to have been printed with as many as the file shows elsewhere, six at most, which is the usual.
+    #[must_use]
+    pub fn uncertainty(&self, value: f64, of_file: &Digits) -> f64 {
+        if value == 0.0 && !self.padded {
+            return 0.0;
+        }
+        let shown = self.significant.max(of_file.significant.min(USUAL)).clamp(1, 17);
+        // f64 holds no more than that.
+        let general = if value == 0.0 || shown == 17 {
+            0.5 * f64::EPSILON * value.abs()
+        } else {
+            let leading = value.abs().log10().floor();
+            0.5 * 10_f64.powf(leading + 1.0 - f64::from(shown))
+        };
+        match self.decimals {
+            Some((fewest, most)) if fewest == most && self.padded => {
+                general.max(0.5 * 10_f64.powi(-(most.min(400) as i32)))
+            }
+            _ => general,
+        }
+    }
+
+    /// What both have shown.
+    #[must_use]
+    pub fn with(mut self, other: &Self) -> Self {
+        self.looked_at = self.looked_at.saturating_add(other.looked_at);
+        self.longest = self.longest.max(other.longest);
+        self.significant = self.significant.max(other.significant);
+        self.padded |= other.padded;
+        self.decimals = match (self.decimals, other.decimals) {
+            (Some(one), Some(two)) => Some((one.0.min(two.0), one.1.max(two.1))),
+            (one, two) => one.or(two),
+        };
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(texts: &[&str]) -> Digits {
+        let mut digits = Digits::default();
+        texts.iter().for_each(|text| digits.see(text.as_bytes()));
+        digits
+    }
+
+    fn close(found: f64, expected: f64) {
+        assert!((found - expected).abs() <= 1e-9 * expected, "{found:e} {expected:e}");
+    }
+
+    #[test]
+    fn general_format() {
+        let digits = of(&["0", "1", "-0.00123457", "150.25"]);
+        assert_eq!(digits.significant(), 6);
+        close(digits.uncertainty(1.0, &digits), 0.5e-5);
+        close(digits.uncertainty(-0.001_234_57, &digits), 0.5e-8);
+        assert_eq!(digits.uncertainty(0.0, &digits), 0.0);
+        // Few digits of a column are believed to be more where the file has more.
+        close(of(&["0.5"]).uncertainty(0.5, &digits), 0.5e-6);
+        close(of(&["0.5"]).uncertainty(0.5, &of(&["0.12345678901234567"])), 0.5e-6);
+    }
+
+    #[test]
+    fn full_precision() {
+        let digits = of(&["0.12345678901234567", "1"]);
+        assert_eq!(digits.uncertainty(1.0, &digits), 0.5 * f64::EPSILON);
+    }
+
+    #[test]
+    fn fixed_and_scientific_format() {
+        let fixed = of(&["0.500000", "-0.000123", "150.250000"]);
+        close(fixed.uncertainty(0.5, &fixed), 0.5e-6);
+        close(fixed.uncertainty(0.0, &fixed), 0.5e-6);
+        let scientific = of(&["1.000000e+00", "0.000000e+00"]);
+        close(scientific.uncertainty(2000.0, &scientific), 0.5e-3);
+    }
+}

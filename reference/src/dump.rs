@@ -1,0 +1,154 @@
+//! Text dumps, `dump custom`, `dump atom` and `dump local` of LAMMPS and LIGGGHTS, one snapshot at a time.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use crate::blocks::Blocks;
+use crate::dump_header::DumpHeader;
+use crate::line_reader::blocks;
+use crate::numbers::{NotFinite, RowForm};
+use crate::read_error::{ReadError, quoted};
+use crate::snapshot::{DumpKind, DumpSnapshot};
+
+/// Reads the snapshots of a dump one after the other; memory is that of the largest one.
+pub struct DumpReader<'r> {
+    blocks: Blocks<'r>,
+    form: RowForm,
+    units: Option<String>,
+    last_step: Option<u64>,
+    /// Ids of a snapshot with their rows, kept for their memory.
+    ids: Vec<(u64, u32)>,
+}
+
+impl DumpReader<'static> {
+    /// Opens the dump at `path`, plain, gzip or zstd, whatever its name.
+    ///
+    /// # Errors
+    /// The file cannot be opened, or is compressed in another way.
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        let name = path.to_string_lossy();
+        let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
+        Self::new(BufReader::new(file), &name)
+    }
+}
+
+impl<'r> DumpReader<'r> {
+    /// Reads a dump from `reader`; `name` is what errors call it.
+    ///
+    /// # Errors
+    /// The beginning cannot be read, or announces a compression that is not read here.
+    pub fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
+        let form = RowForm { separator: None, not_finite: NotFinite::default() };
+        Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, ids: Vec::new() })
+    }
+
+    /// Whether NaN and infinity are read; they are refused otherwise.
+    #[must_use]
+    pub fn not_finite(mut self, not_finite: NotFinite) -> Self {
+        self.form.not_finite = not_finite;
+        self
+    }
+
+    /// Reads the next snapshot in the place of the last; false at the end of the file. What the columns tell of their
+    /// digits is carried along while their names stay the same.
+    ///
+    /// # Errors
+    /// The file breaks off, holds something else than text, goes back in time, names an atom twice, or says something
+    /// that is not understood; see [`ReadError`].
+    pub fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
+        let Some(header) = DumpHeader::read(&mut self.blocks)? else {
+            if self.last_step.is_none() {
+                return Err(self.error("a dump, `ITEM: TIMESTEP` first", "an empty file"));
+            }
+            return Ok(false);
+        };
+        if let Some((units, line)) = header.units {
+            if let Some(before) = self.units.as_ref().filter(|before| **before != units) {
+                let expected = format!("the units `{before}`, as above");
+                return Err(ReadError::at(self.blocks.name(), line, expected, quoted(&units)));
+            }
+            self.units = Some(units);
+        }
+        if let Some(last) = self.last_step.filter(|last| header.step < *last) {
+            let expected = format!("a step from {last} on, the one before");
+            return Err(ReadError::at(self.blocks.name(), header.step_line, expected, header.step.to_string()));
+        }
+        self.last_step = Some(header.step);
+        let same = snapshot.columns.len() == header.columns.len()
+            && snapshot.columns.iter().zip(&header.columns).all(|(old, new)| old.name == new.name);
+        if !same {
+            snapshot.columns = header.columns;
+        }
+        snapshot.step = header.step;
+        snapshot.time = header.time;
+        snapshot.units.clone_from(&self.units);
+        snapshot.kind = header.kind;
+        (snapshot.bounds, snapshot.periodic) = (header.bounds, header.periodic);
+        snapshot.first_line = self.blocks.number() + 1;
+        // The declared count is a claim; memory follows the rows that are really there.
+        snapshot.values.clear();
+        for row in 0..header.rows {
+            self.read_row(row, header.rows, snapshot)?;
+        }
+        if snapshot.kind == DumpKind::Atoms {
+            self.check_ids(snapshot)?;
+        }
+        Ok(true)
+    }
+
+    fn read_row(&mut self, row: u64, rows: u64, snapshot: &mut DumpSnapshot) -> Result<(), ReadError> {
+        let place = || format!("row {} of {rows}", row + 1);
+        let number = self.blocks.number();
+        let Some(line) = self.blocks.next_line()? else {
+            return Err(ReadError::at(self.blocks.name(), number.max(1), place(), "the end of the file"));
+        };
+        if line.bytes.starts_with(b"ITEM:") {
+            let found = quoted(line.text()?.text.trim_end());
+            return Err(ReadError::at(line.file, line.number, place(), found));
+        }
+        self.form.read(line, &mut snapshot.columns, &mut snapshot.values)?;
+        if !line.ended {
+            let expected = format!("the end of {}", place());
+            let column = line.text()?.text.chars().count() + 1;
+            let error = ReadError::at(line.file, line.number, expected, "the end of the file");
+            return Err(error.with_column(column));
+        }
+        Ok(())
+    }
+
+    /// Refuses ids that are none, and an id that stands twice.
+    fn check_ids(&mut self, snapshot: &DumpSnapshot) -> Result<(), ReadError> {
+        let Some(column) = snapshot.column("id") else { return Ok(()) };
+        let fault = |row: u32, expected: &str, found: String| {
+            let line = snapshot.first_line + u64::from(row);
+            ReadError::at(self.blocks.name(), line, expected, found)
+        };
+        self.ids.clear();
+        let mut sorted = true;
+        for (row, value) in (0..).zip(snapshot.values(column)) {
+            if !(0.0..=LARGEST_WHOLE).contains(&value) || value.fract() != 0.0 {
+                return Err(fault(row, "a whole number in the column `id`", value.to_string()));
+            }
+            let id = value as u64;
+            sorted &= self.ids.last().is_none_or(|(last, _)| *last < id);
+            self.ids.push((id, row));
+        }
+        if sorted {
+            return Ok(());
+        }
+        self.ids.sort_unstable();
+        let twice = self.ids.windows(2).find(|pair| pair[0].0 == pair[1].0);
+        match twice {
+            Some(pair) => Err(fault(pair[1].1, "an id that no row above has", format!("{} once more", pair[1].0))),
+            None => Ok(()),
+        }
+    }
+
+    fn error(&self, expected: &str, found: &str) -> ReadError {
+        ReadError::at(self.blocks.name(), self.blocks.number().max(1), expected, found)
+    }
+}
+
+/// Whole numbers up to here are numbers of their own in f64.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;

@@ -1,0 +1,185 @@
+//! What stands above the rows of a snapshot.
+
+use crate::blocks::Blocks;
+use crate::fields::Fields;
+use crate::line_reader::Line;
+use crate::numbers::NumberColumn;
+use crate::read_error::{ReadError, quoted};
+use crate::snapshot::DumpKind;
+
+/// More rows than that fit no memory; it keeps the line numbers of rows within bounds.
+const MOST_ROWS: u64 = u32::MAX as u64;
+
+/// The header of one snapshot.
+pub(crate) struct DumpHeader {
+    pub(crate) step: u64,
+    /// The line of the step.
+    pub(crate) step_line: u64,
+    pub(crate) time: Option<f64>,
+    /// The unit system, and the line that says it.
+    pub(crate) units: Option<(String, u64)>,
+    pub(crate) kind: DumpKind,
+    pub(crate) rows: u64,
+    pub(crate) bounds: ([f64; 3], [f64; 3]),
+    pub(crate) periodic: [bool; 3],
+    pub(crate) columns: Vec<NumberColumn>,
+}
+
+/// The parts that have been read.
+#[derive(Default)]
+struct Parts {
+    step: Option<(u64, u64)>,
+    time: Option<f64>,
+    units: Option<(String, u64)>,
+    /// The count, and the word that stands for a row.
+    rows: Option<(u64, String)>,
+    bounds: Option<([f64; 3], [f64; 3], [bool; 3])>,
+}
+
+impl DumpHeader {
+    /// Reads items up to the one that names the columns; none at the end of the file.
+    pub(crate) fn read(blocks: &mut Blocks<'_>) -> Result<Option<Self>, ReadError> {
+        let mut parts = Parts::default();
+        let mut any = false;
+        loop {
+            let Some(line) = blocks.next_line()? else {
+                return if any { Err(missing(blocks, "the rest of the header")) } else { Ok(None) };
+            };
+            let line = line.text()?;
+            let text = line.text.trim_end();
+            if text.is_empty() && !any {
+                continue;
+            }
+            any = true;
+            let Some(item) = text.strip_prefix("ITEM: ") else {
+                return Err(line.error("a line `ITEM: …`", quoted(text)));
+            };
+            match item.split_whitespace().collect::<Vec<_>>()[..] {
+                ["TIMESTEP"] => parts.read_step(blocks)?,
+                ["TIME"] => {
+                    parts.time = Some(one(blocks, "the time", |fields| fields.finite("a time, a finite number"))?);
+                }
+                ["UNITS"] => parts.read_units(blocks)?,
+                ["NUMBER", "OF", word] => {
+                    let word = word.to_owned();
+                    let what = format!("a number of rows up to {MOST_ROWS}");
+                    let rows = one(blocks, &what, |fields| fields.whole_up_to(&what, 0, MOST_ROWS))?;
+                    parts.rows = Some((rows, word));
+                }
+                ["BOX", "BOUNDS", ref words @ ..] => {
+                    let periodic = boundaries(line, words)?;
+                    parts.read_bounds(blocks, periodic)?;
+                }
+                [word, ref columns @ ..] if parts.rows.as_ref().is_some_and(|(_, rows)| rows == word) => {
+                    return parts.finish(line, word, columns).map(Some);
+                }
+                _ => return Err(parts.unknown(line, item)),
+            }
+        }
+    }
+}
+
+impl Parts {
+    fn read_step(&mut self, blocks: &mut Blocks<'_>) -> Result<(), ReadError> {
+        let what = "a step, a whole number";
+        let step = one(blocks, what, |fields| fields.whole(what, 0))?;
+        self.step = Some((step, blocks.number()));
+        Ok(())
+    }
+
+    fn read_units(&mut self, blocks: &mut Blocks<'_>) -> Result<(), ReadError> {
+        let Some(line) = blocks.next_line()? else { return Err(missing(blocks, "the name of a unit system")) };
+        let line = line.text()?;
+        let word = line.text.trim();
+        if word.is_empty() || word.contains(char::is_whitespace) {
+            return Err(line.error("the name of a unit system", quoted(word)));
+        }
+        self.units = Some((word.to_owned(), line.number));
+        Ok(())
+    }
+
+    fn read_bounds(&mut self, blocks: &mut Blocks<'_>, periodic: [bool; 3]) -> Result<(), ReadError> {
+        let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let what = format!("the bounds of the box along {}, two numbers", ["x", "y", "z"][axis]);
+            [low[axis], high[axis]] = one(blocks, &what, |fields| Ok([fields.finite(&what)?, fields.finite(&what)?]))?;
+            if low[axis] > high[axis] {
+                let (expected, found) = ("a lower bound that is not above the upper", format!("{:?}", low[axis]));
+                return Err(ReadError::at(blocks.name(), blocks.number(), expected, found));
+            }
+        }
+        self.bounds = Some((low, high, periodic));
+        Ok(())
+    }
+
+    fn finish(self, line: Line<'_>, word: &str, columns: &[&str]) -> Result<DumpHeader, ReadError> {
+        let needed = |what: &str| {
+            let expected = format!("`ITEM: {what}` above the columns");
+            line.error(expected, "none")
+        };
+        let (step, step_line) = self.step.ok_or_else(|| needed("TIMESTEP"))?;
+        let (rows, _) = self.rows.ok_or_else(|| needed("NUMBER OF ATOMS"))?;
+        let (low, high, periodic) = self.bounds.ok_or_else(|| needed("BOX BOUNDS"))?;
+        let kind = if word == "ATOMS" { DumpKind::Atoms } else { DumpKind::Entries };
+        if columns.is_empty() {
+            return Err(line.error(format!("names of columns behind `ITEM: {word}`"), "none"));
+        }
+        for (place, name) in columns.iter().enumerate() {
+            if columns[..place].contains(name) {
+                return Err(line.error("columns of different names", format!("two of the name {}", quoted(name))));
+            }
+        }
+        let columns = columns.iter().map(|name| NumberColumn::new(name)).collect();
+        Ok(DumpHeader {
+            step,
+            step_line,
+            time: self.time,
+            units: self.units,
+            kind,
+            rows,
+            bounds: (low, high),
+            periodic,
+            columns,
+        })
+    }
+
+    fn unknown(&self, line: Line<'_>, item: &str) -> ReadError {
+        let columns = self.rows.as_ref().map_or_else(String::new, |(_, word)| format!(" or `{word} COLUMN…`"));
+        let expected = format!(
+            "`ITEM: ` with `TIMESTEP`, `TIME`, `UNITS`, `NUMBER OF ATOMS`, `NUMBER OF ENTRIES`, `BOX BOUNDS …`{columns}"
+        );
+        line.error(expected, quoted(&format!("ITEM: {item}")))
+    }
+}
+
+/// Which axes are periodic, from the words behind `BOX BOUNDS`; old files have none.
+fn boundaries(line: Line<'_>, words: &[&str]) -> Result<[bool; 3], ReadError> {
+    let known = |word: &&str| word.len() == 2 && word.bytes().all(|byte| b"pfsm".contains(&byte));
+    match *words {
+        [] => Ok([false; 3]),
+        [x, y, z] if [x, y, z].iter().all(known) => Ok([x, y, z].map(|word| word == "pp")),
+        ["xy", "xz", "yz", ..] | ["abc", "origin", ..] => {
+            let found = format!("{} (a triclinic box is not read)", quoted(&words.join(" ")));
+            Err(line.error("a box with right angles", found))
+        }
+        _ => Err(line.error("three boundaries such as `pp ff ff` behind `BOX BOUNDS`", quoted(&words.join(" ")))),
+    }
+}
+
+/// Reads the one line of an item.
+fn one<T>(
+    blocks: &mut Blocks<'_>,
+    what: &str,
+    read: impl FnOnce(&mut Fields<'_>) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    let Some(line) = blocks.next_line()? else { return Err(missing(blocks, what)) };
+    let line = line.text()?;
+    let mut fields = Fields::between_blanks(line, line.text);
+    let value = read(&mut fields)?;
+    fields.end(what)?;
+    Ok(value)
+}
+
+fn missing(blocks: &Blocks<'_>, what: &str) -> ReadError {
+    ReadError::at(blocks.name(), blocks.number().max(1), what, "the end of the file")
+}

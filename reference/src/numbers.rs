@@ -1,0 +1,139 @@
+//! Rows of numbers between blanks or commas, parsed from bytes.
+
+use crate::blocks::RawLine;
+use crate::digits::Digits;
+use crate::read_error::{ReadError, quoted};
+
+/// One column of a table of numbers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NumberColumn {
+    /// Its name, as the file has it.
+    pub name: String,
+    /// With how many digits its numbers were printed, so far.
+    pub digits: Digits,
+    /// Whether it holds words, as `element` does; its numbers are then NaN.
+    pub is_text: bool,
+}
+
+impl NumberColumn {
+    /// A column of a name.
+    pub(crate) fn new(name: &str) -> Self {
+        let is_text = matches!(name, "element" | "typelabel");
+        Self { name: name.to_owned(), digits: Digits::default(), is_text }
+    }
+}
+
+/// Whether NaN and infinity are numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum NotFinite {
+    /// They are faults of the file.
+    #[default]
+    Refused,
+    /// They are kept, for who wants to say more about a run that went wrong than where its file did.
+    Kept,
+}
+
+/// How rows are written and what they may hold.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowForm {
+    /// What stands between two numbers; blanks where none is said.
+    pub(crate) separator: Option<u8>,
+    pub(crate) not_finite: NotFinite,
+}
+
+impl RowForm {
+    fn is_blank(self, byte: u8) -> bool {
+        matches!(byte, b' ' | b'\t' | b'\r') && Some(byte) != self.separator
+    }
+
+    fn skip_blanks(self, bytes: &[u8], mut at: usize) -> usize {
+        while bytes.get(at).is_some_and(|byte| self.is_blank(*byte)) {
+            at += 1;
+        }
+        at
+    }
+
+    /// Appends the numbers of a line, one for each column, to `values`.
+    pub(crate) fn read(
+        self,
+        line: RawLine<'_>,
+        columns: &mut [NumberColumn],
+        values: &mut Vec<f64>,
+    ) -> Result<(), ReadError> {
+        let bytes = line.bytes;
+        let mut at = 0;
+        for (place, column) in columns.iter_mut().enumerate() {
+            if let Some(separator) = self.separator.filter(|_| place > 0) {
+                if bytes.get(at) != Some(&separator) {
+                    return Err(self.fault(line, at, column));
+                }
+                at += 1;
+            }
+            at = self.skip_blanks(bytes, at);
+            if column.is_text {
+                let length = self.word(&bytes[at..]);
+                if length == 0 || line.text().is_err() {
+                    return Err(self.fault(line, at, column));
+                }
+                values.push(f64::NAN);
+                at += length;
+            } else {
+                let Ok((value, length)) = fast_float2::parse_partial::<f64, _>(&bytes[at..]) else {
+                    return Err(self.fault(line, at, column));
+                };
+                let text = &bytes[at..at + length];
+                let delimited =
+                    bytes.get(at + length).is_none_or(|byte| self.is_blank(*byte) || Some(*byte) == self.separator);
+                if !delimited || (!value.is_finite() && self.not_finite == NotFinite::Refused) {
+                    return Err(self.fault(line, at, column));
+                }
+                column.digits.see(text);
+                values.push(value);
+                at += length;
+            }
+            if self.separator.is_some() {
+                at = self.skip_blanks(bytes, at);
+            }
+        }
+        let rest = self.skip_blanks(bytes, at);
+        if rest < bytes.len() {
+            let last = columns.last().map(|column| column.name.as_str()).unwrap_or_default();
+            let what = format!("the end of the line behind the column {}", quoted(last));
+            let rest = if bytes.get(rest) == self.separator.as_ref() { rest + 1 } else { rest };
+            return Err(self.error_at(line, rest, &what, "one more field, "));
+        }
+        Ok(())
+    }
+
+    /// Bytes of the field that `bytes` begins with.
+    fn word(self, bytes: &[u8]) -> usize {
+        let ends = |byte: &u8| self.is_blank(*byte) || Some(*byte) == self.separator;
+        bytes.iter().position(ends).unwrap_or(bytes.len())
+    }
+
+    #[cold]
+    fn fault(self, line: RawLine<'_>, at: usize, column: &NumberColumn) -> ReadError {
+        let kind = match (column.is_text, self.not_finite) {
+            (true, _) => "a word",
+            (false, NotFinite::Refused) => "a finite number",
+            (false, NotFinite::Kept) => "a number",
+        };
+        self.error_at(line, at, &format!("{kind} in the column {}", quoted(&column.name)), "")
+    }
+
+    /// The fault of the field at byte `at`.
+    fn error_at(self, line: RawLine<'_>, at: usize, expected: &str, kind: &str) -> ReadError {
+        // Bytes that are no text are the greater fault.
+        let text = match line.text() {
+            Ok(line) => line.text,
+            Err(error) => return error,
+        };
+        let at = self.skip_blanks(line.bytes, at);
+        let field = text.get(at..at + self.word(&line.bytes[at..])).unwrap_or_default();
+        let ends = at == line.bytes.len();
+        let found =
+            if ends && kind.is_empty() { "the end of the line".to_owned() } else { format!("{kind}{}", quoted(field)) };
+        let before = if ends { text.trim_end() } else { text.get(..at).unwrap_or_default() };
+        ReadError::at(line.file, line.number, expected, found).with_column(before.chars().count() + 1)
+    }
+}

@@ -1,0 +1,101 @@
+//! Tables of numbers with a line of names above: CSV, of whatever program.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use crate::digits::Digits;
+use crate::line_reader::blocks;
+use crate::numbers::{NotFinite, NumberColumn, RowForm};
+use crate::read_error::{ReadError, quoted};
+
+/// A table of numbers.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// The columns, in the order of the file.
+    pub columns: Vec<NumberColumn>,
+    values: Vec<f64>,
+}
+
+impl Table {
+    pub(crate) fn new(columns: Vec<NumberColumn>, values: Vec<f64>) -> Self {
+        Self { columns, values }
+    }
+
+    /// How many rows there are.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.values.len().checked_div(self.columns.len()).unwrap_or(0)
+    }
+
+    /// The place of a column.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
+    }
+
+    /// The numbers of a column, from top to bottom.
+    pub fn values(&self, column: usize) -> impl Iterator<Item = f64> {
+        self.values.iter().skip(column).step_by(self.columns.len().max(1)).copied()
+    }
+
+    /// What all columns show together of the format.
+    #[must_use]
+    pub fn digits(&self) -> Digits {
+        self.columns.iter().fold(Digits::default(), |all, column| all.with(&column.digits))
+    }
+}
+
+/// Reads the table at `path`, plain, gzip or zstd; see [`parse_table`].
+///
+/// # Errors
+/// The file cannot be read, or is not such a table.
+pub fn read_table(path: &Path) -> Result<Table, ReadError> {
+    let name = path.to_string_lossy();
+    let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
+    parse_table(BufReader::new(file), &name)
+}
+
+/// Reads a table: a line of names, then a line of numbers a row, separated by commas, semicolons or tabs, whichever the
+/// first line has. Lines that begin with `#` and empty lines are passed over. `name` is what errors call it.
+///
+/// # Errors
+/// The input cannot be read, has no names, one name twice, no row, or a row with a field missing, too many, or one that
+/// is no finite number.
+pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError> {
+    let mut lines = blocks(reader, name)?;
+    let mut form = RowForm { separator: None, not_finite: NotFinite::Refused };
+    let mut table = Table::default();
+    while let Some(line) = lines.next_line()? {
+        let first = line.bytes.iter().find(|byte| !byte.is_ascii_whitespace());
+        if matches!(first, None | Some(b'#')) {
+            line.text()?;
+            continue;
+        }
+        if !table.columns.is_empty() {
+            form.read(line, &mut table.columns, &mut table.values)?;
+            continue;
+        }
+        let line = line.text()?;
+        form.separator =
+            Some([b',', b';', b'\t'].into_iter().find(|byte| line.text.contains(char::from(*byte))).unwrap_or(b','));
+        for field in line.text.trim_end().split(char::from(form.separator.unwrap_or(b','))) {
+            let field = field.trim().trim_matches('"');
+            if field.is_empty() || field.parse::<f64>().is_ok() {
+                return Err(line.error("a line with the names of the columns", quoted(line.text)));
+            }
+            if table.columns.iter().any(|column| column.name == field) {
+                return Err(line.error("columns of different names", format!("two of the name {}", quoted(field))));
+            }
+            table.columns.push(NumberColumn::new(field));
+        }
+    }
+    let line = lines.number().max(1);
+    if table.columns.is_empty() {
+        return Err(ReadError::at(name, line, "a line with the names of the columns", "an empty file"));
+    }
+    if table.rows() == 0 {
+        return Err(ReadError::at(name, line, "at least one row below the names", "none"));
+    }
+    Ok(table)
+}

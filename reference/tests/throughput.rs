@@ -1,0 +1,89 @@
+//! How fast a dump is read, and in how much memory. Prints both; `GRAINBENCH_LONG=1` reads a whole gigabyte.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fmt::Write as _;
+use std::io::{self, BufReader, Read};
+use std::time::Instant;
+
+use grainbench_reference::{DumpReader, DumpSnapshot};
+
+/// The same rows again and again, under the steps 0, 1, 2, …
+struct Endless {
+    rows: String,
+    atoms: usize,
+    step: u64,
+    last: u64,
+    waiting: Vec<u8>,
+    at: usize,
+}
+
+impl Read for Endless {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        if self.at == self.waiting.len() {
+            if self.step == self.last {
+                return Ok(0);
+            }
+            self.waiting.clear();
+            let (step, atoms, rows) = (self.step, self.atoms, &self.rows);
+            self.waiting.extend_from_slice(
+                format!(
+                    "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{atoms}\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n\
+                     ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz\n{rows}"
+                )
+                .as_bytes(),
+            );
+            (self.step, self.at) = (self.step + 1, 0);
+        }
+        let count = out.len().min(self.waiting.len() - self.at);
+        out[..count].copy_from_slice(&self.waiting[self.at..self.at + count]);
+        self.at += count;
+        Ok(count)
+    }
+}
+
+/// Largest memory of the process so far (MB), where the system says it.
+fn peak() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
+}
+
+#[test]
+fn reads_snapshots_in_the_memory_of_one() {
+    const ATOMS: usize = 10_000;
+    let mut rows = String::new();
+    for id in 1..=ATOMS {
+        // An order without order, so that ids have to be sorted.
+        let id = id * 7919 % ATOMS + 1;
+        let value = |k: usize| (id as f64 * 0.618_034 + k as f64 * 0.377).sin();
+        write!(rows, "{id} 1").unwrap();
+        (0..9).for_each(|k| write!(rows, " {:?}", value(k)).unwrap());
+        rows.push('\n');
+    }
+    let bytes = if std::env::var_os("GRAINBENCH_LONG").is_some() { 1 << 30 } else { 1 << 26 };
+    let snapshots = (bytes / rows.len()) as u64;
+    let size = snapshots as f64 * rows.len() as f64 / 1e6;
+    let source = Endless { rows, atoms: ATOMS, step: 0, last: snapshots, waiting: Vec::new(), at: 0 };
+    let mut reader = DumpReader::new(BufReader::new(source), "endless").unwrap();
+    let mut snapshot = DumpSnapshot::default();
+    // The first snapshots make room for all others.
+    for _ in 0..3 {
+        assert!(reader.read(&mut snapshot).unwrap());
+    }
+    let before = peak();
+    let start = Instant::now();
+    let (mut count, mut sum) = (3, 0.0);
+    while reader.read(&mut snapshot).unwrap() {
+        count += 1;
+        sum += snapshot.row(ATOMS - 1)[2];
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    assert_eq!((count, snapshot.rows()), (snapshots, ATOMS));
+    assert!(sum.is_finite());
+    println!("{size:.0} MB in {seconds:.2} s: {:.0} MB/s", size / seconds);
+    if let (Some(before), Some(after)) = (before, peak()) {
+        println!("largest memory {before:.1} MB after three snapshots, {after:.1} MB after {count}");
+        assert!(after - before < 8.0, "{before} {after}");
+    }
+}
