@@ -8,6 +8,7 @@ mod blocks;
 mod data_file;
 mod data_header;
 mod data_parser;
+pub mod deck;
 mod decoding;
 mod digits;
 mod dump;

@@ -1,6 +1,7 @@
 //! Commands: what can be asked for, and who answers.
 
 mod checkpoint;
+mod deck;
 mod exit;
 mod list;
 mod progress;
@@ -10,6 +11,7 @@ mod run;
 mod schema;
 mod select;
 mod simulate;
+mod subject;
 
 use clap::{Parser, Subcommand};
 use exit::Fault;
@@ -36,6 +38,8 @@ enum Command {
     Run(run::Arguments),
     /// Simulate one scene and write its record.
     Simulate(simulate::Arguments),
+    /// Write the input of LAMMPS or LIGGGHTS for a case or a scene.
+    Deck(deck::Arguments),
     /// Print the JSON schema of scene files.
     Schema,
     /// Make the page and figures again from a report's directory, without any solver.
@@ -50,6 +54,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::List(arguments)) => list::list(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments.cases, &arguments.options),
         Some(Command::Simulate(arguments)) => simulate::simulate(&arguments),
+        Some(Command::Deck(arguments)) => deck::deck(&arguments),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Report(arguments)) => report::report(&arguments),
     };

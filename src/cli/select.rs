@@ -1,6 +1,7 @@
 //! Which gates a command line means.
 
 use super::exit::Fault;
+use super::subject::Variant;
 use grainbench::cases::case::{Case, PLAIN};
 use grainbench::cases::gate::{Gate, Run};
 use grainbench::cases::registry::CASES;
@@ -16,10 +17,10 @@ pub(crate) struct Selected {
 /// The gates of the cases (`CASE` or `CASE/VARIANT`; all when none is named) whose rows are of one of the solvers and
 /// that need one of the rungs, in the order of the registry.
 pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> Result<Vec<Selected>, Fault> {
-    let named = cases.iter().map(|name| Named::read(name)).collect::<Result<Vec<_>, _>>()?;
+    let named = cases.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut selected = Vec::new();
     for case in CASES {
-        let mine: Vec<&Named> = named.iter().filter(|named| named.case.name == case.name).collect();
+        let mine: Vec<&Variant<'_>> = named.iter().filter(|named| named.case.name == case.name).collect();
         if mine.is_empty() && !named.is_empty() {
             continue;
         }
@@ -48,30 +49,6 @@ pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> 
         ));
     }
     Ok(selected)
-}
-
-/// A case, or one variant of it, as the command line names it.
-struct Named<'a> {
-    case: &'static Case,
-    variant: Option<&'a str>,
-}
-
-impl<'a> Named<'a> {
-    fn read(text: &'a str) -> Result<Self, Fault> {
-        let (name, variant) = text.split_once('/').map_or((text, None), |(name, variant)| (name, Some(variant)));
-        let case = CASES
-            .iter()
-            .find(|case| case.name == name)
-            .ok_or_else(|| Fault::unknown("a case", name, CASES.iter().map(|case| case.name)))?;
-        if let Some(variant) = variant {
-            let known = variants(case, &(case.gates)())?;
-            if !known.iter().any(|name| name == variant) {
-                let what = format!("a variant of {}", case.name);
-                return Err(Fault::unknown(&what, variant, known.iter().map(String::as_str)));
-            }
-        }
-        Ok(Self { case, variant })
-    }
 }
 
 /// The run that names a gate's row.

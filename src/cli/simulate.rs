@@ -73,12 +73,14 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-fn path_and_value(text: &str) -> Result<(String, String), String> {
+/// A key and its value.
+pub(crate) fn path_and_value(text: &str) -> Result<(String, String), String> {
     let (path, value) = text.split_once('=').ok_or("expected path=value, found no `=`")?;
     Ok((path.trim().to_owned(), value.trim().to_owned()))
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A number above zero.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("expected a positive number".to_owned()),

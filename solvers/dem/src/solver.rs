@@ -10,7 +10,7 @@ use grainbench_scene::checkpoint::{Checkpoint, RunIdentity};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Provenance, Record};
 use grainbench_scene::recorder::Recorder;
-use grainbench_scene::scene::{Dimension, Duration, Scene};
+use grainbench_scene::scene::{Dimension, Scene};
 use grainbench_scene::solver::{Broken, Resolution, RunError, Solver, Watch};
 use grainbench_scene::space::{Plane, Solid, Space};
 use std::time::Instant;
@@ -132,31 +132,7 @@ impl Dem {
 
     /// Time step (s) and number of steps.
     fn steps(&self, scene: &Scene, resolution: &Resolution) -> Result<(f64, u64), RunError> {
-        let critical = scene.critical_time_step();
-        let wanted = match *resolution {
-            Resolution::CriticalFraction(fraction) => fraction * critical,
-            Resolution::TimeStep(step) => step,
-            Resolution::Rigid { .. } | Resolution::Grid { .. } => {
-                return Err(self.resolution_error(format!("expected a time step, found {resolution}")));
-            }
-        };
-        if !(wanted.is_finite() && wanted > 0.0) {
-            let reason = if critical.is_finite() {
-                format!("expected a positive time step, found {resolution}")
-            } else {
-                "the scene has no contact, so no critical time step; expected a time step in seconds".to_owned()
-            };
-            return Err(self.resolution_error(reason));
-        }
-        match (scene.duration, resolution) {
-            (Duration::Cycles(cycles), _) => Ok((wanted, cycles)),
-            (Duration::Seconds(time), Resolution::TimeStep(_)) => Ok((wanted, ((time / wanted).round() as u64).max(1))),
-            (Duration::Seconds(time), _) => {
-                // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
-                let steps = (time / wanted * (1.0 - 1e-12)).ceil().max(1.0);
-                Ok((time / steps, steps as u64))
-            }
-        }
+        resolution.steps(scene).map_err(|reason| self.resolution_error(reason))
     }
 }
 

@@ -34,6 +34,12 @@ impl Recorder {
         Self { interval: interval.max(1), snapshot_steps, steps, series, snapshots: Vec::new() }
     }
 
+    /// Steps between samples.
+    #[must_use]
+    pub const fn interval(&self) -> u64 {
+        self.interval
+    }
+
     /// Whether probes are sampled at a step: every interval, and at the end.
     fn is_sample(&self, step: u64) -> bool {
         step.is_multiple_of(self.interval) || step == self.steps

@@ -2,7 +2,7 @@
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::record::Record;
-use crate::scene::Scene;
+use crate::scene::{Duration, Scene};
 use nalgebra::Vector3;
 use std::fmt;
 use thiserror::Error;
@@ -55,6 +55,35 @@ impl Resolution {
     #[must_use]
     pub const fn substeps(substeps: u32) -> Self {
         Self::Rigid { step: Self::RIGID_STEP, substeps, iterations: Self::RIGID_ITERATIONS }
+    }
+
+    /// Time step (s) and number of steps of a scene, for solvers that take time steps.
+    ///
+    /// # Errors
+    /// Says what is wrong: the resolution is no time step, or the scene has no critical one to take a fraction of.
+    pub fn steps(&self, scene: &Scene) -> Result<(f64, u64), String> {
+        let critical = scene.critical_time_step();
+        let wanted = match *self {
+            Self::CriticalFraction(fraction) => fraction * critical,
+            Self::TimeStep(step) => step,
+            Self::Rigid { .. } | Self::Grid { .. } => return Err(format!("expected a time step, found {self}")),
+        };
+        if !(wanted.is_finite() && wanted > 0.0) {
+            return Err(if critical.is_finite() {
+                format!("expected a positive time step, found {self}")
+            } else {
+                "the scene has no contact, so no critical time step; expected a time step in seconds".to_owned()
+            });
+        }
+        Ok(match (scene.duration, self) {
+            (Duration::Cycles(cycles), _) => (wanted, cycles),
+            (Duration::Seconds(time), Self::TimeStep(_)) => (wanted, ((time / wanted).round() as u64).max(1)),
+            (Duration::Seconds(time), _) => {
+                // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
+                let steps = (time / wanted * (1.0 - 1e-12)).ceil().max(1.0);
+                (time / steps, steps as u64)
+            }
+        })
     }
 }
 

@@ -1,0 +1,54 @@
+//! Walls as triangles, in STL.
+
+use std::fmt::Write as _;
+
+use grainbench_scene::scene::WallShape;
+use nalgebra::Vector3;
+
+/// Corners of one triangle (m).
+pub(crate) type Triangle = [Vector3<f64>; 3];
+
+/// The triangles of a wall among grains around `centre` within `reach` (m) of it.
+///
+/// A plane is one triangle, so that no grain ever crosses an edge between two; in two dimensions a segment becomes a
+/// rectangle across the layer.
+pub(crate) fn triangles(shape: &WallShape, centre: Vector3<f64>, reach: f64) -> Vec<Triangle> {
+    match *shape {
+        WallShape::Plane { point, normal } => {
+            let foot = centre - normal * (centre - point).dot(&normal);
+            let (u, v) = tangents(normal);
+            vec![[foot - (u + v) * reach, foot + (u * 3.0 - v) * reach, foot + (v * 3.0 - u) * reach]]
+        }
+        WallShape::Segment { ends: [a, b] } => {
+            let depth = Vector3::z() * reach;
+            rectangle(a - depth, [b - a, depth * 2.0])
+        }
+        WallShape::Rectangle { corner, edges } => rectangle(corner, edges),
+    }
+}
+
+fn rectangle(corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Vec<Triangle> {
+    vec![[corner, corner + u, corner + u + v], [corner, corner + u + v, corner + v]]
+}
+
+/// Two unit vectors across a normal; axes where the normal is one, so that coordinates stay exact.
+fn tangents(normal: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    let away = (0..3).min_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
+    let axis = Vector3::ith(away, 1.0);
+    let u = (axis - normal * normal.dot(&axis)).normalize();
+    (u, normal.cross(&u))
+}
+
+/// The STL file of some triangles.
+pub(crate) fn stl(triangles: &[Triangle]) -> String {
+    let mut text = "solid wall\n".to_owned();
+    for triangle in triangles {
+        let normal = (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0])).normalize();
+        let _ = writeln!(text, " facet normal {:?} {:?} {:?}\n  outer loop", normal.x, normal.y, normal.z);
+        for corner in triangle {
+            let _ = writeln!(text, "   vertex {:?} {:?} {:?}", corner.x, corner.y, corner.z);
+        }
+        text.push_str("  endloop\n endfacet\n");
+    }
+    text + "endsolid wall\n"
+}

@@ -1,0 +1,153 @@
+//! Input decks for LAMMPS and LIGGGHTS, written from the scene that our own solvers run.
+//!
+//! Each deck is in a convention that the program truly has. What a program cannot express is refused with the reason,
+//! never approximated.
+
+mod dashpots;
+mod data;
+mod lammps;
+mod liggghts;
+mod mesh;
+mod outline;
+mod schedule;
+
+use std::fmt;
+
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::Resolution;
+
+/// Whose input a deck is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Program {
+    /// LAMMPS, `pair_style gran/hooke/history`.
+    Lammps,
+    /// LIGGGHTS, `model hooke/stiffness tangential history`.
+    Liggghts,
+}
+
+impl Program {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Lammps, Self::Liggghts];
+
+    /// Its name, as that of its solver.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Lammps => "lammps",
+            Self::Liggghts => "liggghts",
+        }
+    }
+
+    /// The program of a name.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|program| program.name() == name)
+    }
+
+    /// What to type, in the folder of the deck.
+    #[must_use]
+    pub const fn command(self) -> &'static str {
+        match self {
+            Self::Lammps => "lmp -in in.lammps",
+            Self::Liggghts => "liggghts -in in.liggghts",
+        }
+    }
+}
+
+impl fmt::Display for Program {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Lammps => "LAMMPS",
+            Self::Liggghts => "LIGGGHTS",
+        })
+    }
+}
+
+/// Why a program has no deck for a scene.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum DeckError {
+    /// The program cannot express the scene.
+    #[error("{program} cannot express this scene: {reason}")]
+    Unsupported {
+        /// Which program.
+        program: Program,
+        /// What it lacks.
+        reason: String,
+    },
+    /// The resolution makes no sense.
+    #[error("{0}")]
+    Resolution(String),
+}
+
+/// The files of a deck, and what its run leaves.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Deck {
+    /// Name and text of each file; the input script is the first.
+    pub files: Vec<(String, String)>,
+    /// How it is run.
+    pub stepping: Stepping,
+}
+
+/// The dump of the samples that a deck's run leaves.
+pub const SAMPLES: &str = "dump.grains";
+/// The dump of the end, where that is no sample.
+pub const END: &str = "dump.end";
+/// The columns of both.
+const COLUMNS: [&str; 19] = [
+    "id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz", "fx", "fy", "fz",
+    "tqx", "tqy", "tqz",
+];
+
+/// The steps of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stepping {
+    /// Time step (s).
+    pub time_step: f64,
+    /// How many steps.
+    pub steps: u64,
+    /// Steps between samples.
+    pub interval: u64,
+}
+
+impl Eq for Stepping {}
+
+impl Stepping {
+    /// Of a scene at a resolution.
+    ///
+    /// # Errors
+    /// When the resolution is no time step for this scene.
+    pub fn of(scene: &Scene, resolution: &Resolution) -> Result<Self, String> {
+        let (time_step, steps) = resolution.steps(scene)?;
+        let interval = Recorder::new(scene, time_step, steps).interval().min(steps.max(1));
+        Ok(Self { time_step, steps, interval })
+    }
+
+    /// Whether the last step is a sample anyway.
+    #[must_use]
+    pub fn ends_on_a_sample(&self) -> bool {
+        self.steps.is_multiple_of(self.interval)
+    }
+}
+
+/// Writes the deck of a scene for a program.
+///
+/// # Errors
+/// When the program cannot express the scene, with the reason, or the resolution is no time step.
+pub fn write_deck(scene: &Scene, resolution: &Resolution, program: Program) -> Result<Deck, DeckError> {
+    let stepping = Stepping::of(scene, resolution).map_err(DeckError::Resolution)?;
+    let unsupported = |reason: String| DeckError::Unsupported { program, reason };
+    outline::refuse_what_neither_has(scene).map_err(unsupported)?;
+    let files = match program {
+        Program::Lammps => lammps::files(scene, &stepping),
+        Program::Liggghts => liggghts::files(scene, &stepping),
+    };
+    Ok(Deck { files: files.map_err(unsupported)?, stepping })
+}
+
+/// A comment on the first line: what the deck is of. Only letters, digits and some marks, for scripts give others a
+/// meaning even in comments.
+fn heading(scene: &Scene) -> String {
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() || " .,:-()".contains(letter) { letter } else { '_' };
+    scene.title.chars().take(100).map(plain).collect::<String>().trim().to_owned()
+}

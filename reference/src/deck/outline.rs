@@ -1,0 +1,107 @@
+//! What both decks ask of a scene.
+
+use grainbench_scene::file::GrainShape;
+use grainbench_scene::motion::Moment;
+use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
+use nalgebra::Vector3;
+
+/// Refuses physics that neither program has, or has in another form than the scene.
+pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
+    let laws = || scene.laws.iter().flatten();
+    if scene.grains.is_empty() {
+        return Err("it has no grain".to_owned());
+    }
+    if scene.global_damping != 0.0 {
+        return Err("mass-proportional damping of translation and rotation (`global_damping`) is in neither".to_owned());
+    }
+    if laws().any(|law| law.is_hertz()) {
+        return Err("Hertz contacts are not written yet".to_owned());
+    }
+    if laws().any(|law| law.cohesion != 0.0) {
+        return Err("Coulomb's limit has no cohesion".to_owned());
+    }
+    if laws().any(|law| law.rolling_friction != 0.0) {
+        return Err("rolling resistance is not written yet".to_owned());
+    }
+    Ok(())
+}
+
+/// The inertia factor I/(mR²) that all grains have; refused where a grain has another.
+pub(crate) fn one_inertia(scene: &Scene, factor: f64) -> Result<(), String> {
+    let other = scene.grains.iter().position(|grain| {
+        let moment = factor * grain.mass * grain.radius * grain.radius;
+        (grain.inertia - moment).abs() > 1e-12 * moment
+    });
+    match other {
+        None => Ok(()),
+        Some(at) => {
+            let grain = &scene.grains[at];
+            let found = grain.inertia / (grain.mass * grain.radius * grain.radius);
+            Err(format!("moments of inertia are {factor} m R² there, and that of grain {} is {found:.6} m R²", at + 1))
+        }
+    }
+}
+
+/// Whether the scene's grains move in the plane.
+pub(crate) fn is_flat(scene: &Scene) -> bool {
+    scene.dimension == Dimension::Two
+}
+
+/// I/(mR²) of the scene's grains.
+pub(crate) fn inertia_factor(scene: &Scene) -> f64 {
+    scene.grain_shape.inertia_factor()
+}
+
+/// Whether the grains are discs.
+pub(crate) fn has_discs(scene: &Scene) -> bool {
+    scene.grain_shape == GrainShape::Disc
+}
+
+/// The materials that grains have, in order.
+pub(crate) fn grain_materials(scene: &Scene) -> Vec<u16> {
+    let mut materials: Vec<u16> = scene.grains.iter().map(|grain| grain.material).collect();
+    materials.sort_unstable();
+    materials.dedup();
+    materials
+}
+
+/// A plane along an axis: which, where (m), and whether it is the lower side of the grains' space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct AxisPlane {
+    pub(crate) axis: usize,
+    pub(crate) at: f64,
+    pub(crate) is_low: bool,
+    /// The axis that it is sheared along and its velocity (m/s).
+    pub(crate) shear: Option<(usize, f64)>,
+}
+
+/// The names of the axes.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl AxisPlane {
+    /// The wall as such a plane: at rest, or moving within itself along one axis at one velocity for the whole run.
+    pub(crate) fn of(wall: &Wall) -> Option<Self> {
+        let WallShape::Plane { point, normal } = wall.shape else { return None };
+        let axis = (0..3).find(|&axis| normal[axis].abs() == 1.0)?;
+        let mut plane = Self { axis, at: point[axis], is_low: normal[axis] > 0.0, shear: None };
+        if wall.motion.is_moving() {
+            let [phase] = &wall.motion.phases[..] else { return None };
+            let always = matches!(phase.start, Moment::Seconds(0.0) | Moment::Cycle(0)) && phase.stop == Moment::Never;
+            let mut along = (0..3).filter(|&axis| phase.velocity[axis] != 0.0);
+            let (first, second) = (along.next()?, along.next());
+            if !always || second.is_some() || first == axis || phase.spin != Vector3::zeros() {
+                return None;
+            }
+            plane.shear = Some((first, phase.velocity[first]));
+        }
+        Some(plane)
+    }
+}
+
+/// Refuses walls that turn.
+pub(crate) fn refuse_turning(wall: &Wall) -> Result<(), String> {
+    if wall.motion.phases.iter().any(|phase| phase.spin != Vector3::zeros()) {
+        return Err(format!("walls that turn are not written yet, and `{}` does", wall.name));
+    }
+    Ok(())
+}

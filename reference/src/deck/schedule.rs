@@ -1,0 +1,48 @@
+//! When walls change their velocity, in steps.
+
+use grainbench_scene::motion::{Moment, Motion};
+use nalgebra::Vector3;
+
+use super::Stepping;
+
+/// A moment as a step; none where it lies behind the end. A moment between two steps is refused.
+fn step_of(moment: Moment, stepping: &Stepping) -> Result<Option<u64>, String> {
+    let step = match moment {
+        Moment::Never => return Ok(None),
+        Moment::Cycle(cycle) => cycle,
+        Moment::Seconds(time) => {
+            let exact = time / stepping.time_step;
+            if (exact - exact.round()).abs() > 1e-9 * exact.max(1.0) {
+                return Err(format!("a wall changes its velocity at {time} s, which lies between two steps"));
+            }
+            exact.round() as u64
+        }
+    };
+    Ok((step < stepping.steps).then_some(step))
+}
+
+/// The steps at which some wall changes its velocity, in order, 0 among them and the end last.
+pub(crate) fn changes<'m>(motions: impl Iterator<Item = &'m Motion>, stepping: &Stepping) -> Result<Vec<u64>, String> {
+    let mut steps = vec![0, stepping.steps];
+    for phase in motions.flat_map(|motion| &motion.phases) {
+        for moment in [phase.start, phase.stop] {
+            steps.extend(step_of(moment, stepping)?);
+        }
+    }
+    steps.sort_unstable();
+    steps.dedup();
+    Ok(steps)
+}
+
+/// Velocity (m/s) from a step on, to the next change.
+pub(crate) fn velocity_from(motion: &Motion, step: u64, stepping: &Stepping) -> Result<Vector3<f64>, String> {
+    let mut velocity = Vector3::zeros();
+    for phase in &motion.phases {
+        let starts = step_of(phase.start, stepping)?.is_some_and(|start| start <= step);
+        let stopped = step_of(phase.stop, stepping)?.is_some_and(|stop| stop <= step);
+        if starts && !stopped {
+            velocity += phase.velocity;
+        }
+    }
+    Ok(velocity)
+}

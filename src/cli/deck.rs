@@ -1,0 +1,69 @@
+//! `grainbench deck`: the input of another program for a scene of ours.
+
+use super::exit::{Fault, Outcome, check_writable, print};
+use super::simulate::{path_and_value, positive};
+use super::subject;
+use grainbench::reference::deck::{DeckError, Program, write_deck};
+use grainbench::reports::StagedDir;
+use grainbench::scene::solver::Resolution;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Time step of scenes that are no case, as a fraction of the critical one.
+const USUAL: Resolution = Resolution::CriticalFraction(0.1);
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// A case, a variant of one, or a scene file.
+    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
+    scene: String,
+    /// The program: `lammps` or `liggghts`.
+    #[arg(long = "for", value_name = "PROGRAM")]
+    program: String,
+    /// Override one key of the scene; may be given more than once.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
+    set: Vec<(String, String)>,
+    /// Time step as a fraction of the critical one; the case's default rung, or .1, where none is given.
+    #[arg(long, value_name = "FRACTION", value_parser = positive, allow_hyphen_values = true, conflicts_with = "time_step")]
+    time_step_fraction: Option<f64>,
+    /// Time step in seconds.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    time_step: Option<f64>,
+    /// Directory for the deck.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-deck")]
+    out: PathBuf,
+}
+
+/// Writes a deck.
+pub(crate) fn deck(arguments: &Arguments) -> Outcome {
+    let name = arguments.program.as_str();
+    let program =
+        Program::by_name(name).ok_or_else(|| Fault::unknown("a program", name, Program::ALL.map(Program::name)))?;
+    let (scene, case) = subject::scene(&arguments.scene, &arguments.set)?;
+    let resolution = match (arguments.time_step, arguments.time_step_fraction) {
+        (Some(step), _) => Resolution::TimeStep(step),
+        (None, Some(fraction)) => Resolution::CriticalFraction(fraction),
+        (None, None) => case.map_or(USUAL, |case| case.default_rung.resolution),
+    };
+    let deck = write_deck(&scene, &resolution, program).map_err(|error| match error {
+        DeckError::Unsupported { .. } => Fault::input(format!("unsupported: {error}")),
+        DeckError::Resolution(_) => Fault::input(error),
+    })?;
+    check_writable(&arguments.out)?;
+    let mut out = StagedDir::new(&arguments.out).map_err(Fault::input)?;
+    for (name, text) in &deck.files {
+        out.write(name, text).map_err(Fault::input)?;
+    }
+    out.commit().map_err(Fault::input)?;
+    let (stepping, out) = (&deck.stepping, arguments.out.display());
+    print(&format!(
+        "scene      {}\nprogram    {program}\ntime step  {:.6e} s\nsteps      {}\nfiles      {}\nrun        cd {out} && {}\n",
+        scene.title,
+        stepping.time_step,
+        grainbench::reports::number::count(stepping.steps),
+        deck.files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", "),
+        program.command(),
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}

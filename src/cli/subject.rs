@@ -1,0 +1,59 @@
+//! The scene that a command is about: of a case, or of a file.
+
+use super::exit::Fault;
+use super::select;
+use grainbench::cases::case::{Case, PLAIN, read_grains};
+use grainbench::cases::registry::CASES;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+/// A case and one of its variants.
+#[derive(Clone, Copy)]
+pub(crate) struct Variant<'a> {
+    pub(crate) case: &'static Case,
+    /// The plain scene, or the first variant that gates look at, where none is named.
+    pub(crate) variant: Option<&'a str>,
+}
+
+impl<'a> Variant<'a> {
+    /// Reads `CASE` or `CASE/VARIANT`.
+    pub(crate) fn read(text: &'a str) -> Result<Self, Fault> {
+        let (name, variant) = text.split_once('/').map_or((text, None), |(name, variant)| (name, Some(variant)));
+        let case = CASES
+            .iter()
+            .find(|case| case.name == name)
+            .ok_or_else(|| Fault::unknown("a case", name, CASES.iter().map(|case| case.name)))?;
+        if let Some(variant) = variant {
+            let known = select::variants(case, &(case.gates)())?;
+            if variant != PLAIN && !known.iter().any(|name| name == variant) {
+                let what = format!("a variant of {}", case.name);
+                return Err(Fault::unknown(&what, variant, known.iter().map(String::as_str)));
+            }
+        }
+        Ok(Self { case, variant })
+    }
+
+    /// The scene's text.
+    pub(crate) fn source(&self) -> SceneSource {
+        match self.variant {
+            None | Some(PLAIN) => self.case.source(),
+            Some(variant) => self.case.source().variant(variant),
+        }
+    }
+}
+
+/// The scene of `CASE`, `CASE/VARIANT` or a file that ends in `.toml`, some of its keys overridden.
+pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Option<&'static Case>), Fault> {
+    let is_file = Path::new(text).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
+    let (mut source, case) = if is_file {
+        (SceneSource::read(Path::new(text))?, None)
+    } else {
+        let variant = Variant::read(text)?;
+        (variant.source(), Some(variant.case))
+    };
+    for (path, value) in set {
+        source = source.set(path, value);
+    }
+    Ok((source.scene(&read_grains)?, case))
+}
