@@ -80,7 +80,7 @@ fn refused(from: &str, to: &str) -> String {
 /// Names of all cases and solvers, which are not this test's business.
 fn without_registries(message: &str) -> String {
     let cases: Vec<&str> = CASES.iter().map(|case| case.name).collect();
-    let solvers: Vec<String> = solvers::all().iter().map(|solver| solver.name()).collect();
+    let solvers = solvers::names();
     message.replace(&cases.join(", "), "[cases]").replace(&solvers.join(", "), "[solvers]")
 }
 

@@ -27,10 +27,12 @@ fn trial(name: &str, bench: &Arc<Bench>, gate: &Arc<Gate>, test: fn(&Bench, &Gat
     Trial::test(name, move || test(&bench, &gate))
 }
 
-/// The gate passes; where the solver must refuse the scene, it does, with a reason; a known error is still there.
+/// The gate passes; where the solver must refuse the scene, it does, with a reason; a known error is still there; where it is
+/// a program that is not installed, that is what the row says.
 fn accept(bench: &Bench, gate: &Gate) -> Result<(), Failed> {
     let verdict = bench.judge(gate);
     let expected = match gate.standing() {
+        _ if !bench.is_available(gate) => Outcome::NotAvailable,
         Standing::Passes => Outcome::Pass,
         Standing::Refused => Outcome::Unsupported,
         Standing::Known(_) => Outcome::Known,
@@ -40,6 +42,9 @@ fn accept(bench: &Bench, gate: &Gate) -> Result<(), Failed> {
 
 /// The gate turns red when its physics is wrong.
 fn refuse(bench: &Bench, gate: &Gate) -> Result<(), Failed> {
+    if !bench.is_available(gate) {
+        return Ok(());
+    }
     let control = bench.control(gate);
     if control.turned_red {
         return Ok(());

@@ -6,6 +6,7 @@ use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, measure};
 use crate::incline::{DAMPING, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
 use crate::one_grain::{OneGrain, State, course, last};
+use crate::program_rows;
 use crate::rigid_rows::{self, Row};
 use crate::scope::Scope;
 use crate::verdict::Evidence;
@@ -35,7 +36,7 @@ pub(crate) static CASE: Case = Case {
 
 fn gates() -> Vec<Gate> {
     let dem = VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant), near_rigid(variant)].concat());
-    dem.chain(rigid_rows::backspins(RIGID)).collect()
+    dem.chain(rigid_rows::backspins(RIGID)).chain(program_rows::one_grain(&VARIANTS)).collect()
 }
 
 fn rigid(variant: &'static str) -> Vec<Gate> {

@@ -5,6 +5,7 @@ use crate::case::{Case, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
+use crate::program_rows;
 use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
@@ -43,6 +44,7 @@ fn gates() -> Vec<Gate> {
     gates.extend(angular_momentum());
     gates.extend(DAMPED.map(|variant| rigid_rows::restitution(variant, measured_restitution)));
     gates.extend(rigid_invariants());
+    gates.extend(program_rows::restitution(&DAMPED, LADDER[1].resolution));
     gates
 }
 

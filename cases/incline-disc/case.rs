@@ -9,6 +9,7 @@ use crate::figure::Figure;
 use crate::gate::Gate;
 use crate::incline::{self, Slope};
 use crate::one_grain::OneGrain;
+use crate::program_rows;
 use crate::rigid_rows::{self, Row};
 use grainbench_scene::solver::RunError;
 
@@ -45,7 +46,8 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID), elastic::gates()].concat()
+    let programs = program_rows::one_grain(&SLOPES.iter().map(|slope| slope.variant).collect::<Vec<_>>());
+    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs, elastic::gates()].concat()
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

@@ -6,6 +6,7 @@ use crate::figure::Figure;
 use crate::gate::Gate;
 use crate::incline::{self, Slope};
 use crate::one_grain::OneGrain;
+use crate::program_rows;
 use crate::rigid_rows::{self, Row};
 use grainbench_scene::solver::RunError;
 
@@ -38,7 +39,8 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID)].concat()
+    let programs = program_rows::one_grain(&SLOPES.iter().map(|slope| slope.variant).collect::<Vec<_>>());
+    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs].concat()
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

@@ -8,6 +8,7 @@ mod modal;
 use crate::case::{Case, Rung, fraction};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::{dominant_frequency, slope};
+use crate::program_rows;
 use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
@@ -43,7 +44,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [static_forces(), discrete(), vec![geometry()], continuous(), paper(), vec![rigid_rows::refuses_cycles("kappa-0")]].concat()
+    [static_forces(), discrete(), vec![geometry()], continuous(), paper(), vec![rigid_rows::refuses_cycles("kappa-0")], program_rows::nine_discs(&MODAL, LADDER[0].resolution, travel)].concat()
 }
 
 /// Static forces at every named contact, damped.

@@ -72,6 +72,12 @@ impl Bench {
         runs.values().filter_map(|(run, slot)| Some((run.clone(), slot.get()?.as_ref().ok()?.clone()))).collect()
     }
 
+    /// Whether all solvers of a gate can be run on this machine; a gate that cannot be judged has no control either.
+    #[must_use]
+    pub fn is_available(&self, gate: &Gate) -> bool {
+        gate.runs.iter().all(|run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok()))
+    }
+
     /// Judges a gate.
     #[must_use]
     pub fn judge(&self, gate: &Gate) -> Verdict {
@@ -82,7 +88,12 @@ impl Bench {
     /// Feeds a gate with its wrong physics; the row of a known error with a solver that does not have it.
     #[must_use]
     pub fn control(&self, gate: &Gate) -> verdict::Control {
-        let done = gate.runs.iter().map(|run| self.simulate(run, Some(&gate.control))).collect();
+        let done = gate.runs.iter().map(|run| match gate.control.wrong {
+            // What is made wrong is our own side.
+            Wrong::Ours(_) | Wrong::OtherSolver(_) if solvers::is_program(run.solver) => self.run(run),
+            _ => self.simulate(run, Some(&gate.control)),
+        });
+        let done = done.collect();
         let verdict = self.conclude(gate, done);
         verdict::Control {
             case: verdict.case,
@@ -104,7 +115,7 @@ impl Bench {
         let mut given = scene.clone();
         let solver = match control.map(|control| &control.wrong) {
             None => self.solver(run.solver),
-            Some(Wrong::Scene(change)) => {
+            Some(Wrong::Scene(change) | Wrong::Ours(change)) => {
                 change(&mut given);
                 self.solver(run.solver)
             }

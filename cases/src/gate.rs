@@ -183,6 +183,8 @@ impl Measured {
 pub enum Wrong {
     /// The solver is given a wrong scene.
     Scene(Change),
+    /// In a comparison with another program, our own solver is given a wrong scene.
+    Ours(Change),
     /// The solver has a defect.
     Solver(Defect),
     /// Another solver takes its place.
@@ -205,6 +207,12 @@ impl Control {
     #[must_use]
     pub fn scene(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         Self { name, wrong: Wrong::Scene(Arc::new(change)) }
+    }
+
+    /// A wrong scene for our own side of a comparison with another program.
+    #[must_use]
+    pub fn ours(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
+        Self { name, wrong: Wrong::Ours(Arc::new(change)) }
     }
 
     /// A solver whose contacts forget.

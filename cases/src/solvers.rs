@@ -1,16 +1,15 @@
 //! The registry of solvers: a line each.
 
+use crate::varied;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_mpm::solver::Mpm;
+use grainbench_reference::deck::Program;
+use grainbench_reference::live::Live;
 use grainbench_rigid::solver::Rigid;
-use grainbench_scene::checkpoint::Checkpoint;
-use grainbench_scene::record::Record;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::Solver;
 
-/// Every solver, by name.
+/// Every solver of ours.
 #[must_use]
 pub fn all() -> Vec<Box<dyn Solver>> {
     let dem = Convention::ALL.into_iter().map(|convention| Box::new(Dem::new(convention)) as Box<dyn Solver>);
@@ -18,77 +17,27 @@ pub fn all() -> Vec<Box<dyn Solver>> {
     dem.chain([Box::new(Rigid::new()) as Box<dyn Solver>]).chain(mpm).collect()
 }
 
+/// Other people's programs, whether or not they are installed.
+#[must_use]
+pub fn programs() -> Vec<Box<dyn Solver>> {
+    Program::ALL.into_iter().map(|program| Box::new(Live::find(program)) as Box<dyn Solver>).collect()
+}
+
+/// The names of all of them.
+#[must_use]
+pub fn names() -> Vec<String> {
+    all().iter().chain(&programs()).map(|solver| solver.name()).collect()
+}
+
 /// The solver of a name. The material point method may be given words that change its setting, such as
 /// `mpm+quadratic+apic`.
 #[must_use]
 pub fn by_name(name: &str) -> Option<Box<dyn Solver>> {
-    let Some((base, words)) = name.split_once('+') else {
-        return all().into_iter().find(|solver| solver.name() == name);
-    };
-    let mut mpm = Mpm::named(base)?;
-    for word in words.split('+') {
-        change(&mut mpm.setting, word)?;
-    }
-    Some(Box::new(Varied { name: name.to_owned(), mpm }))
+    all().into_iter().chain(programs()).find(|solver| solver.name() == name).or_else(|| varied::by_name(name))
 }
 
-/// Changes a setting by a word; none when there is no such word.
-fn change(setting: &mut Setting, word: &str) -> Option<()> {
-    match word {
-        "linear" => setting.basis = Basis::Linear,
-        "quadratic" => setting.basis = Basis::Quadratic,
-        "gimp" => setting.basis = Basis::Gimp,
-        "flip" => setting.transfer = Transfer::Flip { pic: 0.0 },
-        "apic" => setting.transfer = Transfer::Apic,
-        "spin" => setting.transfer = Transfer::Spin,
-        "usf" => setting.stress_update = StressUpdate::First,
-        "usl" => setting.stress_update = StressUpdate::Last,
-        "musl" => setting.stress_update = StressUpdate::ModifiedLast,
-        _ => {
-            let (key, value) = word.split_once('=')?;
-            let value = value.parse::<f64>().ok().filter(|value| value.is_finite())?;
-            match key {
-                "pic" if (0.0..=1.0).contains(&value) => setting.transfer = Transfer::Flip { pic: value },
-                "penalty" if value > 0.0 => setting.penalty = value,
-                "tracers" if value > 0.0 => setting.tracers = value,
-                "phase" => setting.phase = [value; 3],
-                _ => return None,
-            }
-        }
-    }
-    Some(())
-}
-
-/// The material point method in a setting that is spelt out in its name.
-struct Varied {
-    name: String,
-    mpm: Mpm,
-}
-
-impl Varied {
-    fn named(&self, record: Record) -> Record {
-        let mut record = record;
-        record.provenance.solver.clone_from(&self.name);
-        record
-    }
-}
-
-impl Solver for Varied {
-    fn name(&self) -> String {
-        self.name.clone()
-    }
-
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
-        Ok(self.named(self.mpm.run(scene, resolution, watch)?))
-    }
-
-    fn restart(
-        &self,
-        scene: &Scene,
-        resolution: &Resolution,
-        from: &Checkpoint,
-        watch: &mut dyn Watch,
-    ) -> Result<Record, RunError> {
-        Ok(self.named(self.mpm.restart(scene, resolution, from, watch)?))
-    }
+/// Whether a name is that of another program.
+#[must_use]
+pub fn is_program(name: &str) -> bool {
+    Program::by_name(name).is_some()
 }

@@ -64,7 +64,10 @@ impl From<&RunError> for Outcome {
     fn from(error: &RunError) -> Self {
         match error {
             RunError::Unsupported { .. } => Self::Unsupported,
-            RunError::Resolution { .. } | RunError::Broken(_) | RunError::Checkpoint(_) => Self::Broken,
+            RunError::NotAvailable { .. } => Self::NotAvailable,
+            RunError::Resolution { .. } | RunError::Program { .. } | RunError::Broken(_) | RunError::Checkpoint(_) => {
+                Self::Broken
+            }
         }
     }
 }

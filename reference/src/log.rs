@@ -35,6 +35,8 @@ pub struct LoopTime {
 /// A log.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
+    /// The line by which the program names its version, where the log begins with it.
+    pub version: Option<String>,
     /// The name of the unit system, where the log repeats the command that sets it.
     pub units: Option<String>,
     /// The time step, where the log repeats a command `timestep` with a number; that of the last one.
@@ -65,6 +67,9 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     let mut expected = Expected::Text;
     while let Some(line) = lines.next_line()? {
         let words = || line.text.split_whitespace();
+        if line.number == 1 && ["LAMMPS (", "LIGGGHTS ("].iter().any(|name| line.text.starts_with(name)) {
+            log.version = Some(line.text.trim().to_owned());
+        }
         if let Expected::Rows(columns, values) = &mut expected {
             match words().next() {
                 Some("Loop") => {

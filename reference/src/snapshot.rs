@@ -67,12 +67,23 @@ impl DumpSnapshot {
         let name = *["x", "y", "z"].get(axis)?;
         for (suffix, scaled) in [("", false), ("u", false), ("s", true), ("su", true)] {
             if let Some(column) = self.column(&format!("{name}{suffix}")) {
-                let (low, high) = (self.bounds.0[axis], self.bounds.1[axis]);
-                let (origin, scale) = if scaled { (low, high - low) } else { (0.0, 1.0) };
-                return Some(Coordinate { column, origin, scale });
+                return Some(self.coordinate_in(column, axis, scaled));
             }
         }
         None
+    }
+
+    /// A coordinate along an axis from a column of any name; `xs`, `xsu` and so on are scaled.
+    #[must_use]
+    pub fn coordinate_named(&self, name: &str, axis: usize) -> Option<Coordinate> {
+        let scaled = ["xs", "ys", "zs", "xsu", "ysu", "zsu"].contains(&name);
+        Some(self.coordinate_in(self.column(name)?, axis, scaled))
+    }
+
+    fn coordinate_in(&self, column: usize, axis: usize, scaled: bool) -> Coordinate {
+        let (low, high) = (self.bounds.0[axis], self.bounds.1[axis]);
+        let (origin, scale) = if scaled { (low, high - low) } else { (0.0, 1.0) };
+        Coordinate { column, origin, scale }
     }
 
     /// What all columns of numbers show together of the format.

@@ -7,6 +7,7 @@ use super::select::{self, Selected};
 use grainbench::cases::bench::Bench;
 use grainbench::cases::figure::Figure;
 use grainbench::cases::gate::{Done, Run};
+use grainbench::cases::solvers;
 use grainbench::cases::verdict::{self, Control, Verdict};
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, RunCost, Section, summary_table, write_report};
@@ -79,7 +80,7 @@ pub(crate) fn exit_code(report: &Report) -> ExitCode {
 
 /// Other people's programs may break without it being our failure.
 fn is_ours(solver: &str) -> bool {
-    !matches!(solver, "lammps" | "liggghts")
+    !solvers::is_program(solver)
 }
 
 /// The options that are not the default, in words.
@@ -157,7 +158,10 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
             at.verdicts[gate].get_or_init(|| at.bench.judge(&at.selected.gates[gate]));
         }
         Task::Control(_, gate) => {
-            at.controls[gate].get_or_init(|| at.bench.control(&at.selected.gates[gate]));
+            let gate_of = &at.selected.gates[gate];
+            if at.bench.is_available(gate_of) {
+                at.controls[gate].get_or_init(|| at.bench.control(gate_of));
+            }
         }
         Task::Draw(_) => {
             at.figures.get_or_init(|| (at.selected.case.figures)(&at.bench));

@@ -57,7 +57,7 @@ fn row(gate: &Gate) -> Option<&Run> {
 }
 
 fn refuse_unknown_solvers(selected: &[Selected], names: &[String]) -> Result<(), Fault> {
-    let ours: Vec<String> = grainbench::cases::solvers::all().iter().map(|solver| solver.name()).collect();
+    let ours = grainbench::cases::solvers::names();
     let mut known: Vec<&str> = ours.iter().map(String::as_str).collect();
     for name in selected.iter().flat_map(|selected| solvers(&selected.gates)) {
         push_new(&mut known, name);

@@ -121,7 +121,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
 
 fn solver(name: &str) -> Result<Box<dyn Solver>, Fault> {
     solvers::by_name(name).ok_or_else(|| {
-        let names: Vec<String> = solvers::all().iter().map(|solver| solver.name()).collect();
+        let names = solvers::names();
         Fault::unknown("a solver", name, names.iter().map(String::as_str))
     })
 }
@@ -158,7 +158,11 @@ fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault>
 fn fault(error: RunError) -> Fault {
     match error {
         RunError::Broken(broken) => Fault::Broken(broken.to_string()),
-        RunError::Unsupported { .. } | RunError::Resolution { .. } | RunError::Checkpoint(_) => Fault::input(error),
+        RunError::Program { .. } => Fault::Broken(error.to_string()),
+        RunError::Unsupported { .. }
+        | RunError::Resolution { .. }
+        | RunError::NotAvailable { .. }
+        | RunError::Checkpoint(_) => Fault::input(error),
     }
 }
 

@@ -237,12 +237,51 @@ pub enum RunError {
         /// What is wrong with it.
         reason: String,
     },
+    /// The solver is a program that is not here.
+    #[error("{solver} is not available: {reason}")]
+    NotAvailable {
+        /// Which solver.
+        solver: String,
+        /// Where it was looked for.
+        reason: String,
+    },
+    /// The solver is a program that failed.
+    #[error("{solver} {failure}{}", last_words(last_lines))]
+    Program {
+        /// Which solver.
+        solver: String,
+        /// How it failed.
+        failure: Failure,
+        /// The last lines that it printed.
+        last_lines: Vec<String>,
+    },
     /// The simulation broke.
     #[error(transparent)]
     Broken(#[from] Box<Broken>),
     /// It cannot be continued from this checkpoint, or its own checkpoint cannot be left.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+}
+
+/// How another program failed.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Failure {
+    /// It could not be started, or its folder not be made.
+    #[error("could not be run: {0}")]
+    NotRun(String),
+    /// It took too long and was ended.
+    #[error("was ended after {0} s")]
+    TimeOut(u64),
+    /// It ended with another code than success.
+    #[error("failed: {0}")]
+    Crash(String),
+    /// What it left cannot be used.
+    #[error("left output that cannot be used: {0}")]
+    Output(String),
+}
+
+fn last_words(lines: &[String]) -> String {
+    if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) }
 }
 
 /// Someone who wants to know how far a run is.
@@ -273,6 +312,14 @@ impl Watch for () {
 pub trait Solver: Send + Sync {
     /// Name and convention, such as `dem:lammps`.
     fn name(&self) -> String;
+
+    /// Whether it can be run on this machine. Solvers of ours always can.
+    ///
+    /// # Errors
+    /// When it is a program that is not here: [`RunError::NotAvailable`].
+    fn available(&self) -> Result<(), RunError> {
+        Ok(())
+    }
 
     /// Runs a scene.
     ///

@@ -1,0 +1,143 @@
+//! Rows of the programs `lammps` and `liggghts`, run where they are installed: our solver in a program's convention gives
+//! what the program gives.
+
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::incline::{DAMPING, at_overlap, more_friction, wrong_inertia};
+use crate::scope::Scope;
+use crate::verdict::Evidence;
+use grainbench_scene::file::GrainShape;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::Resolution;
+
+/// A program, and our solver in its convention.
+pub const PAIRS: [[&str; 2]; 2] = [["lammps", "dem:lammps"], ["liggghts", "dem:liggghts"]];
+
+const SOURCE: &str = "the program, run on the deck of the same scene";
+/// The time step of one grain on a plane (s).
+const STEP: Resolution = Resolution::TimeStep(1e-4);
+
+/// The worst difference in some columns, in units of `scale`.
+fn worst(done: &[Done], columns: &[&str], scale: f64) -> Result<Measured, Missing> {
+    let mut worst: Option<Measured> = None;
+    for column in columns {
+        let (theirs, ours) = (done[0].column(column)?, done[1].column(column)?);
+        if theirs.len() != ours.len() {
+            return Err(Missing(format!("samples of `{column}` at the steps of the other")));
+        }
+        let found = Measured::worst_of(&done[0].series().time, theirs, ours, scale);
+        let is_worse = |than: &Measured| found.error().is_nan() || found.error().abs() > than.error().abs();
+        if worst.as_ref().is_none_or(is_worse) {
+            worst = Some(found);
+        }
+    }
+    worst.ok_or_else(|| Missing("columns to compare".to_owned()))
+}
+
+fn row(
+    quantity: &str,
+    unit: &'static str,
+    (allowed, because): (f64, &'static str),
+    runs: [Run; 2],
+    control: Control,
+    of: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
+) -> Gate {
+    Gate {
+        quantity: format!("{quantity}, against {}", runs[1].solver),
+        unit,
+        evidence: Evidence::OtherCode,
+        scope: Scope::Named,
+        source: SOURCE,
+        allowed,
+        because,
+        runs: runs.into(),
+        measure: measure(of),
+        control,
+    }
+}
+
+/// Motion of one grain on a plane over one second: undamped, and damped, where the programs' conventions part.
+#[must_use]
+pub fn one_grain(variants: &[&'static str]) -> Vec<Gate> {
+    let mut gates = Vec::new();
+    for &variant in variants {
+        for (pair, [_, other]) in PAIRS.into_iter().zip([PAIRS[1], PAIRS[0]]) {
+            // One is felt where the grain slips, the other where it rolls.
+            let wrong = Control::ours("friction ×1.05 and the inertia of the other shape in ours", |scene| {
+                more_friction(scene);
+                wrong_inertia(scene);
+            });
+            gates.push(on_a_plane(pair.map(|solver| at_overlap(variant, solver, 1e-3, 0.0, STEP)), "undamped", wrong));
+            let other = Control::solver("ours in the convention of the other program", other);
+            gates.push(on_a_plane(
+                pair.map(|solver| at_overlap(variant, solver, 1e-3, DAMPING, STEP)),
+                "damped",
+                other,
+            ));
+        }
+    }
+    gates
+}
+
+fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Gate {
+    let allowed = (1e-9, "the same cycle: rounding, which grows over 10,000 steps; in units of R");
+    row(&format!("position over 1 s, {damping}, worst"), "m", allowed, runs, control, |done| {
+        let scene = &done[0].scene;
+        let axes = if scene.dimension.count() == 2 { &["grain.x", "grain.y"][..] } else { &["grain.x", "grain.z"] };
+        worst(done, axes, scene.grains[0].radius)
+    })
+}
+
+/// The speed at which two grains part, as a part of that at which they met.
+#[must_use]
+pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Gate> {
+    fn of(done: &Done) -> Result<f64, Missing> {
+        let grains = &done.scene.grains;
+        Ok((done.last("b.vx")? - done.last("a.vx")?) / (grains[0].velocity.x - grains[1].velocity.x))
+    }
+    let mut gates = Vec::new();
+    for &variant in variants {
+        for pair in PAIRS {
+            let runs = pair.map(|solver| Run::new(variant, solver, resolution));
+            let control = Control::ours("damping ×1.001 in ours", |scene| {
+                scene.change_laws(|law| {
+                    law.normal_damping *= 1.001;
+                    law.stiffness_damping *= 1.001;
+                });
+            });
+            let allowed = (1e-9, "the same cycle: rounding");
+            gates.push(row("coefficient of restitution", "1", allowed, runs, control, |done| {
+                Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0))
+            }));
+        }
+    }
+    gates
+}
+
+/// LIGGGHTS moves walls inwards in three dimensions only: one layer of spheres, whose masses are those of the discs.
+fn layer_of_spheres(scene: &mut Scene) {
+    scene.grain_shape = GrainShape::Sphere;
+    let factor = GrainShape::Sphere.inertia_factor();
+    scene.grains.iter_mut().for_each(|grain| grain.inertia = factor * grain.mass * grain.radius * grain.radius);
+}
+
+/// Positions of the nine discs over all cycles, in units of what `travel` says.
+#[must_use]
+pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Gate> {
+    const COLUMNS: [&str; 4] = ["edge.x", "edge.y", "corner.x", "corner.y"];
+    let mut gates = Vec::new();
+    for &variant in variants {
+        for pair in PAIRS {
+            let runs = pair.map(|solver| {
+                let run = Run::new(variant, solver, resolution);
+                if pair[0] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
+            });
+            let control = Control::ours("stiffness off by 1e-6 in ours", |scene| {
+                scene.change_laws(|law| law.normal_stiffness *= 1.0 + 1e-6);
+            });
+            let allowed = (1e-10, "the same cycle: rounding of positions, 3e-12 of the wall travel a step");
+            let quantity = "position over all cycles, worst";
+            gates.push(row(quantity, "m", allowed, runs, control, move |done| worst(done, &COLUMNS, travel(&done[0]))));
+        }
+    }
+    gates
+}

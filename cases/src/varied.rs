@@ -1,0 +1,80 @@
+//! The material point method in settings that are spelt out in a name, such as `mpm+quadratic+apic`: for cases that need
+//! another setting and say so in their rows.
+
+use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
+use grainbench_mpm::solver::Mpm;
+use grainbench_scene::checkpoint::Checkpoint;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+
+/// The solver of such a name; none when a word is unknown.
+pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
+    let (base, words) = name.split_once('+')?;
+    let mut mpm = Mpm::named(base)?;
+    for word in words.split('+') {
+        change(&mut mpm.setting, word)?;
+    }
+    Some(Box::new(Varied { name: name.to_owned(), mpm }))
+}
+
+/// Changes a setting by a word; none when there is no such word.
+fn change(setting: &mut Setting, word: &str) -> Option<()> {
+    match word {
+        "linear" => setting.basis = Basis::Linear,
+        "quadratic" => setting.basis = Basis::Quadratic,
+        "gimp" => setting.basis = Basis::Gimp,
+        "flip" => setting.transfer = Transfer::Flip { pic: 0.0 },
+        "apic" => setting.transfer = Transfer::Apic,
+        "spin" => setting.transfer = Transfer::Spin,
+        "usf" => setting.stress_update = StressUpdate::First,
+        "usl" => setting.stress_update = StressUpdate::Last,
+        "musl" => setting.stress_update = StressUpdate::ModifiedLast,
+        _ => {
+            let (key, value) = word.split_once('=')?;
+            let value = value.parse::<f64>().ok().filter(|value| value.is_finite())?;
+            match key {
+                "pic" if (0.0..=1.0).contains(&value) => setting.transfer = Transfer::Flip { pic: value },
+                "penalty" if value > 0.0 => setting.penalty = value,
+                "tracers" if value > 0.0 => setting.tracers = value,
+                "phase" => setting.phase = [value; 3],
+                _ => return None,
+            }
+        }
+    }
+    Some(())
+}
+
+/// The material point method in a setting that is spelt out in its name.
+struct Varied {
+    name: String,
+    mpm: Mpm,
+}
+
+impl Varied {
+    fn named(&self, record: Record) -> Record {
+        let mut record = record;
+        record.provenance.solver.clone_from(&self.name);
+        record
+    }
+}
+
+impl Solver for Varied {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        Ok(self.named(self.mpm.run(scene, resolution, watch)?))
+    }
+
+    fn restart(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: &Checkpoint,
+        watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
+        Ok(self.named(self.mpm.restart(scene, resolution, from, watch)?))
+    }
+}

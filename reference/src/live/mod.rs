@@ -1,0 +1,146 @@
+//! LAMMPS and LIGGGHTS as solvers, where they are installed: deck, run, dump, record.
+
+mod process;
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use grainbench_scene::effects::Effects;
+use grainbench_scene::record::{Cost, Provenance, Record};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
+
+use crate::deck::{Deck, DeckError, END, Program, SAMPLES, write_deck};
+use crate::dump::DumpReader;
+use crate::log::read_log;
+use crate::numbers::NotFinite;
+use crate::observer::{Names, Observed, Observer};
+use crate::read_error::ReadError;
+use crate::snapshot::DumpSnapshot;
+
+/// How long a program may take, unless it is given another time.
+const TIME_LIMIT: Duration = Duration::from_secs(600);
+
+/// A program that is run as a solver.
+#[derive(Debug, Clone)]
+pub struct Live {
+    program: Program,
+    executable: Result<PathBuf, String>,
+    time_limit: Duration,
+}
+
+impl Live {
+    /// The program as `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names it, or else `lmp` or `liggghts` on `PATH`.
+    #[must_use]
+    pub fn find(program: Program) -> Self {
+        let (variable, usual) = match program {
+            Program::Lammps => ("GRAINBENCH_LAMMPS", "lmp"),
+            Program::Liggghts => ("GRAINBENCH_LIGGGHTS", "liggghts"),
+        };
+        let executable = match env::var_os(variable).filter(|path| !path.is_empty()) {
+            Some(path) => Some(PathBuf::from(&path))
+                .filter(|path| path.is_file())
+                .ok_or_else(|| format!("{variable} names `{}`, where no file is", PathBuf::from(path).display())),
+            None => env::var_os("PATH")
+                .and_then(|path| env::split_paths(&path).map(|folder| folder.join(usual)).find(|path| path.is_file()))
+                .ok_or_else(|| format!("there is no `{usual}` on PATH, and {variable} names none")),
+        };
+        Self { program, executable, time_limit: TIME_LIMIT }
+    }
+
+    /// The program at a path.
+    #[must_use]
+    pub fn at(program: Program, executable: &Path) -> Self {
+        Self { program, executable: Ok(executable.to_owned()), time_limit: TIME_LIMIT }
+    }
+
+    /// The same with another limit of time.
+    #[must_use]
+    pub fn with_time_limit(self, time_limit: Duration) -> Self {
+        Self { time_limit, ..self }
+    }
+
+    fn executable(&self) -> Result<&Path, RunError> {
+        let missing = |reason: &String| RunError::NotAvailable { solver: self.name(), reason: reason.clone() };
+        self.executable.as_deref().map_err(missing)
+    }
+
+    fn deck(&self, scene: &Scene, resolution: &Resolution) -> Result<Deck, RunError> {
+        write_deck(scene, resolution, self.program).map_err(|error| match error {
+            DeckError::Unsupported { reason, .. } => RunError::Unsupported { solver: self.name(), reason },
+            DeckError::Resolution(reason) => RunError::Resolution { solver: self.name(), reason },
+        })
+    }
+}
+
+impl Solver for Live {
+    fn name(&self) -> String {
+        self.program.name().to_owned()
+    }
+
+    fn available(&self) -> Result<(), RunError> {
+        self.executable().map(drop)
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let deck = self.deck(scene, resolution)?;
+        let executable = self.executable()?;
+        let stepping = deck.stepping;
+        watch.begin(stepping.time_step, stepping.steps);
+        let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
+        let folder = process::scratch(&deck).map_err(|error| fail(Failure::NotRun(error.to_string()), Vec::new()))?;
+        let screen = process::run(executable, &deck.files[0].0, folder.path(), self.time_limit)
+            .map_err(|(failure, last_lines)| fail(failure, last_lines))?;
+        let unusable = |error: ReadError| fail(Failure::Output(error.to_string()), screen.clone());
+        let observed = observe(scene, &deck, folder.path()).map_err(unusable)?;
+        let log = read_log(&folder.path().join(process::LOG)).map_err(unusable)?;
+        watch.progress(stepping.steps, stepping.steps);
+        let seconds = log.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum();
+        let critical = scene.critical_time_step();
+        Ok(Record {
+            provenance: Provenance {
+                scene: scene.title.clone(),
+                solver: self.name(),
+                resolution: resolution.to_string(),
+                time_step: stepping.time_step,
+                critical_time_step: critical.is_finite().then_some(critical),
+                effects: Effects::of(scene).words(),
+                options: log.version.into_iter().collect(),
+            },
+            series: observed.series,
+            snapshots: observed.snapshots,
+            cost: Cost {
+                steps: stepping.steps,
+                particle_steps: stepping.steps * scene.grains.len() as u64,
+                wall_seconds: seconds,
+                ..Cost::default()
+            },
+        })
+    }
+}
+
+/// Reads what a deck's run left in a folder. Values that are not finite are kept: gates have something to say of them.
+fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadError> {
+    let stepping = deck.stepping;
+    let mut observer = Observer::new(scene);
+    let mut snapshot = DumpSnapshot::default();
+    // Snapshots are taken at the samples next to where they are due.
+    let parts = u64::from(scene.snapshots) + 1;
+    let due = |taken: u64| (stepping.steps as f64 * taken as f64 / parts as f64) as u64;
+    let mut taken = 0;
+    for name in [SAMPLES, END] {
+        if name == END && stepping.ends_on_a_sample() {
+            continue;
+        }
+        let path = folder.join(name);
+        let mut reader = DumpReader::open(&path)?.not_finite(NotFinite::Kept);
+        while reader.read(&mut snapshot)? {
+            let keep = snapshot.step >= due(taken);
+            taken += u64::from(keep);
+            let time = snapshot.step as f64 * stepping.time_step;
+            observer.take(name, &snapshot, &Names::default(), time, None, keep)?;
+        }
+    }
+    Ok(observer.finish())
+}

@@ -1,0 +1,236 @@
+//! A record from what another program wrote down: the scene's probes, as far as a dump of its grains can tell them.
+
+use grainbench_scene::record::{GrainState, Look, Series, Snapshot};
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
+use nalgebra::Vector3;
+
+use crate::digits::Digits;
+use crate::read_error::ReadError;
+use crate::snapshot::{Coordinate, DumpSnapshot};
+
+/// What a file calls its columns, where that is not what LAMMPS calls them: pairs of `x`, `vx`, `omegaz`, … and the
+/// file's own name.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Names(pub Vec<(String, String)>);
+
+impl Names {
+    /// The file's name of a column.
+    #[must_use]
+    pub fn of<'n>(&'n self, name: &'n str) -> &'n str {
+        self.0.iter().find(|(ours, _)| ours == name).map_or(name, |(_, theirs)| theirs)
+    }
+}
+
+/// What a dump tells of the grains of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observed {
+    /// The probes' columns that can be told from it.
+    pub series: Series,
+    /// For each column and sample, how far the printed digits may have moved it.
+    pub uncertainty: Vec<Vec<f64>>,
+    /// Every snapshot that was to be kept; the last one always.
+    pub snapshots: Vec<Snapshot>,
+}
+
+/// Takes the snapshots of a dump, one after the other.
+pub struct Observer<'s> {
+    scene: &'s Scene,
+    /// The scene with a sample at whatever step comes.
+    sampled: Scene,
+    /// Samples as printed, and with all numbers larger by what the digits leave open: along the axes, and outwards.
+    recorders: [Recorder; 3],
+    known: Known,
+    snapshots: Vec<Snapshot>,
+    last: Option<Snapshot>,
+}
+
+/// What all snapshots so far have told.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    velocity: bool,
+    spin: bool,
+}
+
+/// The columns of a snapshot that tell of grains.
+struct Columns {
+    id: Option<usize>,
+    position: [Option<Coordinate>; 3],
+    velocity: [Option<usize>; 3],
+    spin: [Option<usize>; 3],
+}
+
+/// How digits that were not printed are taken.
+#[derive(Clone, Copy)]
+enum Shift {
+    None,
+    Along,
+    Outwards,
+}
+
+impl<'s> Observer<'s> {
+    /// Of a scene.
+    #[must_use]
+    pub fn new(scene: &'s Scene) -> Self {
+        let sampled = Scene { sampling: Sampling::Cycles(1), snapshots: 0, ..scene.clone() };
+        let recorder = || Recorder::new(&sampled, 1.0, u64::MAX);
+        let recorders = [recorder(), recorder(), recorder()];
+        let known = Known { velocity: true, spin: true };
+        Self { scene, sampled, recorders, known, snapshots: Vec::new(), last: None }
+    }
+
+    /// Takes a snapshot of the file `file`, at a time (s). `digits` are what its columns show to the end of the file, in
+    /// the order of its columns; without them printed numbers are taken as exact.
+    ///
+    /// # Errors
+    /// When it lacks the id or the position of a grain, or has another number of grains than the scene.
+    pub fn take(
+        &mut self,
+        file: &str,
+        snapshot: &DumpSnapshot,
+        names: &Names,
+        time: f64,
+        digits: Option<&[Digits]>,
+        keep: bool,
+    ) -> Result<(), ReadError> {
+        let columns = self.columns(file, snapshot, names)?;
+        let flat = self.scene.dimension == Dimension::Two;
+        let all = |axes: &[Option<usize>]| axes.iter().all(Option::is_some);
+        self.known.velocity &= all(&columns.velocity[..self.scene.dimension.count()]);
+        self.known.spin &= if flat { columns.spin[2].is_some() } else { all(&columns.spin) };
+        let order = self.order(file, snapshot, &columns)?;
+        let of_file = digits.map(|digits| digits.iter().fold(Digits::default(), |all, digits| all.with(digits)));
+        let shifts = if digits.is_some() { &[Shift::None, Shift::Along, Shift::Outwards][..] } else { &[Shift::None] };
+        for (&shift, recorder) in shifts.iter().zip(&mut self.recorders) {
+            let value = |row: &[f64], column: Option<usize>, scale: f64| -> f64 {
+                let Some(value) = column.and_then(|column| row.get(column)).copied() else { return 0.0 };
+                let unknown = match (digits, &of_file, column) {
+                    (Some(digits), Some(of_file), Some(column)) => {
+                        digits.get(column).map_or(0.0, |digits| digits.uncertainty(value, of_file)) * scale
+                    }
+                    _ => 0.0,
+                };
+                match shift {
+                    Shift::None => 0.0,
+                    Shift::Along => unknown,
+                    Shift::Outwards => unknown.copysign(value),
+                }
+            };
+            let grains = (1..).zip(&self.scene.grains).zip(&order).map(|((id, grain), &row)| {
+                let row = snapshot.row(row);
+                let vector = |columns: &[Option<usize>; 3]| {
+                    Vector3::from(columns.map(|column| {
+                        column.and_then(|column| row.get(column)).copied().unwrap_or(0.0) + value(row, column, 1.0)
+                    }))
+                };
+                let position = columns.position.map(|coordinate| {
+                    coordinate.map_or(0.0, |at| at.of(row) + value(row, Some(at.column), at.scale()))
+                });
+                GrainState {
+                    position: Vector3::from(position),
+                    velocity: vector(&columns.velocity),
+                    spin: vector(&columns.spin),
+                    ..GrainState::start(id, grain)
+                }
+            });
+            let seen = Snapshot::of_grains(self.scene, snapshot.step, time, grains.collect());
+            if matches!(shift, Shift::None) {
+                self.last = Some(seen.clone());
+                if keep {
+                    self.snapshots.push(seen.clone());
+                }
+            }
+            recorder.take(&self.sampled, Look::of_rigid(seen, 0.0));
+        }
+        Ok(())
+    }
+
+    /// Where the snapshot has what; the id and the positions it must have.
+    fn columns(&self, file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Columns, ReadError> {
+        let missing = |what: &str| {
+            let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
+            let found = crate::read_error::quoted(&have.join(" "));
+            ReadError::at(file, snapshot.first_line.saturating_sub(1), format!("a column {what}"), found)
+        };
+        let column = |name: &str| snapshot.column(names.of(name));
+        let id = column("id");
+        if id.is_none() && self.scene.grains.len() > 1 {
+            return Err(missing("`id`, for there are several grains"));
+        }
+        let mut position = [None; 3];
+        for axis in 0..3 {
+            let name = ["x", "y", "z"][axis];
+            position[axis] = match names.of(name) {
+                theirs if theirs == name => snapshot.coordinate(axis),
+                theirs => snapshot.coordinate_named(theirs, axis),
+            };
+            if position[axis].is_none() && axis < self.scene.dimension.count() {
+                let theirs = names.of(name);
+                return Err(missing(&format!("`{theirs}`, `{name}u`, `{name}s` or `{name}su`")));
+            }
+        }
+        let vector = |names: [&str; 3]| names.map(column);
+        Ok(Columns { id, position, velocity: vector(["vx", "vy", "vz"]), spin: vector(["omegax", "omegay", "omegaz"]) })
+    }
+
+    /// The row of each grain: ids in their order are the grains in that of the scene.
+    fn order(&self, file: &str, snapshot: &DumpSnapshot, columns: &Columns) -> Result<Vec<usize>, ReadError> {
+        let (rows, grains) = (snapshot.rows(), self.scene.grains.len());
+        if rows != grains {
+            let expected = format!("the {grains} grains of the scene at step {}", snapshot.step);
+            return Err(ReadError::at(file, snapshot.first_line, expected, format!("{rows}")));
+        }
+        let mut order: Vec<usize> = (0..rows).collect();
+        if let Some(id) = columns.id {
+            order.sort_by(|&a, &b| snapshot.row(a)[id].total_cmp(&snapshot.row(b)[id]));
+        }
+        Ok(order)
+    }
+
+    /// What was observed.
+    #[must_use]
+    pub fn finish(mut self) -> Observed {
+        let last = self.last.take().filter(|last| self.snapshots.last().is_none_or(|kept| kept.step != last.step));
+        self.snapshots.extend(last);
+        let [printed, along, outwards] = self.recorders.map(|recorder| recorder.finish().0);
+        let mut observed = Observed {
+            series: Series { step: printed.step, time: printed.time, ..Series::default() },
+            uncertainty: Vec::new(),
+            snapshots: self.snapshots,
+        };
+        let shifted = |series: &Series, at: usize, values: &[f64]| -> Vec<f64> {
+            let other = series.values[at].iter().copied().chain(std::iter::repeat(f64::NAN));
+            values.iter().zip(other).map(|(value, other)| (other - value).abs()).collect()
+        };
+        for (at, (column, values)) in printed.columns.into_iter().zip(printed.values).enumerate() {
+            if !is_known(self.scene, &column.name, self.known) {
+                continue;
+            }
+            let (along, outwards) = (shifted(&along, at, &values), shifted(&outwards, at, &values));
+            // Without digits nothing was shifted, and nothing is left open.
+            observed.uncertainty.push(along.iter().zip(&outwards).map(|(a, b)| a.max(*b).max(0.0)).collect());
+            observed.series.columns.push(column);
+            observed.series.values.push(values);
+        }
+        observed
+    }
+}
+
+/// Whether a dump of grains tells a column of the series.
+fn is_known(scene: &Scene, name: &str, known: Known) -> bool {
+    let Some((probe, quantity)) = name.rsplit_once('.') else { return false };
+    match scene.probes.iter().find(|other| other.name == probe).map(|probe| probe.target) {
+        Some(ProbeTarget::Grain(_)) => match quantity {
+            "x" | "y" | "z" => true,
+            "vx" | "vy" | "vz" => known.velocity,
+            _ => known.spin && quantity.starts_with("omega"),
+        },
+        Some(ProbeTarget::System) => match quantity {
+            "gravitational_energy" => true,
+            "kinetic_energy" | "momentum_x" | "momentum_y" | "momentum_z" => known.velocity,
+            "rotational_energy" | "largest_spin" => known.spin,
+            _ => quantity.starts_with("angular_momentum") && known.velocity && known.spin,
+        },
+        _ => false,
+    }
+}

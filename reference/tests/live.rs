@@ -1,0 +1,110 @@
+//! What becomes of a program that is missing, fails, hangs or writes nonsense. Scripts stand for the programs, so that
+//! none need be installed.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use grainbench_reference::deck::Program;
+use grainbench_reference::live::Live;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Failure, Resolution, RunError, Solver};
+use grainbench_scene::source::SceneSource;
+
+const SCENE: &str = r#"title = "A disc in flight"
+dimension = 2
+duration = 0.02
+
+[materials.rock]
+density = 1000.0
+
+[contacts.rock]
+between = ["rock", "rock"]
+normal_stiffness = 1e6
+
+[grains.disc]
+material = "rock"
+radius = 0.5
+position = [0.0, 0.0]
+velocity = [1.0, 0.0]
+
+[output]
+every = 0.01
+
+[probes]
+disc = { grain = "disc" }
+"#;
+
+fn scene() -> Scene {
+    SceneSource::from_text("scene.toml", Path::new("."), SCENE).scene(&|_| Err("no file".to_owned())).unwrap()
+}
+
+/// An executable script in a folder.
+fn script(folder: &Path, text: &str) -> PathBuf {
+    let path = folder.join("program");
+    fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+fn run(text: &str) -> Result<Record, RunError> {
+    let folder = tempfile::tempdir().unwrap();
+    let live = Live::at(Program::Lammps, &script(folder.path(), text)).with_time_limit(Duration::from_secs(1));
+    live.run(&scene(), &Resolution::TimeStep(0.01), &mut ())
+}
+
+#[test]
+fn a_program_that_is_missing() {
+    let live = Live::at(Program::Lammps, Path::new("no/such/program"));
+    let error = live.run(&scene(), &Resolution::TimeStep(0.01), &mut ()).unwrap_err();
+    assert!(matches!(error, RunError::Program { failure: Failure::NotRun(_), .. }), "{error}");
+}
+
+#[test]
+fn a_program_that_fails_says_its_last_lines() {
+    let error = run("echo one; echo two; echo 'ERROR: Lost atoms'; printf '\\377 bytes\\n' >&2; exit 3").unwrap_err();
+    let said = error.to_string();
+    assert!(matches!(error, RunError::Program { failure: Failure::Crash(_), .. }), "{said}");
+    assert_eq!(said, "lammps failed: exit status: 3; it said last: one | two | ERROR: Lost atoms | \u{fffd} bytes");
+}
+
+#[test]
+fn a_program_that_hangs_is_ended() {
+    let start = Instant::now();
+    let error = run("echo working; exec sleep 60").unwrap_err();
+    assert!(start.elapsed() < Duration::from_secs(20));
+    assert_eq!(error.to_string(), "lammps was ended after 1 s; it said last: working");
+}
+
+#[test]
+fn a_program_that_leaves_nothing() {
+    let error = run("true").unwrap_err().to_string();
+    assert!(error.contains("left output that cannot be used") && error.contains("dump.grains"), "{error}");
+}
+
+#[test]
+fn a_program_that_leaves_nonsense() {
+    let error = run("echo nonsense > dump.grains").unwrap_err().to_string();
+    assert!(error.ends_with("dump.grains:1: expected a line `ITEM: …`, found `nonsense`"), "{error}");
+}
+
+/// NaN is kept, for gates to refuse it.
+#[test]
+fn a_program_that_leaves_nan() {
+    let dump = "for step in 0 1 2; do printf \"ITEM: TIMESTEP\\n$step\\nITEM: NUMBER OF ATOMS\\n1\\nITEM: BOX BOUNDS ff ff pp\\n\
+                0 1\\n0 1\\n0 1\\nITEM: ATOMS id x y vx vy omegaz\\n1 nan 0 1 0 0\\n\"; done > dump.grains\n\
+                printf 'LAMMPS (1 Jan 2030)\\nStep Time\\n0 0\\nLoop time of 0.25 on 1 procs for 2 steps with 1 atoms\\n' > log.run";
+    let record = run(dump).unwrap();
+    assert!(record.series.column("disc.x").unwrap().iter().all(|x| x.is_nan()));
+    assert_eq!(record.series.column("disc.vx").unwrap(), [1.0; 3]);
+    assert_eq!(record.series.time, [0.0, 0.01, 0.02]);
+    assert!(record.series.column("disc.angle").is_none(), "no dump tells it");
+    assert_eq!((record.cost.steps, record.cost.wall_seconds), (2, 0.25));
+    assert_eq!(record.provenance.options, ["LAMMPS (1 Jan 2030)"]);
+    assert_eq!(record.snapshots.iter().map(|snapshot| snapshot.step).collect::<Vec<_>>(), [0, 2]);
+}
