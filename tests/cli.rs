@@ -61,7 +61,7 @@ fn help(arguments: &[&str]) -> String {
 #[test]
 fn help_of_every_command() {
     insta::assert_snapshot!("help", help(&["--help"]));
-    for command in ["list", "run", "simulate", "deck", "schema", "report"] {
+    for command in ["list", "run", "simulate", "deck", "check", "compare", "schema", "report"] {
         insta::assert_snapshot!(format!("help_{command}"), help(&[command, "--help"]));
     }
 }

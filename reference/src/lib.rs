@@ -5,6 +5,7 @@
 
 mod atom;
 mod blocks;
+pub mod comparison;
 mod data_file;
 mod data_header;
 mod data_parser;
@@ -20,6 +21,7 @@ pub mod live;
 mod log;
 mod numbers;
 pub mod observer;
+pub mod outputs;
 mod provenance;
 mod read_error;
 mod snapshot;

@@ -177,7 +177,7 @@ impl<'s> Observer<'s> {
     fn order(&self, file: &str, snapshot: &DumpSnapshot, columns: &Columns) -> Result<Vec<usize>, ReadError> {
         let (rows, grains) = (snapshot.rows(), self.scene.grains.len());
         if rows != grains {
-            let expected = format!("the {grains} grains of the scene at step {}", snapshot.step);
+            let expected = format!("as many grains as the scene has, {grains}, at step {}", snapshot.step);
             return Err(ReadError::at(file, snapshot.first_line, expected, format!("{rows}")));
         }
         let mut order: Vec<usize> = (0..rows).collect();

@@ -21,6 +21,10 @@ pub(crate) struct Arguments {
     /// The program: `lammps` or `liggghts`.
     #[arg(long = "for", value_name = "PROGRAM")]
     program: String,
+    /// The scene that exact answers hold for any solver in, where the case judges those in another than its own: a stiffer
+    /// contact, say. `check` knows it by its start.
+    #[arg(long, conflicts_with = "set")]
+    exact: bool,
     /// Override one key of the scene; may be given more than once.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
@@ -40,11 +44,16 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
     let name = arguments.program.as_str();
     let program =
         Program::by_name(name).ok_or_else(|| Fault::unknown("a program", name, Program::ALL.map(Program::name)))?;
-    let (scene, case) = subject::scene(&arguments.scene, &arguments.set)?;
+    let (scene, usual) = if arguments.exact {
+        subject::exact_scene(&arguments.scene)?
+    } else {
+        let (scene, case) = subject::scene(&arguments.scene, &arguments.set)?;
+        (scene, case.map_or(USUAL, |case| case.default_rung.resolution))
+    };
     let resolution = match (arguments.time_step, arguments.time_step_fraction) {
         (Some(step), _) => Resolution::TimeStep(step),
         (None, Some(fraction)) => Resolution::CriticalFraction(fraction),
-        (None, None) => case.map_or(USUAL, |case| case.default_rung.resolution),
+        (None, None) => usual,
     };
     let deck = write_deck(&scene, &resolution, program).map_err(|error| match error {
         DeckError::Unsupported { .. } => Fault::input(format!("unsupported: {error}")),

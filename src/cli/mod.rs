@@ -1,6 +1,8 @@
 //! Commands: what can be asked for, and who answers.
 
+mod check;
 mod checkpoint;
+mod compare;
 mod deck;
 mod exit;
 mod list;
@@ -40,6 +42,10 @@ enum Command {
     Simulate(simulate::Arguments),
     /// Write the input of LAMMPS or LIGGGHTS for a case or a scene.
     Deck(deck::Arguments),
+    /// Judge what any program left of a case: dumps of LAMMPS' kind, or a CSV table.
+    Check(check::Arguments),
+    /// Compare two outputs, column by column.
+    Compare(compare::Arguments),
     /// Print the JSON schema of scene files.
     Schema,
     /// Make the page and figures again from a report's directory, without any solver.
@@ -55,6 +61,8 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Run(arguments)) => run::run(&arguments.cases, &arguments.options),
         Some(Command::Simulate(arguments)) => simulate::simulate(&arguments),
         Some(Command::Deck(arguments)) => deck::deck(&arguments),
+        Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Report(arguments)) => report::report(&arguments),
     };

@@ -3,8 +3,11 @@
 use super::exit::Fault;
 use super::select;
 use grainbench::cases::case::{Case, PLAIN, read_grains};
+use grainbench::cases::gate::Gate;
 use grainbench::cases::registry::CASES;
+use grainbench::cases::scope::Scope;
 use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
@@ -56,4 +59,23 @@ pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Opti
         source = source.set(path, value);
     }
     Ok((source.scene(&read_grains)?, case))
+}
+
+/// The scene of the first gate of a case or variant that is fair to any solver, and its resolution.
+pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
+    let named = Variant::read(text)?;
+    let fair = |gate: &Gate| gate.scope == Scope::AnySolver && gate.runs.len() == 1;
+    let run = (named.case.gates)()
+        .into_iter()
+        .filter(fair)
+        .filter_map(|gate| gate.runs.into_iter().next())
+        .find(|run| named.variant.is_none_or(|variant| variant == run.variant));
+    let Some(run) = run else {
+        return Err(Fault::input(format!("expected a case with a gate that is fair to any solver, found `{text}`")));
+    };
+    let mut scene = named.case.variant(run.variant)?;
+    if let Some((_, change)) = &run.adjustment {
+        change(&mut scene);
+    }
+    Ok((scene, run.resolution))
 }

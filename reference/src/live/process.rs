@@ -45,6 +45,8 @@ pub(crate) fn run(
         .current_dir(folder)
         // One process, one thread: sums in another order would end in other digits.
         .env("OMP_NUM_THREADS", "1")
+        // Spares each start the daemon that would watch over several processes.
+        .env("OMPI_MCA_ess_singleton_isolated", "1")
         .stdin(Stdio::null())
         .stdout(screen)
         .stderr(errors)

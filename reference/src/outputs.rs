@@ -1,0 +1,275 @@
+//! What some program left of a run, in dumps or in one table, read twice: once for what the files are, once for a record.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+
+use grainbench_scene::record::{Column, Series};
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::Scene;
+
+use crate::digits::Digits;
+use crate::dump::DumpReader;
+use crate::line_reader::LineReader;
+use crate::log::{Log, read_log};
+use crate::observer::{Names, Observed, Observer};
+use crate::read_error::{ReadError, one_line, quoted};
+use crate::snapshot::{DumpKind, DumpSnapshot};
+use crate::table::{Table, read_table};
+
+/// Which files, and what they do not say themselves.
+#[derive(Debug, Clone, Default)]
+pub struct Sources {
+    /// Dumps that follow one another, or one table.
+    pub files: Vec<PathBuf>,
+    /// The log of the run.
+    pub log: Option<PathBuf>,
+    /// What the columns are called there.
+    pub names: Names,
+    /// Time step (s), where no file says it.
+    pub time_step: Option<f64>,
+}
+
+/// Why outputs cannot be taken for a run.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// A file is damaged, or lacks something.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// No file says how long a step is.
+    #[error("{}: expected times in the file (`ITEM: TIME`), a log that tells the time step, or --dt, found none", one_line(.0))]
+    NoTime(String),
+    /// Units that scenes are not in.
+    #[error("{}: expected the units `si`, or `lj` for a scene without dimensions, found {}", one_line(.0), quoted(.1))]
+    Units(String, String),
+    /// A dump and its log do not belong together.
+    #[error("{}: expected the units {} of the dump, found {}", one_line(.log), quoted(.of_dump), quoted(.of_log))]
+    MixedUnits {
+        /// The log.
+        log: String,
+        /// The units of the dump.
+        of_dump: String,
+        /// Those of the log.
+        of_log: String,
+    },
+    /// Files of different kinds together.
+    #[error("{}: expected one table alone, or dumps alone", one_line(.0))]
+    MixedFiles(String),
+    /// Nothing of the run's grains.
+    #[error("{}: expected a dump of grains, found one of other entries only", one_line(.0))]
+    NoGrains(String),
+}
+
+/// What the files are.
+#[derive(Debug, Clone)]
+pub struct Outputs {
+    sources: Sources,
+    /// Of the columns of each dump, to its end.
+    digits: Vec<Vec<Digits>>,
+    table: Option<Table>,
+    log: Option<Log>,
+    /// Time step (s), where it is known.
+    time_step: Option<f64>,
+    /// Most significant digits of any number.
+    significant: u32,
+}
+
+impl Outputs {
+    /// Reads the files to their end and keeps what they show.
+    ///
+    /// # Errors
+    /// A file is damaged, or they do not fit together.
+    pub fn survey(sources: Sources) -> Result<Self, OutputError> {
+        let log = sources.log.as_deref().map(read_log).transpose()?;
+        let mut outputs = Self { digits: Vec::new(), table: None, log, time_step: None, significant: 0, sources };
+        let files = outputs.sources.files.clone();
+        if let [file] = &files[..]
+            && !is_dump(file)?
+        {
+            let table = read_table(file)?;
+            outputs.significant = table.digits().significant();
+            outputs.table = Some(table);
+            outputs.time_step = outputs.sources.time_step.or_else(|| outputs.log.as_ref().and_then(logged_step));
+            return Ok(outputs);
+        }
+        let (mut first, mut last, mut units) = (None, None, None);
+        for file in &files {
+            if !is_dump(file)? {
+                return Err(OutputError::MixedFiles(shown(file)));
+            }
+            let mut reader = DumpReader::open(file)?;
+            let mut snapshot = DumpSnapshot::default();
+            while reader.read(&mut snapshot)? {
+                if let Some(time) = snapshot.time {
+                    first = first.or(Some((snapshot.step, time)));
+                    last = Some((snapshot.step, time));
+                }
+                if let Some(said) = &snapshot.units
+                    && units.as_ref().is_none_or(|(known, _)| known != said)
+                {
+                    check_units(file, said)?;
+                    units = Some((said.clone(), file));
+                }
+            }
+            outputs.significant = outputs.significant.max(snapshot.digits().significant());
+            outputs.digits.push(snapshot.columns.iter().map(|column| column.digits).collect());
+        }
+        if let (Some((of_dump, _)), Some(log), Some(path)) = (&units, &outputs.log, &outputs.sources.log)
+            && let Some(of_log) = log.units.as_ref().filter(|of_log| *of_log != of_dump)
+        {
+            let (of_dump, of_log) = (of_dump.clone(), of_log.clone());
+            return Err(OutputError::MixedUnits { log: shown(path), of_dump, of_log });
+        }
+        let from_times = first.zip(last).and_then(|((step, time), (last_step, last_time))| {
+            (last_step > step).then(|| (last_time - time) / (last_step - step) as f64)
+        });
+        let from_log = outputs.log.as_ref().and_then(logged_step);
+        outputs.time_step = outputs.sources.time_step.or(from_log).or(from_times);
+        Ok(outputs)
+    }
+
+    /// Time step (s), where it is known.
+    #[must_use]
+    pub fn time_step(&self) -> Option<f64> {
+        self.time_step
+    }
+
+    /// Most significant digits of any number: the precision that the files were printed with.
+    #[must_use]
+    pub fn significant_digits(&self) -> u32 {
+        self.significant
+    }
+
+    /// What a page calls them.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        one_line(&self.sources.files.iter().map(name).collect::<Vec<_>>().join(", "))
+    }
+
+    /// What they tell of a scene.
+    ///
+    /// # Errors
+    /// They lack a column that the scene's grains need, have another number of grains, or do not say the time.
+    pub fn observe(&self, scene: &Scene) -> Result<Observed, OutputError> {
+        if let Some(table) = &self.table {
+            return self.observe_table(scene, table);
+        }
+        let mut observer = Observer::new(scene);
+        let mut last = None;
+        let mut any = false;
+        for (file, digits) in self.sources.files.iter().zip(&self.digits) {
+            let name = shown(file);
+            let mut reader = DumpReader::open(file)?;
+            let mut snapshot = DumpSnapshot::default();
+            while reader.read(&mut snapshot)? {
+                // Where one dump continues another, its first snapshot is the last of that.
+                if snapshot.kind == DumpKind::Entries || last == Some(snapshot.step) {
+                    continue;
+                }
+                if let Some(before) = last.filter(|before| snapshot.step < *before) {
+                    let expected = format!("a step after {before}, where the file in front of it ends");
+                    return Err(ReadError::at(&name, snapshot.first_line, expected, snapshot.step.to_string()).into());
+                }
+                let time = match (snapshot.time, self.time_step) {
+                    (Some(time), _) => time,
+                    (None, Some(step)) => snapshot.step as f64 * step,
+                    (None, None) => return Err(OutputError::NoTime(name)),
+                };
+                observer.take(&name, &snapshot, &self.sources.names, time, Some(digits), last.is_none())?;
+                last = Some(snapshot.step);
+                any = true;
+            }
+        }
+        let named = self.sources.files.first().map(|file| shown(file)).unwrap_or_default();
+        if any { Ok(observer.finish()) } else { Err(OutputError::NoGrains(named)) }
+    }
+
+    /// A table has a column `time` (or `t`), and columns called as the scene's probes are; the probe's name may be left
+    /// out where only one column of the scene ends so.
+    fn observe_table(&self, scene: &Scene, table: &Table) -> Result<Observed, OutputError> {
+        let name = shown(&self.sources.files[0]);
+        let names = &self.sources.names;
+        let time = ["time", "t"].into_iter().find_map(|name| table.column(names.of(name)));
+        let step = table.column(names.of("step"));
+        let times: Vec<f64> = match (time, step, self.time_step) {
+            (Some(time), _, _) => table.values(time).collect(),
+            (None, Some(step), Some(length)) => table.values(step).map(|step| step * length).collect(),
+            (None, _, _) => return Err(OutputError::NoTime(name)),
+        };
+        let steps = match (step, self.time_step) {
+            (Some(step), _) => table.values(step).map(|step| step as u64).collect(),
+            (None, Some(length)) => times.iter().map(|time| (time / length).round() as u64).collect(),
+            (None, None) => (0..times.len() as u64).collect(),
+        };
+        if let Some(at) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let expected = format!("a time after {:?} in row {}", times[at], at + 2);
+            return Err(ReadError::at(&name, 1, expected, format!("{:?}", times[at + 1])).into());
+        }
+        let of_file = table.digits();
+        let mut observed = Observed {
+            series: Series { step: steps, time: times, ..Series::default() },
+            uncertainty: Vec::new(),
+            snapshots: Vec::new(),
+        };
+        let columns = Recorder::new(scene, 1.0, 1).finish().0.columns;
+        for Column { name: full, unit } in &columns {
+            let short = full.rsplit_once('.').map_or(full.as_str(), |(_, short)| short);
+            let alone = columns.iter().filter(|other| other.name.ends_with(&format!(".{short}"))).count() == 1;
+            let found = table.column(names.of(full)).or_else(|| table.column(names.of(short)).filter(|_| alone));
+            let Some(at) = found else { continue };
+            let digits = table.columns[at].digits;
+            let values: Vec<f64> = table.values(at).collect();
+            observed.uncertainty.push(values.iter().map(|value| digits.uncertainty(*value, &of_file)).collect());
+            observed.series.columns.push(Column { name: full.clone(), unit: unit.clone() });
+            observed.series.values.push(values);
+        }
+        if observed.series.columns.is_empty() {
+            let wanted: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+            let have: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+            let expected = format!("a column such as {}", quoted(&wanted.join(" ")));
+            return Err(ReadError::at(&name, 1, expected, quoted(&have.join(" "))).into());
+        }
+        Ok(observed)
+    }
+}
+
+/// Whether a file begins as a dump does; an empty one does not say, and the reader of dumps then will.
+pub(crate) fn is_dump(path: &Path) -> Result<bool, ReadError> {
+    let name = shown(path);
+    let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
+    begins_as_dump(BufReader::new(file), &name)
+}
+
+fn begins_as_dump(reader: impl BufRead, name: &str) -> Result<bool, ReadError> {
+    let mut lines = LineReader::new(reader, name)?;
+    while let Some(line) = lines.next_line()? {
+        if !line.text.trim().is_empty() {
+            return Ok(line.text.starts_with("ITEM:"));
+        }
+    }
+    Ok(true)
+}
+
+fn check_units(file: &Path, units: &str) -> Result<(), OutputError> {
+    if ["si", "lj"].contains(&units) { Ok(()) } else { Err(OutputError::Units(shown(file), units.to_owned())) }
+}
+
+/// The time step that a log tells: of the command, of the column `Dt`, or of the columns `Time` and `Step`.
+fn logged_step(log: &Log) -> Option<f64> {
+    let of_columns = || {
+        let thermo = &log.runs.last()?.thermo;
+        let last = |name: &str| thermo.column(name).and_then(|at| thermo.values(at).last());
+        last("Dt").or_else(|| {
+            let all = |name: &str| -> Option<Vec<f64>> { Some(thermo.values(thermo.column(name)?).collect()) };
+            let (time, step) = (all("Time")?, all("Step")?);
+            let ends = |list: &[f64]| Some(list.last()? - list.first()?);
+            Some(ends(&time)? / ends(&step)?)
+        })
+    };
+    log.time_step.or_else(of_columns).filter(|step| step.is_finite() && *step > 0.0)
+}
+
+fn shown(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}

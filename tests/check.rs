@@ -1,0 +1,182 @@
+//! `check` and `compare` on what the programs themselves wrote, and on what cannot be judged.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Answer, files, grainbench};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn data(name: &str) -> String {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", name].iter().collect();
+    path.display().to_string()
+}
+
+/// Exit code and rows of `check` on a stored dump.
+fn check(case: &str, dump: &str, more: &[&str]) -> (i32, Vec<Value>) {
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data(dump);
+    let answer = grainbench(directory.path(), &[&["check", case, "--dump", &dump, "--json"], more].concat());
+    assert_eq!(answer.err, "");
+    assert!(directory.path().join("grainbench-out/index.html").is_file());
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    (answer.code.unwrap(), results["verdicts"].as_array().unwrap().clone())
+}
+
+fn count(rows: &[Value], verdict: &str) -> usize {
+    rows.iter().filter(|row| row["verdict"] == verdict).count()
+}
+
+#[test]
+fn what_is_right_passes_by_exact_answers_and_by_our_solvers() {
+    let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-incline.dump.gz", &[]);
+    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 8, 8));
+    assert_eq!(rows.iter().filter(|row| row["evidence"] == "analytic").count(), 3);
+    let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-2025-granular-incline.dump.gz", &[]);
+    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 8, 8));
+}
+
+#[test]
+fn six_digits_in_odd_order_pass_with_a_wider_tolerance_that_says_so() {
+    let (code, full) = check("incline-disc/60deg-mu.9", "lammps-incline.dump.gz", &[]);
+    let (six_code, six) = check("incline-disc/60deg-mu.9", "lammps-incline-six-digits.dump.gz", &[]);
+    assert_eq!((code, six_code, count(&six, "pass"), six.len()), (0, 0, 8, 8));
+    for (full, six) in full.iter().zip(&six).filter(|(row, _)| row["evidence"] == "analytic") {
+        let allowed = |row: &Value| row["allowed"].as_f64().unwrap();
+        assert!(allowed(six) > allowed(full) && allowed(six) < 3e-5, "{six}");
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data("lammps-incline-six-digits.dump.gz");
+    let answer = grainbench(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", &dump]);
+    assert!(answer.out.contains("for the digits printed, 6 at most"), "{}", answer.out);
+}
+
+#[test]
+fn half_the_friction_is_red() {
+    let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-incline-half-friction.dump.gz", &[]);
+    assert_eq!((code, count(&rows, "fail")), (1, 6));
+}
+
+/// The walls of a released LAMMPS, from its output alone: friction off by parts in ten thousand, or NaN.
+#[test]
+fn a_released_defect_is_red() {
+    let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-2025-incline.dump.gz", &[]);
+    assert_eq!((code, count(&rows, "fail")), (1, 6));
+    let analytic = rows.iter().filter(|row| row["evidence"] == "analytic");
+    assert!(analytic.into_iter().all(|row| row["verdict"] == "fail" && row["error"].as_f64().unwrap().abs() < 1e-3));
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data("lammps-2025-undamped.dump.gz");
+    let answer = grainbench(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", &dump]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains(":14:51: expected a finite number in the column `fx`, found `-nan`"), "{}", answer.err);
+}
+
+#[test]
+fn the_time_step_comes_from_the_log_or_is_asked_for() {
+    let log = data("liggghts-backspin.log");
+    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--log", &log]);
+    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 9, 9));
+    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--dt", "2e-4"]);
+    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 9, 9));
+    // Another step is another motion.
+    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--dt", "3e-4"]);
+    assert!(code == 1 && count(&rows, "fail") > 2);
+}
+
+/// A table with names of its own.
+#[test]
+fn a_table_is_judged_too() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut text = "time;way;speed\n".to_owned();
+    // A rigid disc on this slope: v = (2/3) g sin 60° t.
+    for step in 0..=100 {
+        let (t, a) = (f64::from(step) * 0.01, 2.0 / 3.0 * 9.8 * 60_f64.to_radians().sin());
+        text.push_str(&format!("{t};{:e};{:e}\n", 0.5 * a * t * t, a * t));
+    }
+    fs::write(directory.path().join("mine.csv"), text).unwrap();
+    let arguments =
+        ["check", "incline-disc/60deg-mu.9", "--dump", "mine.csv", "--map", "x=way,vx=speed", "--dt", "1e-4", "--json"];
+    let answer = grainbench(directory.path(), &arguments);
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let rows = results["verdicts"].as_array().unwrap();
+    let of = |quantity: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(quantity)).unwrap();
+    // The rigid answer is not that of the scene's soft contact, which rings; it moves the same way.
+    assert_eq!((&of("grain.x")["verdict"], &of("grain.vx")["verdict"]), (&"pass".into(), &"fail".into()));
+    assert_eq!((rows.len(), answer.code), (2, Some(1)));
+}
+
+/// The message of a refusal, which leaves nothing behind.
+fn refusal(directory: &Path, arguments: &[&str]) -> String {
+    let before = files(directory);
+    let Answer { code, out, err } = grainbench(directory, arguments);
+    assert_eq!((code, out.as_str()), (Some(2), ""), "{err}");
+    assert_eq!(files(directory), before);
+    err
+}
+
+#[test]
+fn what_cannot_be_judged_is_refused_with_the_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(directory.path().join(name), text).unwrap();
+    let snapshot = |head: &str, columns: &str, row: &str| {
+        format!(
+            "{head}ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\nITEM: ATOMS {columns}\n{row}\n"
+        )
+    };
+    write("empty", "");
+    write("truncated", &snapshot("ITEM: TIME\n0\n", "id x y", "1 0 0.4995")[..120]);
+    write("no-y", &snapshot("ITEM: TIME\n0\n", "id x vx", "1 0 0"));
+    write("no-time", &snapshot("", "id x y", "1 0 0.4995"));
+    write("elsewhere", &snapshot("ITEM: TIME\n0\n", "id x y", "1 0.25 0.4995"));
+    write("units", &snapshot("ITEM: UNITS\nmetal\nITEM: TIME\n0\n", "id x y", "1 0 0.4995"));
+    write("si", &snapshot("ITEM: UNITS\nsi\nITEM: TIME\n0\n", "id x y", "1 0 0.4995"));
+    write("lj.log", "units lj\nStep Time\n0 0\n");
+    write("contacts", &snapshot("ITEM: TIME\n0\n", "c_1", "1").replace("ATOMS", "ENTRIES"));
+    write("other.csv", "a,b\n0,1\n");
+    let mut said = String::new();
+    for arguments in [
+        &["incline-disc/60deg-mu.9", "--dump", "missing"][..],
+        &["incline-disc/60deg-mu.9", "--dump", "empty"],
+        &["incline-disc/60deg-mu.9", "--dump", "truncated"],
+        &["incline-disc/60deg-mu.9", "--dump", "no-y"],
+        &["incline-disc/60deg-mu.9", "--dump", "no-time"],
+        &["incline-disc/60deg-mu.9", "--dump", "elsewhere"],
+        &["incline-disc/60deg-mu.9", "--dump", "units"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "--log", "lj.log"],
+        &["incline-disc/60deg-mu.9", "--dump", "contacts"],
+        &["incline-disc/60deg-mu.9", "--dump", "other.csv"],
+        &["incline-disc/60deg-mu.9", "--dump", "other.csv", "--map", "time=a"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "other.csv"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "--map", "x"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "--dt", "0"],
+        &["nine-discs/kappa-1", "--dump", "si"],
+        &["incline-disc", "--dump", "si"],
+    ] {
+        let message = refusal(directory.path(), &[&["check"][..], arguments].concat());
+        said.push_str(&format!("{}\n    {}\n", arguments.join(" "), message.lines().next().unwrap_or_default()));
+    }
+    for arguments in [["si", "other.csv"], ["other.csv", "si"], ["si", "contacts"]] {
+        let message = refusal(directory.path(), &[&["compare"][..], &arguments].concat());
+        said.push_str(&format!("compare {}\n    {}", arguments.join(" "), message));
+    }
+    insta::assert_snapshot!(said);
+}
+
+#[test]
+fn two_outputs_against_each_other() {
+    let directory = tempfile::tempdir().unwrap();
+    let compare = |a: &str, b: &str| grainbench(directory.path(), &["compare", &data(a), &data(b), "--json"]);
+    let rows = |answer: &Answer| -> Vec<Value> {
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        results["verdicts"].as_array().unwrap().clone()
+    };
+    // Scaled and rounded to six digits, it is the same motion.
+    let same = compare("lammps-incline.dump.gz", "lammps-incline-six-digits.dump.gz");
+    assert_eq!((same.code, count(&rows(&same), "pass"), rows(&same).len()), (Some(0), 6, 6));
+    let other = compare("lammps-incline.dump.gz", "lammps-incline-half-friction.dump.gz");
+    assert_eq!(other.code, Some(1));
+    assert!(count(&rows(&other), "fail") >= 3);
+    assert!(directory.path().join("grainbench-out/index.html").is_file());
+}
