@@ -161,6 +161,41 @@ fn no_hash_map_string_or_allocation_in_hot_loops() {
     }
 }
 
+/// The same of the material point method: its loops over points, nodes, tracers and contacts.
+#[test]
+fn no_hash_map_string_or_allocation_in_loops_over_points() {
+    let source = root().join("solvers/mpm/src");
+    let mut files: Vec<PathBuf> =
+        ["basis.rs", "grid.rs", "stress.rs", "surface.rs", "transfer.rs"].map(|name| source.join(name)).into();
+    for folder in ["contact", "material"] {
+        files.extend(fs::read_dir(source.join(folder)).unwrap().map(|entry| entry.unwrap().path()));
+    }
+    assert!(files.len() > 12);
+    for path in &files {
+        let code = code(&fs::read_to_string(path).unwrap());
+        for word in ["HashMap", "HashSet", "BTreeMap", "BTreeSet", "String", "format", "to_string", "to_owned", "dyn"] {
+            assert!(!has_word(&code, word), "{} has `{word}`", path.display());
+        }
+    }
+    let loops: &[(&str, &[&str])] = &[
+        ("transfer.rs", &["scatter<", "scatter_force<", "gather<", "gradients<"]),
+        ("stress.rs", &["update<"]),
+        ("surface.rs", &["carry<", "nearest"]),
+        ("contact/penalty.rs", &["at_walls<", "between<", "push<"]),
+        ("contact/nodal.rs", &["apply<", "apply_pairs<"]),
+        ("simulation.rs", &["step_nodes", "gather", "move_points"]),
+    ];
+    for (file, functions) in loops {
+        let code = code(&fs::read_to_string(source.join(file)).unwrap());
+        for function in *functions {
+            let body = body(&code, function).unwrap_or_else(|| panic!("{file} has no `fn {function}` to look at"));
+            for word in ["vec!", "Vec::", "Box", "collect", "to_vec", ".clone().collect"] {
+                assert!(!body.contains(word), "`{function}` in {file} has `{word}`");
+            }
+        }
+    }
+}
+
 #[test]
 fn every_case_folder_is_whole() {
     let mut folders = BTreeSet::new();

@@ -18,6 +18,14 @@ pub(crate) struct Axis {
     pub(crate) spread: f64,
 }
 
+/// The whole number below, and what is left; without the call that rounding takes on old processors.
+#[inline(always)]
+fn floor(at: f64) -> (i32, f64) {
+    let towards_zero = at as i32;
+    let base = towards_zero - i32::from(at < f64::from(towards_zero));
+    (base, at - f64::from(base))
+}
+
 /// A family of functions.
 pub(crate) trait Basis: Copy + Send + 'static {
     /// Nodes along an axis that reach a point.
@@ -37,10 +45,9 @@ impl Basis for Linear {
 
     #[inline(always)]
     fn axis(at: f64, _half: f64) -> Axis {
-        let base = at.floor();
-        let s = at - base;
+        let (base, s) = floor(at);
         let slope = [-1.0, 1.0, 0.0];
-        Axis { base: base as i32, value: [1.0 - s, s, 0.0], slope, affine: slope, spread: s * (1.0 - s) }
+        Axis { base, value: [1.0 - s, s, 0.0], slope, affine: slope, spread: s * (1.0 - s) }
     }
 }
 
@@ -53,12 +60,12 @@ impl Basis for Quadratic {
 
     #[inline(always)]
     fn axis(at: f64, _half: f64) -> Axis {
-        let base = (at - 0.5).floor();
-        let s = at - base;
+        let (base, rest) = floor(at - 0.5);
+        let s = rest + 0.5;
         let value = [0.5 * (1.5 - s) * (1.5 - s), 0.75 - (s - 1.0) * (s - 1.0), 0.5 * (s - 0.5) * (s - 0.5)];
         // D = 1/4 wherever the point is.
         let affine = [-4.0 * value[0] * s, 4.0 * value[1] * (1.0 - s), 4.0 * value[2] * (2.0 - s)];
-        Axis { base: base as i32, value, slope: [s - 1.5, 2.0 - 2.0 * s, s - 0.5], affine, spread: 0.25 }
+        Axis { base, value, slope: [s - 1.5, 2.0 - 2.0 * s, s - 0.5], affine, spread: 0.25 }
     }
 }
 
@@ -72,9 +79,9 @@ impl Basis for Gimp {
 
     #[inline(always)]
     fn axis(at: f64, half: f64) -> Axis {
-        let base = (at - 0.5).floor();
-        let s = at - base;
-        let mut axis = Axis { base: base as i32, ..Axis::default() };
+        let (base, rest) = floor(at - 0.5);
+        let s = rest + 0.5;
+        let mut axis = Axis { base, ..Axis::default() };
         for node in 0..3 {
             let away = s - node as f64;
             let (distance, sign) = (away.abs(), -away.signum());

@@ -77,6 +77,8 @@ impl Window {
 pub(crate) struct Lattice {
     /// Length of a cell along each axis (m).
     pub(crate) cell: [f64; 3],
+    /// Cells along each axis in a metre (1/m).
+    pub(crate) inverse: [f64; 3],
     /// Place of node zero (m).
     pub(crate) origin: [f64; 3],
     /// Cells in a period, along periodic axes.
@@ -87,7 +89,7 @@ impl Lattice {
     /// A position in cells along an axis.
     #[inline(always)]
     pub(crate) fn cells<S: Space>(&self, position: S::Vector, axis: usize) -> f64 {
-        (S::component(position, axis) - self.origin[axis]) / self.cell[axis]
+        (S::component(position, axis) - self.origin[axis]) * self.inverse[axis]
     }
 
     /// Where a node is (m).
@@ -119,9 +121,9 @@ impl Lattice {
 
     /// The node without its periods.
     pub(crate) fn wrapped(&self, mut node: [i32; 3]) -> [i32; 3] {
-        for axis in 0..3 {
-            if let Some(period) = self.period[axis] {
-                node[axis] = node[axis].rem_euclid(period);
+        for (node, period) in node.iter_mut().zip(self.period) {
+            if let Some(period) = period {
+                *node = node.rem_euclid(period);
             }
         }
         node
@@ -160,12 +162,11 @@ impl Stencil {
     /// The nodes around a position (m) of a point that reaches `half` (cells) to both sides along each axis.
     #[inline(always)]
     pub(crate) fn new<S: Space, B: Basis>(lattice: &Lattice, position: S::Vector, half: [f64; 3]) -> Self {
-        let mut stencil = Self { axes: [Axis::default(); 3], inverse: [0.0; 3], at: [0.0; 3], cell: lattice.cell };
-        for axis in 0..S::DIMENSION {
-            let inverse = 1.0 / lattice.cell[axis];
-            let at = (S::component(position, axis) - lattice.origin[axis]) * inverse;
-            stencil.axes[axis] = B::axis(at, half[axis]);
-            stencil.inverse[axis] = inverse;
+        let mut stencil =
+            Self { axes: [Axis::default(); 3], inverse: lattice.inverse, at: [0.0; 3], cell: lattice.cell };
+        for (axis, half) in half.into_iter().enumerate().take(S::DIMENSION) {
+            let at = lattice.cells::<S>(position, axis);
+            stencil.axes[axis] = B::axis(at, half);
             stencil.at[axis] = at;
         }
         stencil
@@ -194,9 +195,9 @@ impl Stencil {
             for j in 0..B::WIDTH {
                 let y = z + window.along(1, self.axes[1].base + j as i32) * row;
                 let weight = across * self.axes[1].value[j];
-                for i in 0..B::WIDTH {
+                for (i, x) in x.into_iter().enumerate().take(B::WIDTH) {
                     visit(Reached {
-                        slot: y + x[i],
+                        slot: y + x,
                         weight: weight * self.axes[0].value[i],
                         axes: [i, j, k],
                         _space: std::marker::PhantomData,

@@ -1,25 +1,23 @@
 //! One simulation: the cycle points → nodes → points.
 
-use crate::basis::{Gimp, Linear, Quadratic};
-use crate::bodies::{Body, Material, press, seed};
-use crate::contact::nodal;
+use crate::bodies::{Body, Material, seed};
 use crate::contact::pairs::Pairs;
-use crate::contact::penalty::{self, Rules, Springs};
-use crate::contact::shared::{Projected, Shared, Stepped};
+use crate::contact::penalty::Springs;
+use crate::contact::shared::Shared;
 use crate::contact::{FrictionTable, Touch};
 use crate::grid::{Lattice, Node, Window};
 use crate::held::Held;
 use crate::material::Law;
-use crate::options::{Basis, Contact, Setting, StressUpdate, Transfer};
+use crate::options::{Contact, Setting, StressUpdate, Transfer};
 use crate::points::Points;
+use crate::start::medium;
 use crate::stress::{self, Failure};
 use crate::surface::Tracers;
 use crate::transfer::{self, Apic, Flip, Part, Spin};
 use crate::walls::RigidPlane;
-use grainbench_scene::manufactured::Medium;
-use grainbench_scene::record::{Cost, Owner};
+use grainbench_scene::record::Cost;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Broken, Cause, Subject};
+use grainbench_scene::solver::{Broken, Cause};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
@@ -27,21 +25,23 @@ use nalgebra::Vector3;
 macro_rules! with_basis {
     ($basis:expr, $B:ident => $call:expr) => {
         match $basis {
-            Basis::Linear => {
-                type $B = Linear;
+            $crate::options::Basis::Linear => {
+                type $B = $crate::basis::Linear;
                 $call
             }
-            Basis::Quadratic => {
-                type $B = Quadratic;
+            $crate::options::Basis::Quadratic => {
+                type $B = $crate::basis::Quadratic;
                 $call
             }
-            Basis::Gimp => {
-                type $B = Gimp;
+            $crate::options::Basis::Gimp => {
+                type $B = $crate::basis::Gimp;
                 $call
             }
         }
     };
 }
+
+pub(crate) use with_basis;
 
 /// Nodes beyond which a grid is taken for a mistake.
 const MOST_NODES: f64 = 5e7;
@@ -68,21 +68,21 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) projected: Vec<S::Vector>,
     /// Nodes in use.
     pub(crate) used: usize,
-    friction: FrictionTable,
-    held: Held,
-    springs: Springs<S>,
-    shared: Shared<S>,
-    pairs: Pairs<S>,
+    pub(crate) friction: FrictionTable,
+    pub(crate) held: Held,
+    pub(crate) springs: Springs<S>,
+    pub(crate) shared: Shared<S>,
+    pub(crate) pairs: Pairs<S>,
     pub(crate) touches: Vec<Touch<S>>,
     pub(crate) time_step: f64,
     pub(crate) critical: f64,
     pub(crate) step: u64,
-    gravity: S::Vector,
+    pub(crate) gravity: S::Vector,
     /// Mass-proportional damping α (1/s).
-    damping: f64,
-    settling: bool,
+    pub(crate) damping: f64,
+    pub(crate) settling: bool,
     /// Way since the points were last put in order, of the fastest (m).
-    travelled: f64,
+    pub(crate) travelled: f64,
     /// Velocities of the points a step before those of the last look (m/s): velocities are half a step behind positions.
     pub(crate) before: Vec<S::Vector>,
     /// Step of the last look.
@@ -138,63 +138,6 @@ impl<S: Space> Simulation<S> {
         Ok(simulation)
     }
 
-    /// The damped phase before the clock starts.
-    fn settle(&mut self) -> Result<(), Box<Broken>> {
-        let start = self.scene.start;
-        let gravity = start.settle.map_or(self.scene.gravity, |settle| settle.gravity);
-        if start.initial_pressure.is_some() {
-            press(&self.bodies, &mut self.points, &self.tracers, gravity);
-        }
-        self.find_bounds();
-        if let Some(settle) = start.settle {
-            (self.gravity, self.damping, self.settling) = (S::restrict(gravity), settle.damping, true);
-            for _ in 0..(settle.duration / self.time_step).ceil() as u64 {
-                self.cycle(false)?;
-            }
-            (self.gravity, self.damping) = (S::restrict(self.scene.gravity), self.scene.global_damping);
-            (self.settling, self.step, self.cost) = (false, 0, Cost::default());
-            self.touches.clear();
-        }
-        Ok(())
-    }
-
-    /// Gives every point the velocity that the scene asks for, half a step before the clock starts, so that every step is
-    /// alike: what balances the bodies at rest does so then too, and gravity beyond that acts from the start.
-    fn set_moving(&mut self) {
-        let half = 0.5 * self.time_step;
-        let balanced = self.scene.start.settle.map_or_else(Vector3::zeros, |settle| settle.gravity);
-        let lag = (self.scene.gravity - balanced) * half;
-        self.before.resize(self.points.len(), S::ORIGIN);
-        for body in &self.bodies {
-            let medium = medium(body);
-            for at in body.part.points.clone() {
-                let position = S::embed(self.points.position[at]);
-                let mut velocity = match body.owner {
-                    Owner::Grain(id) => {
-                        let grain = &self.scene.grains[id as usize - 1];
-                        self.points.affine[at] = S::restrict_gradient(grain.spin.cross_matrix());
-                        grain.velocity + grain.spin.cross(&(position - grain.position))
-                    }
-                    Owner::Body(place) => {
-                        let block = &self.scene.bodies[place as usize];
-                        let wave = block.wave.map_or(0.0, |wave| {
-                            let low = body.held.map_or(block.shape.centre().x, |(_, [low, _])| low.x);
-                            wave.amplitude * (wave.wave_number * (position.x - low)).sin()
-                        });
-                        block.velocity + Vector3::new(wave, 0.0, 0.0)
-                    }
-                };
-                let mut behind = velocity - lag;
-                if let Some(motion) = &self.scene.start.manufactured {
-                    velocity += motion.velocity(&medium, position, 0.0);
-                    behind += motion.velocity(&medium, position, -half);
-                }
-                self.points.velocity[at] = S::restrict(behind);
-                self.before[at] = S::restrict(behind * 3.0 - velocity * 2.0);
-            }
-        }
-    }
-
     /// Takes `steps` steps; after the last one what touches is known.
     ///
     /// # Errors
@@ -207,7 +150,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// One cycle.
-    fn cycle(&mut self, record: bool) -> Result<(), Box<Broken>> {
+    pub(crate) fn cycle(&mut self, record: bool) -> Result<(), Box<Broken>> {
         let time = self.step as f64 * self.time_step;
         for wall in &mut self.walls {
             wall.force = S::ORIGIN;
@@ -236,7 +179,7 @@ impl<S: Space> Simulation<S> {
         self.step_nodes();
         self.gather();
         if self.setting.stress_update == StressUpdate::ModifiedLast {
-            self.to_velocities();
+            self.finish_projection();
         }
         match self.setting.stress_update {
             StressUpdate::First => self.move_tracers(Velocities::Stepped),
@@ -290,7 +233,7 @@ impl<S: Space> Simulation<S> {
             let wanted: f64 =
                 (0..S::DIMENSION).map(|axis| (high[axis] - low[axis]) / self.lattice.cell[axis] + 3.0).product();
             count += wanted;
-            if !(count < MOST_NODES) {
+            if count >= MOST_NODES || count.is_nan() {
                 let cause = if count.is_finite() { Cause::LeftGrid { cells: count } } else { Cause::NotFinite };
                 return Err(self.broken(place, self.bodies[place].part.points.start, cause));
             }
@@ -325,60 +268,18 @@ impl<S: Space> Simulation<S> {
         for (projected, node) in self.projected[..self.used].iter_mut().zip(&self.nodes) {
             *projected = node.velocity;
         }
-        self.to_velocities();
+        self.finish_projection();
     }
 
     /// Projected momenta become velocities that contacts and held sides allow.
-    fn to_velocities(&mut self) {
+    fn finish_projection(&mut self) {
         let Self { bodies, nodes, projected, held, used, .. } = self;
         held.fold_projected::<S>(bodies, projected);
         for (projected, node) in projected[..*used].iter_mut().zip(nodes.iter()) {
             *projected = if node.mass > 0.0 { *projected * (1.0 / node.mass) } else { S::ORIGIN };
         }
         held.hold_projected::<S>(bodies, projected);
-        if self.is_nodal() {
-            let Self { lattice, friction, setting, time_step, bodies, shared, walls, projected, .. } = self;
-            let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
-            match setting.contact {
-                Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, walls, &mut Projected(projected)),
-                _ => nodal::apply(&rules, bodies, shared, walls, &mut Projected(projected)),
-            }
-        }
-    }
-
-    /// Whether contact is a condition at nodes, and anything can touch.
-    fn is_nodal(&self) -> bool {
-        let several = self.bodies.len() > 1 && self.setting.contact != Contact::NoSlip;
-        self.setting.contact != Contact::Penalty && (several || !self.walls.is_empty())
-    }
-
-    /// Finds the nodes at which bodies meet, for conditions at nodes.
-    fn find_shared(&mut self) {
-        if !self.is_nodal() {
-            return;
-        }
-        let cell = self.lattice.shortest(S::DIMENSION);
-        let Self { lattice, setting, bodies, shared, pairs, walls, nodes, points, tracers, used, .. } = self;
-        let margin = if setting.contact == Contact::Gap { 0.0 } else { 3.0 * cell };
-        let fields = if setting.contact == Contact::NoSlip { 1 } else { bodies.len() };
-        pairs.found.clear();
-        if fields > 1 {
-            pairs.find(bodies, lattice, margin);
-        }
-        if setting.contact == Contact::Gap {
-            tracers.find_boxes();
-            shared.find_meetings(lattice, bodies, &pairs.found, tracers, walls, nodes);
-        } else {
-            shared.find(lattice, bodies, fields, &pairs.found, walls, nodes);
-        }
-        if setting.contact == Contact::NoSlip {
-            return;
-        }
-        shared.find_touching(bodies.len());
-        with_basis!(setting.basis, B => shared.find_faces::<B>(lattice, bodies, *used, points));
-        if setting.contact == Contact::Kinematic {
-            shared.smooth_normals(lattice, bodies, *used, points);
-        }
+        self.meet_projected();
     }
 
     fn scatter_force_again(&mut self) {
@@ -403,36 +304,6 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Forces of springs between surfaces.
-    fn spring_forces(&mut self, record: bool) {
-        if self.setting.contact != Contact::Penalty {
-            return;
-        }
-        self.touches.clear();
-        self.springs.begin();
-        self.pairs.find(&self.bodies, &self.lattice, 0.0);
-        let rules = Rules {
-            lattice: &self.lattice,
-            friction: &self.friction,
-            penalty: self.setting.penalty,
-            time_step: self.time_step,
-        };
-        let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, .. } = self;
-        let mut touches = record.then_some(touches);
-        with_basis!(setting.basis, B => {
-            penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, touches.as_deref_mut());
-            if !pairs.found.is_empty() {
-                tracers.find_boxes();
-            }
-            for pair in &pairs.found {
-                for pair in [*pair, pair.exchanged()] {
-                    penalty::between::<S, B>(&rules, bodies, &pair, tracers, springs, nodes, touches.as_deref_mut());
-                }
-            }
-        });
-        cost.pair_tests += pairs.found.len() as u64;
-    }
-
     /// Momenta and forces of the nodes become velocities after the step and their change.
     fn step_nodes(&mut self) {
         let half = 0.5 * self.damping * self.time_step;
@@ -449,14 +320,7 @@ impl<S: Space> Simulation<S> {
             }
         }
         self.held.hold(&self.bodies, &mut self.nodes);
-        if self.is_nodal() {
-            let Self { lattice, friction, setting, time_step, bodies, shared, walls, nodes, .. } = self;
-            let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
-            match setting.contact {
-                Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, walls, &mut Stepped(nodes)),
-                _ => nodal::apply(&rules, bodies, shared, walls, &mut Stepped(nodes)),
-            }
-        }
+        self.meet_stepped();
         for node in &mut self.nodes[..self.used] {
             node.change = node.velocity - node.change;
         }
@@ -526,16 +390,16 @@ impl<S: Space> Simulation<S> {
     /// Points go where they are next, unless that is too far.
     fn move_points(&mut self) -> Result<(), Box<Broken>> {
         let cell = self.lattice.shortest(S::DIMENSION);
-        let mut farthest = 0.0_f64;
+        let (mut farthest, mut lost) = (0.0_f64, false);
         for (position, next) in self.points.position.iter_mut().zip(&self.points.next) {
             let way = *next - *position;
             let squared = S::dot(way, way);
-            // A way that is not a number counts as too far.
-            farthest = if squared <= farthest { farthest } else { squared };
+            lost |= squared.is_nan();
+            farthest = farthest.max(squared);
             *position = *next;
         }
         let farthest = farthest.sqrt();
-        if !(farthest <= cell) {
+        if lost || farthest > cell {
             return Err(self.ran_away(cell));
         }
         self.travelled += farthest;
@@ -543,30 +407,8 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Which point went too far.
-    fn ran_away(&self, cell: f64) -> Box<Broken> {
-        let velocity = |at: usize| S::dot(self.points.velocity[at], self.points.velocity[at]).sqrt();
-        for (place, body) in self.bodies.iter().enumerate() {
-            for at in body.part.points.clone() {
-                let position = self.points.position[at];
-                if !S::dot(position, position).is_finite() {
-                    return self.broken(place, at, Cause::NotFinite);
-                }
-            }
-        }
-        let mut worst = (0, 0, 0.0);
-        for (place, body) in self.bodies.iter().enumerate() {
-            for at in body.part.points.clone() {
-                if velocity(at) > worst.2 {
-                    worst = (place, at, velocity(at));
-                }
-            }
-        }
-        self.broken(worst.0, worst.1, Cause::LeftCell { moved: worst.2 * self.time_step, cell })
-    }
-
     /// Boxes around bodies.
-    fn find_bounds(&mut self) {
+    pub(crate) fn find_bounds(&mut self) {
         for body in &mut self.bodies {
             let start = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
             let of = |positions: &[S::Vector], start: [Vector3<f64>; 2]| {
@@ -579,31 +421,6 @@ impl<S: Space> Simulation<S> {
             body.bounds = of(&self.tracers.position[body.tracers.clone()], points);
         }
     }
-
-    pub(crate) fn broken(&self, place: usize, point: usize, cause: Cause) -> Box<Broken> {
-        let advice = if self.time_step > self.critical {
-            format!("the step was above the limit h/c; {:.4e} s is stable for most scenes", 0.5 * self.critical)
-        } else {
-            "the step is within h/c: look at velocities, at the stress update, or refine the grid".to_owned()
-        };
-        Box::new(Broken {
-            time: self.step as f64 * self.time_step,
-            step: self.step,
-            subject: match self.bodies[place].owner {
-                Owner::Grain(id) => Subject::PointOfGrain(id),
-                Owner::Body(at) => Subject::PointOfBody(at + 1),
-            },
-            position: S::embed(self.points.position[point]),
-            cause,
-            time_step: self.time_step,
-            critical: self.critical,
-            advice,
-        })
-    }
-}
-
-fn medium(body: &Body) -> Medium {
-    Medium { density: body.density, lame: body.deformable.lame(), shear_modulus: body.deformable.shear_modulus }
 }
 
 /// Elastic energy of a body per volume at the start (J/m³).

@@ -78,7 +78,7 @@ impl Mpm {
         };
         // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
         let steps = (time / (courant * critical) * (1.0 - 1e-12)).ceil().max(1.0);
-        if !(steps < 1e15) {
+        if steps >= 1e15 || steps.is_nan() {
             return Err(self.resolution_error(format!("expected a number of steps below 1e15, found {steps:e}")));
         }
         Ok(Plan { lattice, points, time_step: time / steps, steps: steps as u64, critical })
@@ -146,7 +146,7 @@ fn fastest_wave(scene: &Scene) -> f64 {
 /// Cells of about `cell` (m): along periodic axes a whole number of them. Nodes stand on the faces of the domain along
 /// periodic axes, else on the first held side, else at zero, shifted by the phase of the setting.
 fn lattice(scene: &Scene, setting: &Setting, cell: f64) -> Lattice {
-    let mut lattice = Lattice { cell: [cell; 3], origin: [0.0; 3], period: [None; 3] };
+    let mut lattice = Lattice { cell: [cell; 3], inverse: [1.0 / cell; 3], origin: [0.0; 3], period: [None; 3] };
     for axis in 0..scene.dimension.count() {
         let held = scene.bodies.iter().find_map(|body| match body.shape {
             BlockShape::Box { low, .. } if body.sides[axis][0] != Hold::Free => Some(low[axis]),
@@ -157,7 +157,7 @@ fn lattice(scene: &Scene, setting: &Setting, cell: f64) -> Lattice {
         if let Some(domain) = scene.domain.filter(|domain| domain.periodic[axis]) {
             let length = domain.high[axis] - domain.low[axis];
             let count = (length / cell).round().max(4.0);
-            lattice.cell[axis] = length / count;
+            (lattice.cell[axis], lattice.inverse[axis]) = (length / count, count / length);
             lattice.period[axis] = Some(count as i32);
             lattice.origin[axis] = domain.low[axis];
         }

@@ -49,8 +49,7 @@ pub(crate) fn update<S: Space, L: Law>(
         };
         let volume_ratio = determinant::<S>(&state.deformation);
         let increment = S::embed_gradient(increment);
-        // Not a number is not above zero either.
-        if !(volume_ratio > 0.0) && failure.is_none() {
+        if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
             failure = Some(Failure { point: at, cause: cause::<S>(&increment, volume_ratio) });
         }
         law.update(&increment, volume_ratio, &mut state);

@@ -76,7 +76,7 @@ pub(crate) fn apply<S: Space, F: Field<S>>(
                     None => face.normal,
                 };
                 let length = S::dot(own, own).sqrt();
-                if !(length > 0.0) {
+                if length == 0.0 {
                     continue;
                 }
                 let normal = own * (1.0 / length);

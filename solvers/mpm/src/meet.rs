@@ -1,0 +1,101 @@
+//! The stages of a cycle at which bodies meet: springs as forces, conditions at nodes on velocities.
+
+use crate::contact::nodal;
+use crate::contact::penalty::{self, Rules};
+use crate::contact::shared::{Projected, Stepped};
+use crate::options::Contact;
+use crate::simulation::{Simulation, with_basis};
+use grainbench_scene::space::Space;
+
+impl<S: Space> Simulation<S> {
+    /// Whether contact is a condition at nodes, and anything can touch.
+    pub(crate) fn is_nodal(&self) -> bool {
+        let several = self.bodies.len() > 1 && self.setting.contact != Contact::NoSlip;
+        self.setting.contact != Contact::Penalty && (several || !self.walls.is_empty())
+    }
+
+    /// Finds the nodes at which bodies meet, for conditions at nodes.
+    pub(crate) fn find_shared(&mut self) {
+        if !self.is_nodal() {
+            return;
+        }
+        let cell = self.lattice.shortest(S::DIMENSION);
+        let Self { lattice, setting, bodies, shared, pairs, walls, nodes, points, tracers, used, .. } = self;
+        let margin = if setting.contact == Contact::Gap { 0.0 } else { 3.0 * cell };
+        let fields = if setting.contact == Contact::NoSlip { 1 } else { bodies.len() };
+        pairs.found.clear();
+        if fields > 1 {
+            pairs.find(bodies, lattice, margin);
+        }
+        if setting.contact == Contact::Gap {
+            tracers.find_boxes();
+            shared.find_meetings(lattice, bodies, &pairs.found, tracers, walls, nodes);
+        } else {
+            shared.find(lattice, bodies, fields, &pairs.found, walls, nodes);
+        }
+        if setting.contact == Contact::NoSlip {
+            return;
+        }
+        shared.find_touching(bodies.len());
+        with_basis!(setting.basis, B => shared.find_faces::<B>(lattice, bodies, *used, points));
+        if setting.contact == Contact::Kinematic {
+            shared.smooth_normals(lattice, bodies, *used, points);
+        }
+    }
+
+    /// Forces of springs between surfaces.
+    pub(crate) fn spring_forces(&mut self, record: bool) {
+        if self.setting.contact != Contact::Penalty {
+            return;
+        }
+        self.touches.clear();
+        self.springs.begin();
+        self.pairs.find(&self.bodies, &self.lattice, 0.0);
+        let rules = Rules {
+            lattice: &self.lattice,
+            friction: &self.friction,
+            penalty: self.setting.penalty,
+            time_step: self.time_step,
+        };
+        let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, .. } = self;
+        let mut touches = record.then_some(touches);
+        with_basis!(setting.basis, B => {
+            penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, touches.as_deref_mut());
+            if !pairs.found.is_empty() {
+                tracers.find_boxes();
+            }
+            for pair in &pairs.found {
+                for pair in [*pair, pair.exchanged()] {
+                    penalty::between::<S, B>(&rules, bodies, &pair, tracers, springs, nodes, touches.as_deref_mut());
+                }
+            }
+        });
+        cost.pair_tests += pairs.found.len() as u64;
+    }
+
+    /// Velocities of the step that contact at nodes allows.
+    pub(crate) fn meet_stepped(&mut self) {
+        if !self.is_nodal() {
+            return;
+        }
+        let Self { lattice, friction, setting, time_step, bodies, shared, walls, nodes, .. } = self;
+        let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
+        match setting.contact {
+            Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, walls, &mut Stepped(nodes)),
+            _ => nodal::apply(&rules, bodies, shared, walls, &mut Stepped(nodes)),
+        }
+    }
+
+    /// Projected velocities that contact at nodes allows.
+    pub(crate) fn meet_projected(&mut self) {
+        if !self.is_nodal() {
+            return;
+        }
+        let Self { lattice, friction, setting, time_step, bodies, shared, walls, projected, .. } = self;
+        let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
+        match setting.contact {
+            Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, walls, &mut Projected(projected)),
+            _ => nodal::apply(&rules, bodies, shared, walls, &mut Projected(projected)),
+        }
+    }
+}
