@@ -115,7 +115,8 @@ fn undocumented(schema: &Value, path: &str, found: &mut Vec<String>) {
     if let Some(properties) = schema.get("properties").and_then(Value::as_object) {
         for (name, property) in properties {
             let description = property.get("description").and_then(Value::as_str).unwrap_or_default();
-            if description.trim().is_empty() {
+            // A tag that can have one value is explained where its alternative is.
+            if description.trim().is_empty() && property.get("const").is_none() {
                 found.push(format!("{path}.{name}"));
             }
         }

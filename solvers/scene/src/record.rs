@@ -191,10 +191,10 @@ pub struct Snapshot {
     /// Walls in the order of the scene.
     pub walls: Vec<WallState>,
     /// Bodies that are no grains, in the order of the scene.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub bodies: Vec<BodyState>,
     /// Material points, where a solver has them.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub points: Vec<PointState>,
 }
 

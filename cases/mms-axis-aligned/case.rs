@@ -1,0 +1,130 @@
+//! A manufactured motion along an axis: order of accuracy.
+
+use crate::bench::Bench;
+use crate::case::{Case, PLAIN, Rung, cells};
+use crate::figure::{Axis, Curve, Figure, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::measure::slope;
+use crate::scope::Scope;
+use crate::verdict::Evidence;
+use grainbench_scene::manufactured::Medium;
+use grainbench_scene::solver::{Resolution, RunError};
+
+const LADDER: &[Rung] = &[cells("1/16", 16.0, 2), cells("1/32", 32.0, 2), cells("1/64", 64.0, 2)];
+const GIMP: &str = "mpm+gimp+flip";
+const SPLINES: &str = "mpm+flip";
+const HATS: &str = "mpm+linear+flip";
+/// Points per cell and axis that B-splines need before their quadrature is finer than they are.
+const POINTS_OF_SPLINES: u32 = 4;
+const SOURCE: &str = "manufactured solution (derivation)";
+
+pub(crate) static CASE: Case = Case {
+    name: "mms-axis-aligned",
+    title: "Manufactured motion along an axis",
+    claim: "Displacements converge at second order with smooth basis functions; hat functions stall, as they must.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "Periodic and along the grid: no boundary, no shear, no rotation.",
+    ladder: LADDER,
+    default_rung: LADDER[1],
+    gates,
+    figures,
+};
+
+/// Root mean square over the material points of the displacement's error at the end (m).
+fn error(done: &Done) -> Result<f64, Missing> {
+    let missing = || Missing("material points at the end".to_owned());
+    let (scene, snapshot) = (&done.scene, done.record.snapshots.last().ok_or_else(missing)?);
+    let (material, motion) = scene.deformable[0].zip(scene.start.manufactured).ok_or_else(missing)?;
+    let medium =
+        Medium { density: scene.bodies[0].density, lame: material.lame(), shear_modulus: material.shear_modulus };
+    if snapshot.points.is_empty() {
+        return Err(missing());
+    }
+    let (sum, volume) = snapshot.points.iter().fold((0.0, 0.0), |(sum, volume), point| {
+        let exact = motion.displacement(&medium, point.position - point.displacement, snapshot.time);
+        (sum + (point.displacement - exact).norm_squared() * point.volume, volume + point.volume)
+    });
+    Ok((sum / volume).sqrt())
+}
+
+fn runs(solver: &'static str, points: u32) -> Vec<Run> {
+    [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, Resolution::grid(cells, points))).to_vec()
+}
+
+/// Order in the cell, fitted over three resolutions.
+fn order(done: &[Done]) -> Result<f64, Missing> {
+    let points: Result<Vec<(f64, f64)>, Missing> =
+        done.iter().zip([16.0, 32.0, 64.0]).map(|(done, cells)| Ok((1.0 / cells, error(done)?))).collect();
+    Ok(slope(&points?))
+}
+
+fn gates() -> Vec<Gate> {
+    let gate = |quantity: &str, expected: f64, allowed, because, runs, control| Gate {
+        quantity: quantity.to_owned(),
+        unit: "1",
+        scope: Scope::Named,
+        evidence: Evidence::Convergence,
+        source: SOURCE,
+        allowed,
+        because,
+        runs,
+        measure: measure(move |done| Ok(Measured::new(order(done)?, expected, 1.0))),
+        control,
+    };
+    let wrong = || {
+        Control::scene("a shear modulus two per cent too large", |scene| {
+            scene.deformable.iter_mut().flatten().for_each(|material| material.shear_modulus *= 1.02);
+        })
+    };
+    vec![
+        gate("order in the cell, uGIMP", 2.0, 0.12, "fitted over 16 to 64 cells", runs(GIMP, 2), wrong()),
+        gate(
+            "order in the cell, quadratic B-splines",
+            2.0,
+            0.45,
+            "fitted over 16 to 64 cells; the sum over points is a coarse quadrature of stresses and stops the fall",
+            runs(SPLINES, POINTS_OF_SPLINES),
+            wrong(),
+        ),
+        gate(
+            "order in the cell, hat functions: they stall",
+            0.0,
+            0.7,
+            "crossing a cell meets a jump of the gradient whatever its size",
+            runs(HATS, 2),
+            Control::solver("uGIMP in their place", GIMP),
+        ),
+        Gate {
+            quantity: "root mean square error of the displacement, 64 cells, uGIMP".to_owned(),
+            unit: "m",
+            evidence: Evidence::Analytic,
+            runs: vec![Run::new(PLAIN, GIMP, LADDER[2].resolution)],
+            measure: measure(|done| Ok(Measured::new(error(&done[0])?, 0.0, 0.05))),
+            ..gate("", 0.0, 5e-3, "discretisation; in units of the amplitude", vec![], wrong())
+        },
+    ]
+}
+
+fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let mut curves = Vec::new();
+    for (label, solver, points) in
+        [("uGIMP", GIMP, 2), ("quadratic B-splines", SPLINES, POINTS_OF_SPLINES), ("hat functions", HATS, 2)]
+    {
+        let mut measured = Vec::new();
+        for (run, cells) in runs(solver, points).iter().zip([16.0, 32.0, 64.0]) {
+            if let Ok(error) = error(&bench.run(run)?) {
+                measured.push((1.0 / cells, error));
+            }
+        }
+        curves.push(Curve::new(label, Stroke::MarkedLine, measured));
+    }
+    curves.push(Curve::new("slope 2", Stroke::Dashed, vec![(1.0 / 64.0, 1e-5), (1.0 / 16.0, 16e-5)]));
+    Ok(vec![Figure::graph(
+        "convergence",
+        "Error of the displacement against the cell",
+        "Root mean square over the material points at t = .5 s.",
+        [Axis::log("cell length h (m)"), Axis::log("rms error (m)")],
+        curves,
+    )])
+}
