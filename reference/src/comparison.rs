@@ -125,11 +125,9 @@ fn compare_dumps(first: &Path, second: &Path) -> Result<Comparison, ReadError> {
             there[behind] = next(behind, &mut snapshots)?;
         }
     }
-    for which in 0..2 {
-        while there[which] {
-            alone += 1;
-            there[which] = next(which, &mut snapshots)?;
-        }
+    while let Some(which) = there.iter().position(|more| *more) {
+        alone += 1;
+        there[which] = next(which, &mut snapshots)?;
     }
     if compared == 0 {
         return Err(ReadError::at(&name, 1, "a step that the other file has", "none"));

@@ -123,13 +123,13 @@ fn wall_lines(scene: &Scene, wall: &Wall, number: u32, stepping: &Stepping) -> R
     let mut moves = String::new();
     if wall.motion.is_moving() {
         moves.push_str(" move");
-        for axis in 0..3 {
+        for (axis, name) in AXES.into_iter().enumerate() {
             let path = path(&wall.motion, axis, stepping);
             if path.is_empty() {
                 moves.push_str(" NULL");
             } else {
-                let _ = writeln!(lines, "variable wall{number}{} equal \"{path}\"", AXES[axis]);
-                let _ = write!(moves, " v_wall{number}{}", AXES[axis]);
+                let _ = writeln!(lines, "variable wall{number}{} equal \"{path}\"", name);
+                let _ = write!(moves, " v_wall{number}{}", name);
             }
         }
     }

@@ -1,0 +1,70 @@
+//! Against the exact answers of a case's gates.
+
+use super::{Candidate, judge};
+use grainbench_cases::gate::{Done, Gate};
+use grainbench_cases::verdict::Verdict;
+use grainbench_reference::observer::Observed;
+use grainbench_reference::outputs::Outputs;
+use grainbench_scene::record::{Cost, Provenance, Record, Series};
+use grainbench_scene::scene::Scene;
+use std::sync::Arc;
+
+/// A gate of the case, its tolerance widened by what the printed digits may have moved the quantity.
+pub(super) fn exact(
+    gate: &Gate,
+    candidate: &Candidate,
+    outputs: &Outputs,
+    observed: &Observed,
+    row: &dyn Fn(String, &str) -> Verdict,
+) -> Verdict {
+    let scene = Arc::new(candidate.scene.clone());
+    let measured = |series: Series| {
+        let record = record(&candidate.scene, outputs, observed, series);
+        (gate.measure)(&[Done { scene: Arc::clone(&scene), record: Arc::new(record) }])
+    };
+    let mut verdict = row(gate.quantity.clone(), gate.unit);
+    verdict.evidence = gate.evidence;
+    verdict.source = gate.source.to_owned();
+    verdict.allowed = gate.allowed;
+    verdict.because = gate.because.to_owned();
+    let found = match measured(observed.series.clone()) {
+        Ok(found) => found,
+        Err(missing) => {
+            verdict.detail = Some(missing.to_string());
+            return verdict;
+        }
+    };
+    let mut open = 0.0;
+    for (at, moves) in observed.uncertainty.iter().enumerate() {
+        let moved = |sign: f64| {
+            let mut series = observed.series.clone();
+            series.values[at].iter_mut().zip(moves).for_each(|(value, by)| *value += sign * by);
+            measured(series).map_or(0.0, |moved| (moved.error() - found.error()).abs())
+        };
+        if moves.iter().any(|by| *by > 0.0) {
+            open += moved(1.0).max(moved(-1.0));
+        }
+    }
+    verdict.allowed += open;
+    judge(&mut verdict, &found, open, outputs);
+    verdict
+}
+
+fn record(scene: &Scene, outputs: &Outputs, observed: &Observed, series: Series) -> Record {
+    let steps = observed.series.step.last().copied().unwrap_or_default();
+    let critical = scene.critical_time_step();
+    Record {
+        provenance: Provenance {
+            scene: scene.title.clone(),
+            solver: outputs.name(),
+            resolution: String::new(),
+            time_step: outputs.time_step().unwrap_or(f64::NAN),
+            critical_time_step: critical.is_finite().then_some(critical),
+            effects: Vec::new(),
+            options: Vec::new(),
+        },
+        series,
+        snapshots: observed.snapshots.clone(),
+        cost: Cost { steps, ..Cost::default() },
+    }
+}

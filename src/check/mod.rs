@@ -1,0 +1,236 @@
+//! Judging what any program left of a case: by the exact answers of the case's gates, and by what our solvers make of the
+//! same scene.
+
+mod exact;
+mod figures;
+mod ours;
+
+use exact::exact;
+use figures::figures;
+use grainbench_cases::case::{Case, PLAIN};
+use grainbench_cases::gate::{Gate, Measured};
+use grainbench_cases::scope::Scope;
+use grainbench_cases::verdict::{Evidence, Outcome, Verdict};
+use grainbench_reference::observer::Observed;
+use grainbench_reference::outputs::{OutputError, Outputs};
+use grainbench_reports::{Section, number};
+use grainbench_scene::error::SceneError;
+use grainbench_scene::scene::{ProbeTarget, Scene};
+use grainbench_scene::solver::Resolution;
+use ours::{compare, ours};
+use thiserror::Error;
+
+/// Why outputs cannot be judged.
+#[derive(Debug, Error)]
+pub enum NotChecked {
+    /// The files are damaged or lack something.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The case's scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// Several variants start as they do.
+    #[error("{file}: expected the name of a variant, for several of {case} start so; found none of {variants}")]
+    Ambiguous {
+        /// The files.
+        file: String,
+        /// The case.
+        case: String,
+        /// The variants that start so.
+        variants: String,
+    },
+    /// They are of another scene.
+    #[error("{file}: expected the start of a scene of {case}, {expected}; found {found}")]
+    OtherScene {
+        /// The files.
+        file: String,
+        /// The case, with its variant.
+        case: String,
+        /// Where the first grain that differs should be.
+        expected: String,
+        /// Where it is.
+        found: String,
+    },
+}
+
+/// How far a start may be off, in radii, beside the printed digits.
+const START: f64 = 1e-9;
+/// A scene that the outputs may be of.
+struct Candidate {
+    variant: String,
+    scene: Scene,
+    /// The gates whose scene it is.
+    gates: Vec<Gate>,
+}
+
+/// Judges the outputs of a case's scene, of one variant or of whichever they start as.
+///
+/// # Errors
+/// When the files cannot be read, or start as no scene of the case does.
+pub fn check(case: &'static Case, variant: Option<&str>, outputs: &Outputs) -> Result<Section, NotChecked> {
+    let mut first_miss = None;
+    let mut matching: Vec<(Candidate, Observed)> = Vec::new();
+    for candidate in candidates(case, variant)? {
+        let observed = outputs.observe(&candidate.scene);
+        let observed = match (observed, &first_miss) {
+            (Ok(observed), _) => observed,
+            // Another variant may have another number of grains; the first one is what is told.
+            (Err(error), None) => {
+                first_miss = Some(NotChecked::Output(error));
+                continue;
+            }
+            (Err(_), Some(_)) => continue,
+        };
+        match misplaced(&candidate.scene, &observed) {
+            None => matching.push((candidate, observed)),
+            Some((expected, found)) if first_miss.is_none() => {
+                let place = variant.map_or_else(|| case.name.to_owned(), |variant| format!("{}/{variant}", case.name));
+                first_miss = Some(NotChecked::OtherScene { file: outputs.name(), case: place, expected, found });
+            }
+            Some(_) => {}
+        }
+    }
+    let mut variants: Vec<&str> = matching.iter().map(|(candidate, _)| candidate.variant.as_str()).collect();
+    variants.dedup();
+    if variants.len() > 1 {
+        let variants = variants.join(", ");
+        return Err(NotChecked::Ambiguous { file: outputs.name(), case: case.name.to_owned(), variants });
+    }
+    if let Some((candidate, observed)) = matching.first() {
+        return Ok(section(case, candidate, outputs, observed));
+    }
+    Err(first_miss.unwrap_or_else(|| NotChecked::OtherScene {
+        file: outputs.name(),
+        case: case.name.to_owned(),
+        expected: "a variant with a scene".to_owned(),
+        found: "none".to_owned(),
+    }))
+}
+
+/// The scenes as they stand, and those that gates fair to any solver adjust.
+fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidate>, SceneError> {
+    let mut names = case.variants()?;
+    if !names.iter().any(|name| name == PLAIN) {
+        names.push(PLAIN.to_owned());
+    }
+    names.retain(|name| variant.is_none_or(|variant| variant == name));
+    let mut candidates: Vec<Candidate> = Vec::new();
+    for name in names {
+        candidates.push(Candidate { scene: case.variant(&name)?, variant: name, gates: Vec::new() });
+    }
+    for gate in (case.gates)() {
+        let [run] = &gate.runs[..] else { continue };
+        if gate.scope != Scope::AnySolver || variant.is_some_and(|variant| variant != run.variant) {
+            continue;
+        }
+        let mut scene = case.variant(run.variant)?;
+        if let Some((_, change)) = &run.adjustment {
+            change(&mut scene);
+        }
+        let variant = run.variant.to_owned();
+        match candidates.iter_mut().find(|other| other.variant == variant && other.scene == scene) {
+            Some(candidate) => candidate.gates.push(gate),
+            None => candidates.push(Candidate { variant, scene, gates: vec![gate] }),
+        }
+    }
+    Ok(candidates)
+}
+
+/// Where the first grain that does not start as in the scene should be, and where it is.
+fn misplaced(scene: &Scene, observed: &Observed) -> Option<(String, String)> {
+    let time = observed.series.time.first().copied()?;
+    if time.abs() > 0.0 {
+        return Some(("at time 0".to_owned(), format!("a first sample at {time} s")));
+    }
+    for (at, column) in observed.series.columns.iter().enumerate() {
+        let (probe, quantity) = column.name.rsplit_once('.')?;
+        let probe = scene.probes.iter().find(|other| other.name == probe)?;
+        let (ProbeTarget::Grain(grain), Some(axis)) =
+            (probe.target, ["x", "y", "z"].iter().position(|axis| *axis == quantity))
+        else {
+            continue;
+        };
+        let (expected, radius) = (scene.grains[grain].position[axis], scene.grains[grain].radius);
+        let (found, open) = (observed.series.values[at][0], observed.uncertainty[at][0]);
+        if (found - expected).abs() > open + START * radius {
+            return Some((format!("{} = {expected:?} m", column.name), format!("{found:?} m")));
+        }
+    }
+    None
+}
+
+fn section(case: &'static Case, candidate: &Candidate, outputs: &Outputs, observed: &Observed) -> Section {
+    let file = outputs.name();
+    let step = outputs.time_step();
+    let row = |quantity: String, unit: &str| Verdict {
+        case: case.name.to_owned(),
+        variant: candidate.variant.clone(),
+        solver: file.clone(),
+        resolution: step.map_or_else(|| "step not told".to_owned(), |step| Resolution::TimeStep(step).to_string()),
+        quantity,
+        unit: unit.to_owned(),
+        value: None,
+        expected: None,
+        scale: None,
+        error: None,
+        allowed: 0.0,
+        because: String::new(),
+        evidence: Evidence::OtherCode,
+        source: String::new(),
+        outcome: Outcome::NoReference,
+        detail: None,
+    };
+    let mut verdicts: Vec<Verdict> =
+        candidate.gates.iter().map(|gate| exact(gate, candidate, outputs, observed, &row)).collect();
+    let (compared, figures) = step.map_or_else(
+        || (Err("the files do not tell the time step (--dt gives it)".to_owned()), Vec::new()),
+        |step| match ours(&candidate.scene, step, observed) {
+            Ok(ours) => {
+                (Ok(compare(&candidate.scene, &ours, outputs, observed, &row)), figures(&ours, &file, observed))
+            }
+            Err(reason) => (Err(reason), Vec::new()),
+        },
+    );
+    match compared {
+        Ok(rows) => verdicts.extend(rows),
+        Err(reason) => {
+            let quantity = "comparison with our solvers".to_owned();
+            verdicts.push(Verdict { detail: Some(reason), because: "none was made".to_owned(), ..row(quantity, "1") });
+        }
+    }
+    Section {
+        name: case.name.to_owned(),
+        title: format!("{}: {file}", case.title),
+        claim: format!(
+            "The output of another program, `{file}`, printed with up to {} significant digits, against the exact answers of \
+             this case and against our solvers on the same scene.",
+            outputs.significant_digits()
+        ),
+        derivation: case.derivation.to_owned(),
+        weak: case.weakness.to_owned(),
+        figures,
+        verdicts,
+        controls: Vec::new(),
+        runs: Vec::new(),
+    }
+}
+
+/// Fills in what was measured, and how the row ends.
+fn judge(verdict: &mut Verdict, found: &Measured, open: f64, outputs: &Outputs) {
+    let finite = |value: f64| value.is_finite().then_some(value);
+    let error = found.error();
+    (verdict.value, verdict.expected) = (finite(found.value), finite(found.expected));
+    (verdict.scale, verdict.error) = (finite(found.scale), finite(error));
+    verdict.outcome = if error.abs() <= verdict.allowed { Outcome::Pass } else { Outcome::Fail };
+    // Below a thousandth of the tolerance nobody need know.
+    if open > 1e-3 * verdict.allowed {
+        let digits = outputs.significant_digits();
+        let widened = format!("; widened by {} for the digits printed, {digits} at most", number::fraction(open));
+        verdict.because.push_str(&widened);
+    }
+    if verdict.outcome == Outcome::Fail {
+        let outside = |error: &f64| error.is_nan() || error.abs() > verdict.allowed;
+        let first = found.course.iter().find(|(_, error)| outside(error));
+        verdict.detail = first.map(|(time, _)| format!("first outside at t = {time:.6} s"));
+    }
+}
