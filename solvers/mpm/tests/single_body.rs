@@ -70,7 +70,7 @@ fn a_bar_vibrates_at_its_period() {
 /// Root mean square of the error in displacement of a manufactured motion.
 fn manufactured_error(basis: Basis, cells: f64, points: u32) -> f64 {
     let text = "dimension = 2\nduration = 0.5\nreference_length = 1.0\n\
-        manufactured = { kind = 'axis-aligned', amplitude = 0.05 }\n\
+        manufactured = { axis-aligned = { amplitude = 0.05 } }\n\
         domain = { low = [0.0, 0.0], high = [1.0, 1.0], periodic = [true, true] }\n\
         materials.m = { density = 1000.0, young_modulus = 1000.0, poisson_ratio = 0.3 }\n\
         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\n";

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 /// Which motion. Both are exact for τ = λ ln J + G (b − 1) (Kamojjala, Brannon, Sadeghirad & Guilkey 2015).
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Manufactured {
     /// u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ₀), in a periodic box of length L along x.
     AxisAligned {
