@@ -3,7 +3,6 @@
 //! Doc comments here are the documentation of the keys: `grainbench schema` prints them.
 
 use crate::body::InitialPressure;
-use crate::manufactured::Manufactured;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -53,7 +52,7 @@ pub struct SceneFile {
     pub settle: Option<SettleSpec>,
     /// A body force, and initial velocities, that make a chosen motion of neo-Hookean bodies the exact one.
     #[serde(default)]
-    pub manufactured: Option<Manufactured>,
+    pub manufactured: Option<ManufacturedSpec>,
     /// Materials by name.
     pub materials: IndexMap<String, MaterialSpec>,
     /// Contact laws by name: the pair table. Every pair of materials that can meet needs one.
@@ -252,6 +251,43 @@ pub enum SideSpec {
     ZLow,
     /// The side at the largest z.
     ZHigh,
+}
+
+/// A chosen motion that a body force makes exact: exactly one of `axis-aligned` and `vortex`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ManufacturedSpec {
+    /// u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ), in a periodic box of length L along x.
+    #[serde(default)]
+    pub axis_aligned: Option<AxisAlignedSpec>,
+    /// Rotation of each circle about the origin, between the radii .75 m and 1.25 m.
+    #[serde(default)]
+    pub vortex: Option<VortexSpec>,
+}
+
+/// u_x = A sin(2πX/L) sin(cπt/L).
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisAlignedSpec {
+    /// Amplitude A (m), below L/2π.
+    pub amplitude: f64,
+    /// Length L (m). Default 1.
+    #[serde(default = "one_metre")]
+    pub length: f64,
+}
+
+const fn one_metre() -> f64 {
+    1.0
+}
+
+/// Rotation by α = A sin(Bπt) (1 − 16 (R − 1)²)².
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VortexSpec {
+    /// Largest angle A (rad).
+    pub amplitude: f64,
+    /// B (1/s): the motion has the period 2/B.
+    pub rate: f64,
 }
 
 /// A damped phase before the clock starts, in which bodies at rest come to equilibrium; then they are given their

@@ -1,19 +1,16 @@
 //! Manufactured solutions: a motion is chosen, and the body force that makes it exact in a neo-Hookean material.
 
 use nalgebra::{Vector2, Vector3};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Which motion. Both are exact for τ = λ ln J + G (b − 1) (Kamojjala, Brannon, Sadeghirad & Guilkey 2015).
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Manufactured {
     /// u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ₀), in a periodic box of length L along x.
     AxisAligned {
         /// Amplitude A (m), below L/2π.
         amplitude: f64,
         /// Length L of the box (m).
-        #[serde(default = "one")]
         length: f64,
     },
     /// Rotation of each circle R about the origin by α = A sin(Bπt) h(R), h = (1 − 16 (R − 1)²)² for .75 m < R < 1.25 m
@@ -24,10 +21,6 @@ pub enum Manufactured {
         /// B (1/s): the motion has the period 2/B.
         rate: f64,
     },
-}
-
-const fn one() -> f64 {
-    1.0
 }
 
 /// The material a body force is made for.

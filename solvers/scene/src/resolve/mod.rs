@@ -3,7 +3,8 @@
 use crate::body::{Settle, Start};
 use crate::check::Checker;
 use crate::error::SceneError;
-use crate::file::{DomainSpec, GrainShape, GravitySpec, SceneFile, SettleSpec};
+use crate::file::{DomainSpec, GrainShape, GravitySpec, ManufacturedSpec, SceneFile, SettleSpec};
+use crate::manufactured::Manufactured;
 use crate::scene::{Dimension, Domain, Duration, Sampling, Scene, Wall};
 use crate::source::SceneSource;
 use indexmap::IndexMap;
@@ -149,7 +150,28 @@ impl Resolver<'_> {
 
     fn start(&self, gravity: Vector3<f64>) -> Result<Start, SceneError> {
         let settle = self.file.settle.as_ref().map(|settle| self.settle(settle, gravity)).transpose()?;
-        Ok(Start { settle, initial_pressure: self.file.initial_pressure, manufactured: self.file.manufactured })
+        let manufactured = self.file.manufactured.as_ref().map(|motion| self.manufactured(motion)).transpose()?;
+        Ok(Start { settle, initial_pressure: self.file.initial_pressure, manufactured })
+    }
+
+    fn manufactured(&self, motion: &ManufacturedSpec) -> Result<Manufactured, SceneError> {
+        let check = &self.check;
+        let given = [("axis-aligned", motion.axis_aligned.is_some()), ("vortex", motion.vortex.is_some())];
+        check.exactly_one("manufactured", &given)?;
+        if let Some(wave) = &motion.axis_aligned {
+            let length = check.positive("manufactured.axis-aligned.length", wave.length, "length (m)")?;
+            let key = "manufactured.axis-aligned.amplitude";
+            let amplitude = check.not_negative(key, wave.amplitude, "amplitude (m)")?;
+            if amplitude * 2.0 * std::f64::consts::PI >= length {
+                return Err(check.error(key, "an amplitude below 1/2π of the length", &amplitude.to_string()));
+            }
+            return Ok(Manufactured::AxisAligned { amplitude, length });
+        }
+        let (amplitude, rate) = motion.vortex.as_ref().map_or((0.0, 0.0), |vortex| (vortex.amplitude, vortex.rate));
+        Ok(Manufactured::Vortex {
+            amplitude: check.finite("manufactured.vortex.amplitude", amplitude, "angle (rad)")?,
+            rate: check.finite("manufactured.vortex.rate", rate, "rate (1/s)")?,
+        })
     }
 
     fn settle(&self, settle: &SettleSpec, gravity: Vector3<f64>) -> Result<Settle, SceneError> {
