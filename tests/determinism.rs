@@ -20,7 +20,9 @@ fn a_rerun_gives_the_same_bits() {
         if scene.grains.len() > 1000 {
             scene.duration = grainbench::scene::scene::Duration::Cycles(200);
         }
-        for solver in solvers::all() {
+        // Of the method that takes long, scenes made for it that are short.
+        let deformable = ["incline-disc", "two-discs"].contains(&case.name);
+        for solver in solvers::all().into_iter().filter(|solver| deformable || !solver.name().starts_with("mpm")) {
             let resolution = match solver.name().split(':').next() {
                 Some("rigid") => Resolution::substeps(2),
                 Some("mpm") => Resolution::grid(2.0, 2),

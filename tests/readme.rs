@@ -8,6 +8,7 @@ use grainbench::cases::bench::Bench;
 use grainbench::cases::case::{PLAIN, read_grains};
 use grainbench::cases::registry::{self, CASES};
 use grainbench::dem::convention::Convention;
+use grainbench::mpm::solver::Mpm;
 use grainbench::reports::plot;
 use grainbench::scene::solver::{Resolution, Solver};
 use grainbench::scene::source::SceneSource;
@@ -28,6 +29,14 @@ fn expect_file(path: &str, wanted: &str) {
     }
     let found = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(found == wanted, "{} is out of date: UPDATE_README=1 cargo test --test readme writes it", path.display());
+}
+
+fn settings_table() -> String {
+    let mut table = "| solver | setting |\n|---|---|\n".to_owned();
+    for mpm in Mpm::ALL {
+        writeln!(table, "| `{}` | {} |", mpm.name, mpm.setting.words().join("; ")).unwrap();
+    }
+    table
 }
 
 /// README with the text between two marks replaced.
@@ -63,12 +72,15 @@ fn conventions_table() -> String {
 fn tables_are_generated() {
     let readme = std::fs::read_to_string(root("README.md")).unwrap();
     let readme = with_generated(&readme, "cases", &cases_table());
+    let readme = with_generated(&readme, "settings", &settings_table());
     expect_file("README.md", &with_generated(&readme, "conventions", &conventions_table()));
 }
 
 #[test]
 fn pictures_are_drawn() {
-    for (case, figure) in [("nine-discs", "forces-distortion"), ("incline-disc", "compliance")] {
+    for (case, figure) in
+        [("nine-discs", "forces-distortion"), ("incline-disc", "compliance"), ("incline-disc", "elastic")]
+    {
         let case = registry::by_name(case).unwrap();
         let figures = (case.figures)(&Bench::new(case)).unwrap();
         let figure = figures.iter().find(|candidate| candidate.name == figure).unwrap();
