@@ -280,7 +280,9 @@ impl<S: Space> Shared<S> {
                     let position = tracers.position[at];
                     if wall.height(position) <= 0.0 {
                         let other = Other::Wall(number as u16);
-                        self.meet(lattice, bodies, place, other, position, -wall.normal, S::ORIGIN, nodes);
+                        let normal = -wall.normal;
+                        let met = Met { body: place, other, position, normal, shift: S::ORIGIN };
+                        self.meet(lattice, bodies, &met, nodes);
                     }
                 }
             }
@@ -300,8 +302,9 @@ impl<S: Space> Shared<S> {
                     let (body, other) = if swap { (pair.second, pair.first) } else { (pair.first, pair.second) };
                     let (position, shift) =
                         if swap { (position - pair.shift, -pair.shift) } else { (position, pair.shift) };
-                    let out = if swap { -out } else { out };
-                    self.meet(lattice, bodies, body as usize, Other::Body(other), position, out, shift, nodes);
+                    let normal = if swap { -out } else { out };
+                    let met = Met { body: body as usize, other: Other::Body(other), position, normal, shift };
+                    self.meet(lattice, bodies, &met, nodes);
                 }
             }
         }
@@ -319,18 +322,9 @@ impl<S: Space> Shared<S> {
         }
     }
 
-    #[allow(clippy::too_many_arguments, reason = "all of it is one meeting")]
-    fn meet(
-        &mut self,
-        lattice: &Lattice,
-        bodies: &[Body],
-        body: usize,
-        other: Other,
-        position: S::Vector,
-        normal: S::Vector,
-        shift: S::Vector,
-        nodes: &[Node<S>],
-    ) {
+    /// Notes a place where surfaces have met at every node around it that both carry mass at.
+    fn meet(&mut self, lattice: &Lattice, bodies: &[Body], met: &Met<S>, nodes: &[Node<S>]) {
+        let &Met { body, other, position, normal, shift } = met;
         let window = bodies[body].part.window;
         let stencil = Stencil::new::<S, Linear>(lattice, position, [0.0; 3]);
         if !window.holds(S::DIMENSION, stencil.base(), Linear::WIDTH as i32) {
@@ -369,6 +363,18 @@ impl<S: Space> Shared<S> {
             }
         });
     }
+}
+
+/// A place where the surface of a body has met another body or a wall.
+struct Met<S: Space> {
+    body: usize,
+    other: Other,
+    /// Where (m).
+    position: S::Vector,
+    /// Unit vector out of the body.
+    normal: S::Vector,
+    /// Periods between the body and the other (m).
+    shift: S::Vector,
 }
 
 /// Visits the nodes that two windows share, the second one's `periods` nodes further on: the node in the first, in the
