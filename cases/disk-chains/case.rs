@@ -100,7 +100,7 @@ fn exact(variant: &'static str, first: usize) -> Gate {
         scope: Scope::Named,
         evidence: Evidence::Analytic,
         source: "modes of the assembly (derivation)",
-        allowed: 5e-5,
+        allowed: 2e-5,
         because: "central differences at ω₀Δt = .01, and displacements of 2e-6 R turn the normals",
         runs: vec![gentle(variant)],
         measure: measure(move |done| {

@@ -77,11 +77,11 @@ fn gates() -> Vec<Gate> {
     // Wrong moduli would not do: the body force follows them, and the motion stays.
     let wrong = || Control::scene("a damping of .3 per second", |scene| scene.global_damping = 0.3);
     vec![
-        gate("order in the cell, uGIMP", 2.0, 0.12, "fitted over 16 to 64 cells", runs(GIMP, 2), wrong()),
+        gate("order in the cell, uGIMP", 2.0, 0.1, "fitted over 16 to 64 cells", runs(GIMP, 2), wrong()),
         gate(
             "order in the cell, quadratic B-splines",
             2.0,
-            0.12,
+            0.1,
             "what uGIMP reaches",
             runs(SPLINES, POINTS_OF_SPLINES).into_iter().map(|run| run.known(QUADRATURE)).collect(),
             Control::solver("uGIMP in their place", GIMP),
@@ -100,7 +100,7 @@ fn gates() -> Vec<Gate> {
             evidence: Evidence::Analytic,
             runs: vec![Run::new(PLAIN, GIMP, LADDER[2].resolution)],
             measure: measure(|done| Ok(Measured::new(error(&done[0])?, 0.0, 0.05))),
-            ..gate("", 0.0, 5e-3, "discretisation; in units of the amplitude", vec![], wrong())
+            ..gate("", 0.0, 1.2e-3, "discretisation; in units of the amplitude", vec![], wrong())
         },
     ]
 }
