@@ -113,13 +113,8 @@ impl<S: Space> Simulation<S> {
     fn whole(&mut self, body: usize) -> Whole {
         let points = &self.points;
         let range = self.bodies[body].part.points.clone();
-        let (mut mass, mut position, mut momentum) = (0.0, Vector3::zeros(), Vector3::zeros());
-        for at in range.clone() {
-            mass += points.mass[at];
-            position += S::embed(points.position[at]) * points.mass[at];
-            momentum += self.velocity(at) * points.mass[at];
-        }
-        position /= mass;
+        let (mass, position) = points.centre_of_mass(range.clone());
+        let momentum: Vector3<f64> = range.clone().map(|at| self.velocity(at) * points.mass[at]).sum();
         let velocity = momentum / mass;
         let (mut angular, mut inertia, mut kinetic) = (Vector3::zeros(), Matrix3::zeros(), 0.0);
         let mut mean = Matrix3::zeros();

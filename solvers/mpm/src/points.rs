@@ -1,6 +1,7 @@
 //! Material points: structure of arrays, grouped by body and kept in cell order within a body.
 
 use grainbench_scene::space::Space;
+use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 
 /// All material points of a run.
@@ -57,6 +58,17 @@ impl<S: Space> Points<S> {
         self.position.len()
     }
 
+    /// Mass (kg) and centre of mass (m) of some points.
+    pub(crate) fn centre_of_mass(&self, range: Range<usize>) -> (f64, Vector3<f64>) {
+        let mut mass = 0.0;
+        let mut moment = Vector3::zeros();
+        for at in range {
+            mass += self.mass[at];
+            moment += S::embed(self.position[at]) * self.mass[at];
+        }
+        (mass, moment / mass)
+    }
+
     /// Adds an undeformed point at rest.
     pub(crate) fn push(&mut self, position: S::Vector, volume: f64, density: f64) {
         self.id.push(self.id.len() as u32);
@@ -68,7 +80,7 @@ impl<S: Space> Points<S> {
         self.mass.push(density * volume);
         self.reference_volume.push(volume);
         self.volume.push(volume);
-        self.deformation.push(S::restrict_gradient(nalgebra::Matrix3::identity()));
+        self.deformation.push(S::restrict_gradient(Matrix3::identity()));
         self.stress.push(S::Symmetric::default());
         self.plastic_strain.push(0.0);
         self.gradient.push(S::NO_GRADIENT);

@@ -38,13 +38,15 @@ impl<S: Space> Simulation<S> {
         self.before.resize(self.points.len(), S::ORIGIN);
         for body in &self.bodies {
             let medium = medium(body);
+            // A grain that has settled has sunk: it turns about where its mass is, or it would start with a velocity.
+            let (_, centre) = self.points.centre_of_mass(body.part.points.clone());
             for at in body.part.points.clone() {
                 let position = S::embed(self.points.position[at]);
                 let mut velocity = match body.owner {
                     Owner::Grain(id) => {
                         let grain = &self.scene.grains[id as usize - 1];
                         self.points.affine[at] = S::restrict_gradient(grain.spin.cross_matrix());
-                        grain.velocity + grain.spin.cross(&(position - grain.position))
+                        grain.velocity + grain.spin.cross(&(position - centre))
                     }
                     Owner::Body(place) => {
                         let block = &self.scene.bodies[place as usize];
