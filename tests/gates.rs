@@ -1,17 +1,20 @@
-//! Every gate of the registry, and for every gate its negative control: a test each.
+//! Every gate of the registry, and for every gate its negative control: a test each. Those of the long set, which take minutes,
+//! take part with `GRAINBENCH_LONG=1`.
 
 use grainbench::cases::bench::Bench;
-use grainbench::cases::gate::{Gate, Standing};
+use grainbench::cases::gate::{Gate, Set, Standing};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::verdict::Outcome;
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::sync::Arc;
 
 fn main() -> std::process::ExitCode {
+    let long = std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1");
+    let set = if long { Set::Long } else { Set::Tests };
     let mut trials = Vec::new();
     for case in CASES {
         let bench = Arc::new(Bench::new(case));
-        for gate in (case.gates)() {
+        for gate in (case.gates)().into_iter().filter(|gate| gate.set() <= set) {
             let gate = Arc::new(gate);
             let run = &gate.runs[0];
             let name = format!("{}/{} {} {}: {}", case.name, run.variant, run.solver, gate.resolution(), gate.quantity);

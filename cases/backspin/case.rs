@@ -1,5 +1,8 @@
 //! A grain set down with spin and no velocity (2001 paper, and the disc beside it).
 
+#[path = "elastic.rs"]
+mod elastic;
+
 use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
@@ -36,7 +39,7 @@ pub(crate) static CASE: Case = Case {
 
 fn gates() -> Vec<Gate> {
     let dem = VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant), near_rigid(variant)].concat());
-    dem.chain(rigid_rows::backspins(RIGID)).chain(program_rows::one_grain(&VARIANTS)).collect()
+    dem.chain(rigid_rows::backspins(RIGID)).chain(program_rows::one_grain(&VARIANTS)).chain(elastic::gates()).collect()
 }
 
 fn rigid(variant: &'static str) -> Vec<Gate> {
@@ -196,5 +199,5 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
             curves,
         }),
     };
-    Ok(vec![velocity, rigid_rows::figure(bench, RIGID, OneGrain::rigid_backspin)?])
+    Ok(vec![velocity, rigid_rows::figure(bench, RIGID, OneGrain::rigid_backspin)?, elastic::figure(bench)?])
 }

@@ -1,5 +1,7 @@
 //! Chains of discs, struck at one end (2001 paper, Figs 9 to 11): when the force arrives.
 
+#[path = "elastic.rs"]
+mod elastic;
 #[path = "modal.rs"]
 mod modal;
 
@@ -89,6 +91,7 @@ fn gates() -> Vec<Gate> {
     gates.push(sooner(GLUED, "glued zig-zag over that of the slipping one"));
     gates.push(sooner("line", "line over that of the slipping zig-zag"));
     gates.push(rigid());
+    gates.extend(elastic::gates());
     gates
 }
 
@@ -225,5 +228,6 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         [Axis::linear("disc"), Axis::linear("time of arrival t c/d")],
         arrivals,
     ));
+    figures.push(elastic::figure(bench)?);
     Ok(figures)
 }

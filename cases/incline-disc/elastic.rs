@@ -6,15 +6,12 @@
 //! (quadratic B-splines, APIC, springs at the surface). Larger moduli need no reference: they lead to the rigid answer.
 
 use crate::bench::Bench;
+use crate::elastic::{Rest, settle, stiffen};
 use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
 use crate::one_grain::{OneGrain, State, last};
-use crate::scope::Scope;
 use crate::verdict::Evidence;
-use grainbench_scene::body::Settle;
-use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError};
-use nalgebra::Vector3;
 
 /// One slope with what is known of the elastic disc on it.
 #[derive(Clone, Copy)]
@@ -72,18 +69,11 @@ const SLOPES: [Elastic; 4] = [
 ];
 
 const REFERENCE: &str = "independent prototype of the elastic disc, Richardson over 2 to 16 cells a radius";
+const REST: Rest = Rest { duration: 0.3, damping: 100.0 };
 /// Points per cell and axis, as in the paper.
 const POINTS: u32 = 3;
 const LADDER: [f64; 3] = [2.0, 4.0, 8.0];
-
-/// The elastic disc, touching and settled under g cos θ.
-fn settled(scene: &mut Scene, time: f64) {
-    let radius = scene.grains[0].radius;
-    scene.grains[0].position.y = radius;
-    let gravity = Vector3::new(0.0, scene.gravity.y, 0.0);
-    scene.start.settle = Some(Settle { duration: 0.3, damping: 100.0, gravity });
-    scene.duration = Duration::Seconds(time);
-}
+const FINEST: f64 = 16.0;
 
 fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
     stiffened(slope, solver, cells, 1.0)
@@ -93,11 +83,8 @@ fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
 fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> Run {
     let name = format!("elastic and settled, moduli × {factor}");
     Run::new(slope.variant, solver, Resolution::grid(cells, POINTS)).adjusted(&name, move |scene| {
-        settled(scene, slope.time);
-        for material in scene.deformable.iter_mut().flatten() {
-            material.bulk_modulus *= factor;
-            material.shear_modulus *= factor;
-        }
+        settle(scene, REST, slope.time);
+        stiffen(scene, factor);
     })
 }
 
@@ -122,6 +109,8 @@ pub(super) fn gates() -> Vec<Gate> {
             gates.push(order(slope));
             gates.push(stiff(slope));
             gates.push(known(slope));
+            gates.push(turns_as_it_goes(slope));
+            gates.push(extrapolated(slope));
         }
     }
     gates.push(does_not_roll());
@@ -136,91 +125,63 @@ fn telling(slope: Elastic) -> Control {
     }
 }
 
-fn gate(quantity: String, run: Run, evidence: Evidence, source: &'static str, control: Control) -> Gate {
-    Gate {
-        quantity,
-        unit: "1",
-        scope: Scope::Named,
-        evidence,
-        source,
-        allowed: 0.0,
-        because: "",
-        runs: vec![run],
-        measure: measure(|_| Err(Missing("measure".to_owned()))),
-        control,
-    }
+fn against_reference(slope: Elastic, cells: f64, allowed: f64) -> Gate {
+    Gate::new(
+        (excess_words(slope, cells), "1"),
+        vec![run(slope, "mpm", cells)],
+        (Evidence::OtherCode, REFERENCE),
+        (allowed + slope.uncertainty, "discretisation at this resolution, and the reference's own uncertainty"),
+        telling(slope),
+        move |done| Ok(Measured::new(excess(&done[0])?, slope.excess, 1.0)),
+    )
 }
 
-fn against_reference(slope: Elastic, cells: f64, allowed: f64) -> Gate {
-    let words = format!("displacement at {} s over the rigid one, less 1, {cells} cells a radius", slope.time);
-    Gate {
-        allowed: allowed + slope.uncertainty,
-        because: "discretisation at this resolution, and the reference's own uncertainty",
-        measure: measure(move |done| Ok(Measured::new(excess(&done[0])?, slope.excess, 1.0))),
-        ..gate(words, run(slope, "mpm", cells), Evidence::OtherCode, REFERENCE, telling(slope))
-    }
+fn excess_words(slope: Elastic, cells: f64) -> String {
+    format!("displacement at {} s over the rigid one, less 1, {cells} cells a radius", slope.time)
 }
 
 /// How fast the deviation from the elastic disc falls with the cell.
 fn order(slope: Elastic) -> Gate {
-    let runs: Vec<Run> = LADDER.into_iter().map(|cells| run(slope, "mpm", cells)).collect();
-    Gate {
-        allowed: 1.0,
-        because: "at least 1.5, at most 3.5: a contact that gains one tracer after another has no exact order",
-        measure: measure(move |done| {
+    Gate::new(
+        ("order in the cell of the deviation from the elastic disc, 2 to 8 cells a radius", "1"),
+        LADDER.into_iter().map(|cells| run(slope, "mpm", cells)).collect(),
+        (Evidence::Convergence, REFERENCE),
+        (1.0, "at least 1.5, at most 3.5: a contact that gains one tracer after another has no exact order"),
+        telling(slope),
+        move |done| {
             let points: Result<Vec<(f64, f64)>, Missing> = done
                 .iter()
                 .zip(LADDER)
                 .map(|(done, cells)| Ok((1.0 / cells, (excess(done)? - slope.excess).abs())))
                 .collect();
             Ok(Measured::new(crate::measure::slope(&points?), 2.5, 1.0))
-        }),
-        runs,
-        ..gate(
-            "order in the cell of the deviation from the elastic disc, 2 to 8 cells a radius".to_owned(),
-            run(slope, "mpm", 2.0),
-            Evidence::Convergence,
-            REFERENCE,
-            telling(slope),
-        )
-    }
+        },
+    )
 }
 
 /// Moduli ten times larger: nearer to the rigid answer, which needs no reference.
 fn stiff(slope: Elastic) -> Gate {
-    Gate {
-        allowed: 0.01,
-        because: "flattening falls with the modulus; what is left is the discretisation of the contact at this resolution",
-        measure: measure(move |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0))),
-        ..gate(
-            format!("displacement at {} s over the rigid one, less 1, moduli × 10, 8 cells a radius", slope.time),
-            stiffened(slope, "mpm", 8.0, 10.0),
-            Evidence::Analytic,
-            "MPM 2000 eq. 25",
-            telling(slope),
-        )
-    }
+    Gate::new(
+        (format!("displacement at {} s over the rigid one, less 1, moduli × 10, 8 cells a radius", slope.time), "1"),
+        vec![stiffened(slope, "mpm", 8.0, 10.0)],
+        (Evidence::Analytic, "MPM 2000 eq. 25"),
+        (0.01, "flattening falls with the modulus; what is left is the discretisation of the contact at this resolution"),
+        telling(slope),
+        move |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)),
+    )
 }
 
 /// The 2000 paper's contact gives what it is known to give.
 fn reproduced(slope: Elastic, cells: f64, expected: f64) -> Gate {
-    let words = format!("displacement at {} s over the rigid one, less 1, {cells} cells a radius", slope.time);
-    Gate {
-        allowed: 0.02,
-        because: "two implementations of one method at the same resolution, with other material points",
-        measure: measure(move |done| Ok(Measured::new(excess(&done[0])?, expected, 1.0))),
-        ..gate(
-            words,
-            run(slope, "mpm:2000", cells),
-            Evidence::OtherCode,
-            "independent prototype of the 2000 criterion, touching and settled",
-            if slope.sticks {
-                Control::solver("springs at the surface", "mpm")
-            } else {
-                Control::scene("half the friction", |scene| scene.change_laws(|law| law.friction *= 0.5))
-            },
-        )
-    }
+    let control = if slope.sticks { Control::solver("springs at the surface", "mpm") } else { telling(slope) };
+    Gate::new(
+        (excess_words(slope, cells), "1"),
+        vec![run(slope, "mpm:2000", cells)],
+        (Evidence::OtherCode, "independent prototype of the 2000 criterion, touching and settled"),
+        (0.02, "two implementations of one method at the same resolution, with other material points"),
+        control,
+        move |done| Ok(Measured::new(excess(&done[0])?, expected, 1.0)),
+    )
 }
 
 /// Its error against the elastic disc, shown for what it is.
@@ -229,34 +190,54 @@ fn known(slope: Elastic) -> Gate {
         "nodal contact holds the disc up over a patch of about √(2Rh), as if it had a flat side: at these resolutions it rolls \
          too little or not at all",
     );
-    Gate {
-        allowed: 0.035 + slope.uncertainty,
-        because: "what a contact that acts at the surface reaches at this resolution",
-        measure: measure(move |done| Ok(Measured::new(excess(&done[0])?, slope.excess, 1.0))),
-        ..gate(
-            format!("displacement at {} s over the rigid one, less 1, against the elastic disc", slope.time),
-            run,
-            Evidence::OtherCode,
-            REFERENCE,
-            Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, POINTS)),
-        )
-    }
+    Gate::new(
+        (format!("displacement at {} s over the rigid one, less 1, against the elastic disc", slope.time), "1"),
+        vec![run],
+        (Evidence::OtherCode, REFERENCE),
+        (0.035 + slope.uncertainty, "what a contact that acts at the surface reaches at this resolution"),
+        Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, POINTS)),
+        move |done| Ok(Measured::new(excess(&done[0])?, slope.excess, 1.0)),
+    )
 }
 
 /// At two cells a radius a disc in nodal contact does not roll (2001 paper, of the sphere at R/2).
 fn does_not_roll() -> Gate {
-    Gate {
-        allowed: 0.05,
-        because: "it turns by no more than its flat side rocks",
-        measure: measure(|done| Ok(Measured::new(rolling(&done[0])?, 0.0, 1.0))),
-        ..gate(
-            "ΩR/v at the end, where a rigid disc has 1, 2 cells a radius".to_owned(),
-            run(SLOPES[3], "mpm:2000", 2.0),
-            Evidence::Paper,
-            "Bardenhagen et al. 2001, text to Fig. 3: at the coarsest resolution it does not roll",
-            Control::solver("springs at the surface", "mpm"),
-        )
-    }
+    Gate::new(
+        ("ΩR/v at the end, where a rigid disc has 1, 2 cells a radius", "1"),
+        vec![run(SLOPES[3], "mpm:2000", 2.0)],
+        (Evidence::Paper, "Bardenhagen et al. 2001, text to Fig. 3: at the coarsest resolution it does not roll"),
+        (0.05, "it turns by no more than its flat side rocks"),
+        Control::solver("springs at the surface", "mpm"),
+        |done| Ok(Measured::new(rolling(&done[0])?, 0.0, 1.0)),
+    )
+}
+
+/// Our own extrapolation, by the order seen over 4, 8 and 16 cells a radius, beside the reference.
+fn extrapolated(slope: Elastic) -> Gate {
+    Gate::new(
+        (format!("displacement at {} s over the rigid one, less 1, extrapolated from 4, 8 and 16 cells a radius", slope.time), "1"),
+        [4.0, 8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()).to_vec(),
+        (Evidence::OtherCode, REFERENCE),
+        (0.004 + slope.uncertainty, "three rungs fix the order only roughly, and the last step is multiplied by it"),
+        telling(slope),
+        move |done| {
+            let [coarse, middle, fine] = [excess(&done[0])?, excess(&done[1])?, excess(&done[2])?];
+            let ratio = (middle - coarse) / (fine - middle);
+            Ok(Measured::new(fine + (fine - middle) / (ratio - 1.0), slope.excess, 1.0))
+        },
+    )
+}
+
+/// ΩR/v at 8 cells a radius against the finest rung.
+fn turns_as_it_goes(slope: Elastic) -> Gate {
+    Gate::new(
+        ("ΩR/v at the end, 8 cells a radius against 16", "1"),
+        vec![run(slope, "mpm", 8.0).long(), run(slope, "mpm", FINEST).long()],
+        (Evidence::Convergence, "the finest rung"),
+        (0.02, "discretisation"),
+        Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000"),
+        |done| Ok(Measured::new(rolling(&done[0])?, rolling(&done[1])?, 1.0)),
+    )
 }
 
 pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

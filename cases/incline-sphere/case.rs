@@ -1,5 +1,8 @@
 //! A sphere released from rest on an inclined plane (2001 paper).
 
+#[path = "elastic.rs"]
+mod elastic;
+
 use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
 use crate::figure::Figure;
@@ -40,11 +43,12 @@ pub(crate) static CASE: Case = Case {
 
 fn gates() -> Vec<Gate> {
     let programs = program_rows::one_grain(&SLOPES.iter().map(|slope| slope.variant).collect::<Vec<_>>());
-    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs].concat()
+    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs, elastic::gates()].concat()
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
     let mut figures = incline::figures(bench, SLOPES)?;
     figures.push(rigid_rows::figure(bench, RIGID, OneGrain::rigid_incline)?);
+    figures.push(elastic::figure(bench)?);
     Ok(figures)
 }

@@ -4,10 +4,10 @@ use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung, cells};
 use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::manufactured::error;
 use crate::measure::slope;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
-use grainbench_scene::manufactured::Medium;
 use grainbench_scene::solver::{Resolution, RunError};
 
 const LADDER: &[Rung] = &[cells("1/16", 16.0, 2), cells("1/32", 32.0, 2), cells("1/64", 64.0, 2)];
@@ -32,23 +32,6 @@ pub(crate) static CASE: Case = Case {
     gates,
     figures,
 };
-
-/// Root mean square over the material points of the displacement's error at the end (m).
-fn error(done: &Done) -> Result<f64, Missing> {
-    let missing = || Missing("material points at the end".to_owned());
-    let (scene, snapshot) = (&done.scene, done.record.snapshots.last().ok_or_else(missing)?);
-    let (material, motion) = scene.deformable[0].zip(scene.start.manufactured).ok_or_else(missing)?;
-    let medium =
-        Medium { density: scene.bodies[0].density, lame: material.lame(), shear_modulus: material.shear_modulus };
-    if snapshot.points.is_empty() {
-        return Err(missing());
-    }
-    let (sum, volume) = snapshot.points.iter().fold((0.0, 0.0), |(sum, volume), point| {
-        let exact = motion.displacement(&medium, point.position - point.displacement, snapshot.time);
-        (sum + (point.displacement - exact).norm_squared() * point.volume, volume + point.volume)
-    });
-    Ok((sum / volume).sqrt())
-}
 
 fn runs(solver: &'static str, points: u32) -> Vec<Run> {
     [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, Resolution::grid(cells, points))).to_vec()

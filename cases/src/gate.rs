@@ -27,6 +27,20 @@ pub struct Run {
     pub adjustment: Option<(String, Change)>,
     /// What is expected of the row.
     pub standing: Standing,
+    /// The smallest set that it belongs to.
+    pub set: Set,
+}
+
+/// Sets of runs, each with all of those before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Set {
+    /// What the main job does: at most a few seconds a run.
+    #[default]
+    Main,
+    /// What the tests do beside it.
+    Tests,
+    /// What takes minutes.
+    Long,
 }
 
 /// What is expected of a row.
@@ -46,7 +60,7 @@ impl Run {
     /// A run of a variant as it stands.
     #[must_use]
     pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
-        Self { variant, solver, resolution, adjustment: None, standing: Standing::Passes }
+        Self { variant, solver, resolution, adjustment: None, standing: Standing::Passes, set: Set::Main }
     }
 
     /// The run with a change of the scene.
@@ -60,6 +74,18 @@ impl Run {
     #[must_use]
     pub fn known(self, reason: &'static str) -> Self {
         Self { standing: Standing::Known(reason), ..self }
+    }
+
+    /// The run as one that only the tests do, not the main job.
+    #[must_use]
+    pub fn slow(self) -> Self {
+        Self { set: Set::Tests, ..self }
+    }
+
+    /// The run as one of the long set.
+    #[must_use]
+    pub fn long(self) -> Self {
+        Self { set: Set::Long, ..self }
     }
 
     /// The same run at another resolution.
@@ -263,6 +289,31 @@ pub struct Gate {
 }
 
 impl Gate {
+    /// A gate on named solvers: quantity and unit, the runs it reads, kind of source and source, tolerance and its reason,
+    /// what it must refuse, and how it is measured.
+    #[must_use]
+    pub fn new(
+        (quantity, unit): (impl Into<String>, &'static str),
+        runs: Vec<Run>,
+        (evidence, source): (Evidence, &'static str),
+        (allowed, because): (f64, &'static str),
+        control: Control,
+        of: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            quantity: quantity.into(),
+            unit,
+            scope: Scope::Named,
+            evidence,
+            source,
+            allowed,
+            because,
+            runs,
+            measure: measure(of),
+            control,
+        }
+    }
+
     /// A scene that a solver must refuse: the row is amber, with the solver's reason. The control makes a scene of it
     /// that the solver can run, and then the row is red.
     #[must_use]
@@ -285,6 +336,12 @@ impl Gate {
     #[must_use]
     pub fn standing(&self) -> Standing {
         self.runs.first().map(|run| run.standing).unwrap_or_default()
+    }
+
+    /// The smallest set that has all its runs.
+    #[must_use]
+    pub fn set(&self) -> Set {
+        self.runs.iter().map(|run| run.set).max().unwrap_or_default()
     }
 
     /// Resolutions in words: one, or the first and the last of several.

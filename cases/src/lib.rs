@@ -6,10 +6,12 @@
 pub mod bench;
 pub mod case;
 pub mod conformance;
+pub mod elastic;
 pub mod figure;
 pub mod force_plot;
 pub mod gate;
 pub mod incline;
+pub mod manufactured;
 pub mod measure;
 pub mod one_grain;
 pub mod program_rows;

@@ -3,7 +3,7 @@
 use super::exit::Fault;
 use super::subject::Variant;
 use grainbench::cases::case::{Case, PLAIN};
-use grainbench::cases::gate::{Gate, Run};
+use grainbench::cases::gate::{Gate, Run, Set};
 use grainbench::cases::registry::CASES;
 
 /// The gates of one case that are to be judged.
@@ -37,8 +37,10 @@ pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> 
         if !solvers.is_empty() {
             gates.retain(|gate| row(gate).is_some_and(|run| solvers.iter().any(|name| name == run.solver)));
         }
-        if let Some(rungs) = &rungs {
-            gates.retain(|gate| gate.runs.iter().any(|run| is_at(case, run, rungs)));
+        match &rungs {
+            Rungs::Default => gates.retain(|gate| gate.set() == Set::Main),
+            Rungs::All => {}
+            Rungs::Named(names) => gates.retain(|gate| gate.runs.iter().any(|run| is_at(case, run, names))),
         }
     }
     selected.retain(|selected| !selected.gates.is_empty());
@@ -68,11 +70,21 @@ fn refuse_unknown_solvers(selected: &[Selected], names: &[String]) -> Result<(),
     }
 }
 
-/// The rungs asked for, each one that a selected case has; nothing when all are wanted.
-fn wanted_rungs(selected: &[Selected], names: &[String]) -> Result<Option<Vec<String>>, Fault> {
-    // Every gate takes part in the default set as in the full one: the rungs are written into the gates.
-    if names.is_empty() || names.iter().any(|name| name == "default" || name == "all") {
-        return Ok(None);
+/// Which rungs are wanted.
+enum Rungs {
+    /// What the main job runs.
+    Default,
+    All,
+    Named(Vec<String>),
+}
+
+/// The rungs asked for, each one that a selected case has.
+fn wanted_rungs(selected: &[Selected], names: &[String]) -> Result<Rungs, Fault> {
+    if names.iter().any(|name| name == "all") {
+        return Ok(Rungs::All);
+    }
+    if names.is_empty() || names.iter().any(|name| name == "default") {
+        return Ok(Rungs::Default);
     }
     let mut known: Vec<String> = vec!["default".to_owned(), "all".to_owned()];
     for name in selected.iter().flat_map(|Selected { case, gates }| rungs(case, gates)) {
@@ -84,7 +96,7 @@ fn wanted_rungs(selected: &[Selected], names: &[String]) -> Result<Option<Vec<St
             return Err(Fault::unknown("a rung", name, known.iter().map(String::as_str)));
         }
     }
-    Ok(Some(names.iter().map(|name| self::unified(name)).collect()))
+    Ok(Rungs::Named(names.iter().map(|name| self::unified(name)).collect()))
 }
 
 fn is_at(case: &Case, run: &Run, rungs: &[String]) -> bool {

@@ -1,0 +1,165 @@
+//! The discs as elastic bodies: when stress arrives in them.
+//!
+//! Stress counts as arrived when the difference of the principal stresses at a disc's centre, which is what fringes show, first
+//! exceeds a tenth of ρcv. Time is counted in transits of a disc, d/c. Arrivals hang on how stiff contacts are at first touch;
+//! the expected ones are an independent prototype's, whose contact acts where surfaces meet.
+//!
+//! Springs of the default stiffness, 2.2 E'/h, hold up the wave by a tenth of a transit at each contact, as much as a cell of
+//! material more would. These rows have twice that stiffness, which static forces do not need.
+
+use super::WAVE_SPEED;
+use crate::bench::Bench;
+use crate::figure::{Axis, Curve, Figure, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
+use crate::verdict::Evidence;
+use grainbench_scene::scene::{BodyName, Duration, Probe, ProbeTarget, Scene, Spot};
+use grainbench_scene::solver::{Resolution, RunError};
+
+const STIFF: &str = "mpm+penalty=4.4";
+const PAPER: &str = "mpm:2001";
+const REFERENCE: &str = "independent prototype with gap-resolved contact, 20 to 80 cells a diameter";
+/// Part of ρcv that counts as arrived.
+const ARRIVED: f64 = 0.1;
+/// The paper's second Poisson's ratio, at the same longitudinal modulus.
+const NEARLY_INCOMPRESSIBLE: f64 = 0.48;
+
+/// Cells a radius; shorter steps than usual, for the striker.
+const fn grid(cells: f64, points: u32) -> Resolution {
+    Resolution::Grid { cells, points, courant: 0.3 }
+}
+
+/// A run that is watched at the centre of every disc for so many transits.
+fn run(variant: &'static str, solver: &'static str, resolution: Resolution, transits: f64) -> Run {
+    Run::new(variant, solver, resolution)
+        .adjusted(&format!("elastic, {transits} transits"), move |scene| watch(scene, transits))
+}
+
+fn watch(scene: &mut Scene, transits: f64) {
+    let diameter = 2.0 * scene.grains[0].radius;
+    scene.duration = Duration::Seconds(transits * diameter / WAVE_SPEED);
+    for (place, grain) in scene.grains.iter().enumerate() {
+        let target = ProbeTarget::Point(scene.spots.len());
+        scene.spots.push(Spot { body: BodyName::Grain(place), at: grain.position });
+        scene.probes.push(Probe { name: format!("centre-{}", number(scene, place)), target });
+    }
+}
+
+/// Which disc a grain is, counted from the striker: the odd ones come first in the scene.
+fn number(scene: &Scene, place: usize) -> usize {
+    let odd = scene.grains.len().div_ceil(2);
+    if place < odd { 2 * place + 1 } else { 2 * (place - odd) + 2 }
+}
+
+/// Another Poisson's ratio at the same longitudinal modulus M: G = M (1 − 2ν)/(2 (1 − ν)), K = M − 4G/3.
+fn set_poisson_ratio(scene: &mut Scene, poisson: f64) {
+    for material in scene.deformable.iter_mut().flatten() {
+        let modulus = material.longitudinal_modulus();
+        material.shear_modulus = modulus * (1.0 - 2.0 * poisson) / (2.0 * (1.0 - poisson));
+        material.bulk_modulus = modulus - 4.0 / 3.0 * material.shear_modulus;
+    }
+}
+
+/// The line with the other Poisson's ratio, whose waves in discs are slower.
+fn slower(solver: &'static str, resolution: Resolution) -> Run {
+    Run::new("line", solver, resolution).adjusted("elastic, ν = .48", |scene| {
+        watch(scene, 21.0);
+        set_poisson_ratio(scene, NEARLY_INCOMPRESSIBLE);
+    })
+}
+
+/// When stress arrives at the centre of a disc (d/c).
+fn arrival(done: &Done, disc: usize) -> Result<f64, Missing> {
+    let scene = &done.scene;
+    let column = |part: &str| done.column(&format!("centre-{disc}.sigma_{part}"));
+    let (xx, yy, xy) = (column("xx")?, column("yy")?, column("xy")?);
+    let difference = |at: usize| f64::hypot(xx[at] - yy[at], 2.0 * xy[at]);
+    let volume = std::f64::consts::PI * scene.grains[0].radius.powi(2);
+    let speed = scene.walls[0].motion.phases[0].velocity.norm();
+    let threshold = ARRIVED * scene.grains[0].mass / volume * WAVE_SPEED * speed;
+    let at = (1..xx.len()).find(|&at| difference(at) > threshold);
+    let at = at.ok_or_else(|| Missing(format!("stress above .1 ρcv in disc {disc}")))?;
+    let time = &done.series().time;
+    let share = (threshold - difference(at - 1)) / (difference(at) - difference(at - 1));
+    Ok((time[at - 1] + share * (time[at] - time[at - 1])) * WAVE_SPEED / (2.0 * scene.grains[0].radius))
+}
+
+/// Delay from one disc to the next (d/c), mean from the second to the fourth.
+fn delay(done: &Done) -> Result<f64, Missing> {
+    Ok(0.5 * (arrival(done, 4)? - arrival(done, 2)?))
+}
+
+pub(super) fn gates() -> Vec<Gate> {
+    let softer = || Control::scene("discs a fifth softer", |scene| crate::elastic::stiffen(scene, 0.8));
+    let mut gates = Vec::new();
+    for (solver, cells, points, expected, allowed) in
+        [(STIFF, 20.0, 2, 6.4, 0.3), (STIFF, 40.0, 2, 6.4, 0.3), (PAPER, 20.0, 1, 4.3, 0.2), (PAPER, 40.0, 1, 4.8, 0.2)]
+    {
+        let run = run("line", solver, grid(cells, points), 8.0);
+        let because = if solver == STIFF {
+            "what the prototype is certain of"
+        } else {
+            "nodal contact glues discs over a patch from the start: too fast, and slower with every refinement"
+        };
+        gates.push(Gate::new(
+            (format!("arrival of stress in disc 4, {} cells a diameter", 2.0 * cells), "d/c"),
+            vec![if cells > 20.0 { run.long() } else { run.slow() }],
+            (Evidence::OtherCode, REFERENCE),
+            (allowed, because),
+            softer(),
+            move |done| Ok(Measured::new(arrival(&done[0], 4)?, expected, 1.0)),
+        ));
+    }
+    for (solver, points) in [(STIFF, 2), (PAPER, 1)] {
+        gates.push(Gate::new(
+            ("delay per disc at ν = .48 over that at ν = .22", "1"),
+            vec![slower(solver, grid(10.0, points)).slow(), run("line", solver, grid(10.0, points), 8.0)],
+            (Evidence::Paper, "Bardenhagen et al. 2001: fringes are slower by more than a factor of two"),
+            (0.45, "2.0 to 2.9: the paper's bound, and what two contacts of the prototype reach"),
+            Control::scene("ν = .3 in both", |scene| set_poisson_ratio(scene, 0.3)),
+            |done| Ok(Measured::new(delay(&done[0])? / delay(&done[1])?, 2.45, 1.0)),
+        ));
+    }
+    for (variant, of, disc) in [("zig-zag-glued", "glued zig-zag", 5), ("line", "line", 4)] {
+        gates.push(Gate::new(
+            (format!("arrival of stress in disc {disc} of the {of} over that of the slipping zig-zag"), "1"),
+            vec![run(variant, "mpm", grid(10.0, 2), 15.0), run("zig-zag", "mpm", grid(10.0, 2), 15.0)],
+            (
+                Evidence::Paper,
+                "Bardenhagen et al. 2001, text to Figs 10 and 11: the glued zig-zag and the line are faster than the slipping zig-zag",
+            ),
+            (0.49, "the paper states an order of fringes and no ratio: anything from .01 to .99"),
+            Control::scene("the slipping zig-zag glued and four times as stiff", |scene| {
+                if scene.laws.iter().flatten().any(|law| law.friction == 0.5) {
+                    scene.change_laws(|law| law.friction = if law.friction > 0.0 { 1e9 } else { 0.0 });
+                    crate::elastic::stiffen(scene, 4.0);
+                }
+            }),
+            move |done| Ok(Measured::new(arrival(&done[0], disc)? / arrival(&done[1], disc)?, 0.5, 1.0)),
+        ));
+    }
+    gates
+}
+
+pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
+    let mut curves = Vec::new();
+    for (label, run) in [
+        ("line, mpm", run("line", "mpm", grid(10.0, 2), 15.0)),
+        ("line, springs twice as stiff", run("line", STIFF, grid(10.0, 2), 8.0)),
+        ("line, mpm:2001", run("line", PAPER, grid(10.0, 1), 8.0)),
+        ("zig-zag, μ = .5, mpm", run("zig-zag", "mpm", grid(10.0, 2), 15.0)),
+        ("glued zig-zag, mpm", run("zig-zag-glued", "mpm", grid(10.0, 2), 15.0)),
+    ] {
+        let done = bench.run(&run)?;
+        let discs = 1..=done.scene.grains.len();
+        let points = discs.filter_map(|disc| Some((disc as f64, arrival(&done, disc).ok()?))).collect();
+        curves.push(Curve::new(label, Stroke::MarkedLine, points));
+    }
+    Ok(Figure::graph(
+        "stress",
+        "Arrival of stress in elastic discs",
+        "Where the difference of the principal stresses at a disc's centre first exceeds .1 ρcv; 20 cells a diameter. In the zig-zag the even discs are \
+         reached by shear as well: they light up late where contacts are glued.",
+        [Axis::linear("disc"), Axis::linear("time of arrival t c/d")],
+        curves,
+    ))
+}

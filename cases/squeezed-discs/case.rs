@@ -1,0 +1,179 @@
+//! Nine elastic discs squeezed by four walls: how stiff contacts are.
+
+use crate::bench::Bench;
+use crate::case::{Case, PLAIN, Rung, cells};
+use crate::elastic::stiffen;
+use crate::figure::{Axis, Curve, Figure, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
+use crate::verdict::Evidence;
+use grainbench_scene::motion::Moment;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+const LADDER: &[Rung] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
+const WALLS: [&str; 4] = ["left.force_x", "right.force_x", "bottom.force_y", "top.force_y"];
+/// The grid shifted by none, a quarter and a half of a cell.
+const PHASES: [&str; 3] = ["mpm", "mpm+phase=0.25", "mpm+phase=0.5"];
+/// The same with springs twice as stiff, which impacts do not need and rolling at two cells a radius is worse with.
+const STIFF: [&str; 3] = ["mpm+penalty=4.4", "mpm+penalty=4.4+phase=0.25", "mpm+penalty=4.4+phase=0.5"];
+const SOURCE: &str = "Johnson, Contact Mechanics, line contact, with the swelling by the pair across (derivation)";
+
+pub(crate) static CASE: Case = Case {
+    name: "squeezed-discs",
+    title: "Nine elastic discs squeezed",
+    claim: "Elastic discs press on each other and on walls with the force that their elasticity gives, all contacts alike.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "At the squeeze of .01 R patches are narrower than cells, and the force hangs on how the grid lies.",
+    ladder: LADDER,
+    default_rung: LADDER[1],
+    gates,
+    figures,
+};
+
+/// Distance by which each wall moves in (m).
+fn squeeze(scene: &Scene) -> f64 {
+    let phase = &scene.walls[0].motion.phases[0];
+    match phase.stop {
+        Moment::Seconds(stop) => phase.velocity.norm() * stop,
+        Moment::Cycle(_) | Moment::Never => f64::NAN,
+    }
+}
+
+/// Contact force (N per metre) in closed form, by bisection on p = F/(E'R).
+fn exact(scene: &Scene) -> f64 {
+    let Some(disc) = scene.deformable[0] else { return f64::NAN };
+    let radius = scene.grains[0].radius;
+    let (bulk, shear) = (disc.bulk_modulus, disc.shear_modulus);
+    let poisson = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
+    let shortening = |p: f64| {
+        let patch = (4.0 * p / PI).sqrt();
+        p * (2.0 / PI * (2.0 * (4.0 / patch).ln() - 1.0) - (4.0 / PI - 1.0) - poisson / (1.0 - poisson))
+    };
+    let (mut low, mut high) = (1e-12, 0.05);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if shortening(middle) < 2.0 * squeeze(scene) / (3.0 * radius) { low = middle } else { high = middle }
+    }
+    low * disc.plane_modulus() * radius
+}
+
+/// Mean contact force at the walls (N per metre), three discs on each, over the last quarter of the run: material points go on
+/// trembling by a per cent.
+fn mean_force(done: &Done) -> Result<f64, Missing> {
+    let mut sum = 0.0;
+    for wall in WALLS {
+        let force = done.column(wall)?;
+        let late = &force[force.len() - force.len() / 4..];
+        sum += late.iter().map(|force| force.abs()).sum::<f64>() / late.len() as f64;
+    }
+    Ok(sum / 12.0)
+}
+
+/// Number of contacts, and the largest deviation of one's force from the mean of all, over the last quarter of the run.
+fn spread(done: &Done) -> Result<(usize, f64), Missing> {
+    let snapshots = &done.record.snapshots;
+    let late = &snapshots[snapshots.len() - snapshots.len() / 4..];
+    let mut forces: BTreeMap<(u32, String), f64> = BTreeMap::new();
+    for contact in late.iter().flat_map(|snapshot| &snapshot.contacts) {
+        *forces.entry((contact.grain, format!("{:?}", contact.partner))).or_default() += contact.normal_force;
+    }
+    if forces.is_empty() {
+        return Err(Missing("contacts".to_owned()));
+    }
+    let mean = forces.values().sum::<f64>() / forces.len() as f64;
+    Ok((forces.len(), forces.values().map(|force| (force / mean - 1.0).abs()).fold(0.0, f64::max)))
+}
+
+fn phases(solvers: [&'static str; 3]) -> Vec<Run> {
+    solvers.map(|solver| Run::new(PLAIN, solver, LADDER[1].resolution).slow()).to_vec()
+}
+
+/// Mean over the phases of the grid.
+fn over_phases(done: &[Done]) -> Result<f64, Missing> {
+    let forces: Result<Vec<f64>, Missing> = done.iter().map(mean_force).collect();
+    Ok(forces?.iter().sum::<f64>() / done.len() as f64)
+}
+
+fn gates() -> Vec<Gate> {
+    let mut gates = vec![Gate::new(
+        ("largest deviation of the 24 contact forces from their mean", "1"),
+        vec![Run::new(PLAIN, "mpm", LADDER[1].resolution)],
+        (Evidence::Invariant, "equilibrium and symmetry: all are equal (derivation)"),
+        (5e-3, "what is left of the swinging, and tracers that stand in for surfaces"),
+        Control::scene("the left wall moves in twice as far", |scene| scene.walls[0].motion.phases[0].velocity *= 2.0),
+        |done| {
+            let (count, spread) = spread(&done[0])?;
+            if count == 24 { Ok(Measured::new(spread, 0.0, 1.0)) } else { Err(Missing(format!("24 contacts, but {count}"))) }
+        },
+    )];
+    let force = |runs: Vec<Run>, tolerance, control| {
+        Gate::new(
+            ("contact force, mean over three positions of the grid, R/6", "N/m"),
+            runs,
+            (Evidence::Analytic, SOURCE),
+            tolerance,
+            control,
+            |done| {
+                let exact = exact(&done[0].scene);
+                Ok(Measured::new(over_phases(done)?, exact, exact))
+            },
+        )
+    };
+    gates.push(force(
+        phases(STIFF),
+        (0.03, "a patch of a fifth of a cell, with springs twice as stiff as usual"),
+        Control::scene("a tenth softer", |scene| stiffen(scene, 0.9)),
+    ));
+    let soft = phases(PHASES).into_iter().map(|run| {
+        run.known("springs at the surface are as soft as a cell of material, and the patch is a fifth of a cell: a ninth too soft")
+    });
+    gates.push(force(
+        soft.collect(),
+        (0.1, "what springs twice as stiff reach wherever the grid lies"),
+        Control::without_the_error("springs twice as stiff", STIFF[0], LADDER[1].resolution),
+    ));
+    gates.push(Gate::new(
+        ("contact force over the exact one, R/6", "1"),
+        vec![Run::new(PLAIN, "mpm:gap", LADDER[1].resolution).slow()],
+        (Evidence::OtherCode, "independent prototype of nodal contact: 1.6 to 2.2"),
+        (0.4, "it hangs on how the grid lies"),
+        Control::solver("springs at the surface", "mpm"),
+        |done| Ok(Measured::new(mean_force(&done[0])? / exact(&done[0].scene), 1.9, 1.0)),
+    ));
+    gates.push(Gate::new(
+        ("contact force, R/4", "N/m"),
+        vec![Run::new(PLAIN, "mpm:gap", LADDER[0].resolution)
+            .known("a node in contact stops a whole cell of surface at once: contacts are about twice too stiff")],
+        (Evidence::Analytic, SOURCE),
+        (0.2, "what springs at the surface reach at any position of the grid"),
+        Control::without_the_error("springs at the surface", "mpm", LADDER[0].resolution),
+        |done| {
+            let exact = exact(&done[0].scene);
+            Ok(Measured::new(mean_force(&done[0])?, exact, exact))
+        },
+    ));
+    gates
+}
+
+fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let mut curves = Vec::new();
+    for solver in ["mpm", "mpm+penalty=4.4", "mpm:gap"] {
+        let mut points = Vec::new();
+        for cells in [2.0, 3.0, 4.0] {
+            let done = bench.run(&Run::new(PLAIN, solver, Resolution::grid(cells, 3)))?;
+            points.extend(mean_force(&done).ok().map(|force| (cells, force / exact(&done.scene))));
+        }
+        curves.push(Curve::new(solver, Stroke::MarkedLine, points));
+    }
+    curves.push(Curve::new("exact", Stroke::Dashed, vec![(2.0, 1.0), (4.0, 1.0)]));
+    Ok(vec![Figure::graph(
+        "force",
+        "Contact force over the exact one",
+        "Nodal contact stops whole cells and is too stiff; springs at the surface are as soft as a cell of material.",
+        [Axis::linear("cells a radius"), Axis::linear("force / exact force")],
+        curves,
+    )])
+}

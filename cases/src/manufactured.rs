@@ -1,0 +1,24 @@
+//! What manufactured motions are judged by.
+
+use crate::gate::{Done, Missing};
+use grainbench_scene::manufactured::Medium;
+
+/// Root mean square over the material points of the displacement's error at the end (m).
+///
+/// # Errors
+/// When the record has no material points or the scene no manufactured motion.
+pub fn error(done: &Done) -> Result<f64, Missing> {
+    let missing = || Missing("material points at the end".to_owned());
+    let (scene, snapshot) = (&done.scene, done.record.snapshots.last().ok_or_else(missing)?);
+    let (material, motion) = scene.deformable[0].zip(scene.start.manufactured).ok_or_else(missing)?;
+    let medium =
+        Medium { density: scene.bodies[0].density, lame: material.lame(), shear_modulus: material.shear_modulus };
+    if snapshot.points.is_empty() {
+        return Err(missing());
+    }
+    let (sum, volume) = snapshot.points.iter().fold((0.0, 0.0), |(sum, volume), point| {
+        let exact = motion.displacement(&medium, point.position - point.displacement, snapshot.time);
+        (sum + (point.displacement - exact).norm_squared() * point.volume, volume + point.volume)
+    });
+    Ok((sum / volume).sqrt())
+}
