@@ -365,13 +365,13 @@ pub struct ContactSpec {
     pub rolling_damping: f64,
 }
 
-/// A group of grains: exactly one of `position`, `lattice`, `random` and `file`.
+/// A group of grains: exactly one of `position`, `lattice`, `random`, `packed` and `file`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrainsSpec {
     /// Material by name.
     pub material: String,
-    /// Radius R (m). Needed unless `random` gives a range or `file` gives diameters.
+    /// Radius R (m). Needed unless `random` gives a range, or `packed` or `file` give sizes.
     #[serde(default)]
     pub radius: Option<f64>,
     /// Velocity of every grain of the group (m/s).
@@ -389,6 +389,9 @@ pub struct GrainsSpec {
     /// Grains placed at random without overlap, from a seed.
     #[serde(default)]
     pub random: Option<RandomSpec>,
+    /// Grains of given sizes, packed densely without overlap, from a seed.
+    #[serde(default)]
+    pub packed: Option<PackedSpec>,
     /// Grains read from a LAMMPS data file (atom style sphere), plain or gzip.
     #[serde(default)]
     pub file: Option<FileSpec>,
@@ -430,6 +433,16 @@ pub struct RandomSpec {
     /// Speed of every grain (m/s), in a random direction.
     #[serde(default)]
     pub speed: f64,
+}
+
+/// Grains packed densely into the domain without overlap; faces that are not periodic are walls to the packing.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PackedSpec {
+    /// Sizes: pairs of radius (m) and number of grains.
+    pub radii: Vec<(f64, u32)>,
+    /// Seed of the generator: the same seed gives the same packing on every machine.
+    pub seed: u64,
 }
 
 /// Grains read from a file.

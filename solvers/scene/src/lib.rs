@@ -13,6 +13,7 @@ pub mod generate;
 pub mod manufactured;
 pub mod motion;
 pub mod overlap;
+pub mod packing;
 mod probe;
 pub mod record;
 pub mod recorder;

@@ -2,11 +2,13 @@
 
 use super::{Groups, Resolver};
 use crate::error::SceneError;
-use crate::file::{FileSpec, GrainShape, GrainsSpec};
+use crate::file::{FileSpec, GrainShape, GrainsSpec, PackedSpec};
 use crate::generate;
 use crate::overlap::{self, Deepest};
+use crate::packing;
 use crate::scene::{Domain, Grain, Wall};
 use indexmap::IndexMap;
+use nalgebra::Vector3;
 
 impl Resolver<'_> {
     pub(super) fn grains(
@@ -41,6 +43,7 @@ impl Resolver<'_> {
                 ("position", spec.position.is_some()),
                 ("lattice", spec.lattice.is_some()),
                 ("random", spec.random.is_some()),
+                ("packed", spec.packed.is_some()),
                 ("file", spec.file.is_some()),
             ],
         )?;
@@ -110,10 +113,42 @@ impl Resolver<'_> {
                 placed.into_iter().map(|place| grain(place.position, place.radius, density, velocity + place.velocity)),
             );
         }
+        if let Some(packed) = &spec.packed {
+            let density = density()?;
+            let places = self.packed(name, packed, domain)?;
+            grains.extend(places.into_iter().map(|(centre, radius)| grain(centre, radius, density, velocity)));
+        }
         if let Some(file) = &spec.file {
             self.grains_from_file(name, file, shape, material, grains)?;
         }
         Ok(())
+    }
+
+    /// Centres and radii of a packing (m).
+    fn packed(
+        &self,
+        name: &str,
+        packed: &PackedSpec,
+        domain: Option<&Domain>,
+    ) -> Result<Vec<(Vector3<f64>, f64)>, SceneError> {
+        let check = &self.check;
+        let key = format!("grains.{name}.packed.radii");
+        let Some(domain) = domain else {
+            return Err(check.error(&key, "a `domain` to pack grains into", "none"));
+        };
+        let total: u64 = packed.radii.iter().map(|&(_, count)| u64::from(count)).sum();
+        if !(1..=u64::from(packing::MOST)).contains(&total) {
+            return Err(check.error(&key, &format!("1 to {} grains", packing::MOST), &total.to_string()));
+        }
+        let mut radii = Vec::new();
+        for &(radius, count) in &packed.radii {
+            let radius = check.positive(&key, radius, "radius (m)")?;
+            radii.extend(std::iter::repeat_n(radius, count as usize));
+        }
+        let centres = packing::pack(&radii, packed.seed, domain, check.dimension).ok_or_else(|| {
+            check.error(&key, "room for all grains in the domain without overlap", &format!("{total} grains"))
+        })?;
+        Ok(centres.into_iter().zip(radii).collect())
     }
 
     /// Radius, density and domain may each be a fine number and still give a grain without one.

@@ -1,0 +1,216 @@
+//! Dense packings without overlap, from a seed: grains of given sizes grow in a box while overlaps are pushed apart.
+//!
+//! Grains start at random places at half their size. They grow in small stages; after each, every overlapping pair is moved
+//! apart along its line of centres in proportion to the inverse of the squared radii, pair after pair, until no pair overlaps.
+//! There is no friction and no time in it, so packings can be denser than those that grains with friction come to rest in.
+
+use crate::scene::{Dimension, Domain};
+use nalgebra::Vector3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Most grains: the pairs are found by a sweep along x.
+pub const MOST: u32 = 20_000;
+/// Size at the start, as a fraction.
+const SMALL: f64 = 0.5;
+const STAGES: u32 = 60;
+const SWEEPS_PER_STAGE: u32 = 20;
+/// Sweeps at full size before a packing is given up as impossible.
+const SWEEPS: u32 = 40_000;
+/// By how much grains are taken larger than they are while the last overlaps are pushed apart, so that it ends in gaps.
+const MARGIN: f64 = 1e-4;
+
+/// Centres (m) of grains of the given radii (m), in their order, in `domain`: across periodic faces grains touch their images,
+/// the other faces are smooth walls. `None` when overlaps cannot be pushed apart: the grains are too many for the box. The same
+/// seed gives the same packing on every machine.
+#[must_use]
+pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let axes = dimension.count();
+    let centres = radii
+        .iter()
+        .map(|_| {
+            let mut centre = Vector3::zeros();
+            for axis in 0..axes {
+                centre[axis] = domain.low[axis] + (domain.high[axis] - domain.low[axis]) * generator.random::<f64>();
+            }
+            centre
+        })
+        .collect();
+    let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut packing = Packing { radii, scale: SMALL, centres, domain, axes, pairs: Vec::new(), listed: Vec::new(), skin: smallest };
+    for stage in 1..=STAGES {
+        packing.scale = SMALL + (1.0 - SMALL) * f64::from(stage) / f64::from(STAGES);
+        packing.list();
+        for _ in 0..SWEEPS_PER_STAGE {
+            if packing.sweep() == 0.0 {
+                break;
+            }
+        }
+    }
+    packing.scale = 1.0 + MARGIN;
+    packing.list();
+    (0..SWEEPS).any(|_| packing.sweep() < MARGIN * smallest && packing.is_free()).then_some(packing.centres)
+}
+
+struct Packing<'a> {
+    radii: &'a [f64],
+    /// Present size over full size.
+    scale: f64,
+    centres: Vec<Vector3<f64>>,
+    domain: &'a Domain,
+    axes: usize,
+    /// Pairs that were within the skin when they were listed.
+    pairs: Vec<(u32, u32)>,
+    /// Centres at that time.
+    listed: Vec<Vector3<f64>>,
+    /// Distance (m).
+    skin: f64,
+}
+
+impl Packing<'_> {
+    /// From b to a, the shortest way.
+    fn between(&self, a: usize, b: usize) -> Vector3<f64> {
+        let mut apart = self.centres[a] - self.centres[b];
+        for axis in (0..self.axes).filter(|&axis| self.domain.periodic[axis]) {
+            let length = self.domain.high[axis] - self.domain.low[axis];
+            apart[axis] -= length * (apart[axis] / length).round();
+        }
+        apart
+    }
+
+    /// Lists the pairs that are within the skin.
+    fn list(&mut self) {
+        let largest = self.radii.iter().copied().fold(0.0, f64::max);
+        let mut order: Vec<u32> = (0..self.radii.len() as u32).collect();
+        let x = |number: u32| self.centres[number as usize].x;
+        order.sort_by(|&a, &b| x(a).total_cmp(&x(b)).then(a.cmp(&b)));
+        let length = self.domain.high.x - self.domain.low.x;
+        let mut pairs = Vec::new();
+        for (place, &a) in order.iter().enumerate() {
+            let reach = (self.radii[a as usize] + largest) * self.scale + self.skin;
+            for step in 1..order.len() {
+                let (b, wrapped) = match order.get(place + step) {
+                    Some(&b) => (b, 0.0),
+                    None if self.domain.periodic[0] => (order[place + step - order.len()], length),
+                    None => break,
+                };
+                if x(b) + wrapped - x(a) > reach {
+                    break;
+                }
+                let touch = (self.radii[a as usize] + self.radii[b as usize]) * self.scale + self.skin;
+                if self.between(a as usize, b as usize).norm_squared() < touch * touch {
+                    pairs.push((a.min(b), a.max(b)));
+                }
+            }
+        }
+        // The order of the pairs is part of the result.
+        pairs.sort_unstable();
+        pairs.dedup();
+        self.pairs = pairs;
+        self.listed.clone_from(&self.centres);
+    }
+
+    /// Whether no pair overlaps at full size.
+    fn is_free(&self) -> bool {
+        self.pairs.iter().all(|&(a, b)| {
+            let (a, b) = (a as usize, b as usize);
+            self.between(a, b).norm() >= self.radii[a] + self.radii[b]
+        })
+    }
+
+    /// Pushes every overlapping pair apart, and grains off the walls; the largest overlap (m) that it met.
+    fn sweep(&mut self) -> f64 {
+        let mut worst: f64 = 0.0;
+        for at in 0..self.pairs.len() {
+            let (a, b) = (self.pairs[at].0 as usize, self.pairs[at].1 as usize);
+            let apart = self.between(a, b);
+            let (distance, touch) = (apart.norm(), (self.radii[a] + self.radii[b]) * self.scale);
+            let overlap = touch - distance;
+            if overlap <= 0.0 {
+                continue;
+            }
+            worst = worst.max(overlap);
+            let along = if distance > 0.0 { apart / distance } else { Vector3::x() };
+            let (small, large) = (self.radii[b] * self.radii[b], self.radii[a] * self.radii[a]);
+            let share = small / (small + large);
+            self.centres[a] += along * (overlap * share);
+            self.centres[b] -= along * (overlap * (1.0 - share));
+        }
+        for axis in 0..self.axes {
+            let (low, high) = (self.domain.low[axis], self.domain.high[axis]);
+            for (centre, radius) in self.centres.iter_mut().zip(self.radii) {
+                let place = &mut centre[axis];
+                if self.domain.periodic[axis] {
+                    *place = low + (*place - low).rem_euclid(high - low);
+                } else {
+                    let margin = radius * self.scale;
+                    worst = worst.max(low + margin - *place).max(*place + margin - high);
+                    *place = place.min(high - margin).max(low + margin);
+                }
+            }
+        }
+        let limit = 0.25 * self.skin * self.skin;
+        let moved = |(now, then): (&Vector3<f64>, &Vector3<f64>)| {
+            let mut way = now - then;
+            for axis in (0..self.axes).filter(|&axis| self.domain.periodic[axis]) {
+                let length = self.domain.high[axis] - self.domain.low[axis];
+                way[axis] -= length * (way[axis] / length).round();
+            }
+            way.norm_squared() > limit
+        };
+        if self.centres.iter().zip(&self.listed).any(moved) {
+            self.list();
+        }
+        worst
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn domain(length: f64, periodic: bool) -> Domain {
+        let high = Vector3::new(length, length, 0.5);
+        Domain { low: Vector3::new(0.0, 0.0, -0.5), high, periodic: [periodic, periodic, false] }
+    }
+
+    fn radii(count: u32) -> Vec<f64> {
+        (0..count).map(|number| 1.0 + f64::from(number % 7) / 3.0).collect()
+    }
+
+    /// Edge of a square in which the grains take up a fraction.
+    fn edge(radii: &[f64], fraction: f64) -> f64 {
+        (std::f64::consts::PI * radii.iter().map(|radius| radius * radius).sum::<f64>() / fraction).sqrt()
+    }
+
+    #[test]
+    fn packs_densely_without_overlap() {
+        let radii = radii(150);
+        for (fraction, periodic) in [(0.82, true), (0.78, false)] {
+            let length = edge(&radii, fraction);
+            let domain = domain(length, periodic);
+            let centres = pack(&radii, 3, &domain, Dimension::Two).unwrap_or_default();
+            assert_eq!(centres.len(), radii.len());
+            for a in 0..radii.len() {
+                for b in 0..a {
+                    let mut apart = centres[a] - centres[b];
+                    if periodic {
+                        apart.iter_mut().for_each(|part| *part -= length * (*part / length).round());
+                    }
+                    assert!(apart.norm() > (radii[a] + radii[b]) * (1.0 - 1e-12));
+                }
+                if !periodic {
+                    let inside = |place: f64| place > radii[a] - 1e-6 && place < length - radii[a] + 1e-6;
+                    assert!(inside(centres[a].x) && inside(centres[a].y));
+                }
+            }
+            assert_eq!(Some(centres), pack(&radii, 3, &domain, Dimension::Two));
+        }
+    }
+
+    #[test]
+    fn more_than_fits_is_not_packed() {
+        assert_eq!(pack(&radii(60), 1, &domain(25.0, false), Dimension::Two), None);
+    }
+}
