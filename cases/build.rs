@@ -26,7 +26,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         writeln!(code, "    &{}::CASE,", name.replace('-', "_"))?;
     }
     writeln!(code, "];")?;
+    with_costs(&root, &names, &mut code)?;
     fs::write(Path::new(&env::var("OUT_DIR")?).join("registry.rs"), code)?;
     println!("cargo::rerun-if-changed={root}");
     Ok(())
+}
+
+/// Cases that say themselves what accuracy is measured by have a `cost.rs`.
+fn with_costs(root: &str, names: &[String], code: &mut String) -> std::fmt::Result {
+    let has_one = |name: &&String| Path::new(root).join(name).join("cost.rs").is_file();
+    let own: Vec<&String> = names.iter().filter(has_one).collect();
+    for name in &own {
+        let file = Path::new(root).join(name).join("cost.rs");
+        writeln!(code, "#[path = {file:?}]\nmod {}_cost;", name.replace('-', "_"))?;
+    }
+    writeln!(code, "/// What accuracy is measured by, of cases that say it themselves.")?;
+    writeln!(code, "pub(crate) static COSTS: &[(&str, fn() -> Vec<crate::subject::Subject>)] = &[")?;
+    for name in &own {
+        writeln!(code, "    ({name:?}, {}_cost::subjects),", name.replace('-', "_"))?;
+    }
+    writeln!(code, "];")
 }

@@ -36,6 +36,12 @@ pub enum Stroke {
     Markers,
     /// Markers joined by a line: ladders of resolution.
     MarkedLine,
+    /// Small hollow markers in the look of the curve before it: points that its line passes by.
+    Beside,
+    /// Crosses in the look of the curve before it: runs that failed.
+    Failed,
+    /// Pale bars from each point to the next but one, two points a bar: floors, ranges.
+    Bars,
 }
 
 /// One curve of a graph.

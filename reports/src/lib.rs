@@ -12,6 +12,7 @@ pub mod results;
 pub mod staged;
 pub mod store;
 mod stored_figure;
+pub mod study;
 pub mod terminal;
 pub mod write;
 

@@ -113,24 +113,29 @@ impl Report {
             Ok(text) => text,
             Err(source) => return Err(LoadError::Read { path, source }),
         };
-        let mut json = serde_json::Deserializer::from_str(&text);
-        let read = serde_path_to_error::deserialize(&mut json).map_err(|error| {
-            let place = error.path().to_string();
-            (place, error.into_inner())
-        });
-        let read = read.and_then(|report| match json.end() {
-            Ok(()) => Ok(report),
-            Err(error) => Err((".".to_owned(), error)),
-        });
-        read.map_err(|(place, error)| LoadError::Damaged {
-            path,
-            line: error.line(),
-            column: error.column(),
-            place,
-            // The parser repeats the line and column at the end.
-            reason: error.to_string().split(" at line ").next().unwrap_or_default().to_owned(),
-        })
+        parse(&path, &text)
     }
+}
+
+/// Reads a file of ours; an error names the place.
+pub(crate) fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, LoadError> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let read = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let place = error.path().to_string();
+        (place, error.into_inner())
+    });
+    let read = read.and_then(|value| match json.end() {
+        Ok(()) => Ok(value),
+        Err(error) => Err((".".to_owned(), error)),
+    });
+    read.map_err(|(place, error)| LoadError::Damaged {
+        path: path.to_owned(),
+        line: error.line(),
+        column: error.column(),
+        place,
+        // The parser repeats the line and column at the end.
+        reason: error.to_string().split(" at line ").next().unwrap_or_default().to_owned(),
+    })
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 mod check;
 mod checkpoint;
 mod compare;
+mod cost;
 mod deck;
 mod exit;
 mod list;
@@ -46,6 +47,8 @@ enum Command {
     Check(check::Arguments),
     /// Compare two outputs, column by column.
     Compare(compare::Arguments),
+    /// Measure what accuracy costs: error against time, each solver over its knobs.
+    Cost(cost::Arguments),
     /// Print the JSON schema of scene files.
     Schema,
     /// Make the page and figures again from a report's directory, without any solver.
@@ -63,6 +66,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Deck(arguments)) => deck::deck(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
+        Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Report(arguments)) => report::report(&arguments),
     };

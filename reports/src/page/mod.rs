@@ -1,7 +1,7 @@
 //! The report as one page that needs nothing else: no script, no network, no font.
 
 mod prose;
-mod provenance;
+pub(crate) mod provenance;
 mod section;
 mod style;
 mod summary;
@@ -27,25 +27,31 @@ pub fn render(report: &Report) -> Result<String, DrawError> {
     for (section, anchor) in report.sections.iter().zip(&anchors) {
         sections.push(section::render(section, anchor, &mut taken)?);
     }
+    let body = html! {
+        main {
+            (summary::render(report, &anchors))
+            @for section in &sections { (section) }
+            (provenance::render(&report.provenance))
+        }
+    };
+    Ok(shell(&format!("grainbench · {}", counts.sentence()), &body))
+}
+
+/// A whole page about a body.
+pub(crate) fn shell(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "grainbench · " (counts.sentence()) }
+                title { (title) }
                 style { (PreEscaped(style::CSS)) }
             }
-            body {
-                main {
-                    (summary::render(report, &anchors))
-                    @for section in &sections { (section) }
-                    (provenance::render(&report.provenance))
-                }
-            }
+            body { (body) }
         }
     };
-    Ok(page.into_string())
+    page.into_string()
 }
 
 /// A name reduced to lower-case letters, digits and `-`, for anchors and file names.

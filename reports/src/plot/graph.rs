@@ -131,16 +131,23 @@ fn draw_on(canvas: &Canvas, title: &str, graph: &Graph) -> Drawn {
 /// Colours go round among computed curves and shades among dashed ones.
 fn looks(curves: &[Curve]) -> Vec<Look> {
     let (mut coloured, mut dashed) = (0, 0);
+    let mut before = Look { colour: palette::colour(0), marker: palette::marker(0), dash: None };
     curves
         .iter()
         .map(|curve| {
+            match curve.stroke {
+                Stroke::Beside | Stroke::Failed => return before,
+                Stroke::Bars => return Look { colour: palette::FAINT, ..before },
+                _ => {}
+            }
             let place = if curve.stroke == Stroke::Dashed { &mut dashed } else { &mut coloured };
             let here = *place;
             *place += 1;
             if curve.stroke == Stroke::Dashed {
                 Look { colour: palette::shade(here), marker: palette::marker(here), dash: Some(palette::dash(here)) }
             } else {
-                Look { colour: palette::colour(here), marker: palette::marker(here), dash: None }
+                before = Look { colour: palette::colour(here), marker: palette::marker(here), dash: None };
+                before
             }
         })
         .collect()
@@ -220,7 +227,7 @@ fn draw_axes(
 }
 
 fn draw_curve(canvas: &Canvas, stroke: Stroke, look: &Look, pieces: &[Vec<Pixel>], several_lines: bool) -> Drawn {
-    if stroke != Stroke::Markers {
+    if matches!(stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine) {
         for piece in pieces {
             let pen = look.colour.stroke_width(fine(2.0) as u32);
             match look.dash {
@@ -252,6 +259,33 @@ fn draw_curve(canvas: &Canvas, stroke: Stroke, look: &Look, pieces: &[Vec<Pixel>
             }
         }
         Stroke::Dashed => {}
+        Stroke::Beside => {
+            for point in pieces.iter().flatten() {
+                mark_of(canvas, *point, look, false, 2.8)?;
+            }
+        }
+        Stroke::Failed => {
+            for point in pieces.iter().flatten() {
+                cross(canvas, *point, look)?;
+            }
+        }
+        Stroke::Bars => {
+            let pen = look.colour.mix(0.3).stroke_width(fine(5.0) as u32);
+            for ends in pieces.iter().flatten().copied().collect::<Vec<Pixel>>().chunks(2) {
+                canvas.draw(&PathElement::new(ends.to_vec(), pen))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A cross where a run failed.
+fn cross(canvas: &Canvas, at: Pixel, look: &Look) -> Drawn {
+    let reach = fine(4.0);
+    let pen = look.colour.stroke_width(fine(1.8) as u32);
+    for side in [-1, 1] {
+        let ends = vec![(at.0 - reach, at.1 - side * reach), (at.0 + reach, at.1 + side * reach)];
+        canvas.draw(&PathElement::new(ends, pen))?;
     }
     Ok(())
 }
@@ -308,7 +342,12 @@ fn thin(points: Vec<Pixel>) -> Vec<Pixel> {
 
 /// A marker: filled where a point was measured, hollow where it only tells lines apart.
 fn mark(canvas: &Canvas, at: Pixel, look: &Look, filled: bool) -> Drawn {
-    let radius = fine(4.2);
+    mark_of(canvas, at, look, filled, 4.2)
+}
+
+/// The same of a size of one's own.
+fn mark_of(canvas: &Canvas, at: Pixel, look: &Look, filled: bool, radius: f64) -> Drawn {
+    let radius = fine(radius);
     let edge = look.colour.stroke_width(fine(1.6) as u32);
     let inside = if filled { look.colour.filled() } else { WHITE.filled() };
     let corners: Vec<Pixel> = look
@@ -354,11 +393,17 @@ fn draw_legend(
     let spare = HEIGHT - top - 12.0 - lines * LEGEND_LINE;
     let gap = (spare / legend.len().max(1) as f64).clamp(0.0, 7.0);
     for ((curve, look), lines) in graph.curves.iter().zip(looks).zip(legend) {
+        // What looks as the curve before it needs no word of its own.
+        if curve.label.is_empty() && matches!(curve.stroke, Stroke::Beside | Stroke::Failed) {
+            continue;
+        }
         let from = (fine(left), fine(top + 3.0));
         let to = (fine(left + LEGEND_SAMPLE - 4.0), from.1);
         let middle = (i32::midpoint(from.0, to.0), from.1);
         match curve.stroke {
             Stroke::Markers => {}
+            Stroke::Bars => draw_curve(canvas, Stroke::Bars, look, &[vec![from, to]], false)?,
+            Stroke::Beside | Stroke::Failed => draw_curve(canvas, curve.stroke, look, &[vec![middle]], false)?,
             Stroke::Dashed => draw_curve(canvas, Stroke::Dashed, look, &[vec![from, to]], false)?,
             Stroke::Line | Stroke::MarkedLine => {
                 draw_curve(canvas, Stroke::Line, look, &[vec![from, to]], false)?;
@@ -367,7 +412,7 @@ fn draw_legend(
         match curve.stroke {
             Stroke::Markers | Stroke::MarkedLine => mark(canvas, middle, look, true)?,
             Stroke::Line if several_lines => mark(canvas, middle, look, false)?,
-            Stroke::Line | Stroke::Dashed => {}
+            Stroke::Line | Stroke::Dashed | Stroke::Beside | Stroke::Failed | Stroke::Bars => {}
         }
         for part in lines {
             let place = (left + LEGEND_SAMPLE + 4.0, top + 3.0);

@@ -1,0 +1,10 @@
+//! From sliding to rolling, over stiffness.
+
+use crate::one_grain::OneGrain;
+use crate::one_grain_cost::displacement;
+use crate::subject::Subject;
+
+pub(crate) fn subjects() -> Vec<Subject> {
+    const SOURCE: &str = "2001 paper, section on backspin; derivation";
+    displacement("backspin", &["disc", "sphere"], 0.5, OneGrain::rigid_backspin, SOURCE)
+}

@@ -1,0 +1,10 @@
+//! Rolling and slipping down a plane, over stiffness.
+
+use crate::one_grain::OneGrain;
+use crate::one_grain_cost::displacement;
+use crate::subject::Subject;
+
+pub(crate) fn subjects() -> Vec<Subject> {
+    const SOURCE: &str = "MPM 2000 eq. 25";
+    displacement("incline-disc", &["60deg-mu.9", "60deg-mu.3"], 0.3, OneGrain::rigid_incline, SOURCE)
+}

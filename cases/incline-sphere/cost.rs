@@ -1,0 +1,10 @@
+//! Rolling and slipping down a plane in space, over stiffness.
+
+use crate::one_grain::OneGrain;
+use crate::one_grain_cost::displacement;
+use crate::subject::Subject;
+
+pub(crate) fn subjects() -> Vec<Subject> {
+    const SOURCE: &str = "2001 paper, eqs. 23-26";
+    displacement("incline-sphere", &["45deg-mu.495", "60deg-mu2_7"], 0.3, OneGrain::rigid_incline, SOURCE)
+}

@@ -1,0 +1,50 @@
+//! How the disc moves between the walls, in time that flows: the paper's recurrence without its step.
+//!
+//! m ü = F_A − F_B, with F_A = k(vt − u), F_B = 2ku for equal and opposite discs: u = vt/3 − (v/3W) sin Wt, W = √(3k/m).
+
+use crate::case::PLAIN;
+use crate::gate::{Measured, Missing, measure};
+use crate::registry;
+use crate::subject::{Lane, Method, Subject};
+use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling, Scene};
+use grainbench_scene::solver::Resolution;
+use std::sync::Arc;
+
+/// Several periods of the pair (s): 2π/√3 = 3.63 s.
+const SECONDS: f64 = 20.0;
+
+pub(crate) fn subjects() -> Vec<Subject> {
+    let Some(case) = registry::by_name("squash") else { return Vec::new() };
+    let lane = |method, about| Lane {
+        method,
+        knobs: String::new(),
+        prepare: Some(Arc::new(|scene: &mut Scene| {
+            scene.duration = Duration::Seconds(SECONDS);
+            scene.sampling = Sampling::Seconds(0.1);
+            scene.probes.push(Probe { name: "x".to_owned(), target: ProbeTarget::Grain(0) });
+        })),
+        about,
+    };
+    vec![Subject {
+        case,
+        variant: PLAIN,
+        quantity: "displacement of disc x over 20 s, worst".to_owned(),
+        unit: "m",
+        source: "u = vt/3 − (v/3W) sin Wt, W = √(3k/m) (derivation)",
+        measure: measure(|done| {
+            let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
+            let scene = &done.scene;
+            let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness).fold(0.0, f64::max);
+            let speed = scene.walls[0].motion.phases[0].velocity.x;
+            let frequency = (3.0 * stiffness / scene.grains[0].mass).sqrt();
+            let start = scene.grains[0].position.x;
+            let moved: Vec<f64> = done.column("x.x")?.iter().map(|x| x - start).collect();
+            let exact = |t: f64| speed / 3.0 * (t - (frequency * t).sin() / frequency);
+            Ok(Measured::worst(&done.series().time, &moved, exact, speed / frequency / 3.0))
+        }),
+        lanes: vec![
+            lane(Method::Dem, Resolution::CriticalFraction(0.1)),
+            lane(Method::Rigid, Resolution::substeps(8)),
+        ],
+    }]
+}

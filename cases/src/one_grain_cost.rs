@@ -1,0 +1,102 @@
+//! What accuracy is measured by where one grain moves on a plane: its displacement against the rigid answer, over the
+//! stiffness of the contact and of the grain.
+
+use crate::case::Case;
+use crate::gate::{Change, Missing, measure};
+use crate::incline::DAMPING;
+use crate::one_grain::{OneGrain, State, last, rest_at_overlap};
+use crate::registry;
+use crate::subject::{Lane, Method, Subject};
+use grainbench_scene::body::{Constitutive, Deformable, Settle};
+use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::solver::Resolution;
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// Static overlaps of grains on springs, divided by R.
+const OVERLAPS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+/// What the moduli of deformable grains are multiplied by.
+const STIFFENED: [f64; 2] = [1.0, 10.0];
+
+/// Displacement against a rigid answer, in variants of a case, over a time (s) that all solvers are given.
+#[must_use]
+pub fn displacement(
+    name: &str,
+    variants: &[&'static str],
+    seconds: f64,
+    exact: fn(&OneGrain, f64) -> State,
+    source: &'static str,
+) -> Vec<Subject> {
+    let Some(case) = registry::by_name(name) else { return Vec::new() };
+    variants.iter().map(|variant| subject(case, variant, seconds, exact, source)).collect()
+}
+
+fn subject(
+    case: &'static Case,
+    variant: &'static str,
+    seconds: f64,
+    exact: fn(&OneGrain, f64) -> State,
+    source: &'static str,
+) -> Subject {
+    let dem = OVERLAPS.map(|ratio| Lane {
+        method: Method::Dem,
+        knobs: format!("overlap/R = {ratio:e}"),
+        prepare: Some(lasting(seconds, move |scene| rest_at_overlap(scene, ratio, DAMPING))),
+        about: Resolution::CriticalFraction(0.1),
+    });
+    let rigid = Lane {
+        method: Method::Rigid,
+        knobs: String::new(),
+        prepare: Some(lasting(seconds, touching)),
+        about: Resolution::substeps(8),
+    };
+    let grid = STIFFENED.map(|factor| Lane {
+        method: Method::Grid,
+        knobs: if factor == 1.0 { String::new() } else { format!("moduli × {factor}") },
+        prepare: Some(lasting(seconds, move |scene| settled(scene, factor))),
+        about: Resolution::grid(8.0, 3),
+    });
+    Subject {
+        case,
+        variant,
+        quantity: format!("displacement at {seconds} s"),
+        unit: "m",
+        source,
+        measure: measure(move |done| {
+            let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
+            let (t, state) = last(done)?;
+            let expected = exact(&OneGrain::of(&done.scene), t).x;
+            Ok(crate::gate::Measured::new(state.x, expected, expected))
+        }),
+        lanes: dem.into_iter().chain([rigid]).chain(grid).collect(),
+    }
+}
+
+fn lasting(seconds: f64, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Change {
+    Arc::new(move |scene| {
+        scene.duration = Duration::Seconds(seconds);
+        change(scene);
+    })
+}
+
+fn touching(scene: &mut Scene) {
+    let axis = scene.dimension.count() - 1;
+    let grain = &mut scene.grains[0];
+    grain.position[axis] = grain.radius;
+}
+
+/// An elastic grain, settled under the load onto the plane. Where the case gives no moduli: those of the 2000 paper, K = 10 MPa and
+/// G = 2.5 MPa.
+fn settled(scene: &mut Scene, factor: f64) {
+    touching(scene);
+    let axis = scene.dimension.count() - 1;
+    let mut gravity = Vector3::zeros();
+    gravity[axis] = scene.gravity[axis];
+    scene.start.settle = Some(Settle { duration: 0.3, damping: 100.0, gravity });
+    let paper = Deformable { bulk_modulus: 1e7, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };
+    for material in &mut scene.deformable {
+        let given = material.get_or_insert(paper);
+        given.bulk_modulus *= factor;
+        given.shear_modulus *= factor;
+    }
+}

@@ -1,0 +1,268 @@
+//! What accuracy costs, drawn and said: fronts, the cheapest settings, and measured against expected.
+
+use super::Study;
+use crate::number;
+use grainbench_cases::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_cases::study::point::{Diagram, Point, Standing};
+
+/// Lines of every diagram, in one order, so that a solver has the same colour in all.
+pub const LINES: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
+/// Errors that a sentence is said about.
+pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
+/// Errors below this are drawn here: rounding.
+const LEAST: f64 = 1e-16;
+
+/// The points that no other is better than in both error and time, by rising time.
+#[must_use]
+pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> {
+    let mut sorted: Vec<(f64, f64, &Point)> =
+        points.into_iter().filter_map(|point| point.place().map(|(error, time)| (time, error, point))).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut best = f64::INFINITY;
+    sorted.retain(|(_, error, _)| {
+        let better = *error < best;
+        best = best.min(*error);
+        better
+    });
+    sorted.into_iter().map(|(_, _, point)| point).collect()
+}
+
+/// The points of a line.
+pub fn of_line<'a>(diagram: &'a Diagram, line: &'a str) -> impl Iterator<Item = &'a Point> {
+    diagram.points.iter().filter(move |point| point.solver == line)
+}
+
+/// The cheapest point of a line within an error.
+#[must_use]
+pub fn cheapest<'a>(diagram: &'a Diagram, line: &'a str, target: f64) -> Option<&'a Point> {
+    let within = of_line(diagram, line).filter(|point| point.place().is_some_and(|(error, _)| error <= target));
+    within.min_by(|a, b| a.wall_seconds.unwrap_or(f64::NAN).total_cmp(&b.wall_seconds.unwrap_or(f64::NAN)))
+}
+
+/// One sentence for a target: the cheapest setting of each solver, and how many times the cheapest of all it costs.
+#[must_use]
+pub fn sentence(diagram: &Diagram, target: f64) -> String {
+    let mut reached: Vec<(&str, &Point)> =
+        LINES.iter().filter_map(|line| cheapest(diagram, line, target).map(|point| (*line, point))).collect();
+    reached.sort_by(|a, b| a.1.wall_seconds.unwrap_or(0.0).total_cmp(&b.1.wall_seconds.unwrap_or(0.0)));
+    let best = reached.first().and_then(|(_, point)| point.wall_seconds).unwrap_or(f64::NAN);
+    let mut parts: Vec<String> = reached
+        .iter()
+        .map(|(line, point)| {
+            let wall = point.wall_seconds.unwrap_or(f64::NAN);
+            let times =
+                if wall > best { format!(" (× {})", number::significant(wall / best, 2)) } else { String::new() };
+            format!("{line} {} in {}{times}", point.setting(), number::seconds(wall))
+        })
+        .collect();
+    if parts.is_empty() {
+        parts.push("no solver reaches it".to_owned());
+    }
+    for line in LINES {
+        let best = of_line(diagram, line).filter_map(Point::place).map(|(error, _)| error).min_by(f64::total_cmp);
+        if let (Some(best), None) = (best, cheapest(diagram, line, target)) {
+            parts.push(format!("{line} not, at best {}", number::fraction(best)));
+        }
+    }
+    format!("{}: {}.", number::fraction(target), parts.join("; "))
+}
+
+/// Error against time.
+#[must_use]
+pub fn figure(diagram: &Diagram) -> Figure {
+    let drawn = |point: &Point| point.place().map(|(error, time)| (time, error.max(LEAST)));
+    let errors = || diagram.points.iter().filter_map(drawn).map(|(_, error)| error);
+    let top = 10.0 * errors().fold(LEAST, f64::max);
+    let mut curves = Vec::new();
+    let mut bars = Vec::new();
+    for line in LINES {
+        let own = front(of_line(diagram, line));
+        let is_own = |point: &Point| own.iter().any(|other| std::ptr::eq(*other, point));
+        let label = match of_line(diagram, line).next() {
+            None => format!("{line} (not asked)"),
+            Some(_) if !own.is_empty() => line.to_owned(),
+            Some(point) => format!("{line} ({})", word(point.standing)),
+        };
+        curves.push(Curve::new(label, Stroke::MarkedLine, own.iter().filter_map(|point| drawn(point)).collect()));
+        let others: Vec<_> = of_line(diagram, line).filter(|point| !is_own(point)).filter_map(drawn).collect();
+        if !others.is_empty() {
+            curves.push(Curve::new("", Stroke::Beside, others));
+        }
+        let failed: Vec<_> = of_line(diagram, line)
+            .filter(|point| point.standing == Standing::Failed)
+            .filter_map(|point| point.wall_seconds.map(|wall| (wall, top)))
+            .collect();
+        if !failed.is_empty() {
+            curves.push(Curve::new("", Stroke::Failed, failed));
+        }
+        bars.extend(floors(diagram, line));
+    }
+    if !bars.is_empty() {
+        curves.push(Curve::new("floor: a soft grain is not wrong for being soft", Stroke::Bars, bars));
+    }
+    let all = front(&diagram.points);
+    let mut stairs = Vec::new();
+    for pair in all.windows(2) {
+        if let (Some(a), Some(b)) = (drawn(pair[0]), drawn(pair[1])) {
+            stairs.extend([a, (b.0, a.1), b]);
+        }
+    }
+    if !stairs.is_empty() {
+        curves.push(Curve::new("Pareto front", Stroke::Dashed, stairs));
+    }
+    let failures = diagram.points.iter().any(|point| point.standing == Standing::Failed);
+    let crosses =
+        if failures { " Crosses at the top are runs that failed, at the time they took until then." } else { "" };
+    Figure::graph(
+        &crate::page::slug(&diagram.quantity),
+        &format!("{}, {}: {}", diagram.case, diagram.variant, diagram.quantity),
+        &format!(
+            "Every point is a setting. Filled markers joined by a line: those of a solver that no other of its settings beats \
+             in both error and time; hollow ones are beaten.{crosses} Exact answer: {}.",
+            diagram.source
+        ),
+        [Axis::log("wall-clock time of the stepping loop (s)"), Axis::log("|error|")],
+        curves,
+    )
+}
+
+const fn word(standing: Standing) -> &'static str {
+    match standing {
+        Standing::Measured => "measured",
+        Standing::Failed => "failed",
+        Standing::Unsupported => "cannot",
+        Standing::NotAvailable => "not installed",
+    }
+}
+
+/// Bars at the floors of a line: from the first point on it to the last.
+fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
+    let mut names: Vec<(&str, &str)> = of_line(diagram, line)
+        .filter_map(|point| point.floor.as_deref().map(|floor| (floor, point.knobs.as_str())))
+        .collect();
+    names.dedup();
+    let mut bars = Vec::new();
+    for (floor, knobs) in names {
+        let on = |point: &&Point| point.floor.as_deref() == Some(floor) && point.knobs == knobs;
+        let places: Vec<(f64, f64)> = of_line(diagram, line)
+            .filter(on)
+            .filter_map(|point| point.place().map(|(error, time)| (time, error)))
+            .collect();
+        let times = || places.iter().map(|(time, _)| *time);
+        let (first, last) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+        if let Some((_, error)) = places.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+            bars.extend([(first, error.max(LEAST)), (last, error.max(LEAST))]);
+        }
+    }
+    bars
+}
+
+/// Measured against expected over all cases, a figure a unit: of each solver and quantity the point with the smallest error.
+#[must_use]
+pub fn scatters(study: &Study) -> Vec<Figure> {
+    let mut units: Vec<&str> = study.diagrams.iter().flat_map(|d| &d.points).map(|point| point.unit.as_str()).collect();
+    units.sort_unstable();
+    units.dedup();
+    units.iter().filter_map(|unit| scatter(study, unit)).collect()
+}
+
+/// The best point of each solver in each diagram of a unit.
+fn best<'a>(study: &'a Study, unit: &'a str, line: &'a str) -> Vec<&'a Point> {
+    let of = |diagram: &'a Diagram| {
+        let points = of_line(diagram, line).filter(|point| point.unit == unit && point.place().is_some());
+        points.min_by(|a, b| a.error.unwrap_or(f64::NAN).total_cmp(&b.error.unwrap_or(f64::NAN)))
+    };
+    study.diagrams.iter().filter_map(of).collect()
+}
+
+/// Bias and spread of the logarithm of measured over expected: the factor that a solver is off by on average, and the relative
+/// standard deviation about it.
+#[must_use]
+pub fn bias(points: &[&Point]) -> Option<(f64, f64)> {
+    let logs: Vec<f64> = points
+        .iter()
+        .filter_map(|point| Some(point.value? / point.expected?))
+        .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+        .map(f64::ln)
+        .collect();
+    let count = logs.len() as f64;
+    let mean = logs.iter().sum::<f64>() / count;
+    let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    (!logs.is_empty()).then(|| (mean.exp(), variance.sqrt()))
+}
+
+fn scatter(study: &Study, unit: &str) -> Option<Figure> {
+    let mut curves = Vec::new();
+    let mut span = (f64::INFINITY, 0.0_f64);
+    for line in LINES {
+        let points = best(study, unit, line);
+        let label = match bias(&points) {
+            Some((factor, spread)) => {
+                format!("{line}: bias {}, spread {}", number::fraction(factor - 1.0), number::fraction(spread))
+            }
+            None => continue,
+        };
+        let places: Vec<(f64, f64)> = points
+            .iter()
+            .filter_map(|point| Some((point.expected?.abs(), point.value?.abs())))
+            .filter(|(expected, value)| *expected > 0.0 && *value > 0.0)
+            .collect();
+        for (expected, _) in &places {
+            span = (span.0.min(*expected), span.1.max(*expected));
+        }
+        curves.push(Curve::new(label, Stroke::Markers, places));
+    }
+    if curves.is_empty() || span.1 == 0.0 {
+        return None;
+    }
+    curves.push(Curve::new("measured = expected", Stroke::Dashed, vec![(span.0, span.0), (span.1, span.1)]));
+    let words = if unit == "1" { "pure numbers".to_owned() } else { format!("quantities in {unit}") };
+    Some(Figure::graph(
+        &format!("measured-expected-{}", if unit == "1" { "ratio" } else { unit }),
+        &format!("Measured against expected: {words}"),
+        "One marker for each solver and case, at the setting with the smallest error. Bias and spread are the mean and the \
+         standard deviation of ln(measured/expected).",
+        [Axis::log("expected"), Axis::log("measured")],
+        curves,
+    ))
+}
+
+/// `points.csv` of a study.
+///
+/// # Errors
+/// When a line cannot be encoded, which none of this project can fail to be.
+pub fn points_csv(study: &Study) -> Result<Vec<u8>, csv::Error> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record([
+        "case",
+        "variant",
+        "quantity",
+        "solver",
+        "resolution",
+        "knobs",
+        "standing",
+        "error",
+        "wall_seconds",
+        "wall_spread",
+        "cpu_seconds",
+        "start_up_seconds",
+        "steps",
+        "particle_steps",
+        "contact_evaluations",
+        "pair_tests",
+        "neighbour_builds",
+    ])?;
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
+    for point in study.diagrams.iter().flat_map(|diagram| &diagram.points) {
+        let mut row: Vec<String> =
+            [&point.case, &point.variant, &point.quantity, &point.solver, &point.resolution, &point.knobs]
+                .map(Clone::clone)
+                .into();
+        row.push(word(point.standing).to_owned());
+        let times = [point.error, point.wall_seconds, point.wall_spread, point.cpu_seconds, point.start_up_seconds];
+        row.extend(times.map(number));
+        row.extend(point.counts.named().map(|(_, count)| count.to_string()));
+        table.write_record(row)?;
+    }
+    table.into_inner().map_err(|error| error.into_error().into())
+}

@@ -1,0 +1,35 @@
+//! Reports of the three studies: what accuracy costs, what stays stable, what each effect is worth.
+
+pub mod cost;
+mod page;
+mod store;
+
+use crate::report::Provenance;
+use grainbench_cases::study::point::{Change, Diagram};
+use serde::{Deserialize, Serialize};
+
+pub use store::{STUDY_FILE, load_study, points_of, study_json, write_study};
+
+/// What a study left: enough to redo every output without a solver.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Study {
+    /// What ran, where and when.
+    pub provenance: Provenance,
+    /// What accuracy costs, quantity by quantity.
+    #[serde(default)]
+    pub diagrams: Vec<Diagram>,
+    /// What changed since another session.
+    #[serde(default)]
+    pub changes: Vec<Change>,
+    /// The session that this one was compared with.
+    #[serde(default)]
+    pub against: Option<String>,
+}
+
+impl Study {
+    /// An empty one.
+    #[must_use]
+    pub const fn new(provenance: Provenance) -> Self {
+        Self { provenance, diagrams: Vec::new(), changes: Vec::new(), against: None }
+    }
+}

@@ -1,0 +1,202 @@
+//! The page of a study.
+
+use super::{Study, cost};
+use crate::number;
+use crate::page::{provenance, scrolling, shell, slug, unique};
+use crate::plot::{self, DrawError};
+use grainbench_cases::figure::Figure;
+use grainbench_cases::study::point::{Diagram, Point, Standing};
+use maud::{Markup, PreEscaped, html};
+use std::collections::BTreeSet;
+
+/// Renders the whole page.
+///
+/// # Errors
+/// When a figure cannot be drawn.
+pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
+    let mut taken = BTreeSet::from(["summary".to_owned(), "provenance".to_owned()]);
+    let mut sections = Vec::new();
+    if !study.diagrams.is_empty() {
+        sections.push(cost_summary(study)?);
+        for diagram in &study.diagrams {
+            let anchor = unique(&slug(&format!("cost-{}-{}", diagram.case, diagram.variant)), &mut taken);
+            sections.push(cost_section(diagram, &anchor)?);
+        }
+    }
+    let body = html! {
+        main {
+            @for section in &sections { (section) }
+            (provenance::render(&study.provenance))
+        }
+    };
+    Ok(shell("grainbench · what accuracy costs", &body))
+}
+
+/// A figure with its caption.
+pub(crate) fn figure(figure: &Figure) -> Result<Markup, DrawError> {
+    Ok(html! {
+        figure {
+            div class="plot graph" { (PreEscaped(plot::draw(figure)?)) }
+            figcaption { (figure.caption) }
+        }
+    })
+}
+
+fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
+    let scatters: Vec<Markup> = cost::scatters(study).iter().map(figure).collect::<Result<_, _>>()?;
+    Ok(html! {
+        header id="summary" {
+            p.kicker { "grainbench" }
+            h1 { "What accuracy costs" }
+            p.lead {
+                "Every solver over its knobs, on every quantity that has an exact answer: the error against the time it took. Times \
+                 are medians of interleaved repetitions, one run at a time; counts do not depend on the machine."
+            }
+            @if let Some(old) = &study.against { (changes(study, old)) }
+            h3 { "Which solver for which scene at 1 %" }
+            (which(study))
+            @for scatter in &scatters { (scatter) }
+        }
+    })
+}
+
+fn changes(study: &Study, old: &str) -> Markup {
+    html! {
+        h3 { "Against " (old) }
+        @if study.changes.is_empty() {
+            p { "Counts are the same to the last, and no time differs by more than noise explains." }
+        } @else {
+            ul.failing aria-label="What changed" {
+                @for change in &study.changes { li { (change.what) ": " (change.how) } }
+            }
+        }
+    }
+}
+
+/// One row a diagram: for each solver its cheapest setting at 1 %.
+fn which(study: &Study) -> Markup {
+    let table = html! {
+        table.cases {
+            thead {
+                tr {
+                    th scope="col" { "Scene and quantity" }
+                    @for line in cost::LINES { th scope="col" { (line) } }
+                }
+            }
+            tbody {
+                @for diagram in &study.diagrams {
+                    @let best = cost::LINES.iter().filter_map(|line| cost::cheapest(diagram, line, 0.01)?.wall_seconds)
+                        .fold(f64::INFINITY, f64::min);
+                    tr {
+                        th scope="row" { (diagram.case) "/" (diagram.variant) span.title { (diagram.quantity) } }
+                        @for line in cost::LINES {
+                            @match cost::cheapest(diagram, line, 0.01) {
+                                Some(point) => {
+                                    @let wall = point.wall_seconds.unwrap_or(f64::NAN);
+                                    td {
+                                        @if wall <= best { b { (number::seconds(wall)) } }
+                                        @else { (number::seconds(wall)) " (× " (number::significant(wall / best, 2)) ")" }
+                                        span.fine { (point.setting()) }
+                                    }
+                                }
+                                None => { td { (not_reached(diagram, line)) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    scrolling("Which solver for which scene at 1 %", &table)
+}
+
+/// Why a solver has no setting at 1 %.
+fn not_reached(diagram: &Diagram, line: &str) -> String {
+    let best = cost::of_line(diagram, line).filter_map(Point::place).map(|(error, _)| error).min_by(f64::total_cmp);
+    match (best, cost::of_line(diagram, line).next().map(|point| point.standing)) {
+        (Some(best), _) => format!("at best {}", number::fraction(best)),
+        (None, Some(Standing::Failed)) => "fails".to_owned(),
+        (None, Some(Standing::NotAvailable)) => "not installed".to_owned(),
+        (None, Some(_)) => "cannot express it".to_owned(),
+        (None, None) => "—".to_owned(),
+    }
+}
+
+fn cost_section(diagram: &Diagram, anchor: &str) -> Result<Markup, DrawError> {
+    let picture = figure(&cost::figure(diagram))?;
+    Ok(html! {
+        section.case id=(anchor) {
+            p.kicker { (diagram.case) "/" (diagram.variant) }
+            h2 { (diagram.quantity) }
+            (picture)
+            ul { @for target in cost::TARGETS { li { (cost::sentence(diagram, target)) } } }
+            (reasons(diagram))
+            details {
+                summary { "Every point" }
+                (points(diagram))
+            }
+            p.back { a href="#summary" { "↑ Summary" } }
+        }
+    })
+}
+
+/// Why points have no error, each reason once for each solver.
+fn reasons(diagram: &Diagram) -> Markup {
+    let mut reasons: Vec<(&str, &str)> = diagram
+        .points
+        .iter()
+        .filter(|point| point.standing != Standing::Failed)
+        .filter_map(|point| point.detail.as_deref().map(|detail| (point.solver.as_str(), detail)))
+        .collect();
+    reasons.sort_unstable();
+    reasons.dedup();
+    html! { @for (solver, reason) in reasons { p.note { (solver) ": " (reason) } } }
+}
+
+fn points(diagram: &Diagram) -> Markup {
+    let table = html! {
+        table.rows.costs {
+            thead {
+                tr {
+                    th scope="col" { "Solver" }
+                    th scope="col" { "Setting" }
+                    th.n scope="col" { "Error" }
+                    th.n scope="col" { "Wall time" }
+                    th.n scope="col" { "Spread" }
+                    th.n scope="col" { "CPU time" }
+                    th.n scope="col" { "Start-up" }
+                    th.n scope="col" { "Steps" }
+                    th.n scope="col" { "Particle-steps" }
+                    th.n scope="col" { "Contact evaluations" }
+                    th scope="col" { "What the error is made of" }
+                }
+            }
+            tbody { @for point in &diagram.points { (row(point)) } }
+        }
+    };
+    scrolling("Every point", &table)
+}
+
+fn row(point: &Point) -> Markup {
+    let seconds = |value: Option<f64>| value.map_or("—".to_owned(), number::seconds);
+    let class = match point.standing {
+        Standing::Measured => "",
+        Standing::Failed => "fail",
+        Standing::Unsupported | Standing::NotAvailable => "amber",
+    };
+    html! {
+        tr class=(class) {
+            th scope="row" { (point.solver) }
+            td { (point.setting()) }
+            td.n { (point.error.map_or("—".to_owned(), number::fraction)) }
+            td.n { (seconds(point.wall_seconds)) }
+            td.n { (point.wall_spread.map_or("—".to_owned(), number::fraction)) }
+            td.n { (seconds(point.cpu_seconds)) }
+            td.n { (seconds(point.start_up_seconds)) }
+            td.n { (number::count(point.counts.steps)) }
+            td.n { (number::count(point.counts.particle_steps)) }
+            td.n { (number::count(point.counts.contact_evaluations)) }
+            td.wide { (point.floor.as_deref().or(point.detail.as_deref()).unwrap_or("")) }
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The files of a study: written whole, read back to redraw or to compare.
+
+use super::{Study, cost, page};
+use crate::report::Provenance;
+use crate::staged::StagedDir;
+use crate::store::{LoadError, SaveError};
+use crate::{page as shared, plot};
+use grainbench_cases::figure::Figure;
+use grainbench_cases::study::point::Point;
+use grainbench_cases::verdict::{Control, Verdict};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// The file from which everything else can be made again.
+pub const STUDY_FILE: &str = "study.json";
+
+/// `results.json`, as the rest of the world reads it.
+#[derive(Serialize)]
+struct Results<'a> {
+    provenance: &'a Provenance,
+    verdicts: [Verdict; 0],
+    controls: [Control; 0],
+    points: Vec<&'a Point>,
+}
+
+/// `results.json` of a study.
+///
+/// # Errors
+/// When something has no JSON form, which nothing that was made by this project has.
+pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
+    let results = Results {
+        provenance: &study.provenance,
+        verdicts: [],
+        controls: [],
+        points: study.diagrams.iter().flat_map(|diagram| &diagram.points).collect(),
+    };
+    serde_json::to_string_pretty(&results).map(|text| text + "\n")
+}
+
+/// Writes `index.html`, `results.json`, `study.json`, `points.csv` and `figures/*.svg` into a directory, all of them or none.
+///
+/// # Errors
+/// When the disk refuses or a figure cannot be drawn.
+pub fn write_study(dir: impl AsRef<Path>, study: &Study) -> Result<(), SaveError> {
+    let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
+    let mut out = StagedDir::new(dir.as_ref())?;
+    let stored = serde_json::to_string_pretty(study).map_err(|error| encode(STUDY_FILE)(error.to_string()))?;
+    out.write(STUDY_FILE, stored + "\n")?;
+    let results = study_json(study).map_err(|error| encode("results.json")(error.to_string()))?;
+    out.write("results.json", results)?;
+    let points = cost::points_csv(study).map_err(|error| encode("points.csv")(error.to_string()))?;
+    out.write("points.csv", points)?;
+    out.write("index.html", page::render(study)?)?;
+    let mut names = BTreeSet::new();
+    for (stem, figure) in figures(study) {
+        let name = shared::unique(&shared::slug(&stem), &mut names);
+        out.write(format!("figures/{name}.svg"), plot::draw(&figure)?)?;
+    }
+    out.commit()?;
+    Ok(())
+}
+
+/// Every figure, with a name for its file.
+fn figures(study: &Study) -> Vec<(String, Figure)> {
+    let diagrams = study.diagrams.iter().map(|diagram| {
+        let figure = cost::figure(diagram);
+        (format!("cost-{}-{}-{}", diagram.case, diagram.variant, figure.name), figure)
+    });
+    diagrams.chain(cost::scatters(study).into_iter().map(|figure| (figure.name.clone(), figure))).collect()
+}
+
+/// Reads the study that [`write_study`] left in a directory.
+///
+/// # Errors
+/// When the file is missing or damaged; the message names the place.
+pub fn load_study(dir: impl AsRef<Path>) -> Result<Study, LoadError> {
+    read(&dir.as_ref().join(STUDY_FILE))
+}
+
+/// The points of a `results.json`.
+///
+/// # Errors
+/// When the file is missing or damaged; the message names the place.
+pub fn points_of(path: &Path) -> Result<Vec<Point>, LoadError> {
+    #[derive(Deserialize)]
+    struct Session {
+        points: Vec<Point>,
+    }
+    read::<Session>(path).map(|session| session.points)
+}
+
+fn read<T: DeserializeOwned>(path: &Path) -> Result<T, LoadError> {
+    let text = fs::read_to_string(path).map_err(|source| LoadError::Read { path: path.to_owned(), source })?;
+    crate::store::parse(path, &text)
+}

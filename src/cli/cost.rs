@@ -1,0 +1,185 @@
+//! `grainbench cost`: what accuracy costs.
+
+use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::progress::Progress;
+use super::provenance::provenance;
+use super::subject::Variant;
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use grainbench::cases::subject::{self, Subject};
+use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, write_study};
+use grainbench::studies::Follow;
+use grainbench::studies::cost::against::compare;
+use grainbench::studies::cost::run::{Meter, Wanted};
+use grainbench::studies::shelf::Shelf;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Cases to measure; all that have an exact answer when none is named.
+    #[arg(value_name = "CASE|CASE/VARIANT")]
+    cases: Vec<String>,
+    /// Only this solver; may be given more than once.
+    #[arg(long, value_name = "NAME")]
+    solver: Vec<String>,
+    /// Points that take more than twenty seconds too.
+    #[arg(long, value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
+    rungs: String,
+    /// Measure every point anew, also those that were finished before.
+    #[arg(long)]
+    fresh: bool,
+    /// Compare with the `results.json` of another session: counts exactly, times with their spread.
+    #[arg(long, value_name = "OLD.json")]
+    against: Option<PathBuf>,
+    /// Directory for the report; finished points are kept in it too.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-cost")]
+    out: PathBuf,
+    /// Print the results as JSON instead of sentences.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Measures and writes the report, after every quantity as far as it is.
+pub(crate) fn cost(arguments: &Arguments) -> Outcome {
+    let subjects = subjects(&arguments.cases)?;
+    refuse_unknown(&arguments.solver)?;
+    let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
+    check_writable(&arguments.out)?;
+    let shelf = Shelf::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::input)?;
+    let wanted = Wanted { solvers: arguments.solver.clone(), all: arguments.rungs == "all" };
+    let meter = Meter::new(&shelf, wanted);
+    let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
+    if pieces == 0 {
+        return Err(Fault::input("expected at least one point, found none of the cases and solvers named"));
+    }
+    let start = Instant::now();
+    let mut follower = Follower::new(pieces as u64, "points");
+    let mut study = Study::new(provenance(words(arguments), 0.0));
+    for (at, subject) in subjects.iter().enumerate() {
+        let diagram = meter.diagram(subject, &mut follower).map_err(Fault::input)?;
+        if diagram.points.is_empty() {
+            continue;
+        }
+        study.diagrams.push(diagram);
+        let mut options = words(arguments);
+        if at + 1 < subjects.len() {
+            options.push(format!("unfinished: {} of {} quantities", at + 1, subjects.len()));
+            study.provenance = provenance(options, start.elapsed().as_secs_f64());
+            write_study(&arguments.out, &study).map_err(Fault::input)?;
+        }
+    }
+    study.provenance = provenance(words(arguments), start.elapsed().as_secs_f64());
+    if let (Some(old), Some(path)) = (&old, &arguments.against) {
+        let new: Vec<_> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
+        study.changes = compare(old, &new);
+        study.against = Some(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
+    }
+    write_study(&arguments.out, &study).map_err(Fault::input)?;
+    let reused = follower.end();
+    if arguments.json {
+        print(&study_json(&study).map_err(Fault::input)?)?;
+    } else {
+        print(&text(&study, arguments))?;
+        print(&format!("{reused} of {pieces} points were measured before and taken as they were\n"))?;
+    }
+    Ok(if study.changes.iter().any(|change| change.worse) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+}
+
+/// The subjects of the cases named, in the order of the registry.
+fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
+    let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
+    let mut found = Vec::new();
+    for case in CASES {
+        let mine: Vec<_> = named.iter().filter(|named| named.case.name == case.name).collect();
+        if mine.is_empty() && !named.is_empty() {
+            continue;
+        }
+        let wanted = |variant: &str| {
+            mine.is_empty() || mine.iter().any(|named| named.variant.is_none_or(|name| name == variant))
+        };
+        found.extend(subject::of(case).into_iter().filter(|subject| wanted(subject.variant)));
+    }
+    if found.is_empty() {
+        return Err(Fault::input(
+            "expected a case with a row against an exact answer of one run, found none of those named",
+        ));
+    }
+    Ok(found)
+}
+
+fn refuse_unknown(names: &[String]) -> Result<(), Fault> {
+    match names.iter().find(|name| solvers::by_name(name).is_none()) {
+        Some(name) => Err(Fault::unknown("a solver", name, solvers::names().iter().map(String::as_str))),
+        None => Ok(()),
+    }
+}
+
+/// The options that are not the default, in words.
+fn words(arguments: &Arguments) -> Vec<String> {
+    let mut words = vec!["cost".to_owned()];
+    words.extend(arguments.cases.iter().cloned());
+    words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
+    if arguments.rungs != "default" {
+        words.push(format!("--rungs {}", arguments.rungs));
+    }
+    words
+}
+
+/// The sentences, and what changed.
+fn text(study: &Study, arguments: &Arguments) -> String {
+    let mut text = String::new();
+    for diagram in &study.diagrams {
+        text.push_str(&format!("{}/{} · {}\n", diagram.case, diagram.variant, diagram.quantity));
+        for target in drawn::TARGETS {
+            text.push_str(&format!("  {}\n", drawn::sentence(diagram, target)));
+        }
+    }
+    if let Some(old) = &study.against {
+        text.push_str(&format!("against {old}: "));
+        if study.changes.is_empty() {
+            text.push_str("counts are the same to the last, and no time differs by more than noise explains\n");
+        } else {
+            text.push('\n');
+        }
+        for change in &study.changes {
+            text.push_str(&format!("  {}: {}\n", change.what, change.how));
+        }
+    }
+    text + &format!("{}\n", arguments.out.join("index.html").display())
+}
+
+/// Shows how far a study is, and counts what was reused.
+pub(crate) struct Follower {
+    progress: Option<Progress>,
+    reused: u64,
+}
+
+impl Follower {
+    pub(crate) fn new(pieces: u64, what: &str) -> Self {
+        Self { progress: Some(Progress::new(pieces, what)), reused: 0 }
+    }
+
+    /// Takes the bar away; how many pieces were reused.
+    pub(crate) fn end(&mut self) -> u64 {
+        self.progress = None;
+        self.reused
+    }
+}
+
+impl Follow for Follower {
+    fn now(&mut self, piece: &str) {
+        if let Some(progress) = &self.progress {
+            progress.now(piece);
+        }
+    }
+
+    fn done(&mut self, reused: bool) {
+        self.reused += u64::from(reused);
+        if let Some(progress) = &self.progress {
+            progress.advance();
+        }
+    }
+}

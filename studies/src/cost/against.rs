@@ -1,0 +1,204 @@
+//! Two sessions against each other: counts exactly, times with their spread.
+//!
+//! Noise only ever adds to a time, so a point's time is the shortest of its repetitions, in units of the reference arithmetic
+//! that was timed just before ([`crate::clock::reference_seconds`]): a machine that was slower for a while cancels. Of all
+//! points of a solver in a case, xᵢ = ln(tᵢ,new/tᵢ,old); their median m has the standard error
+//!
+//! ```text
+//! s² = (1.2533 · 1.4826 · median|xᵢ − m|)²/n + median(σᵢ)²/n
+//! ```
+//!
+//! with σᵢ the spread of the point's repetitions in both sessions. A solver is called slower where m − 3s > ln 1.15, with at
+//! least three points: what repetitions within one session cannot see (where memory happened to lie, what else ran) has been
+//! seen to move all points of a case by a tenth.
+
+use grainbench_cases::study::point::{Change, Point, Standing, Timing};
+use std::collections::BTreeMap;
+
+/// Change of a time that sessions differ by although nothing changed.
+const SESSIONS: f64 = 0.15;
+/// Standard errors that a change must be away from it.
+const SURE: f64 = 3.0;
+/// Fewest points that anything is said of.
+const FEWEST: usize = 3;
+/// Runs shorter than this (s) are mostly clock.
+const TOO_SHORT: f64 = 2e-4;
+
+/// What changed from one session to another.
+#[must_use]
+pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
+    let before: BTreeMap<[&str; 6], &Point> = old.iter().map(|point| (point.key(), point)).collect();
+    let mut changes = Vec::new();
+    let mut ratios: BTreeMap<(&str, &str), Vec<(f64, f64)>> = BTreeMap::new();
+    for point in new {
+        let Some(old) = before.get(&point.key()) else { continue };
+        changes.extend(counts(old, point));
+        if let Some(ratio) = ratio(old, point) {
+            ratios.entry((&point.solver, &point.case)).or_default().push(ratio);
+        }
+    }
+    changes.extend(ratios.iter().filter_map(|((solver, case), ratios)| time(solver, case, ratios)));
+    changes
+}
+
+/// Any change of what was done, exactly, and of how it ended.
+fn counts(old: &Point, new: &Point) -> Option<Change> {
+    let mut how = Vec::new();
+    if old.standing != new.standing {
+        how.push(format!("was {:?}, is {:?}", old.standing, new.standing).to_lowercase());
+    }
+    let both = old.counts.named().into_iter().zip(new.counts.named());
+    how.extend(both.filter(|(a, b)| a.1 != b.1).map(|((name, was), (_, is))| format!("{name} {was} → {is}")));
+    if old.error != new.error {
+        let word = |error: Option<f64>| error.map_or("none".to_owned(), |error| format!("{error:e}"));
+        how.push(format!("error {} → {}", word(old.error), word(new.error)));
+    }
+    let what = format!("{}/{} · {} {}", new.case, new.variant, new.solver, new.setting());
+    (!how.is_empty()).then(|| Change { what, how: how.join(", "), worse: true })
+}
+
+/// Logarithm of the ratio of times, and its spread.
+fn ratio(old: &Point, new: &Point) -> Option<(f64, f64)> {
+    let measured = |point: &Point| point.standing == Standing::Measured && point.wall_seconds >= Some(TOO_SHORT);
+    if !(measured(old) && measured(new)) {
+        return None;
+    }
+    let ((was, old_spread), (is, new_spread)) = (shortest(&old.repetitions)?, shortest(&new.repetitions)?);
+    Some(((is / was).ln(), old_spread.hypot(new_spread)))
+}
+
+/// The shortest repetition in units of the reference, and by how much the median exceeds it.
+fn shortest(repetitions: &[Timing]) -> Option<(f64, f64)> {
+    let mut times: Vec<f64> = repetitions.iter().map(|timing| timing.cpu / timing.reference).collect();
+    times.retain(|time| time.is_finite() && *time > 0.0);
+    times.sort_by(f64::total_cmp);
+    let first = *times.first()?;
+    Some((first, times[times.len() / 2] / first - 1.0))
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    0.5 * (values[(values.len() - 1) / 2] + values[values.len() / 2])
+}
+
+/// What can be said of the times of a solver in a case, if anything.
+fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
+    if ratios.len() < FEWEST {
+        return None;
+    }
+    let count = ratios.len() as f64;
+    let middle = median(ratios.iter().map(|(ratio, _)| *ratio).collect());
+    let scatter = 1.2533 * 1.4826 * median(ratios.iter().map(|(ratio, _)| (ratio - middle).abs()).collect());
+    let spread = median(ratios.iter().map(|(_, spread)| *spread).collect());
+    let error = scatter.hypot(spread) / count.sqrt();
+    let worse = middle > 0.0;
+    if middle.abs() - SURE * error <= SESSIONS.ln_1p() {
+        return None;
+    }
+    let how = format!(
+        "{} by a factor {:.2} (between {:.2} and {:.2} at {SURE} standard errors, {} points)",
+        if worse { "slower" } else { "faster" },
+        middle.abs().exp(),
+        (middle.abs() - SURE * error).exp(),
+        (middle.abs() + SURE * error).exp(),
+        ratios.len()
+    );
+    Some(Change { what: format!("{case} · {solver}"), how, worse })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use grainbench_cases::study::point::Counts;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    /// A session of one solver in one case, on a machine that is loaded now and then: every time is lengthened by up to a third,
+    /// the machine's speed drifts by up to half, and the session as a whole has its own few per cent.
+    fn session(seed: u64, slower: f64, points: usize, repetitions: usize) -> Vec<Point> {
+        let mut dice = Pcg64Mcg::seed_from_u64(seed);
+        let mut unit = move || dice.random::<f64>();
+        let own = 1.0 + 0.04 * unit();
+        (0..points)
+            .map(|at| {
+                let true_time = 1e-3 * (1.0 + at as f64);
+                let timing = |_| {
+                    let drift = 1.0 + 0.5 * unit();
+                    let noise = 1.0 + 0.3 * unit() * unit() * unit();
+                    let cpu = true_time * slower * own * drift * noise;
+                    Timing { wall: cpu, cpu, start_up: 0.0, reference: 1e-3 * drift }
+                };
+                let timings: Vec<Timing> = (0..repetitions).map(timing).collect();
+                point(&format!("dt={at}"), timings)
+            })
+            .collect()
+    }
+
+    fn point(resolution: &str, repetitions: Vec<Timing>) -> Point {
+        Point {
+            case: "squash".to_owned(),
+            variant: "plain".to_owned(),
+            solver: "dem".to_owned(),
+            resolution: resolution.to_owned(),
+            knobs: String::new(),
+            quantity: "x".to_owned(),
+            unit: "m".to_owned(),
+            standing: Standing::Measured,
+            value: Some(1.0),
+            expected: Some(1.0),
+            error: Some(0.0),
+            floor: None,
+            wall_seconds: Some(1e-3),
+            wall_spread: None,
+            cpu_seconds: Some(1e-3),
+            start_up_seconds: Some(0.0),
+            repetitions,
+            counts: Counts { steps: 100, ..Counts::default() },
+            detail: None,
+        }
+    }
+
+    #[test]
+    fn reruns_of_the_same_code_show_nothing() {
+        for seed in 0..200 {
+            let old = session(2 * seed, 1.0, 8, 5);
+            for rerun in 0..5 {
+                let new = session(10_000 + 5 * seed + rerun, 1.0, 8, 5);
+                assert_eq!(compare(&old, &new), [], "seed {seed}, rerun {rerun}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_kernel_slower_by_a_quarter_shows() {
+        for seed in 0..200 {
+            let changes = compare(&session(2 * seed, 1.0, 8, 5), &session(2 * seed + 1, 1.25, 8, 5));
+            assert!(
+                changes.len() == 1 && changes[0].worse && changes[0].how.starts_with("slower"),
+                "seed {seed}: {changes:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_faster_one_shows_and_is_not_worse() {
+        let changes = compare(&session(1, 1.5, 8, 5), &session(2, 1.0, 8, 5));
+        assert!(changes.len() == 1 && !changes[0].worse, "{changes:?}");
+    }
+
+    #[test]
+    fn one_repetition_of_two_points_says_nothing_of_time() {
+        assert_eq!(compare(&session(1, 1.0, 2, 1), &session(2, 1.25, 2, 1)), []);
+    }
+
+    #[test]
+    fn counts_are_compared_exactly() {
+        let old = session(1, 1.0, 3, 5);
+        let mut new = session(2, 1.0, 3, 5);
+        new[1].counts.steps += 1;
+        let changes = compare(&old, &new);
+        assert_eq!(changes.len(), 1);
+        assert!(changes[0].worse && changes[0].how == "steps 100 → 101", "{changes:?}");
+    }
+}

@@ -1,0 +1,149 @@
+//! The knobs of every kind of solver, and which turns of them are tried.
+
+use grainbench_cases::subject::{Lane, Method};
+use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::solver::Resolution;
+
+/// One turn of a solver's knobs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turn {
+    /// Solver, by name; settings of the material point method are spelt out in it.
+    pub solver: String,
+    /// Line of the diagram that the point belongs to: the solver without its settings.
+    pub line: &'static str,
+    /// Resolution.
+    pub resolution: Resolution,
+    /// What else was turned, in words.
+    pub knobs: String,
+    /// Place in a sequence of refinements of one knob: its name, and how fine. Points outside a sequence have none.
+    pub sequence: Option<f64>,
+}
+
+/// Time steps as fractions of the critical one.
+const FRACTIONS: [f64; 8] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002];
+/// Those that other programs are asked for, whose start takes longer than most of these runs.
+const PROGRAM_FRACTIONS: [f64; 4] = [0.2, 0.05, 0.02, 0.005];
+/// Substeps of rapier.
+const SUBSTEPS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
+/// Iterations of its constraint solver at eight substeps.
+const ITERATIONS: [u32; 3] = [1, 2, 16];
+/// Whole steps instead of substeps (s).
+const STEPS: [f64; 2] = [0.03, 0.004];
+/// Cells over those of the lane.
+const CELLS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+/// Settings of the material point method beside the best: basis, transfer, contact.
+const SETTINGS: [(&str, &str); 8] = [
+    ("mpm+linear+flip", "hat functions, FLIP"),
+    ("mpm+gimp+flip", "GIMP, FLIP"),
+    ("mpm+apic", "APIC"),
+    ("mpm+flip", "FLIP"),
+    ("mpm:2000", "nodal contact of 2000"),
+    ("mpm:2001", "nodal contact of 2001"),
+    ("mpm:gap", "nodal contact at the gap"),
+    ("mpm:penalty", "hat functions, FLIP, springs at surfaces"),
+];
+
+/// All turns of a lane.
+#[must_use]
+pub fn turns(lane: &Lane) -> Vec<Turn> {
+    match lane.method {
+        Method::Dem => dem(lane),
+        Method::Rigid => rigid(lane),
+        Method::Grid => grid(lane),
+    }
+}
+
+fn turn(solver: &str, line: &'static str, resolution: Resolution, knobs: &str, sequence: Option<f64>) -> Turn {
+    Turn { solver: solver.to_owned(), line, resolution, knobs: knobs.to_owned(), sequence }
+}
+
+fn dem(lane: &Lane) -> Vec<Turn> {
+    let own = FRACTIONS
+        .map(|fraction| turn("dem", "dem", Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction)));
+    let programs = ["lammps", "liggghts"].into_iter().flat_map(|name| {
+        PROGRAM_FRACTIONS
+            .map(|fraction| turn(name, name, Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction)))
+    });
+    own.into_iter().chain(programs).collect()
+}
+
+fn rigid(lane: &Lane) -> Vec<Turn> {
+    let substeps =
+        SUBSTEPS.map(|count| turn("rigid", "rigid", Resolution::substeps(count), &lane.knobs, Some(f64::from(count))));
+    let iterations = ITERATIONS.map(|iterations| {
+        let resolution = Resolution::Rigid { step: Resolution::RIGID_STEP, substeps: 8, iterations };
+        turn("rigid", "rigid", resolution, &lane.knobs, None)
+    });
+    let steps = STEPS.map(|step| {
+        let resolution = Resolution::Rigid { step, substeps: 1, iterations: Resolution::RIGID_ITERATIONS };
+        turn("rigid", "rigid", resolution, &lane.knobs, None)
+    });
+    substeps.into_iter().chain(iterations).chain(steps).collect()
+}
+
+fn grid(lane: &Lane) -> Vec<Turn> {
+    let Resolution::Grid { cells, points, courant } = lane.about else { return Vec::new() };
+    let at = |factor: f64, points: u32, courant: f64| Resolution::Grid { cells: cells * factor, points, courant };
+    let mut turns: Vec<Turn> = CELLS
+        .iter()
+        .map(|&factor| turn("mpm", "mpm", at(factor, points, courant), &lane.knobs, Some(factor)))
+        .collect();
+    if !lane.knobs.is_empty() {
+        // One sweep over the other knobs is enough.
+        return turns;
+    }
+    for other in [points.saturating_sub(1).max(1), points + 1] {
+        turns.push(turn("mpm", "mpm", at(0.5, other, courant), "", None));
+    }
+    turns.push(turn("mpm", "mpm", at(0.5, points, 0.5 * courant), "", None));
+    for (solver, words) in SETTINGS {
+        for factor in [0.5, 1.0] {
+            turns.push(turn(solver, "mpm", at(factor, points, courant), words, None));
+        }
+    }
+    turns
+}
+
+/// About how long a run takes (s), by counts alone, so that every machine draws the same line between what is run and
+/// what is only run when all is asked for.
+#[must_use]
+pub fn nominal_seconds(scene: &Scene, turn: &Turn) -> f64 {
+    let grains = scene.grains.len() as f64;
+    let seconds = match scene.duration {
+        Duration::Seconds(seconds) => Some(seconds),
+        Duration::Cycles(_) => None,
+    };
+    match turn.resolution {
+        Resolution::CriticalFraction(_) | Resolution::TimeStep(_) => {
+            turn.resolution.steps(scene).map_or(0.0, |(_, steps)| steps as f64 * (60e-9 * grains + 60e-9))
+        }
+        Resolution::Rigid { step, substeps, .. } => {
+            seconds.map_or(0.0, |time| (time / step).max(1.0) * f64::from(substeps) * (3e-6 * grains + 2e-6))
+        }
+        Resolution::Grid { cells, points, courant } => {
+            grid_seconds(scene, cells, points, courant, seconds.unwrap_or(0.0))
+        }
+    }
+}
+
+/// Points times steps times what a step of a point takes.
+fn grid_seconds(scene: &Scene, cells: f64, points: u32, courant: f64, seconds: f64) -> f64 {
+    let dimensions = scene.dimension.count();
+    let cell = scene.reference_length / cells;
+    let volume = |radius: f64| match dimensions {
+        2 => std::f64::consts::PI * radius * radius,
+        _ => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+    };
+    let grains: f64 = scene.grains.iter().map(|grain| volume(grain.radius)).sum();
+    let bodies: f64 = scene.bodies.iter().map(|body| body.shape.volume(dimensions)).sum();
+    let count = (grains + bodies) / cell.powi(dimensions as i32) * f64::from(points).powi(dimensions as i32);
+    let wave = |material: u16, density: f64| {
+        let deformable = scene.deformable.get(usize::from(material)).copied().flatten();
+        deformable.map_or(0.0, |deformable| (deformable.longitudinal_modulus() / density).sqrt())
+    };
+    let of_grains = scene.grains.iter().map(|grain| wave(grain.material, grain.mass / volume(grain.radius)));
+    let speed = of_grains.chain(scene.bodies.iter().map(|body| wave(body.material, body.density))).fold(0.0, f64::max);
+    let settling = scene.start.settle.map_or(0.0, |settle| settle.duration);
+    let steps = (seconds + settling) * speed / (courant * cell);
+    steps * count * if dimensions == 2 { 250e-9 } else { 900e-9 }
+}

@@ -1,0 +1,289 @@
+//! Measures the points: one at a time, repetitions of one subject in turn.
+
+use super::knobs::{self, Turn};
+use crate::shelf::Shelf;
+use crate::{Follow, clock, identity};
+use grainbench_cases::gate::{Change, Done};
+use grainbench_cases::solvers;
+use grainbench_cases::study::point::{Counts, Diagram, Point, Standing, Timing};
+use grainbench_cases::subject::{Method, Subject};
+use grainbench_reports::WriteError;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{RunError, Solver};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Repetitions of a point that takes less than a second.
+const REPETITIONS: usize = 5;
+/// What takes longer than this (s) is measured once.
+const SHORT: f64 = 1.0;
+/// A repetition lasts this long at least (s): of what is shorter, it is several runs in a row.
+const LEAST: f64 = 2e-3;
+/// Most runs in a row.
+const MOST: f64 = 50.0;
+/// Points that take longer than this (s) are left to those who ask for all.
+const LONGEST: f64 = 20.0;
+/// A refinement that leaves this much of the error has met a floor.
+const FLOOR: f64 = 0.8;
+/// Errors below this are rounding, and no floor.
+const ROUNDING: f64 = 1e-11;
+
+/// What is wanted.
+#[derive(Clone, Debug, Default)]
+pub struct Wanted {
+    /// Only these solvers; all when none is named.
+    pub solvers: Vec<String>,
+    /// Points over twenty seconds too.
+    pub all: bool,
+}
+
+/// One point to measure.
+struct Task {
+    turn: Turn,
+    method: Method,
+    scene: Arc<Scene>,
+    solver: Arc<dyn Solver>,
+    /// Name on the shelf.
+    name: String,
+}
+
+/// Measures with solvers by name.
+pub struct Meter<'a> {
+    /// Hash of this program.
+    pub program: String,
+    /// Where finished points are kept.
+    pub shelf: &'a Shelf,
+    /// What is wanted.
+    pub wanted: Wanted,
+    /// Gives the solver of a name.
+    pub solver: fn(&str) -> Option<Box<dyn Solver>>,
+}
+
+impl<'a> Meter<'a> {
+    /// A meter of the solvers of the registry.
+    #[must_use]
+    pub fn new(shelf: &'a Shelf, wanted: Wanted) -> Self {
+        Self { program: identity::of_this_program(), shelf, wanted, solver: solvers::by_name }
+    }
+
+    /// How many points a subject has.
+    #[must_use]
+    pub fn count(&self, subject: &Subject) -> usize {
+        self.tasks(subject).len()
+    }
+
+    /// Measures a subject over all knobs.
+    ///
+    /// # Errors
+    /// When a point cannot be kept.
+    pub fn diagram(&self, subject: &Subject, follow: &mut dyn Follow) -> Result<Diagram, WriteError> {
+        let tasks = self.tasks(subject);
+        let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.shelf.take(&task.name)).collect();
+        points.iter().flatten().for_each(|_| follow.done(true));
+        let mut open: Vec<(usize, usize, Point)> = Vec::new();
+        for (at, task) in tasks.iter().enumerate() {
+            if points[at].is_some() {
+                continue;
+            }
+            follow.now(&format!("{} · {} {}", subject.case.name, task.turn.solver, task.turn.resolution));
+            let point = first(subject, task);
+            let whole = point.repetitions.first().map_or(0.0, |timing| timing.wall + timing.start_up);
+            if whole < SHORT && point.standing == Standing::Measured {
+                let runs = (LEAST / whole).ceil().clamp(1.0, MOST) as usize;
+                // The first run warms the machine up.
+                open.push((at, runs, Point { repetitions: Vec::new(), ..point }));
+            } else {
+                self.shelf.put(&task.name, &point)?;
+                points[at] = Some(point);
+                follow.done(false);
+            }
+        }
+        for _ in 0..REPETITIONS {
+            for (at, runs, point) in &mut open {
+                follow.now(&format!("{} · {} again", subject.case.name, tasks[*at].turn.solver));
+                point.repetitions.extend(repeated(&tasks[*at], *runs));
+            }
+        }
+        for (at, _, mut point) in open {
+            summarise(&mut point);
+            self.shelf.put(&tasks[at].name, &point)?;
+            points[at] = Some(point);
+            follow.done(false);
+        }
+        let mut points: Vec<Point> = points.into_iter().flatten().collect();
+        mark_floors(&tasks, &mut points);
+        Ok(Diagram {
+            case: subject.case.name.to_owned(),
+            variant: subject.variant.to_owned(),
+            quantity: subject.quantity.clone(),
+            source: subject.source.to_owned(),
+            points,
+        })
+    }
+
+    fn tasks(&self, subject: &Subject) -> Vec<Task> {
+        let Ok(plain) = subject.case.variant(subject.variant) else { return Vec::new() };
+        let mut tasks = Vec::new();
+        let mut solvers: BTreeMap<String, Option<Arc<dyn Solver>>> = BTreeMap::new();
+        for lane in &subject.lanes {
+            let mut scene = plain.clone();
+            if let Some(change) = &lane.prepare {
+                let change: &Change = change;
+                change(&mut scene);
+            }
+            let scene = Arc::new(scene);
+            for turn in knobs::turns(lane) {
+                let named = &self.wanted.solvers;
+                if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || name == turn.line) {
+                    continue;
+                }
+                if !self.wanted.all && knobs::nominal_seconds(&scene, &turn) > LONGEST {
+                    continue;
+                }
+                let solver =
+                    solvers.entry(turn.solver.clone()).or_insert_with(|| (self.solver)(&turn.solver).map(Arc::from));
+                let Some(solver) = solver.clone() else { continue };
+                let read = format!("{}|{}|{}", subject.quantity, subject.variant, turn.knobs);
+                let name = identity::of_run(&self.program, &turn.solver, &scene, &turn.resolution, &read);
+                // Two lanes may lead to the same run.
+                if tasks.iter().all(|task: &Task| task.name != name) {
+                    tasks.push(Task { turn, method: lane.method, scene: Arc::clone(&scene), solver, name });
+                }
+            }
+        }
+        tasks
+    }
+}
+
+/// Runs a task once, with its times; none of them where nothing ran.
+fn timed(task: &Task, reference: f64) -> (Option<Timing>, Result<Record, RunError>) {
+    let (cpu, start) = (clock::cpu_seconds(), Instant::now());
+    let record = task.solver.run(&task.scene, &task.turn.resolution, &mut ());
+    let (whole, cpu) = (start.elapsed().as_secs_f64(), clock::cpu_seconds() - cpu);
+    let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
+    // A run that broke left no record: all of its time is that of the loop.
+    let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
+    (ran.then_some(Timing { wall, cpu, start_up: (whole - wall).max(0.0), reference }), record)
+}
+
+/// One repetition: the mean of some runs in a row.
+fn repeated(task: &Task, runs: usize) -> Option<Timing> {
+    let reference = clock::reference_seconds();
+    let timings: Option<Vec<Timing>> = (0..runs).map(|_| timed(task, reference).0).collect();
+    let timings = timings?;
+    let mean = |of: fn(&Timing) -> f64| timings.iter().map(of).sum::<f64>() / runs as f64;
+    Some(Timing { wall: mean(|t| t.wall), cpu: mean(|t| t.cpu), start_up: mean(|t| t.start_up), reference })
+}
+
+/// The first run, with the error.
+fn first(subject: &Subject, task: &Task) -> Point {
+    let (timing, record) = timed(task, clock::reference_seconds());
+    let mut point = Point {
+        case: subject.case.name.to_owned(),
+        variant: subject.variant.to_owned(),
+        solver: task.turn.line.to_owned(),
+        resolution: task.turn.resolution.to_string(),
+        knobs: task.turn.knobs.clone(),
+        quantity: subject.quantity.clone(),
+        unit: subject.unit.to_owned(),
+        standing: Standing::Failed,
+        value: None,
+        expected: None,
+        error: None,
+        floor: None,
+        wall_seconds: None,
+        wall_spread: None,
+        cpu_seconds: None,
+        start_up_seconds: None,
+        repetitions: timing.into_iter().collect(),
+        counts: Counts::default(),
+        detail: None,
+    };
+    match record {
+        Ok(record) => {
+            point.counts = Counts::from(&record.cost);
+            let done = Done { scene: Arc::clone(&task.scene), record: Arc::new(record) };
+            match (subject.measure)(&[done]) {
+                Ok(measured) if measured.error().is_finite() => {
+                    point.standing = Standing::Measured;
+                    point.value = Some(measured.value);
+                    point.expected = Some(measured.expected);
+                    point.error = Some(measured.error().abs());
+                }
+                Ok(_) => point.detail = Some("its error is not finite".to_owned()),
+                Err(missing) => {
+                    point.standing = Standing::Unsupported;
+                    point.detail = Some(missing.to_string());
+                }
+            }
+        }
+        Err(error) => {
+            point.standing = match &error {
+                RunError::Unsupported { .. } => Standing::Unsupported,
+                RunError::NotAvailable { .. } => Standing::NotAvailable,
+                _ => Standing::Failed,
+            };
+            point.detail = Some(error.to_string());
+        }
+    }
+    summarise(&mut point);
+    point
+}
+
+/// Medians and spread of the repetitions.
+fn summarise(point: &mut Point) {
+    let sorted = |of: fn(&Timing) -> f64| {
+        let mut times: Vec<f64> = point.repetitions.iter().map(of).collect();
+        times.sort_by(f64::total_cmp);
+        times
+    };
+    let walls = sorted(|timing| timing.wall);
+    point.wall_seconds = median(&walls);
+    point.cpu_seconds = median(&sorted(|timing| timing.cpu));
+    point.start_up_seconds = median(&sorted(|timing| timing.start_up));
+    point.wall_spread = match (walls.first(), walls.last(), median(&walls)) {
+        (Some(first), Some(last), Some(median)) if walls.len() > 1 && median > 0.0 => Some((last - first) / median),
+        _ => None,
+    };
+}
+
+/// The middle of sorted numbers.
+fn median(sorted: &[f64]) -> Option<f64> {
+    (!sorted.is_empty()).then(|| 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]))
+}
+
+/// Marks where finer resolutions no longer make the error smaller: the last two of a sequence, if they differ by less than a
+/// fifth.
+fn mark_floors(tasks: &[Task], points: &mut [Point]) {
+    let mut sequences: BTreeMap<(String, String), Vec<(f64, usize)>> = BTreeMap::new();
+    for (at, task) in tasks.iter().enumerate() {
+        if let (Some(fineness), Standing::Measured) = (task.turn.sequence, points[at].standing) {
+            let line = (task.turn.solver.clone(), task.turn.knobs.clone());
+            sequences.entry(line).or_default().push((fineness, at));
+        }
+    }
+    for sequence in sequences.values_mut() {
+        sequence.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let error = |place: usize| points[sequence[place].1].error.unwrap_or(f64::NAN);
+        let last = sequence.len() - 1;
+        if last < 2 {
+            continue;
+        }
+        let (before, finest) = (error(last - 1), error(last));
+        let meets = finest > ROUNDING && finest >= FLOOR * before && finest <= before / FLOOR;
+        if !meets {
+            continue;
+        }
+        let at_floor: Vec<usize> = sequence
+            .iter()
+            .map(|(_, at)| *at)
+            .filter(|&at| points[at].error.is_some_and(|error| error >= FLOOR * finest && error <= finest / FLOOR))
+            .collect();
+        for at in at_floor {
+            let knobs = if points[at].knobs.is_empty() { String::new() } else { format!(" at {}", points[at].knobs) };
+            points[at].floor = Some(format!("{}{knobs}", tasks[at].method.floor()));
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! The three studies: what accuracy costs ([`cost`]), what stays stable, what each effect is worth.
+//!
+//! Each goes through its pieces one by one, keeps every finished piece on a [`shelf`], and takes from there what was
+//! finished before: a study that was ended goes on where it stopped.
+
+pub mod clock;
+pub mod cost;
+pub mod identity;
+pub mod shelf;
+
+/// Someone who wants to know how far a study is.
+pub trait Follow {
+    /// A piece is taken up.
+    fn now(&mut self, _piece: &str) {}
+    /// A piece is finished: taken from the shelf, or done.
+    fn done(&mut self, _reused: bool) {}
+}
+
+/// Nobody follows.
+impl Follow for () {}
