@@ -1,6 +1,7 @@
 //! A gate compares a quantity of one or more records with an expectation that has a source, and says why its
 //! tolerance is what it is. Every gate has a negative control: wrong physics that it must refuse.
 
+use crate::effect::Effect;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
 use grainbench_dem::solver::Defect;
@@ -233,6 +234,12 @@ impl Control {
     #[must_use]
     pub fn scene(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         Self { name, wrong: Wrong::Scene(Arc::new(change)) }
+    }
+
+    /// A scene without an effect that it calls for.
+    #[must_use]
+    pub fn without(effect: Effect) -> Self {
+        Self { name: effect.absence(), wrong: Wrong::Scene(Arc::new(move |scene| effect.switch_off(scene))) }
     }
 
     /// A wrong scene for our own side of a comparison with another program.

@@ -7,6 +7,7 @@ pub mod bench;
 pub mod case;
 pub mod conformance;
 pub mod elastic;
+pub mod effect;
 pub mod figure;
 pub mod force_plot;
 pub mod gate;

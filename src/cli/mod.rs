@@ -5,6 +5,7 @@ mod checkpoint;
 mod compare;
 mod cost;
 mod deck;
+mod effects;
 mod exit;
 mod list;
 mod progress;
@@ -14,6 +15,7 @@ mod run;
 mod schema;
 mod select;
 mod simulate;
+mod stability;
 mod subject;
 
 use clap::{Parser, Subcommand};
@@ -49,6 +51,10 @@ enum Command {
     Compare(compare::Arguments),
     /// Measure what accuracy costs: error against time, each solver over its knobs.
     Cost(cost::Arguments),
+    /// Find the largest stable step of every solver, and try hard cases.
+    Stability(stability::Arguments),
+    /// Tell what each effect is worth: each switched off in turn, each absent one compiled in.
+    Effects(effects::Arguments),
     /// Print the JSON schema of scene files.
     Schema,
     /// Make the page and figures again from a report's directory, without any solver.
@@ -67,6 +73,8 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
+        Some(Command::Stability(arguments)) => stability::stability(&arguments),
+        Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Report(arguments)) => report::report(&arguments),
     };

@@ -1,12 +1,15 @@
-//! The three studies: what accuracy costs ([`cost`]), what stays stable, what each effect is worth.
+//! The three studies: what accuracy costs ([`cost`]), what stays stable ([`stability`]), what each effect is worth
+//! ([`effects`]).
 //!
 //! Each goes through its pieces one by one, keeps every finished piece on a [`shelf`], and takes from there what was
 //! finished before: a study that was ended goes on where it stopped.
 
 pub mod clock;
 pub mod cost;
+pub mod effects;
 pub mod identity;
 pub mod shelf;
+pub mod stability;
 
 /// Someone who wants to know how far a study is.
 pub trait Follow {

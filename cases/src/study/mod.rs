@@ -1,4 +1,6 @@
-//! Rows of the studies, as data: what accuracy costs, what stays stable. Reports print and draw them without knowing any
-//! solver.
+//! Rows of the three studies, as data: what accuracy costs, what stays stable, what each effect is worth. Reports print
+//! and draw them without knowing any solver.
 
+pub mod ledger;
 pub mod point;
+pub mod stability;

@@ -1,11 +1,15 @@
 //! Reports of the three studies: what accuracy costs, what stays stable, what each effect is worth.
 
 pub mod cost;
+pub mod effects;
 mod page;
+pub mod stability;
 mod store;
 
 use crate::report::Provenance;
+use grainbench_cases::study::ledger::Entry;
 use grainbench_cases::study::point::{Change, Diagram};
+use grainbench_cases::study::stability::{Hard, Limit};
 use serde::{Deserialize, Serialize};
 
 pub use store::{STUDY_FILE, load_study, points_of, study_json, write_study};
@@ -24,12 +28,29 @@ pub struct Study {
     /// The session that this one was compared with.
     #[serde(default)]
     pub against: Option<String>,
+    /// Largest stable steps.
+    #[serde(default)]
+    pub limits: Vec<Limit>,
+    /// Hard cases.
+    #[serde(default)]
+    pub hard: Vec<Hard>,
+    /// The ledger of effects.
+    #[serde(default)]
+    pub ledger: Vec<Entry>,
 }
 
 impl Study {
     /// An empty one.
     #[must_use]
     pub const fn new(provenance: Provenance) -> Self {
-        Self { provenance, diagrams: Vec::new(), changes: Vec::new(), against: None }
+        Self {
+            provenance,
+            diagrams: Vec::new(),
+            changes: Vec::new(),
+            against: None,
+            limits: Vec::new(),
+            hard: Vec::new(),
+            ledger: Vec::new(),
+        }
     }
 }

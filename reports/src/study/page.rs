@@ -1,6 +1,6 @@
 //! The page of a study.
 
-use super::{Study, cost};
+use super::{Study, cost, effects, stability};
 use crate::number;
 use crate::page::{provenance, scrolling, shell, slug, unique};
 use crate::plot::{self, DrawError};
@@ -23,13 +23,22 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
             sections.push(cost_section(diagram, &anchor)?);
         }
     }
+    let mut title = "what accuracy costs";
+    if !(study.limits.is_empty() && study.hard.is_empty()) {
+        title = "what stays stable";
+        sections.push(stability::render(study)?);
+    }
+    if !study.ledger.is_empty() {
+        title = "what each effect is worth";
+        sections.push(effects::render(study));
+    }
     let body = html! {
         main {
             @for section in &sections { (section) }
             (provenance::render(&study.provenance))
         }
     };
-    Ok(shell("grainbench · what accuracy costs", &body))
+    Ok(shell(&format!("grainbench · {title}"), &body))
 }
 
 /// A figure with its caption.

@@ -1,12 +1,14 @@
 //! The files of a study: written whole, read back to redraw or to compare.
 
-use super::{Study, cost, page};
+use super::{Study, cost, page, stability};
 use crate::report::Provenance;
 use crate::staged::StagedDir;
 use crate::store::{LoadError, SaveError};
 use crate::{page as shared, plot};
 use grainbench_cases::figure::Figure;
+use grainbench_cases::study::ledger::Entry;
 use grainbench_cases::study::point::Point;
+use grainbench_cases::study::stability::{Hard, Limit};
 use grainbench_cases::verdict::{Control, Verdict};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -24,6 +26,15 @@ struct Results<'a> {
     verdicts: [Verdict; 0],
     controls: [Control; 0],
     points: Vec<&'a Point>,
+    stability: Stability<'a>,
+    effects: &'a [Entry],
+}
+
+/// What stays stable.
+#[derive(Serialize)]
+struct Stability<'a> {
+    limits: &'a [Limit],
+    hard: &'a [Hard],
 }
 
 /// `results.json` of a study.
@@ -36,6 +47,8 @@ pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
         verdicts: [],
         controls: [],
         points: study.diagrams.iter().flat_map(|diagram| &diagram.points).collect(),
+        stability: Stability { limits: &study.limits, hard: &study.hard },
+        effects: &study.ledger,
     };
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
@@ -69,7 +82,8 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
         let figure = cost::figure(diagram);
         (format!("cost-{}-{}-{}", diagram.case, diagram.variant, figure.name), figure)
     });
-    diagrams.chain(cost::scatters(study).into_iter().map(|figure| (figure.name.clone(), figure))).collect()
+    let others = cost::scatters(study).into_iter().chain(stability::figures(study));
+    diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 
 /// Reads the study that [`write_study`] left in a directory.

@@ -6,6 +6,7 @@ use crate::contact::rolling::{ElasticPlastic, FreeRolling};
 use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
 use crate::convention::{Convention, CoulombCap, History};
 use crate::simulation::{Kernel, Simulation};
+use crate::stability::damped_step;
 use grainbench_scene::checkpoint::{Checkpoint, RunIdentity};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Provenance, Record};
@@ -126,6 +127,18 @@ impl Dem {
         Ok(())
     }
 
+    /// A dashpot near or above critical damping takes energy in at steps that springs alone would bear, and the run would go
+    /// on as if nothing were wrong.
+    fn refuse_lagging_dashpots(&self, scene: &Scene, time_step: f64) -> Result<(), RunError> {
+        let (damped, undamped) = damped_step(scene);
+        if time_step > damped && time_step <= undamped {
+            return Err(self.resolution_error(format!(
+                "expected at most {damped:.4e} s, where the dashpot of a contact is stable, found a step of {time_step:.4e} s"
+            )));
+        }
+        Ok(())
+    }
+
     fn resolution_error(&self, reason: String) -> RunError {
         RunError::Resolution { solver: self.name(), reason }
     }
@@ -167,6 +180,7 @@ impl Dem {
     ) -> Result<Record, RunError> {
         self.refuse(scene)?;
         let (time_step, steps) = self.steps(scene, resolution)?;
+        self.refuse_lagging_dashpots(scene, time_step)?;
         let mut simulation = self.start(scene, time_step)?;
         let identity = self.identity(scene, time_step, steps, simulation.layout());
         let mut recorder = match from {

@@ -20,3 +20,46 @@ pub fn stable_fraction(scene: &Scene) -> f64 {
     let worst = scene.laws.iter().flatten().map(ratio).fold(0.0, f64::max);
     1.0 / (contacts * (1.0 + worst * (1.0 + 1.0 / scene.grain_shape.inertia_factor()))).sqrt()
 }
+
+/// The largest step (s) at which a dashpot at a single contact is stable, and the largest without the dashpot, of the contact
+/// that bears least; both infinite where nothing is damped.
+///
+/// The dashpot feels the velocity of half a step before: λ² − (2 − θ² − 2ζθ)λ + 1 − 2ζθ = 0 with θ = ωΔt, ω² = k/m* and
+/// ζ = c/(2√(k m*)) reaches λ = −1 at θ = 2(√(1 + ζ²) − ζ), half of the undamped limit 2 already at ζ = 3/4.
+#[must_use]
+pub fn damped_step(scene: &Scene) -> (f64, f64) {
+    // The lightest grains of every material.
+    let mut lightest = vec![[f64::INFINITY; 2]; scene.materials.len()];
+    for grain in &scene.grains {
+        let [first, second] = &mut lightest[usize::from(grain.material)];
+        if grain.mass < *first {
+            (*first, *second) = (grain.mass, *first);
+        } else {
+            *second = second.min(grain.mass);
+        }
+    }
+    let mut least = (f64::INFINITY, f64::INFINITY);
+    let mut bear = |law: Option<&ContactLaw>, mass: f64| {
+        let Some(law) =
+            law.filter(|law| mass.is_finite() && mass > 0.0 && !law.is_hertz() && law.normal_stiffness > 0.0)
+        else {
+            return;
+        };
+        let frequency = (law.normal_stiffness / mass).sqrt();
+        let ratio = 0.5 * (law.stiffness_damping * frequency + law.normal_damping / frequency) + law.damping_ratio;
+        let step = 2.0 / frequency * ((1.0 + ratio * ratio).sqrt() - ratio);
+        if ratio > 0.0 && step < least.0 {
+            least = (step, 2.0 / frequency);
+        }
+    };
+    for (a, &[first, second]) in lightest.iter().enumerate() {
+        bear(scene.law(a as u16, a as u16), 1.0 / (1.0 / first + 1.0 / second));
+        for (b, &[other, _]) in lightest.iter().enumerate().skip(a + 1) {
+            bear(scene.law(a as u16, b as u16), 1.0 / (1.0 / first + 1.0 / other));
+        }
+        for wall in &scene.walls {
+            bear(scene.law(a as u16, wall.material), first);
+        }
+    }
+    least
+}

@@ -107,15 +107,15 @@ fn grid(lane: &Lane) -> Vec<Turn> {
 /// About how long a run takes (s), by counts alone, so that every machine draws the same line between what is run and
 /// what is only run when all is asked for.
 #[must_use]
-pub fn nominal_seconds(scene: &Scene, turn: &Turn) -> f64 {
+pub fn nominal_seconds(scene: &Scene, resolution: &Resolution) -> f64 {
     let grains = scene.grains.len() as f64;
     let seconds = match scene.duration {
         Duration::Seconds(seconds) => Some(seconds),
         Duration::Cycles(_) => None,
     };
-    match turn.resolution {
+    match *resolution {
         Resolution::CriticalFraction(_) | Resolution::TimeStep(_) => {
-            turn.resolution.steps(scene).map_or(0.0, |(_, steps)| steps as f64 * (60e-9 * grains + 60e-9))
+            resolution.steps(scene).map_or(0.0, |(_, steps)| steps as f64 * (60e-9 * grains + 60e-9))
         }
         Resolution::Rigid { step, substeps, .. } => {
             seconds.map_or(0.0, |time| (time / step).max(1.0) * f64::from(substeps) * (3e-6 * grains + 2e-6))

@@ -139,7 +139,7 @@ impl<'a> Meter<'a> {
                 if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || name == turn.line) {
                     continue;
                 }
-                if !self.wanted.all && knobs::nominal_seconds(&scene, &turn) > LONGEST {
+                if !self.wanted.all && knobs::nominal_seconds(&scene, &turn.resolution) > LONGEST {
                     continue;
                 }
                 let solver =

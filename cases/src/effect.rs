@@ -1,0 +1,198 @@
+//! Effects as switches: what turned each one on, a scene without it, and a scene in which it is compiled in and does nothing.
+
+use grainbench_scene::motion::{Moment, Phase};
+use grainbench_scene::scene::{ContactLaw, Scene};
+use nalgebra::Vector3;
+
+/// An effect that a scene may call for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Effect {
+    /// Tangential forces, and the rotation that they drive.
+    Friction,
+    /// Strength of a contact without load.
+    Cohesion,
+    /// Moments against rolling.
+    RollingResistance,
+    /// Dashpots at contacts, a coefficient of restitution among them.
+    ContactDamping,
+    /// Mass-proportional damping of every grain.
+    GlobalDamping,
+    /// Gravity.
+    Gravity,
+    /// Periodic axes.
+    PeriodicAxes,
+    /// Walls that move.
+    MovingWalls,
+}
+
+impl Effect {
+    /// Every one.
+    pub const ALL: [Self; 8] = [
+        Self::Friction,
+        Self::Cohesion,
+        Self::RollingResistance,
+        Self::ContactDamping,
+        Self::GlobalDamping,
+        Self::Gravity,
+        Self::PeriodicAxes,
+        Self::MovingWalls,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Friction => "friction and rotation",
+            Self::Cohesion => "cohesion",
+            Self::RollingResistance => "rolling resistance",
+            Self::ContactDamping => "contact damping",
+            Self::GlobalDamping => "global damping",
+            Self::Gravity => "gravity",
+            Self::PeriodicAxes => "periodic axes",
+            Self::MovingWalls => "moving walls",
+        }
+    }
+
+    /// What a negative control says that leaves it out.
+    #[must_use]
+    pub const fn absence(self) -> &'static str {
+        match self {
+            Self::Friction => "without friction and rotation",
+            Self::Cohesion => "without cohesion",
+            Self::RollingResistance => "without rolling resistance",
+            Self::ContactDamping => "without contact damping",
+            Self::GlobalDamping => "without global damping",
+            Self::Gravity => "without gravity",
+            Self::PeriodicAxes => "without periodic axes",
+            Self::MovingWalls => "with walls that stand still",
+        }
+    }
+
+    /// The key of the scene that turned it on, with its value; none where it is off.
+    #[must_use]
+    pub fn key(self, scene: &Scene) -> Option<String> {
+        match self {
+            Self::Friction => of_law(scene, "friction", |law| law.friction),
+            Self::Cohesion => of_law(scene, "cohesion", |law| law.cohesion),
+            Self::RollingResistance => of_law(scene, "rolling_friction", |law| law.rolling_friction),
+            Self::ContactDamping => [
+                ("normal_damping", (|law| law.normal_damping) as fn(&ContactLaw) -> f64),
+                ("stiffness_damping", |law| law.stiffness_damping),
+                ("restitution", |law| law.damping_ratio),
+                ("tangential_damping", |law| if law.has_friction() { law.tangential_damping } else { 0.0 }),
+            ]
+            .into_iter()
+            .find_map(|(key, value)| of_law(scene, key, value)),
+            Self::GlobalDamping => {
+                (scene.global_damping != 0.0).then(|| format!("global_damping = {}", scene.global_damping))
+            }
+            Self::Gravity => (scene.gravity.norm() > 0.0).then(|| {
+                let gravity: Vec<String> = scene.gravity.iter().map(|part| format!("{part:.4}")).collect();
+                format!("gravity = [{}]", gravity[..scene.dimension.count()].join(", "))
+            }),
+            Self::PeriodicAxes => scene.is_periodic().then(|| "domain.periodic".to_owned()),
+            Self::MovingWalls => {
+                let wall = scene.walls.iter().find(|wall| wall.motion.is_moving())?;
+                Some(format!("walls.{}.motion", wall.name))
+            }
+        }
+    }
+
+    /// Whether the scene calls for it.
+    #[must_use]
+    pub fn is_on(self, scene: &Scene) -> bool {
+        self.key(scene).is_some()
+    }
+
+    /// Switches it off.
+    pub fn switch_off(self, scene: &mut Scene) {
+        match self {
+            Self::Friction => scene.change_laws(|law| {
+                (law.friction, law.cohesion, law.rolling_friction) = (0.0, 0.0, 0.0);
+            }),
+            Self::Cohesion => scene.change_laws(|law| law.cohesion = 0.0),
+            Self::RollingResistance => scene.change_laws(|law| law.rolling_friction = 0.0),
+            Self::ContactDamping => scene.change_laws(|law| {
+                (law.normal_damping, law.stiffness_damping) = (0.0, 0.0);
+                (law.tangential_damping, law.damping_ratio) = (0.0, 0.0);
+            }),
+            Self::GlobalDamping => scene.global_damping = 0.0,
+            Self::Gravity => scene.gravity = Vector3::zeros(),
+            Self::PeriodicAxes => {
+                if let Some(domain) = &mut scene.domain {
+                    domain.periodic = [false; 3];
+                }
+            }
+            Self::MovingWalls => scene.walls.iter_mut().for_each(|wall| wall.motion.phases.clear()),
+        }
+    }
+
+    /// Switches it on with a value that does nothing: a law between grains of a material that nobody has, a rate that is lost
+    /// when it is added to one, a motion that starts after the end. Gravity is a vector that is always added: of it there is
+    /// only the other zero. Whether there is such a value.
+    #[must_use]
+    pub fn switch_on_idly(self, scene: &mut Scene) -> bool {
+        match self {
+            Self::Friction | Self::Cohesion => idle_law(scene, |law| {
+                law.friction = 0.5;
+                law.tangential_stiffness = law.normal_stiffness;
+            }),
+            Self::RollingResistance => idle_law(scene, |law| {
+                law.friction = 0.5;
+                law.tangential_stiffness = law.normal_stiffness;
+                law.rolling_friction = 0.1;
+            }),
+            Self::ContactDamping => idle_law(scene, |law| law.normal_damping = 1.0),
+            Self::GlobalDamping => {
+                scene.global_damping = f64::MIN_POSITIVE;
+                true
+            }
+            Self::Gravity => {
+                scene.gravity = -Vector3::zeros();
+                true
+            }
+            Self::MovingWalls => match scene.walls.first_mut() {
+                Some(wall) => {
+                    // It would move, long after the run.
+                    let velocity = Vector3::new(1.0, 0.0, 0.0);
+                    let (start, stop) = (Moment::Seconds(f64::MAX), Moment::Never);
+                    wall.motion.phases.push(Phase { velocity, spin: Vector3::zeros(), start, stop });
+                    true
+                }
+                None => false,
+            },
+            // A periodic box changes where grains are, however large it is.
+            Self::PeriodicAxes => false,
+        }
+    }
+}
+
+/// The first law in which a value is not zero.
+fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Option<String> {
+    let count = scene.materials.len();
+    scene.laws.iter().enumerate().find_map(|(at, law)| {
+        let value = value(law.as_ref()?);
+        let (a, b) = (&scene.materials[at / count], &scene.materials[at % count]);
+        (value != 0.0).then(|| format!("contacts of {a} and {b}: {key} = {value}"))
+    })
+}
+
+/// Adds a material that no grain has, with a law of its own.
+fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
+    let Some(mut law) = scene.laws.iter().flatten().next().copied() else { return false };
+    change(&mut law);
+    let count = scene.materials.len();
+    let mut laws = vec![None; (count + 1) * (count + 1)];
+    for a in 0..count {
+        for b in 0..count {
+            laws[a * (count + 1) + b] = scene.laws[a * count + b];
+        }
+    }
+    laws[(count + 1) * (count + 1) - 1] = Some(law);
+    scene.laws = laws;
+    scene.materials.push("idle".to_owned());
+    if !scene.deformable.is_empty() {
+        scene.deformable.push(None);
+    }
+    true
+}

@@ -1,0 +1,188 @@
+//! `grainbench stability`: the largest stable steps, and hard cases.
+
+use super::cost::Follower;
+use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::provenance::provenance;
+use grainbench::cases::solvers;
+use grainbench::cases::study::stability::{Hardness, Limit};
+use grainbench::reports::number;
+use grainbench::reports::study::{Study, study_json, write_study};
+use grainbench::studies::shelf::Shelf;
+use grainbench::studies::stability::assembly::{self, Assembly};
+use grainbench::studies::stability::hard::{self, HardCase};
+use grainbench::studies::stability::limit;
+use grainbench::studies::{Follow, identity};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Name of the case in which the method with a grid is asked for its limit.
+const BAR: &str = "vibrating-bar";
+/// Cells over its length.
+const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
+/// The report is written at most this often.
+const EVERY: Duration = Duration::from_secs(5);
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Assemblies and hard cases, by name or the beginning of one; all when none is named.
+    #[arg(value_name = "CASE")]
+    cases: Vec<String>,
+    /// Only this solver; may be given more than once.
+    #[arg(long, value_name = "NAME")]
+    solver: Vec<String>,
+    /// Do everything anew, also what was finished before.
+    #[arg(long)]
+    fresh: bool,
+    /// Directory for the report; finished pieces are kept in it too.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-stability")]
+    out: PathBuf,
+    /// Print the results as JSON instead of lines.
+    #[arg(long)]
+    json: bool,
+}
+
+/// One piece of work.
+enum Piece<'a> {
+    Assembly(&'a Assembly, &'static str),
+    Bar(&'static str, f64),
+    Hard(&'a HardCase, &'static str),
+}
+
+/// Finds the limits, tries the hard cases and writes the report, now and then as far as it is.
+pub(crate) fn stability(arguments: &Arguments) -> Outcome {
+    let assemblies = assembly::all()?;
+    let hard = hard::all();
+    let pieces = select(arguments, &assemblies, &hard)?;
+    check_writable(&arguments.out)?;
+    let shelf = Shelf::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::input)?;
+    let program = identity::of_this_program();
+    let start = Instant::now();
+    let mut written = start;
+    let mut follower = Follower::new(pieces.len() as u64, "limits and cases");
+    let mut words = vec!["stability".to_owned()];
+    words.extend(arguments.cases.iter().cloned());
+    words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
+    let mut study = Study::new(provenance(words.clone(), 0.0));
+    for (at, piece) in pieces.iter().enumerate() {
+        let reused = do_piece(piece, &program, &shelf, &mut study, &mut follower)?;
+        follower.done(reused);
+        let last = at + 1 == pieces.len();
+        if last || written.elapsed() > EVERY {
+            let mut options = words.clone();
+            if !last {
+                options.push(format!("unfinished: {} of {} limits and cases", at + 1, pieces.len()));
+            }
+            study.provenance = provenance(options, start.elapsed().as_secs_f64());
+            write_study(&arguments.out, &study).map_err(Fault::input)?;
+            written = Instant::now();
+        }
+    }
+    let reused = follower.end();
+    if arguments.json {
+        print(&study_json(&study).map_err(Fault::input)?)?;
+    } else {
+        let end =
+            format!("{reused} of {} were done before\n{}\n", pieces.len(), arguments.out.join("index.html").display());
+        print(&(text(&study) + &end))?;
+    }
+    let red = |solver: &str| !solvers::is_program(solver) && solver != "rigid";
+    let wrong = study.hard.iter().any(|row| row.standing == Hardness::QuietlyWrong && red(&row.solver));
+    Ok(if wrong { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+}
+
+fn do_piece(
+    piece: &Piece<'_>,
+    program: &str,
+    shelf: &Shelf,
+    study: &mut Study,
+    follower: &mut Follower,
+) -> Result<bool, Fault> {
+    match *piece {
+        Piece::Assembly(assembly, solver) => {
+            follower.now(&format!("{} · {solver}", assembly.name));
+            let (limit, reused) = limit::of_assembly(program, assembly, solver, shelf).map_err(Fault::input)?;
+            study.limits.push(limit);
+            Ok(reused)
+        }
+        Piece::Bar(setting, cells) => {
+            follower.now(&format!("{BAR} · {setting}"));
+            let (limit, reused) = limit::of_bar(program, setting, cells, shelf).map_err(Fault::input)?;
+            study.limits.push(limit);
+            Ok(reused)
+        }
+        Piece::Hard(case, solver) => {
+            follower.now(&format!("{} · {solver}", case.name));
+            let (row, reused) = hard::verdict(program, case, solver, shelf).map_err(Fault::input)?;
+            study.hard.push(row);
+            Ok(reused)
+        }
+    }
+}
+
+/// What the command line means: names are those of assemblies, with `-` for spaces, of the bar, and of hard cases.
+fn select<'a>(
+    arguments: &Arguments,
+    assemblies: &'a [Assembly],
+    hard: &'a [HardCase],
+) -> Result<Vec<Piece<'a>>, Fault> {
+    let named = |name: &str| name.replace(' ', "-");
+    let mut known: Vec<String> = assemblies.iter().map(|assembly| named(assembly.name)).collect();
+    known.push(BAR.to_owned());
+    known.extend(hard.iter().map(|case| case.name.clone()));
+    known.dedup();
+    if let Some(name) =
+        arguments.cases.iter().find(|name| name.is_empty() || !known.iter().any(|known| known.starts_with(*name)))
+    {
+        return Err(Fault::unknown("an assembly or a hard case", name, known.iter().map(String::as_str)));
+    }
+    let solvers = solvers::names();
+    if let Some(name) = arguments.solver.iter().find(|name| solvers::by_name(name).is_none()) {
+        return Err(Fault::unknown("a solver", name, solvers.iter().map(String::as_str)));
+    }
+    let case = |name: &str| arguments.cases.is_empty() || arguments.cases.iter().any(|wanted| name.starts_with(wanted));
+    let solver = |name: &str| arguments.solver.is_empty() || arguments.solver.iter().any(|wanted| wanted == name);
+    let mut pieces = Vec::new();
+    for assembly in assemblies.iter().filter(|assembly| case(&named(assembly.name))) {
+        pieces
+            .extend(limit::SPRINGS.into_iter().filter(|name| solver(name)).map(|name| Piece::Assembly(assembly, name)));
+    }
+    for setting in limit::GRIDS.into_iter().filter(|name| case(BAR) && solver(name)) {
+        pieces.extend(BAR_CELLS.map(|cells| Piece::Bar(setting, cells)));
+    }
+    for hard in hard.iter().filter(|hard| case(&hard.name)) {
+        pieces.extend(hard::SOLVERS.into_iter().filter(|name| solver(name)).map(|name| Piece::Hard(hard, name)));
+    }
+    if pieces.is_empty() {
+        return Err(Fault::input(
+            "expected at least one case that one of the solvers named is asked about, found none",
+        ));
+    }
+    Ok(pieces)
+}
+
+fn text(study: &Study) -> String {
+    let mut text = String::new();
+    for Limit { scene, at, solver, unit, found, exact, error, detail, .. } in &study.limits {
+        let number = |value: &Option<f64>| value.map_or("—".to_owned(), |value| number::significant(value, 4));
+        let at = at.map_or(String::new(), |at| format!(" {}", number::significant(at, 3)));
+        let exact = exact.map_or(String::new(), |_| format!(", exact {} ({})", number(exact), number::error(*error)));
+        text.push_str(&format!(
+            "{:<32} {solver:<22} {} {unit}{exact}; above: {detail}\n",
+            format!("{scene}{at}"),
+            number(found)
+        ));
+    }
+    for row in &study.hard {
+        let detail = if row.detail.is_empty() { String::new() } else { format!(": {}", row.detail) };
+        text.push_str(&format!(
+            "{:<32} {:<14} {} [{}]{detail}\n",
+            row.case,
+            row.solver,
+            row.standing.word(),
+            row.resolution
+        ));
+    }
+    text
+}

@@ -1,0 +1,195 @@
+//! The ledger of a case.
+
+use super::idle::try_idly;
+use crate::identity;
+use crate::shelf::Shelf;
+use grainbench_cases::bench::Bench;
+use grainbench_cases::case::Case;
+use grainbench_cases::effect::Effect;
+use grainbench_cases::gate::{Done, Gate, Run, Standing};
+use grainbench_cases::solvers;
+use grainbench_cases::study::ledger::{Entry, Shift, Worth};
+use grainbench_cases::subject::Method;
+use grainbench_reports::WriteError;
+use grainbench_scene::record::Record;
+use grainbench_scene::solver::{RunError, Solver};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// One scene of a case with one effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Variant of the scene.
+    pub variant: &'static str,
+    /// The effect.
+    pub effect: Effect,
+    /// The key that turned it on; none where it is off.
+    pub key: Option<String>,
+}
+
+/// A case at work: runs with an effect switched off are done once, whoever asks.
+pub struct Ledger {
+    case: &'static Case,
+    bench: Bench,
+    gates: Vec<Gate>,
+    /// By effect and run.
+    without: BTreeMap<(Effect, String), Result<Done, RunError>>,
+}
+
+impl Ledger {
+    /// The ledger of a case: of its gates that pass, with solvers of ours.
+    #[must_use]
+    pub fn new(case: &'static Case) -> Self {
+        let mut gates = (case.gates)();
+        gates.retain(|gate| {
+            gate.standing() == Standing::Passes && gate.runs.iter().all(|run| !solvers::is_program(run.solver))
+        });
+        Self { case, bench: Bench::new(case), gates, without: BTreeMap::new() }
+    }
+
+    /// Every variant that gates look at with every effect, on or off.
+    #[must_use]
+    pub fn pieces(&self) -> Vec<Piece> {
+        let mut pieces: Vec<Piece> = Vec::new();
+        for run in self.gates.iter().flat_map(|gate| &gate.runs) {
+            let Ok(scene) = self.bench.scene(run) else { continue };
+            for effect in Effect::ALL {
+                let key = effect.key(&scene);
+                match pieces.iter_mut().find(|piece| piece.variant == run.variant && piece.effect == effect) {
+                    // A change that belongs to a claim may turn on what the scene as it stands does not call for.
+                    Some(piece) => piece.key = piece.key.take().or(key),
+                    None => pieces.push(Piece { variant: run.variant, effect, key }),
+                }
+            }
+        }
+        pieces
+    }
+
+    /// The entry of a piece, from the shelf where it stands there, and whether it did; nothing of an absent effect that
+    /// has no value that does nothing.
+    ///
+    /// # Errors
+    /// When it cannot be kept.
+    pub fn entry(&mut self, program: &str, piece: &Piece, shelf: &Shelf) -> Result<(Option<Entry>, bool), WriteError> {
+        let name = identity::of_words(program, &["effect", self.case.name, piece.variant, piece.effect.word()]);
+        if let Some(entry) = shelf.take(&name) {
+            return Ok((entry, true));
+        }
+        let entry = if piece.key.is_some() { Some(self.switched_off(piece)) } else { self.idle(piece) };
+        shelf.put(&name, &entry)?;
+        Ok((entry, false))
+    }
+
+    /// Whether some gate of the case turns red when the effect is switched off: the first that does.
+    #[must_use]
+    pub fn catches(&mut self, effect: Effect) -> Option<String> {
+        let mut gates = self.gates.clone();
+        gates.retain(|gate| self.calls_for(gate, effect));
+        gates.iter().find_map(|gate| {
+            let shift = self.shift(gate, effect);
+            shift.red.then(|| format!("{} · {}", shift.solver, shift.quantity))
+        })
+    }
+
+    fn calls_for(&self, gate: &Gate, effect: Effect) -> bool {
+        gate.runs.iter().any(|run| self.bench.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
+    }
+
+    fn blank(&self, piece: &Piece) -> Entry {
+        Entry {
+            case: self.case.name.to_owned(),
+            variant: piece.variant.to_owned(),
+            effect: piece.effect.word().to_owned(),
+            on: piece.key.is_some(),
+            key: piece.key.clone().unwrap_or_default(),
+            worth: Worth::Untold,
+            shifts: Vec::new(),
+            counts: None,
+            time: None,
+        }
+    }
+
+    /// Asks every gate of the variant without the effect.
+    fn switched_off(&mut self, piece: &Piece) -> Entry {
+        let mut entry = self.blank(piece);
+        let gates: Vec<Gate> = self
+            .gates
+            .iter()
+            .filter(|gate| gate.runs[0].variant == piece.variant && self.calls_for(gate, piece.effect))
+            .cloned()
+            .collect();
+        for gate in &gates {
+            entry.shifts.push(self.shift(gate, piece.effect));
+        }
+        let red = entry.shifts.iter().any(|shift| shift.red);
+        entry.worth = match (red, entry.shifts.is_empty()) {
+            (true, _) => Worth::Needed,
+            (false, false) => Worth::NotWorthSimulating,
+            (false, true) => Worth::Untold,
+        };
+        if let Some(run) = gates.first().map(|gate| &gate.runs[0]) {
+            let with = self.bench.run(run);
+            if let (Ok(with), Ok(without)) = (with, self.run_without(run, piece.effect)) {
+                let work = |record: &Record| (record.cost.particle_steps + record.cost.contact_evaluations) as f64;
+                let time = |record: &Record| record.cost.wall_seconds;
+                entry.counts = Some(work(&with.record) / work(&without.record).max(1.0));
+                entry.time = Some(time(&with.record) / time(&without.record).max(f64::MIN_POSITIVE));
+            }
+        }
+        entry
+    }
+
+    /// A gate with and without an effect.
+    fn shift(&mut self, gate: &Gate, effect: Effect) -> Shift {
+        let with = self.bench.judge(gate).error;
+        let done: Result<Vec<Done>, RunError> = gate.runs.iter().map(|run| self.run_without(run, effect)).collect();
+        // What cannot be run or measured any more is red, as in any control.
+        let without = done
+            .ok()
+            .and_then(|done| (gate.measure)(&done).ok())
+            .map(|measured| measured.error())
+            .filter(|error| error.is_finite());
+        Shift {
+            quantity: gate.quantity.clone(),
+            solver: gate.runs[0].solver.to_owned(),
+            with,
+            without,
+            allowed: gate.allowed,
+            red: without.is_none_or(|error| error.abs() > gate.allowed),
+        }
+    }
+
+    /// A run of a gate whose solver is given the scene without the effect; the scene of the claim stays what it was.
+    fn run_without(&mut self, run: &Run, effect: Effect) -> Result<Done, RunError> {
+        let key = (effect, run.key());
+        if let Some(done) = self.without.get(&key) {
+            return done.clone();
+        }
+        let done = self.simulate_without(run, effect);
+        self.without.insert(key, done.clone());
+        done
+    }
+
+    fn simulate_without(&self, run: &Run, effect: Effect) -> Result<Done, RunError> {
+        let scene = self.bench.scene(run)?;
+        let mut given = scene.clone();
+        effect.switch_off(&mut given);
+        let unknown =
+            || RunError::Unsupported { solver: run.solver.to_owned(), reason: "there is no such solver".to_owned() };
+        let solver: Box<dyn Solver> = solvers::by_name(run.solver).ok_or_else(unknown)?;
+        let record = solver.run(&given, &run.resolution, &mut ())?;
+        Ok(Done { scene: Arc::new(scene), record: Arc::new(record) })
+    }
+
+    /// The first run on springs of the variant, with the effect compiled in.
+    fn idle(&self, piece: &Piece) -> Option<Entry> {
+        let is_ours = |run: &&Run| run.variant == piece.variant && Method::of(run.solver) == Some(Method::Dem);
+        let run = self.gates.iter().flat_map(|gate| &gate.runs).find(is_ours)?;
+        let scene = self.bench.scene(run).ok()?;
+        let idle = try_idly(run.solver, &scene, &run.resolution, piece.effect).ok()??;
+        let mut entry = self.blank(piece);
+        entry.worth = if idle.same { Worth::Inert } else { Worth::NotInert };
+        (entry.counts, entry.time) = (Some(idle.counts), Some(idle.time));
+        Some(entry)
+    }
+}

@@ -1,0 +1,147 @@
+//! Ratios and units far from one.
+
+use super::{HardCase, case, end, head_on, kinetic, kinetic_at_start, near};
+use crate::stability::failure::Failure;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+
+/// Two discs, elastic, head-on: radii, densities, length and speed.
+struct Impact {
+    radii: [f64; 2],
+    densities: [f64; 2],
+    length: f64,
+    speed: f64,
+    stiffness: f64,
+}
+
+impl Impact {
+    /// The duration covers the gap, the contact and as much again.
+    fn text(&self) -> String {
+        let &Self { radii: [a, b], densities: [first, second], length, speed, stiffness } = self;
+        let mass = |radius: f64, density: f64| density * std::f64::consts::PI * (radius * length).powi(2);
+        let reduced = 1.0 / (1.0 / mass(a, first) + 1.0 / mass(b, second));
+        let gap = 0.02 * a.min(b) * length;
+        let duration = 3.0 * (gap / speed + std::f64::consts::PI * (reduced / stiffness).sqrt());
+        // Moduli whose waves cross a grain in a hundredth of the time that it takes to fly past it.
+        let modulus = 1e4 * first.max(second) * speed * speed;
+        format!(
+            "title = 'Head-on'\ndimension = 2\nduration = {duration:?}\n\
+             [materials.a]\ndensity = {first:?}\nyoung_modulus = {modulus:?}\npoisson_ratio = 0.3\n\
+             [materials.b]\ndensity = {second:?}\nyoung_modulus = {modulus:?}\npoisson_ratio = 0.3\n\
+             [contacts.aa]\nbetween = ['a', 'a']\nnormal_stiffness = {stiffness:?}\n\
+             [contacts.ab]\nbetween = ['a', 'b']\nnormal_stiffness = {stiffness:?}\n\
+             [contacts.bb]\nbetween = ['b', 'b']\nnormal_stiffness = {stiffness:?}\n\
+             [grains.a]\nmaterial = 'a'\nradius = {:?}\nposition = [0.0, 0.0]\nvelocity = [{speed:?}, 0.0]\n\
+             [grains.b]\nmaterial = 'b'\nradius = {:?}\nposition = [{:?}, 0.0]\n[output]\nevery = {duration:?}\n\
+             [probes]\nall = {{ system = true }}\n",
+            a * length,
+            b * length,
+            (a + b) * length + gap,
+        )
+    }
+}
+
+/// Impact at such a speed that the deepest overlap is a hundredth of a radius.
+fn impact(radii: [f64; 2], densities: [f64; 2], length: f64) -> String {
+    let speed = length;
+    let mass = |radius: f64, density: f64| density * std::f64::consts::PI * (radius * length).powi(2);
+    let reduced = 1.0 / (1.0 / mass(radii[0], densities[0]) + 1.0 / mass(radii[1], densities[1]));
+    let overlap = 0.01 * radii[0].min(radii[1]) * length;
+    let stiffness = reduced * (speed / overlap).powi(2);
+    Impact { radii, densities, length, speed, stiffness }.text()
+}
+
+pub(super) fn cases() -> Vec<HardCase> {
+    const MOMENTA: &str =
+        "after an elastic head-on impact both velocities are those of two points, to 3 % of the speed of approach";
+    let mut cases = Vec::new();
+    for (exponent, ratio) in [("1e-6", 1e-6), ("1e-3", 1e-3), ("1e3", 1e3), ("1e6", 1e6)] {
+        cases.push(case(
+            format!("mass-ratio-{exponent}"),
+            MOMENTA,
+            &impact([1.0, 1.0], [1e3, 1e3 * ratio], 1.0),
+            head_on,
+        ));
+    }
+    cases.push(case("size-ratio-100", MOMENTA, &impact([1.0, 0.01], [1e3, 1e3], 1.0), head_on));
+    for (name, length) in [("units-1e-9", 1e-9), ("units-1e9", 1e9)] {
+        cases.push(case(name, MOMENTA, &impact([1.0, 0.8], [1e3, 1e3], length), head_on));
+    }
+    cases.push(case(
+        "stiffness-ratio-1e4",
+        "momentum to 1e-9 and energy to 1 % in a row of three discs whose contacts differ in stiffness by 1e4",
+        STIFFNESS,
+        three_in_a_row,
+    ));
+    for ratio in [0.9, 1.0, 1.5, 10.0] {
+        cases.push(case(
+            format!("damping-{ratio}-of-critical"),
+            "two discs part with at most 20 % of the speed at which they met, and never faster",
+            &damped(ratio),
+            damped_impact,
+        ));
+    }
+    cases.push(case(
+        "high-spin",
+        "a disc with a surface speed of 1e4 √(gR) is driven forwards and gains no energy",
+        SPIN,
+        spin,
+    ));
+    cases
+}
+
+const STIFFNESS: &str = "title = 'Three in a row'\ndimension = 2\nduration = 0.5\n\
+    [materials.soft]\ndensity = 1000.0\n[materials.hard]\ndensity = 1000.0\n\
+    [contacts.ss]\nbetween = ['soft', 'soft']\nnormal_stiffness = 1.0e6\n\
+    [contacts.sh]\nbetween = ['soft', 'hard']\nnormal_stiffness = 1.0e6\n\
+    [contacts.hh]\nbetween = ['hard', 'hard']\nnormal_stiffness = 1.0e10\n\
+    [grains.a]\nmaterial = 'soft'\nradius = 0.5\nposition = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n\
+    [grains.b]\nmaterial = 'hard'\nradius = 0.5\nposition = [1.01, 0.0]\n\
+    [grains.c]\nmaterial = 'hard'\nradius = 0.5\nposition = [2.02, 0.0]\n\
+    [output]\nevery = 0.5\n[probes]\nall = { system = true }\n";
+
+fn three_in_a_row(scene: &Scene, record: &Record) -> Result<(), Failure> {
+    let grains = end(record);
+    let (before, after) = (kinetic_at_start(scene), kinetic(grains, scene));
+    let momentum: f64 = grains.iter().map(|grain| grain.mass * grain.velocity.x).sum();
+    let start: f64 = scene.grains.iter().map(|grain| grain.mass * grain.velocity.x).sum();
+    near("momentum", momentum, start, 1e-9 * start)?;
+    near("energy", after, before, 0.01 * before)
+}
+
+/// γ_n = 2ζ√(k/m*) of unit masses, m* = 1/2 and k = 1e4.
+fn damped(ratio: f64) -> String {
+    format!(
+        "title = 'Damped impact'\ndimension = 2\nduration = 2.0\nmaterials.m.density = {:?}\n\
+         [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e4\nnormal_damping = {:?}\n\
+         [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-1.001, 0.0]\nvelocity = [1.0, 0.0]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 1.0\nposition = [1.001, 0.0]\nvelocity = [-1.0, 0.0]\n\
+         [output]\nevery = 2.0\n[probes]\nall = {{ system = true }}\n",
+        std::f64::consts::FRAC_1_PI,
+        2.0 * ratio * 2e4_f64.sqrt()
+    )
+}
+
+fn damped_impact(_scene: &Scene, record: &Record) -> Result<(), Failure> {
+    let grains = end(record);
+    let parting = grains[1].velocity.x - grains[0].velocity.x;
+    near("speed of parting over that of approach", 0.5 * parting, 0.0, 0.2)?;
+    near("distance of the centres", grains[1].position.x - grains[0].position.x, 2.0, 0.5)
+}
+
+const SPIN: &str = "title = 'High spin'\ndimension = 2\ngravity = [0.0, -10.0]\nduration = 0.5\n\
+    [materials.m]\ndensity = 1000.0\n\
+    [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e8\ntangential_stiffness = 2.857142857e7\nfriction = 0.5\n\
+    normal_damping = 100.0\n\
+    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 1.0]\nspin = -31622.0\n\
+    [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+    [output]\nevery = 0.5\n[probes]\na = { grain = 'a' }\n";
+
+/// It slides all the while: v = μ g t.
+fn spin(scene: &Scene, record: &Record) -> Result<(), Failure> {
+    let grains = end(record);
+    near("velocity", grains[0].velocity.x, 0.5 * 10.0 * 0.5, 0.05)?;
+    near("height", grains[0].position.y, 1.0, 0.01)?;
+    let (before, after) = (kinetic_at_start(scene), kinetic(grains, scene));
+    if after > before { Err(Failure::Growth(after / before)) } else { Ok(()) }
+}

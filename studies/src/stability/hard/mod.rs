@@ -1,0 +1,250 @@
+//! Hard cases, each with what must hold whatever the solver, and a verdict from every solver that can express it.
+
+mod contacts;
+mod extremes;
+mod long;
+
+use super::failure::{Failure, finite, of_error};
+use crate::cost::knobs::nominal_seconds;
+use crate::identity;
+use crate::shelf::Shelf;
+use grainbench_cases::study::stability::{Hard, Hardness};
+use grainbench_reports::WriteError;
+use grainbench_scene::error::SceneError;
+use grainbench_scene::record::{GrainState, Record};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError, Solver};
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+
+/// Checks what must hold at the end.
+type Check = fn(&Scene, &Record) -> Result<(), Failure>;
+
+/// A hard case.
+pub struct HardCase {
+    /// Name.
+    pub name: String,
+    /// What must hold, in words.
+    pub must: &'static str,
+    /// Why the scene could not be made, or the scene.
+    pub scene: Result<Scene, SceneError>,
+    /// What must hold, in deed.
+    pub check: Check,
+}
+
+/// Solvers that are asked.
+pub const SOLVERS: [&str; 6] = ["dem", "dem:no-tension", "rigid", "mpm", "lammps", "liggghts"];
+/// Steps smaller than the default one that are tried, as parts of it.
+const SMALLER: [f64; 4] = [0.5, 0.25, 0.1, 0.01];
+/// The default step of springs, as a fraction of the critical one.
+const FRACTION: f64 = 0.1;
+/// Cells over a radius by default.
+const CELLS: f64 = 4.0;
+/// Material points in a cell, along each axis.
+const POINTS: u32 = 2;
+/// Smaller steps are tried as long as a run is expected to take no more than this (s).
+const PATIENCE: f64 = 60.0;
+
+/// Every hard case.
+#[must_use]
+pub fn all() -> Vec<HardCase> {
+    [extremes::cases(), contacts::cases(), long::cases()].into_iter().flatten().collect()
+}
+
+/// A case from the text of its scene.
+fn case(name: impl Into<String>, must: &'static str, text: &str, check: Check) -> HardCase {
+    changed(name, must, text, |_| {}, check)
+}
+
+/// The same with a change that a scene file would not be let through with.
+fn changed(
+    name: impl Into<String>,
+    must: &'static str,
+    text: &str,
+    change: impl FnOnce(&mut Scene),
+    check: Check,
+) -> HardCase {
+    let name = name.into();
+    let source = SceneSource::from_text(&format!("hard/{name}"), Path::new(""), text);
+    let mut scene = source.scene(&|_| Err("this scene reads no file".to_owned()));
+    if let Ok(scene) = &mut scene {
+        change(scene);
+    }
+    HardCase { name, must, scene, check }
+}
+
+/// The verdict of a solver, from the shelf where it stands there; and whether it did.
+///
+/// # Errors
+/// When it cannot be kept.
+pub fn verdict(program: &str, case: &HardCase, solver: &str, shelf: &Shelf) -> Result<(Hard, bool), WriteError> {
+    let text = format!("{:?}", case.scene);
+    let name = identity::of_words(program, &["hard", &case.name, &text, solver]);
+    if let Some(row) = shelf.take(&name) {
+        return Ok((row, true));
+    }
+    let row = judge(case, solver);
+    shelf.put(&name, &row)?;
+    Ok((row, false))
+}
+
+/// Runs a case with a solver by name: at its default step, and where that fails at smaller ones.
+#[must_use]
+pub fn judge(case: &HardCase, name: &str) -> Hard {
+    let mut row = Hard {
+        case: case.name.clone(),
+        must: case.must.to_owned(),
+        solver: name.to_owned(),
+        standing: Hardness::Unsupported,
+        resolution: resolution(name, 1.0).to_string(),
+        detail: String::new(),
+    };
+    let (scene, solver) = match (&case.scene, crate::stability::solver(name)) {
+        (Ok(scene), Some(solver)) => (scene, solver),
+        (Err(error), _) => {
+            row.detail = error.to_string();
+            return row;
+        }
+        (_, None) => return row,
+    };
+    match attempt(case, scene, &*solver, 1.0) {
+        Ok(()) => row.standing = Hardness::Holds,
+        Err(Stop::Cannot(error)) => {
+            row.standing = if matches!(error, RunError::NotAvailable { .. }) {
+                Hardness::NotAvailable
+            } else {
+                Hardness::Unsupported
+            };
+            row.detail = error.to_string();
+        }
+        Err(Stop::Failed(how)) => {
+            row.detail = how.to_string();
+            row.standing = if how.is_typed() { Hardness::TypedFailure } else { Hardness::QuietlyWrong };
+            let bearable = |part: &f64| nominal_seconds(scene, &resolution(name, *part)) <= PATIENCE;
+            if let Some(part) =
+                SMALLER.into_iter().filter(bearable).find(|&part| attempt(case, scene, &*solver, part).is_ok())
+            {
+                row.standing = Hardness::HoldsAtASmallerStep;
+                row.resolution = resolution(name, part).to_string();
+                let quiet = if how.is_typed() { "" } else { "quietly wrong at the default step: " };
+                row.detail = format!("{quiet}{how}");
+            }
+        }
+    }
+    row
+}
+
+/// Why an attempt did not hold.
+enum Stop {
+    Cannot(RunError),
+    Failed(Failure),
+}
+
+/// The default resolution of a solver, its step multiplied.
+fn resolution(solver: &str, part: f64) -> Resolution {
+    match solver.split([':', '+']).next() {
+        Some("rigid") => Resolution::substeps((8.0 / part).round() as u32),
+        Some("mpm") => Resolution::Grid { cells: CELLS, points: POINTS, courant: Resolution::COURANT * part },
+        _ => Resolution::CriticalFraction(FRACTION * part),
+    }
+}
+
+fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Result<(), Stop> {
+    match solver.run(scene, &resolution(&solver.name(), part), &mut ()) {
+        Ok(record) => {
+            record.snapshots.iter().try_for_each(finite).map_err(Stop::Failed)?;
+            (case.check)(scene, &record).map_err(Stop::Failed)
+        }
+        // A step that is refused with what would be stable is a failure that is typed, and early.
+        Err(RunError::Resolution { reason, .. }) => Err(Stop::Failed(Failure::Broken(reason))),
+        Err(error) => Err(match of_error(&error) {
+            Some(failure) => Stop::Failed(failure),
+            None => Stop::Cannot(error),
+        }),
+    }
+}
+
+/// Grains at the end.
+fn end(record: &Record) -> &[GrainState] {
+    record.snapshots.last().map_or(&[], |snapshot| &snapshot.grains)
+}
+
+/// Kinetic energy of some grains, rotation included (J).
+fn kinetic(grains: &[GrainState], scene: &Scene) -> f64 {
+    let of = |(grain, start): (&GrainState, &grainbench_scene::scene::Grain)| {
+        0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * start.inertia * grain.spin.norm_squared()
+    };
+    grains.iter().zip(&scene.grains).map(of).sum()
+}
+
+/// Kinetic energy at the start (J).
+fn kinetic_at_start(scene: &Scene) -> f64 {
+    let of = |grain: &grainbench_scene::scene::Grain| {
+        0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * grain.inertia * grain.spin.norm_squared()
+    };
+    scene.grains.iter().map(of).sum()
+}
+
+/// Refuses a value that is off by more than a part of a scale.
+fn near(what: &str, value: f64, expected: f64, allowed: f64) -> Result<(), Failure> {
+    // Written so that what is no number does not pass.
+    if (value - expected).abs() <= allowed {
+        Ok(())
+    } else {
+        Err(Failure::Wrong(format!("{what} is {value:.4e}, expected {expected:.4e}")))
+    }
+}
+
+/// A head-on impact without loss in the plane: momentum, and the speeds of two points.
+fn head_on(scene: &Scene, record: &Record) -> Result<(), Failure> {
+    let (a, b) = (&scene.grains[0], &scene.grains[1]);
+    let grains = end(record);
+    if grains.len() < 2 {
+        return Err(Failure::Wrong("there are no grains at the end".to_owned()));
+    }
+    let total = a.mass + b.mass;
+    let centre = (a.mass * a.velocity.x + b.mass * b.velocity.x) / total;
+    let speed = a.velocity.x - b.velocity.x;
+    let allowed = 0.03 * speed.abs();
+    near("velocity of the first grain", grains[0].velocity.x, centre - speed * b.mass / total, allowed)?;
+    near("velocity of the second grain", grains[1].velocity.x, centre + speed * a.mass / total, allowed)?;
+    if grains[0].position.x > grains[1].position.x {
+        return Err(Failure::Tunnelling("the grains have passed through each other".to_owned()));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    #[test]
+    fn every_case_has_a_scene() {
+        for case in all() {
+            case.scene.unwrap_or_else(|error| panic!("{}: {error}", case.name));
+        }
+    }
+
+    /// A check that passes whatever comes out would call anything stable.
+    #[test]
+    fn every_check_refuses_a_run_of_something_else() {
+        for case in all() {
+            let scene = case.scene.unwrap();
+            let mut grains: Vec<GrainState> =
+                scene.grains.iter().enumerate().map(|(at, grain)| GrainState::start(at as u32 + 1, grain)).collect();
+            // Far away, and faster than anything here.
+            for grain in &mut grains {
+                grain.position += nalgebra::Vector3::new(-3e9, -7e9, -5e9) * grain.radius;
+                grain.velocity += nalgebra::Vector3::new(-1e9, -2e9, 0.0);
+            }
+            let snapshot = grainbench_scene::record::Snapshot::of_grains(&scene, 1, 1.0, grains);
+            let solver = crate::stability::solver("dem").unwrap();
+            let mut short = crate::stability::assembly::all().unwrap().swap_remove(0).scene;
+            short.duration = grainbench_scene::scene::Duration::Cycles(1);
+            let mut record = solver.run(&short, &Resolution::TimeStep(0.1), &mut ()).unwrap();
+            record.snapshots = vec![snapshot];
+            assert!((case.check)(&scene, &record).is_err(), "{} lets anything through", case.name);
+        }
+    }
+}

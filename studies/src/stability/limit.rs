@@ -1,0 +1,152 @@
+//! The largest stable step of every assembly and solver.
+
+use super::assembly::Assembly;
+use super::bisection::largest;
+use super::failure::{Failure, of_error};
+use crate::identity;
+use crate::shelf::Shelf;
+use grainbench_cases::registry;
+use grainbench_cases::study::stability::Limit;
+use grainbench_reports::WriteError;
+use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::solver::{Resolution, RunError, Solver};
+
+/// How near the two ends of a bracket come.
+const PRECISION: f64 = 0.005;
+/// Steps between which the limit of an assembly is looked for, in √(m/k): the same for all, or the answer would be in the
+/// question.
+const RANGE: [f64; 2] = [0.15, 3.0];
+/// The step that decks and commands take by default, in √(m/k): a tenth of 2√(m/k).
+const DEFAULT: f64 = 0.2;
+/// Solvers with springs.
+pub const SPRINGS: [&str; 3] = ["dem", "lammps", "liggghts"];
+/// Settings of the method with a grid.
+pub const GRIDS: [&str; 6] =
+    ["mpm", "mpm+linear", "mpm+gimp+flip", "mpm+linear+flip", "mpm+linear+flip+usf", "mpm+linear+flip+usl"];
+/// Energy over that at the start that counts as growth.
+const MORE_ENERGY: f64 = 1.1;
+
+/// The limit of an assembly with a solver, from the shelf where it stands there; and whether it did.
+///
+/// # Errors
+/// When it cannot be kept.
+pub fn of_assembly(
+    program: &str,
+    assembly: &Assembly,
+    solver: &str,
+    shelf: &Shelf,
+) -> Result<(Limit, bool), WriteError> {
+    let text = format!("{:?}", assembly.scene);
+    let name = identity::of_words(program, &["limit", assembly.name, &text, solver]);
+    if let Some(limit) = shelf.take(&name) {
+        return Ok((limit, true));
+    }
+    let mut limit = Limit {
+        scene: assembly.name.to_owned(),
+        knob: if assembly.kappa.is_some() { "k_s/k_n".to_owned() } else { String::new() },
+        at: assembly.kappa,
+        solver: solver.to_owned(),
+        unit: "√(m/k)".to_owned(),
+        found: None,
+        unstable: None,
+        exact: Some(assembly.exact),
+        error: None,
+        default: Some(DEFAULT),
+        margin: None,
+        detail: String::new(),
+    };
+    match super::solver(solver) {
+        None => "there is no such solver".clone_into(&mut limit.detail),
+        Some(solver) => {
+            fill(&mut limit, RANGE, 1, |step| {
+                let record = solver.run(&assembly.scene, &Resolution::TimeStep(step), &mut ()).map_err(stop)?;
+                assembly.judge(&record).map_err(Stop::Unstable)
+            });
+        }
+    }
+    shelf.put(&name, &limit)?;
+    Ok((limit, false))
+}
+
+/// Courant number up to which the method with a grid keeps the energy of a vibrating bar to a tenth, at a number of cells over
+/// the length.
+///
+/// # Errors
+/// When it cannot be kept.
+pub fn of_bar(program: &str, setting: &str, cells: f64, shelf: &Shelf) -> Result<(Limit, bool), WriteError> {
+    let name = identity::of_words(program, &["bar", setting, &cells.to_string()]);
+    if let Some(limit) = shelf.take(&name) {
+        return Ok((limit, true));
+    }
+    let mut limit = Limit {
+        scene: "vibrating bar".to_owned(),
+        knob: "cells over the length".to_owned(),
+        at: Some(cells),
+        solver: setting.to_owned(),
+        unit: "h/c".to_owned(),
+        found: None,
+        unstable: None,
+        exact: None,
+        error: None,
+        default: Some(Resolution::COURANT),
+        margin: None,
+        detail: String::new(),
+    };
+    let scene = registry::by_name("vibrating-bar").and_then(|case| case.variant("plain").ok());
+    match (super::solver(setting), scene) {
+        (Some(solver), Some(scene)) => {
+            fill(&mut limit, [0.05, 0.8], 2, |courant| bar(&*solver, &scene, cells, courant))
+        }
+        _ => "there is no such solver or scene".clone_into(&mut limit.detail),
+    }
+    shelf.put(&name, &limit)?;
+    Ok((limit, false))
+}
+
+fn bar(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Result<(), Stop> {
+    let mut scene = scene.clone();
+    // Two periods.
+    scene.duration = Duration::Seconds(20.0);
+    let record = solver.run(&scene, &Resolution::Grid { cells, points: 2, courant }, &mut ()).map_err(stop)?;
+    let energy = record.series.column("all.total_energy").unwrap_or_default();
+    let start = energy.first().copied().unwrap_or(f64::NAN);
+    let most = energy
+        .iter()
+        .map(|energy| energy / start)
+        .fold(0.0, |most, now: f64| if now.is_nan() { f64::INFINITY } else { most.max(now) });
+    if most > MORE_ENERGY { Err(Stop::Unstable(Failure::Growth(most))) } else { Ok(()) }
+}
+
+/// Why a step is not taken.
+enum Stop {
+    /// The solver cannot run the scene at any step.
+    Cannot(String),
+    /// This step is unstable.
+    Unstable(Failure),
+}
+
+fn stop(error: RunError) -> Stop {
+    of_error(&error).map_or_else(|| Stop::Cannot(error.to_string()), Stop::Unstable)
+}
+
+/// Bisects and fills the row.
+fn fill(limit: &mut Limit, range: [f64; 2], doublings: u32, test: impl FnMut(f64) -> Result<(), Stop>) {
+    match largest(range, PRECISION, doublings, test) {
+        Err(Stop::Cannot(why)) => limit.detail = why,
+        Err(Stop::Unstable(how)) => limit.detail = format!("already unstable at {:.3}: {how}", range[0]),
+        Ok(bracket) => {
+            let found = bracket.stable;
+            limit.found = Some(found);
+            limit.margin = limit.default.map(|default| found / default);
+            limit.error = limit.exact.map(|exact| (found - exact) / exact);
+            limit.detail = match bracket.unstable {
+                None => "stable at every step tried".to_owned(),
+                Some((step, Stop::Unstable(how))) => {
+                    limit.unstable = Some(step);
+                    how.to_string()
+                }
+                Some((_, Stop::Cannot(why))) => why,
+            };
+        }
+    }
+}
