@@ -5,6 +5,7 @@
 
 pub mod check;
 pub mod own;
+pub mod verify;
 
 pub use own::{Judgement, conform, judge};
 

@@ -73,6 +73,28 @@ fn a_released_defect_is_red() {
     assert!(answer.err.contains(":14:51: expected a finite number in the column `fx`, found `-nan`"), "{}", answer.err);
 }
 
+/// The same defect where a grain meets the wall at an angle; and its other walls, which are right.
+#[test]
+fn a_released_defect_is_red_in_an_oblique_impact_too() {
+    for (dump, code, red) in [
+        ("lammps-oblique.dump.gz", 0, 0),
+        ("lammps-2025-granular-oblique.dump.gz", 0, 0),
+        ("lammps-2025-oblique.dump.gz", 1, 5),
+    ] {
+        let (found, rows) = check("oblique-impact/damped", dump, &[]);
+        assert_eq!((found, count(&rows, "fail"), rows.len()), (code, red, 8), "{dump}");
+    }
+    // 3.8878 m/s along the wall where 3.1280 m/s are right.
+    let (_, rows) = check("oblique-impact/damped", "lammps-2025-oblique.dump.gz", &[]);
+    let along = rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with("velocity along")).unwrap();
+    assert!((along["error"].as_f64().unwrap() - 0.2429).abs() < 1e-3, "{along}");
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data("lammps-2025-undamped-oblique.dump.gz");
+    let answer = grainbench(directory.path(), &["check", "oblique-impact/elastic", "--dump", &dump]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("expected a finite number in the column `x`, found `-nan`"), "{}", answer.err);
+}
+
 #[test]
 fn the_time_step_comes_from_the_log_or_is_asked_for() {
     let log = data("liggghts-backspin.log");

@@ -18,7 +18,7 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
         (command.status.code(), text(command.stdout), text(command.stderr))
     };
-    let (code, out, _) = program(&["run", "backspin/disc", "--solver", "lammps", "--json"]);
+    let (code, out, _) = program(&["run", "backspin/disc", "--solver", "lammps", "--live", "--json"]);
     assert_eq!(code, Some(0));
     let results: Value = serde_json::from_str(&out).unwrap();
     let rows = results["verdicts"].as_array().unwrap();

@@ -1,9 +1,10 @@
 //! Does the runs of a case, each once, whoever asks for it.
 
 use crate::case::Case;
-use crate::gate::{Control, Done, Gate, Run, Standing, Wrong};
+use crate::gate::{Change, Control, Done, Gate, Measured, Missing, Run, Standing, Wrong};
 use crate::scope::Scope;
 use crate::solvers;
+use crate::stored;
 use crate::verdict::{self, Outcome, Verdict};
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
@@ -18,15 +19,19 @@ type Slot = Arc<OnceLock<Result<Done, RunError>>>;
 pub struct Bench {
     case: &'static Case,
     stranger: Option<Arc<dyn Solver>>,
+    /// Whether other programs are run even where their runs are stored.
+    live: bool,
     /// By [`Run::key`].
     runs: Mutex<BTreeMap<String, (Run, Slot)>>,
+    /// Of negative controls, by run and change.
+    wrong: Mutex<BTreeMap<String, (Change, Slot)>>,
 }
 
 impl Bench {
     /// A bench without runs.
     #[must_use]
     pub fn new(case: &'static Case) -> Self {
-        Self { case, stranger: None, runs: Mutex::new(BTreeMap::new()) }
+        Self { case, stranger: None, live: false, runs: Mutex::default(), wrong: Mutex::default() }
     }
 
     /// A bench on which one solver takes the place of every solver that the gates name. It is given their resolutions,
@@ -34,6 +39,12 @@ impl Bench {
     #[must_use]
     pub fn with_solver(case: &'static Case, solver: Arc<dyn Solver>) -> Self {
         Self { stranger: Some(solver), ..Self::new(case) }
+    }
+
+    /// The bench on which other programs are run even where their runs are stored.
+    #[must_use]
+    pub fn live(self, live: bool) -> Self {
+        Self { live, ..self }
     }
 
     /// The gates of this bench: all of the case, or those that are fair to a stranger.
@@ -72,10 +83,12 @@ impl Bench {
         runs.values().filter_map(|(run, slot)| Some((run.clone(), slot.get()?.as_ref().ok()?.clone()))).collect()
     }
 
-    /// Whether all solvers of a gate can be run on this machine; a gate that cannot be judged has no control either.
+    /// Whether all runs of a gate can be had on this machine; a gate that cannot be judged has no control either.
     #[must_use]
     pub fn is_available(&self, gate: &Gate) -> bool {
-        gate.runs.iter().all(|run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok()))
+        let is_stored = |run: &Run| !self.live && stored::exists(self.case, run);
+        let can_run = |run: &Run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok());
+        gate.runs.iter().all(|run| is_stored(run) || can_run(run))
     }
 
     /// Judges a gate.
@@ -88,9 +101,16 @@ impl Bench {
     /// Feeds a gate with its wrong physics; the row of a known error with a solver that does not have it.
     #[must_use]
     pub fn control(&self, gate: &Gate) -> verdict::Control {
-        let done = gate.runs.iter().map(|run| match gate.control.wrong {
+        let done = gate.runs.iter().map(|run| match &gate.control.wrong {
+            _ if run.aside => self.run(run),
             // What is made wrong is our own side.
             Wrong::Ours(_) | Wrong::OtherSolver(_) if solvers::is_program(run.solver) => self.run(run),
+            // Another solver's run may be one of those that gates read.
+            Wrong::OtherSolver(solver) if self.stranger.is_none() => self.run(&Run { solver, ..run.clone() }),
+            Wrong::OtherRun(solver, resolution) if self.stranger.is_none() => {
+                self.run(&Run { solver, resolution: *resolution, ..run.clone() })
+            }
+            Wrong::Ours(change) => self.run_wrong(run, &gate.control, change),
             _ => self.simulate(run, Some(&gate.control)),
         });
         let done = done.collect();
@@ -110,8 +130,27 @@ impl Bench {
         }
     }
 
+    /// A run of a wrong scene. Gates that share a control share its runs; the change is kept with them, so that no other
+    /// can take its address.
+    fn run_wrong(&self, run: &Run, control: &Control, change: &Change) -> Result<Done, RunError> {
+        let key = format!("{}|{:p}", run.key(), Arc::as_ptr(change));
+        let slot = {
+            let mut wrong = self.wrong.lock().unwrap_or_else(PoisonError::into_inner);
+            let (_, slot) = wrong.entry(key).or_insert_with(|| (Arc::clone(change), Slot::default()));
+            Arc::clone(slot)
+        };
+        slot.get_or_init(|| self.simulate(run, Some(control))).clone()
+    }
+
     fn simulate(&self, run: &Run, control: Option<&Control>) -> Result<Done, RunError> {
         let scene = self.scene(run)?;
+        if control.is_none()
+            && self.stranger.is_none()
+            && !self.live
+            && let Some(record) = stored::record(self.case, run, &scene)
+        {
+            return Ok(Done { scene: Arc::new(scene), record: Arc::new(record?) });
+        }
         let mut given = scene.clone();
         let solver = match control.map(|control| &control.wrong) {
             None => self.solver(run.solver),
@@ -192,7 +231,7 @@ fn conclude(mut verdict: Verdict, gate: &Gate, done: Result<Vec<Done>, RunError>
             verdict.outcome = Outcome::from(&error);
             verdict.detail = Some(error.to_string());
         }
-        Ok(done) => match (gate.measure)(&done) {
+        Ok(done) => match measure(&mut verdict, gate, &done) {
             Err(missing) => verdict.detail = Some(missing.to_string()),
             Ok(measured) => {
                 let error = measured.error();
@@ -218,4 +257,12 @@ fn conclude(mut verdict: Verdict, gate: &Gate, done: Result<Vec<Done>, RunError>
         },
     }
     verdict
+}
+
+/// What the gate measures; the row says which programs it was compared with.
+fn measure(verdict: &mut Verdict, gate: &Gate, done: &[Done]) -> Result<Measured, Missing> {
+    for run in done.iter().map(|done| &done.record.provenance).filter(|run| solvers::is_program(&run.solver)) {
+        verdict.source.push_str(&format!(": {}", run.options.join(", ")));
+    }
+    (gate.measure)(done)
 }

@@ -30,6 +30,8 @@ pub struct Run {
     pub standing: Standing,
     /// The smallest set that it belongs to.
     pub set: Set,
+    /// Whether it is there to judge by, and no negative control touches it.
+    pub aside: bool,
 }
 
 /// Sets of runs, each with all of those before it.
@@ -61,7 +63,7 @@ impl Run {
     /// A run of a variant as it stands.
     #[must_use]
     pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
-        Self { variant, solver, resolution, adjustment: None, standing: Standing::Passes, set: Set::Main }
+        Self { variant, solver, resolution, adjustment: None, standing: Standing::Passes, set: Set::Main, aside: false }
     }
 
     /// The run with a change of the scene.
@@ -87,6 +89,12 @@ impl Run {
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }
+    }
+
+    /// The run as one that judges and is not judged: negative controls leave it alone.
+    #[must_use]
+    pub fn aside(self) -> Self {
+        Self { aside: true, ..self }
     }
 
     /// The same run at another resolution.

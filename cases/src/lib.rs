@@ -5,6 +5,7 @@
 
 pub mod bench;
 pub mod case;
+pub mod chaos;
 pub mod conformance;
 pub mod elastic;
 pub mod effect;
@@ -23,5 +24,6 @@ pub mod scope;
 pub mod solvers;
 pub mod study;
 pub mod subject;
+pub mod stored;
 mod varied;
 pub mod verdict;

@@ -1,5 +1,5 @@
-//! Rows of the programs `lammps` and `liggghts`, run where they are installed: our solver in a program's convention gives
-//! what the program gives.
+//! Rows of the programs `lammps` and `liggghts`, stored or run now: our solver in a program's convention gives what the
+//! program gives.
 
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::incline::{DAMPING, at_overlap, more_friction, wrong_inertia};
@@ -20,11 +20,11 @@ const STEP: Resolution = Resolution::TimeStep(1e-4);
 fn worst(done: &[Done], columns: &[&str], scale: f64) -> Result<Measured, Missing> {
     let mut worst: Option<Measured> = None;
     for column in columns {
-        let (theirs, ours) = (done[0].column(column)?, done[1].column(column)?);
-        if theirs.len() != ours.len() {
-            return Err(Missing(format!("samples of `{column}` at the steps of the other")));
-        }
-        let found = Measured::worst_of(&done[0].series().time, theirs, ours, scale);
+        let theirs = done[0].column(column)?;
+        // Of a stored run not every sample is kept.
+        let steps = &done[0].series().step;
+        let ours: Vec<f64> = steps.iter().map(|&step| done[1].at_step(column, step)).collect::<Result<_, _>>()?;
+        let found = Measured::worst_of(&done[0].series().time, theirs, &ours, scale);
         let is_worse = |than: &Measured| found.error().is_nan() || found.error().abs() > than.error().abs();
         if worst.as_ref().is_none_or(is_worse) {
             worst = Some(found);
@@ -137,6 +137,32 @@ pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(
             let allowed = (1e-10, "the same cycle: rounding of positions, 3e-12 of the wall travel a step");
             let quantity = "position over all cycles, worst";
             gates.push(row(quantity, "m", allowed, runs, control, move |done| worst(done, &COLUMNS, travel(&done[0]))));
+        }
+    }
+    gates
+}
+
+/// Motion and wall force of one grain that meets a wall, in units of what they are before the impact.
+#[must_use]
+pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Gate> {
+    let mut gates = Vec::new();
+    for &variant in variants {
+        for pair in PAIRS {
+            let allowed = (1e-9, "the same cycle: rounding; relative to the velocity before");
+            let control = Control::ours("friction ×1.001 in ours", |scene| {
+                scene.change_laws(|law| law.friction *= 1.001);
+            });
+            let runs = pair.map(|solver| Run::new(variant, solver, resolution));
+            gates.push(row("velocity over the impact, worst", "m/s", allowed, runs, control.clone(), |done| {
+                worst(done, &["grain.vx", "grain.vy"], done[0].scene.grains[0].velocity.norm())
+            }));
+            let allowed = (1e-9, "the same cycle: rounding; relative to the largest force of the spring, v√(km)");
+            let runs = pair.map(|solver| Run::new(variant, solver, resolution));
+            gates.push(row("force on the wall, worst", "N", allowed, runs, control, |done| {
+                let (grain, law) = (&done[0].scene.grains[0], done[0].scene.laws[0].unwrap_or_default());
+                let largest = grain.velocity.y.abs() * (law.normal_stiffness * grain.mass).sqrt();
+                worst(done, &["wall.force_x", "wall.force_y"], largest)
+            }));
         }
     }
     gates

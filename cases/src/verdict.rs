@@ -65,6 +65,7 @@ impl From<&RunError> for Outcome {
         match error {
             RunError::Unsupported { .. } => Self::Unsupported,
             RunError::NotAvailable { .. } => Self::NotAvailable,
+            RunError::Stale { .. } => Self::Stale,
             RunError::Resolution { .. } | RunError::Program { .. } | RunError::Broken(_) | RunError::Checkpoint(_) => {
                 Self::Broken
             }

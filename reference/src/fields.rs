@@ -11,18 +11,12 @@ pub(crate) struct Fields<'l> {
     content: &'l str,
     /// Byte offset of what has not been read yet.
     offset: usize,
-    separator: Option<char>,
 }
 
 impl<'l> Fields<'l> {
     /// Fields of `content`, the part of `line` in front of a comment, between blanks.
     pub(crate) fn between_blanks(line: Line<'l>, content: &'l str) -> Self {
-        Self { line, content, offset: 0, separator: None }
-    }
-
-    /// Fields of a whole line between commas.
-    pub(crate) fn between_commas(line: Line<'l>) -> Self {
-        Self { separator: Some(','), ..Self::between_blanks(line, line.text) }
+        Self { line, content, offset: 0 }
     }
 
     /// A whole number from `smallest` on.
@@ -50,11 +44,6 @@ impl<'l> Fields<'l> {
         self.parsed(what, |value: &f64| value.is_finite() && *value > 0.0)
     }
 
-    /// A finite number from zero on.
-    pub(crate) fn not_negative(&mut self, what: &str) -> Result<f64, ReadError> {
-        self.parsed(what, |value: &f64| value.is_finite() && *value >= 0.0)
-    }
-
     /// Three finite numbers.
     pub(crate) fn vector(&mut self, what: [&str; 3]) -> Result<[f64; 3], ReadError> {
         Ok([self.finite(what[0])?, self.finite(what[1])?, self.finite(what[2])?])
@@ -62,11 +51,7 @@ impl<'l> Fields<'l> {
 
     /// Whether every field has been read.
     pub(crate) fn at_end(&self) -> bool {
-        let rest = self.rest();
-        match self.separator {
-            None => rest.trim_start().is_empty(),
-            Some(_) => self.offset > self.content.len(),
-        }
+        self.rest().trim_start().is_empty()
     }
 
     /// Refuses a field more than `expected` has.
@@ -91,22 +76,12 @@ impl<'l> Fields<'l> {
             return Err(error.with_column(column));
         }
         let rest = self.rest();
-        let (text, start, next) = match self.separator {
-            None => {
-                let start = self.offset + (rest.len() - rest.trim_start().len());
-                let field = rest.trim_start();
-                let length = field.find(char::is_whitespace).unwrap_or(field.len());
-                (&field[..length], start, start + length)
-            }
-            Some(separator) => {
-                let length = rest.find(separator).unwrap_or(rest.len());
-                let next = self.offset + length + separator.len_utf8();
-                (rest[..length].trim(), self.offset, next)
-            }
-        };
-        self.offset = next;
+        let field = rest.trim_start();
+        let start = self.offset + (rest.len() - field.len());
+        let length = field.find(char::is_whitespace).unwrap_or(field.len());
+        self.offset = start + length;
         let column = self.content.get(..start).unwrap_or_default();
-        Ok((text, column.chars().count() + 1))
+        Ok((&field[..length], column.chars().count() + 1))
     }
 
     /// The next field as a value that `fits`.

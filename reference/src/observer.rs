@@ -216,6 +216,19 @@ impl<'s> Observer<'s> {
     }
 }
 
+impl Observed {
+    /// Adds a column of a scene's series that was learnt otherwise, taken as exact.
+    pub(crate) fn add(&mut self, scene: &Scene, name: &str, values: Vec<f64>) {
+        let columns = Recorder::new(scene, 1.0, 1).finish().0.columns;
+        let known = columns.into_iter().find(|column| column.name == name);
+        if let Some(column) = known.filter(|_| self.series.column(name).is_none()) {
+            self.uncertainty.push(vec![0.0; values.len()]);
+            self.series.columns.push(column);
+            self.series.values.push(values);
+        }
+    }
+}
+
 /// Whether a dump of grains tells a column of the series.
 fn is_known(scene: &Scene, name: &str, known: Known) -> bool {
     let Some((probe, quantity)) = name.rsplit_once('.') else { return false };

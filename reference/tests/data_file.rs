@@ -283,7 +283,7 @@ fn files_that_cannot_be_read() {
 
 #[test]
 fn the_stored_packing() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("lammps/plane-shear-10k/data.relaxed.gz");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/plane-shear/data.relaxed.gz");
     let data = read_data_file(&path).unwrap();
     assert_eq!(data.atoms.len(), 10_000);
     assert_eq!(data.bounds, ([0.0, -0.01, -0.5], [95.793_938_908_5, 94.443_173_986_2, 0.5]));

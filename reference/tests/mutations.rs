@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use grainbench_reference::{DumpReader, DumpSnapshot, ReadError, parse_data, parse_log, parse_table, parse_thermo};
+use grainbench_reference::{DumpReader, DumpSnapshot, ReadError, parse_data, parse_log, parse_table};
 use proptest::prelude::*;
 
 const DATA: &str = "\
@@ -179,7 +179,7 @@ proptest! {
     #[test]
     fn of_a_table(damages in damages()) {
         static TEXT: OnceLock<String> = OnceLock::new();
-        let text = TEXT.get_or_init(|| stored("lammps/plane-shear-10k/thermo.csv"));
+        let text = TEXT.get_or_init(|| stored("tests/data/series.csv"));
         match parse_table(&apply(text, &damages)[..], "f") {
             Ok(table) => prop_assert!(table.rows() > 0),
             Err(error) => well_said(&error)?,
@@ -196,15 +196,6 @@ proptest! {
                 }
             }
             Err(error) => well_said(&error)?,
-        }
-    }
-
-    #[test]
-    fn of_a_stored_series(damages in damages()) {
-        static TEXT: OnceLock<String> = OnceLock::new();
-        let text = TEXT.get_or_init(|| stored("lammps/plane-shear-10k/thermo.csv"));
-        if let Err(error) = parse_thermo(&apply(text, &damages)[..], "f") {
-            well_said(&error)?;
         }
     }
 

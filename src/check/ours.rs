@@ -5,13 +5,14 @@ use grainbench_cases::gate::Measured;
 use grainbench_cases::verdict::Verdict;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
+use grainbench_reference::deck::Stepping;
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::Outputs;
+use grainbench_reference::refined::refined;
 use grainbench_reports::number;
-use grainbench_scene::motion::Moment;
 use grainbench_scene::record::Series;
-use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::solver::{Resolution, Solver};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::Solver;
 
 /// What our solvers owe each other beside what is measured: a millionth of the scale.
 const FLOOR: f64 = 1e-6;
@@ -41,17 +42,9 @@ pub(super) fn ours(scene: &Scene, step: f64, observed: &Observed) -> Result<Ours
         return Err(format!("{} samples are more than {MOST_SAMPLES}", last / interval));
     }
     let run = |convention: Convention, halves: u64| {
-        let sampling = Sampling::Cycles(interval * halves);
-        let mut scene = Scene { duration: Duration::Cycles(last * halves), sampling, snapshots: 0, ..scene.clone() };
-        // What lasts a number of cycles lasts twice as many of half the length.
-        for phase in scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases) {
-            for moment in [&mut phase.start, &mut phase.stop] {
-                if let Moment::Cycle(cycle) = moment {
-                    *cycle *= halves;
-                }
-            }
-        }
-        let record = Dem::new(convention).run(&scene, &Resolution::TimeStep(step / halves as f64), &mut ());
+        let stepping = Stepping { time_step: step, steps: last, interval };
+        let (scene, resolution) = refined(&Scene { snapshots: 0, ..scene.clone() }, &stepping, halves);
+        let record = Dem::new(convention).run(&scene, &resolution, &mut ());
         record.map(|record| record.series).map_err(|error| error.to_string())
     };
     let conventions = [Convention::CUNDALL_STRACK, Convention::LAMMPS, Convention::LIGGGHTS];

@@ -10,6 +10,7 @@ mod exit;
 mod list;
 mod progress;
 mod provenance;
+mod reference;
 mod report;
 mod run;
 mod schema;
@@ -55,6 +56,9 @@ enum Command {
     Stability(stability::Arguments),
     /// Tell what each effect is worth: each switched off in turn, each absent one compiled in.
     Effects(effects::Arguments),
+    /// Make the stored runs of LAMMPS and LIGGGHTS, or run these again and compare.
+    #[command(subcommand)]
+    Reference(reference::Command),
     /// Print the JSON schema of scene files.
     Schema,
     /// Make the page and figures again from a report's directory, without any solver.
@@ -75,6 +79,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Stability(arguments)) => stability::stability(&arguments),
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
+        Some(Command::Reference(command)) => reference::reference(&command),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Report(arguments)) => report::report(&arguments),
     };

@@ -43,6 +43,9 @@ pub(crate) struct Options {
     /// Print the results as JSON instead of a table.
     #[arg(long)]
     json: bool,
+    /// Run `lammps` and `liggghts` even where a run of theirs is stored.
+    #[arg(long)]
+    live: bool,
     /// Leave out the negative controls.
     #[arg(long)]
     no_controls: bool,
@@ -53,7 +56,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let selected = select::select(cases, &options.solver, &options.rungs)?;
     check_writable(&options.out)?;
     let start = Instant::now();
-    let sections = judge(&selected, !options.no_controls);
+    let sections = judge(&selected, !options.no_controls, options.live);
     let provenance = provenance(words(cases, options), start.elapsed().as_secs_f64());
     let report = Report { provenance, sections };
     write_report(&options.out, &report).map_err(Fault::input)?;
@@ -90,6 +93,9 @@ fn words(cases: &[String], options: &Options) -> Vec<String> {
     if !options.rungs.is_empty() {
         words.push(format!("--rungs {}", options.rungs.join(",")));
     }
+    if options.live {
+        words.push("--live".to_owned());
+    }
     if options.no_controls {
         words.push("--no-controls".to_owned());
     }
@@ -112,8 +118,8 @@ enum Task {
     Draw(usize),
 }
 
-fn judge(selected: &[Selected], with_controls: bool) -> Vec<Section> {
-    let work: Vec<Work<'_>> = selected.iter().map(Work::new).collect();
+fn judge(selected: &[Selected], with_controls: bool, live: bool) -> Vec<Section> {
+    let work: Vec<Work<'_>> = selected.iter().map(|selected| Work::new(selected, live)).collect();
     let tasks = tasks(selected, with_controls);
     let progress = Progress::new(tasks.len() as u64, "checks");
     let next = AtomicUsize::new(0);
@@ -171,10 +177,10 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
 }
 
 impl<'a> Work<'a> {
-    fn new(selected: &'a Selected) -> Self {
+    fn new(selected: &'a Selected, live: bool) -> Self {
         Self {
             selected,
-            bench: Bench::new(selected.case),
+            bench: Bench::new(selected.case).live(live),
             verdicts: selected.gates.iter().map(|_| OnceLock::new()).collect(),
             controls: selected.gates.iter().map(|_| OnceLock::new()).collect(),
             figures: OnceLock::new(),

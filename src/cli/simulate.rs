@@ -162,6 +162,7 @@ fn fault(error: RunError) -> Fault {
         RunError::Unsupported { .. }
         | RunError::Resolution { .. }
         | RunError::NotAvailable { .. }
+        | RunError::Stale { .. }
         | RunError::Checkpoint(_) => Fault::input(error),
     }
 }

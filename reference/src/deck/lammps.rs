@@ -3,23 +3,40 @@
 use std::fmt::Write as _;
 
 use grainbench_scene::motion::{Moment, Motion};
-use grainbench_scene::scene::{ContactLaw, Scene, Wall, WallShape};
+use grainbench_scene::scene::{ContactLaw, Probe, ProbeTarget, Scene, Wall, WallShape};
 
 use super::dashpots::{Dashpots, Side};
 use super::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
+use super::logged::logged;
 use super::outline::{
     AXES, AxisPlane, grain_materials, has_discs, inertia_factor, is_flat, one_inertia, refuse_turning,
 };
-use super::{COLUMNS, END, SAMPLES, Stepping, heading};
+use super::{COLUMNS, END, SAMPLES, Stepping, Written, heading, thermo};
 
-pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Vec<(String, String)>, String> {
+pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     one_inertia(scene, inertia_factor(scene))?;
     // LAMMPS reads the density of a data file as a sphere's, in two dimensions too.
     let data = data_file(scene, scene.materials.len(), box_of(scene), of_sphere);
-    Ok(vec![("in.lammps".to_owned(), input(scene, stepping)?), ("data.grains".to_owned(), data)])
+    let (commands, logged) = logged(scene, "NULL", forces_of_wall)?;
+    let printed = thermo(&commands, &logged, stepping);
+    let files = vec![("in.lammps".to_owned(), input(scene, stepping, &printed)?), ("data.grains".to_owned(), data)];
+    Ok((files, logged))
 }
 
-fn input(scene: &Scene, stepping: &Stepping) -> Result<String, String> {
+/// The command that adds up the forces of a wall on the grains, and the components of the sum.
+fn forces_of_wall(number: usize) -> (String, [String; 3]) {
+    let fix = format!("f_wall{number}");
+    let command = format!("compute wall{number} all reduce sum {fix}[2] {fix}[3] {fix}[4]\n");
+    (command, [1, 2, 3].map(|at| format!("c_wall{number}[{at}]")))
+}
+
+/// What lets a wall tell its forces, where a probe asks for them.
+fn tells(scene: &Scene, number: u32) -> &'static str {
+    let is_asked = |probe: &Probe| probe.target == ProbeTarget::Wall(number as usize - 1);
+    if scene.probes.iter().any(is_asked) { " contacts" } else { "" }
+}
+
+fn input(scene: &Scene, stepping: &Stepping, printed: &str) -> Result<String, String> {
     let flat = is_flat(scene);
     let mut text = format!("# {}\n", heading(scene));
     let mut say = |line: &str| {
@@ -47,8 +64,7 @@ fn input(scene: &Scene, stepping: &Stepping) -> Result<String, String> {
     if flat {
         say("fix plane all enforce2d");
     }
-    say("thermo_style custom step time ke atoms");
-    say(&format!("thermo {}", stepping.steps.max(1)));
+    say(printed);
     let columns = COLUMNS.join(" ");
     let dump = |name: &str, interval: u64, file: &str| {
         format!(
@@ -114,7 +130,10 @@ fn wall_lines(scene: &Scene, wall: &Wall, number: u32, stepping: &Stepping) -> R
             ("NULL".to_owned(), format!("{:?}", plane.at))
         };
         let shear = plane.shear.map(|(along, speed)| format!(" shear {} {speed:?}", AXES[along])).unwrap_or_default();
-        return Ok(format!("fix wall{number} all wall/gran hooke/history {law} {axis}plane {low} {high}{shear}"));
+        let tells = tells(scene, number);
+        return Ok(format!(
+            "fix wall{number} all wall/gran hooke/history {law} {axis}plane {low} {high}{shear}{tells}"
+        ));
     }
     let WallShape::Plane { point, normal } = wall.shape else {
         return Err(format!("LAMMPS has no wall of finite extent such as `{}`", wall.name));
@@ -139,7 +158,8 @@ fn wall_lines(scene: &Scene, wall: &Wall, number: u32, stepping: &Stepping) -> R
         "region wall{number} plane {:?} {:?} {:?} {:?} {:?} {:?} side in units box{moves}",
         p.x, p.y, p.z, n.x, n.y, n.z
     );
-    let _ = write!(lines, "fix wall{number} all wall/gran/region hooke/history {law} region wall{number}");
+    let tells = tells(scene, number);
+    let _ = write!(lines, "fix wall{number} all wall/gran/region hooke/history {law} region wall{number}{tells}");
     Ok(lines)
 }
 

@@ -6,15 +6,16 @@
 use std::fmt::Write as _;
 
 use grainbench_scene::effects::Effects;
-use grainbench_scene::scene::{ContactLaw, Scene, Wall};
+use grainbench_scene::scene::{ContactLaw, ProbeTarget, Scene, Wall};
 use nalgebra::Vector3;
 
 use super::dashpots::{Dashpots, Side};
 use super::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
+use super::logged::logged;
 use super::mesh::{Triangle, stl, triangles};
 use super::outline::{AXES, AxisPlane, grain_materials, has_discs, is_flat, one_inertia, refuse_turning};
 use super::schedule::{changes, velocity_from};
-use super::{COLUMNS, END, SAMPLES, Stepping, heading};
+use super::{COLUMNS, END, SAMPLES, Stepping, Written, heading, thermo};
 
 /// A wall that needs a mesh.
 struct Mesh<'s> {
@@ -23,7 +24,7 @@ struct Mesh<'s> {
     triangles: Vec<Triangle>,
 }
 
-pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Vec<(String, String)>, String> {
+pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     let mut meshes = Vec::new();
     let (mut low, mut high) = box_of(scene);
     let (centre, reach) = (0.5 * (low + high), (high - low).norm() + way(scene, stepping));
@@ -50,10 +51,28 @@ pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Vec<(String, S
     let corners = if meshes.is_empty() { (low, high) } else { around((low, high), &meshes, reach, stepping) };
     let types = 2 * scene.materials.len();
     let data = data_file(scene, types, corners, if flat { of_disc } else { of_sphere });
-    let mut files =
-        vec![("in.liggghts".to_owned(), input(scene, stepping, flat, &meshes)?), ("data.grains".to_owned(), data)];
+    let (commands, logged) = logged(scene, "thermo_temp", |number| forces_of_wall(number, &meshes))?;
+    let printed = thermo(&commands, &logged, stepping);
+    let input = input(scene, stepping, flat, &meshes, &printed)?;
+    let mut files = vec![("in.liggghts".to_owned(), input), ("data.grains".to_owned(), data)];
     files.extend(meshes.iter().map(|mesh| (format!("wall-{}.stl", mesh.number), stl(&mesh.triangles))));
-    Ok(files)
+    Ok((files, logged))
+}
+
+/// The command that adds up the forces of a wall on the grains, and the components of the sum. A mesh does so by itself,
+/// and its force is that of the grains.
+fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
+    if meshes.iter().any(|mesh| mesh.number == number) {
+        return (String::new(), [1, 2, 3].map(|at| format!("(-f_mesh{number}[{at}])")));
+    }
+    let fix = format!("f_force_wall{number}");
+    let command = format!("compute wall{number} all reduce sum {fix}[1] {fix}[2] {fix}[3]\n");
+    (command, [1, 2, 3].map(|at| format!("c_wall{number}[{at}]")))
+}
+
+/// Whether a probe asks for the force on a wall.
+fn is_asked(scene: &Scene, number: usize) -> bool {
+    scene.probes.iter().any(|probe| probe.target == ProbeTarget::Wall(number - 1))
 }
 
 /// How far a grain may go that meets nothing (m), so that it stays above planes that are meshes.
@@ -84,7 +103,7 @@ fn around(
     (least - margin, most + margin)
 }
 
-fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>]) -> Result<String, String> {
+fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], printed: &str) -> Result<String, String> {
     let mut text = format!("# {}\n", heading(scene));
     let mut say = |line: &str| {
         text.push_str(line);
@@ -120,11 +139,13 @@ fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>]) ->
             let shear =
                 plane.shear.map(|(along, speed)| format!(" shear {} {speed:?}", AXES[along])).unwrap_or_default();
             say(&format!(
-                "fix wall{number} all wall/gran model hooke/stiffness tangential history primitive type {kind} {axis}plane {:?}{shear}",
-                plane.at
+                "fix wall{number} all wall/gran model hooke/stiffness tangential history primitive type {kind} {axis}plane {:?}{shear}{}",
+                plane.at,
+                if is_asked(scene, number) { " store_force yes" } else { "" }
             ));
         } else {
-            say(&format!("fix mesh{number} all mesh/surface file wall-{number}.stl type {kind}"));
+            let style = if is_asked(scene, number) { "mesh/surface/stress" } else { "mesh/surface" };
+            say(&format!("fix mesh{number} all {style} file wall-{number}.stl type {kind}"));
         }
     }
     if !meshes.is_empty() {
@@ -139,8 +160,7 @@ fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>]) ->
     if flat {
         say("fix plane all enforce2d");
     }
-    say("thermo_style custom step time ke atoms");
-    say(&format!("thermo {}", stepping.steps.max(1)));
+    say(printed);
     // One format serves the whole row.
     let dump = |name: &str, interval: u64, file: &str| {
         let columns = COLUMNS.join(" ");

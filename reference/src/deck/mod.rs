@@ -7,6 +7,7 @@ mod dashpots;
 mod data;
 mod lammps;
 mod liggghts;
+pub(crate) mod logged;
 mod mesh;
 mod outline;
 mod schedule;
@@ -81,12 +82,14 @@ pub enum DeckError {
 }
 
 /// The files of a deck, and what its run leaves.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Deck {
     /// Name and text of each file; the input script is the first.
     pub files: Vec<(String, String)>,
     /// How it is run.
     pub stepping: Stepping,
+    /// What its log tells.
+    pub(crate) logged: Vec<logged::Logged>,
 }
 
 /// The dump of the samples that a deck's run leaves.
@@ -138,11 +141,28 @@ pub fn write_deck(scene: &Scene, resolution: &Resolution, program: Program) -> R
     let stepping = Stepping::of(scene, resolution).map_err(DeckError::Resolution)?;
     let unsupported = |reason: String| DeckError::Unsupported { program, reason };
     outline::refuse_what_neither_has(scene).map_err(unsupported)?;
-    let files = match program {
+    let written = match program {
         Program::Lammps => lammps::files(scene, &stepping),
         Program::Liggghts => liggghts::files(scene, &stepping),
     };
-    Ok(Deck { files: files.map_err(unsupported)?, stepping })
+    let (files, logged) = written.map_err(unsupported)?;
+    Ok(Deck { files, stepping, logged })
+}
+
+/// Files of a deck, and what its log is asked for.
+type Written = (Vec<(String, String)>, Vec<logged::Logged>);
+
+/// The lines that say what is printed: nothing but the end of the run, or sums at every sample.
+fn thermo(commands: &str, logged: &[logged::Logged], stepping: &Stepping) -> String {
+    if logged.is_empty() {
+        return format!("thermo_style custom step time ke atoms\nthermo {}", stepping.steps.max(1));
+    }
+    let names: Vec<String> = logged.iter().map(|logged| format!(" v_{}", logged.name)).collect();
+    format!(
+        "{commands}\nthermo_style custom step time ke atoms{}\nthermo_modify norm no format float %.17g\nthermo {}",
+        names.concat(),
+        stepping.interval
+    )
 }
 
 /// A comment on the first line: what the deck is of. Only letters, digits and some marks, for scripts give others a

@@ -11,7 +11,7 @@ use grainbench_scene::record::{Cost, Provenance, Record};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
-use crate::deck::{Deck, DeckError, END, Program, SAMPLES, write_deck};
+use crate::deck::{Deck, DeckError, END, Program, SAMPLES, logged, write_deck};
 use crate::dump::DumpReader;
 use crate::log::read_log;
 use crate::numbers::NotFinite;
@@ -93,8 +93,11 @@ impl Solver for Live {
         let screen = process::run(executable, &deck.files[0].0, folder.path(), self.time_limit)
             .map_err(|(failure, last_lines)| fail(failure, last_lines))?;
         let unusable = |error: ReadError| fail(Failure::Output(error.to_string()), screen.clone());
-        let observed = observe(scene, &deck, folder.path()).map_err(unusable)?;
+        let mut observed = observe(scene, &deck, folder.path()).map_err(unusable)?;
         let log = read_log(&folder.path().join(process::LOG)).map_err(unusable)?;
+        for (column, values) in logged::read(&deck.logged, &log, &observed.series) {
+            observed.add(scene, &column, values);
+        }
         watch.progress(stepping.steps, stepping.steps);
         let seconds = log.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum();
         let critical = scene.critical_time_step();

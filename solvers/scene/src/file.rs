@@ -539,7 +539,7 @@ pub struct OutputSpec {
     pub snapshots: u32,
 }
 
-/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall` and `system`.
+/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `stress` and `system`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeSpec {
@@ -561,6 +561,12 @@ pub struct ProbeSpec {
     /// A wall: columns force_x, … of the grains on it.
     #[serde(default)]
     pub wall: Option<String>,
+    /// Mean stress of the grains, from the contacts between them: σ_ij = (1/V) Σ l_i f_j with the line l from the centre of
+    /// one grain to that of the other, the force f on the first, and V the volume of the domain (Love 1927; Weber 1966).
+    /// Tension is positive, walls are left out. Columns sigma_xx, sigma_yy, sigma_xy (and sigma_zz, sigma_xz, sigma_yz),
+    /// and coordination, the mean number of grains that a grain touches.
+    #[serde(default)]
+    pub stress: Option<bool>,
     /// The whole system: kinetic, rotational, elastic and gravitational energy, their sum, momentum, angular momentum
     /// about the origin, number of contacts.
     #[serde(default)]

@@ -1,8 +1,8 @@
 //! Time series of a scene's probes.
 
-use crate::record::{BodyState, Column, ContactState, GrainState, Look, Partner, Series};
+use crate::record::{BodyState, Column, ContactState, GrainState, Look, Partner, Series, Snapshot};
 use crate::scene::{Dimension, Probe, ProbeTarget, Scene};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -42,6 +42,33 @@ pub(crate) fn sample(series: &mut Series, scene: &Scene, look: &Look) {
     }
 }
 
+/// Components of the mean stress of grains.
+const fn mean_stresses(dimension: Dimension) -> &'static [(usize, usize)] {
+    match dimension {
+        Dimension::Two => &[(0, 0), (1, 1), (0, 1)],
+        Dimension::Three => &[(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)],
+    }
+}
+
+/// Mean stress of the grains from the contacts between them, and how many grains each touches; see
+/// [`crate::file::ProbeSpec::stress`].
+fn mean_stress(snapshot: &Snapshot, dimension: Dimension) -> Vec<f64> {
+    let (low, high) = snapshot.bounds;
+    let volume: f64 = (high - low).iter().take(dimension.count()).product();
+    let mut stress = Matrix3::zeros();
+    let mut contacts = 0_u32;
+    for contact in &snapshot.contacts {
+        let Partner::Grain(other) = contact.partner else { continue };
+        let radius = |id: u32| snapshot.grains[id as usize - 1].radius;
+        let line = contact.normal * (radius(contact.grain) + radius(other) - contact.overlap);
+        stress += line * (contact.shear_force - contact.normal * contact.normal_force).transpose();
+        contacts += 1;
+    }
+    let mut all: Vec<f64> = mean_stresses(dimension).iter().map(|&at| stress[at] / volume).collect();
+    all.push(2.0 * f64::from(contacts) / snapshot.grains.len() as f64);
+    all
+}
+
 fn axes(dimension: Dimension) -> &'static [&'static str] {
     &AXES[..dimension.count()]
 }
@@ -78,6 +105,12 @@ fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static s
             plain(&[("overlap", "m"), ("normal_force", "N"), ("shear_force", "N"), ("slipping", "1")])
         }
         ProbeTarget::Wall(_) => named("force_", "N"),
+        ProbeTarget::Stress => {
+            let of = |&(i, j): &(usize, usize)| (format!("sigma_{}{}", AXES[i], AXES[j]), "Pa");
+            let mut all: Vec<_> = mean_stresses(dimension).iter().map(of).collect();
+            all.extend(plain(&[("coordination", "1")]));
+            all
+        }
         ProbeTarget::System => {
             let mut all = plain(&[
                 ("kinetic_energy", "J"),
@@ -132,6 +165,7 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
         ProbeTarget::Pair(a, b) => contact_values(look, a, Partner::Grain(b as u32 + 1), flat),
         ProbeTarget::GrainWall(grain, wall) => contact_values(look, grain, Partner::Wall(wall as u16), flat),
         ProbeTarget::Wall(wall) => vector(&snapshot.walls[wall].force),
+        ProbeTarget::Stress => mean_stress(snapshot, scene.dimension),
         ProbeTarget::System => {
             let bodies = &snapshot.bodies;
             let half_squared = |mass: f64, velocity: &Vector3<f64>| 0.5 * mass * velocity.norm_squared();

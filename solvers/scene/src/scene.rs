@@ -230,6 +230,8 @@ pub enum ProbeTarget {
     GrainWall(usize, usize),
     /// A wall.
     Wall(usize),
+    /// Mean stress and number of contacts of the grains.
+    Stress,
     /// Everything.
     System,
 }

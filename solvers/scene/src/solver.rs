@@ -245,6 +245,14 @@ pub enum RunError {
         /// Where it was looked for.
         reason: String,
     },
+    /// The record would have been a stored one, and that is of another scene.
+    #[error("{solver}: the stored run is stale: {reason}")]
+    Stale {
+        /// Which solver.
+        solver: String,
+        /// What is to be done.
+        reason: String,
+    },
     /// The solver is a program that failed.
     #[error("{solver} {failure}{}", last_words(last_lines))]
     Program {

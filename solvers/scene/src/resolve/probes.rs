@@ -24,6 +24,7 @@ impl Resolver<'_> {
                 ("point", spec.point.is_some()),
                 ("contact", spec.contact.is_some()),
                 ("wall", spec.wall.is_some()),
+                ("stress", spec.stress == Some(true)),
                 ("system", spec.system == Some(true)),
             ],
         )?;
@@ -48,6 +49,8 @@ impl Resolver<'_> {
         } else if let Some(wall) = &spec.wall {
             let known = names.walls.iter().map(|wall| &wall.name);
             ProbeTarget::Wall(check.place_of(&key("wall"), wall, "a wall of this scene", known)?)
+        } else if spec.stress == Some(true) {
+            ProbeTarget::Stress
         } else {
             ProbeTarget::System
         };

@@ -1,0 +1,178 @@
+//! A disc meets a frictional wall at an angle and slips throughout: exact velocities after it.
+
+use crate::bench::Bench;
+use crate::case::{Case, Rung, fraction};
+use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::incline::more_friction;
+use crate::program_rows;
+use crate::scope::Scope;
+use crate::verdict::Evidence;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::RunError;
+
+const LADDER: &[Rung] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), fraction("dt=.002", 0.002)];
+const VARIANTS: [&str; 2] = ["elastic", "damped"];
+
+pub(crate) static CASE: Case = Case {
+    name: "oblique-impact",
+    title: "A disc meets a wall at an angle",
+    claim: "A disc that slips on a wall throughout an impact leaves with the velocities that Coulomb's limit on the whole \
+            normal force gives, elastic or damped.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "The disc slips all the time, so that the tangential spring's stiffness is not felt, nor what sticking would \
+               remember. One plane wall, one angle.",
+    ladder: LADDER,
+    default_rung: LADDER[2],
+    gates,
+    figures,
+};
+
+/// What is left after the impact.
+struct Exit {
+    /// Along the wall (m/s).
+    along: f64,
+    /// Across it (m/s).
+    across: f64,
+    /// Angular velocity (rad/s).
+    spin: f64,
+}
+
+/// By quadrature along the closed form of the overlap (derivation).
+fn exact(scene: &Scene) -> Exit {
+    const PARTS: u32 = 100_000;
+    let law = scene.laws[0].unwrap_or_default();
+    let grain = &scene.grains[0];
+    let (along, across) = (grain.velocity.x, -grain.velocity.y);
+    let decay = 0.5 * law.normal_damping;
+    let omega = (law.normal_stiffness / grain.mass - decay * decay).sqrt();
+    let interval = std::f64::consts::PI / omega / f64::from(PARTS);
+    let turning = grain.mass * grain.radius * grain.radius / grain.inertia;
+    // Slip velocity, stretch of the tangential spring and impulse along the wall over the mass.
+    let (mut slip, mut stretch, mut impulse) = (along - grain.spin.z * grain.radius, 0.0, 0.0);
+    for part in 0..PARTS {
+        let time = (f64::from(part) + 0.5) * interval;
+        let size = across / omega * (-decay * time).exp();
+        let overlap = size * (omega * time).sin();
+        let rate = size * (omega * (omega * time).cos() - decay * (omega * time).sin());
+        let limit = law.friction * (law.normal_stiffness * overlap + law.normal_damping * grain.mass * rate).abs();
+        stretch += slip * 0.5 * interval;
+        let force = (law.tangential_stiffness * stretch).clamp(-limit, limit);
+        stretch = force / law.tangential_stiffness + slip * 0.5 * interval;
+        slip -= force / grain.mass * (1.0 + turning) * interval;
+        impulse += force / grain.mass * interval;
+    }
+    Exit {
+        along: along - impulse,
+        across: (-decay * std::f64::consts::PI / omega).exp() * across,
+        spin: grain.spin.z - impulse * turning / grain.radius,
+    }
+}
+
+type Read = fn(&Done) -> Result<f64, Missing>;
+type Of = fn(&Exit) -> f64;
+
+fn gates() -> Vec<Gate> {
+    let quantities: [(&str, &'static str, f64, &'static str, Read, Of); 3] = [
+        (
+            "velocity along the wall after the impact",
+            "m/s",
+            2e-4,
+            "the phase of the first touch within a step; relative to the velocity",
+            |done| done.last("grain.vx"),
+            |exit| exit.along,
+        ),
+        (
+            "velocity across the wall after the impact",
+            "m/s",
+            2e-4,
+            "discretisation at the first touch and the last; relative to the velocity",
+            |done| done.last("grain.vy"),
+            |exit| exit.across,
+        ),
+        (
+            "spin after the impact",
+            "rad/s",
+            1e-3,
+            "half the overlap in the arm of the torque, 5e-4, and the first touch; relative to the spin",
+            |done| done.last("grain.omega"),
+            |exit| exit.spin,
+        ),
+    ];
+    let mut gates = Vec::new();
+    for variant in VARIANTS {
+        for (quantity, unit, allowed, because, read, of) in quantities {
+            for solver in ["dem:lammps", "dem:liggghts"] {
+                gates.push(Gate {
+                    quantity: quantity.to_owned(),
+                    unit,
+                    evidence: Evidence::Analytic,
+                    // One row is enough for strangers.
+                    scope: if solver == "dem:lammps" { Scope::AnySolver } else { Scope::Named },
+                    source: "momentum and Coulomb's limit, by quadrature (derivation)",
+                    allowed,
+                    because,
+                    runs: vec![Run::new(variant, solver, LADDER[2].resolution)],
+                    measure: measure(move |done| {
+                        let expected = of(&exact(&done[0].scene));
+                        Ok(Measured::new(read(&done[0])?, expected, expected))
+                    }),
+                    control: if unit == "m/s" && quantity.contains("across") {
+                        Control::scene("stiffness-proportional damping of a fiftieth of the period", |scene| {
+                            let law = scene.laws[0].unwrap_or_default();
+                            let beta = 0.04 * (scene.grains[0].mass / law.normal_stiffness).sqrt();
+                            scene.change_laws(|law| law.stiffness_damping = beta);
+                        })
+                    } else {
+                        Control::scene("friction ×1.05", more_friction)
+                    },
+                });
+            }
+        }
+    }
+    gates.extend(program_rows::impact(&VARIANTS, LADDER[1].resolution));
+    gates
+}
+
+fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let mut curves = Vec::new();
+    for variant in VARIANTS {
+        let done = bench.run(&Run::new(variant, "dem:lammps", LADDER[2].resolution))?;
+        let (time, speed) = (&done.series().time, done.series().column("grain.vx").unwrap_or_default());
+        let end = time.last().copied().unwrap_or_default();
+        let after = exact(&done.scene).along;
+        let points = time.iter().copied().zip(speed.iter().copied()).collect();
+        curves.push(Curve { label: format!("{variant}, dem:lammps"), stroke: Stroke::Line, points });
+        curves.push(Curve {
+            label: format!("{variant}, exact after the impact"),
+            stroke: Stroke::Dashed,
+            points: vec![(0.55 * end, after), (end, after)],
+        });
+    }
+    Ok(vec![Figure {
+        name: "velocity".to_owned(),
+        title: "Velocity along the wall".to_owned(),
+        caption: "4 m/s before the impact. Elastic it leaves at 3 m/s; damped less is taken.".to_owned(),
+        drawing: Drawing::Graph(Graph {
+            x: Axis::linear("time t (s)"),
+            y: Axis::linear("velocity along the wall (m/s)"),
+            curves,
+        }),
+    }])
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    /// It slips from the first moment to the last: 4 − μ·2 v_n along the wall, and R ω = 2 μ·2 v_n.
+    #[test]
+    fn the_quadrature_has_the_elastic_answer() {
+        let exit = exact(&CASE.variant("elastic").unwrap());
+        assert!((exit.along - 3.0).abs() < 1e-8 && (exit.across - 1.0).abs() < 1e-12, "{}", exit.along);
+        assert!((exit.spin + 2.0).abs() < 1e-8);
+    }
+}

@@ -1,0 +1,97 @@
+//! Which runs of other programs are kept with the sources: those that gates read, by the names of their folders.
+
+use crate::case::{Case, PLAIN};
+use crate::gate::{Run, Standing};
+use crate::registry::CASES;
+use grainbench_reference::deck::Program;
+use grainbench_reference::stored::{StoredRun, folder, unusable};
+use grainbench_scene::error::SceneError;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::RunError;
+
+/// One of them, whether or not it has been made.
+#[derive(Clone)]
+pub struct Reference {
+    /// The case whose gates read it.
+    pub case: &'static Case,
+    /// The run.
+    pub run: Run,
+    /// The program that does it.
+    pub program: Program,
+    /// Name of its folder.
+    pub id: String,
+}
+
+/// All that gates read, in the order of the registry; each once.
+#[must_use]
+pub fn all() -> Vec<Reference> {
+    let mut all: Vec<Reference> = Vec::new();
+    for &case in CASES {
+        for run in (case.gates)().into_iter().flat_map(|gate| gate.runs) {
+            let Some(program) = Program::by_name(run.solver).filter(|_| run.standing != Standing::Refused) else {
+                continue;
+            };
+            let id = id(case, &run);
+            if !all.iter().any(|known| known.program == program && known.id == id) {
+                all.push(Reference { case, run, program, id });
+            }
+        }
+    }
+    all
+}
+
+impl Reference {
+    /// The scene of the run.
+    ///
+    /// # Errors
+    /// When the scene file is wrong.
+    pub fn scene(&self) -> Result<Scene, SceneError> {
+        let mut scene = self.case.variant(self.run.variant)?;
+        if let Some((_, change)) = &self.run.adjustment {
+            change(&mut scene);
+        }
+        Ok(scene)
+    }
+
+    /// What it is, in words.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let mut title = self.case.name.to_owned();
+        if self.run.variant != PLAIN {
+            title.push_str(&format!("/{}", self.run.variant));
+        }
+        if let Some((name, _)) = &self.run.adjustment {
+            title.push_str(&format!(", {name}"));
+        }
+        format!("{title}, {}", self.run.resolution)
+    }
+}
+
+/// Name of the folder of a run: case, variant and adjustment in letters, digits, `.` and `-`.
+#[must_use]
+pub fn id(case: &Case, run: &Run) -> String {
+    let variant = if run.variant == PLAIN { "" } else { run.variant };
+    let adjustment = run.adjustment.as_ref().map_or("", |(name, _)| name.as_str());
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
+    let words = format!("{} {variant} {adjustment}", case.name);
+    let words: String = words.chars().map(plain).collect();
+    words.split('-').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-").to_lowercase()
+}
+
+/// Whether there is a folder for a run.
+#[must_use]
+pub fn exists(case: &Case, run: &Run) -> bool {
+    Program::by_name(run.solver).is_some_and(|program| folder(program, &id(case, run)).is_dir())
+}
+
+/// The stored record of a run of a program; none where nothing is stored.
+pub(crate) fn record(case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
+    let program = Program::by_name(run.solver)?;
+    let folder = folder(program, &id(case, run));
+    if !folder.is_dir() {
+        return None;
+    }
+    let stored = StoredRun::load(&folder).map_err(|error| unusable(program, &error));
+    Some(stored.and_then(|stored| stored.record(scene, &run.resolution, program)))
+}

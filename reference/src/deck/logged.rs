@@ -1,0 +1,96 @@
+//! What the log of a run is asked for: sums over all contacts, which no dump of grains tells.
+
+use grainbench_scene::record::Series;
+use grainbench_scene::scene::{ProbeTarget, Scene};
+
+use super::outline::AXES;
+use crate::log::Log;
+
+/// A column of the log that gives one of the series.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Logged {
+    /// Column of the series, such as `floor.force_x`.
+    pub(crate) column: String,
+    /// Name of the variable. Short and plain, for LIGGGHTS cuts the names of columns.
+    pub(crate) name: String,
+    /// Its formula in the program.
+    pub(crate) formula: String,
+}
+
+/// Components of the virial, in the order of both programs.
+const VIRIAL: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
+
+/// The commands that make the columns, and the columns; `force` names the program's vector of the forces of a wall on
+/// the grains, by the wall's number.
+///
+/// The pressure of the programs counts forces between grains at the time of the step, as they moved the grains. It is per
+/// volume of a box that grows with the grains, so that it is brought to the volume of the scene's domain.
+pub(crate) fn logged(
+    scene: &Scene,
+    temperature: &str,
+    force: impl Fn(usize) -> (String, [String; 3]),
+) -> Result<(String, Vec<Logged>), String> {
+    let (mut commands, mut all) = (String::new(), Vec::new());
+    let mut take = |column: String, formula: String| {
+        let name = format!("g{}", all.len() + 1);
+        all.push(Logged { column, name, formula });
+    };
+    for probe in &scene.probes {
+        match probe.target {
+            ProbeTarget::Wall(wall) => {
+                let (command, components) = force(wall + 1);
+                commands.push_str(&command);
+                // Theirs is the force on the grains.
+                for (component, axis) in components.iter().zip(AXES).take(scene.dimension.count()) {
+                    take(format!("{}.force_{axis}", probe.name), format!("-{component}"));
+                }
+            }
+            ProbeTarget::Stress => {
+                let Some(domain) = scene.domain else {
+                    return Err(
+                        "mean stress needs a domain, for the box of the program grows with the grains".to_owned()
+                    );
+                };
+                let count = scene.dimension.count();
+                let volume: f64 = (domain.high - domain.low).iter().take(count).product();
+                commands.push_str(&format!(
+                    "compute virial all pressure {temperature} virial\ncompute touch all contact/atom\ncompute touching all reduce ave c_touch\n"
+                ));
+                for (at, pair) in (1..).zip(VIRIAL) {
+                    if count == 3 || !pair.contains('z') {
+                        take(format!("{}.sigma_{pair}", probe.name), format!("-c_virial[{at}]*vol/{volume:?}"));
+                    }
+                }
+                take(format!("{}.coordination", probe.name), "c_touching".to_owned());
+            }
+            _ => {}
+        }
+    }
+    for Logged { name, formula, .. } in &all {
+        commands.push_str(&format!("variable {name} equal {formula}\n"));
+    }
+    Ok((commands.trim_end().to_owned(), all))
+}
+
+/// What the log of the run says at the steps of a series, a column each.
+pub(crate) fn read(logged: &[Logged], log: &Log, series: &Series) -> Vec<(String, Vec<f64>)> {
+    let mut columns = Vec::new();
+    for Logged { column, name, .. } in logged {
+        let mut values = vec![f64::NAN; series.step.len()];
+        for run in &log.runs {
+            let (Some(step), Some(at)) = (
+                run.thermo.column("Step"),
+                run.thermo.column(&format!("v_{name}")).or_else(|| run.thermo.column(name)),
+            ) else {
+                continue;
+            };
+            for (step, value) in run.thermo.values(step).zip(run.thermo.values(at)) {
+                if let Ok(place) = series.step.binary_search(&(step as u64)) {
+                    values[place] = value;
+                }
+            }
+        }
+        columns.push((column.clone(), values));
+    }
+    columns
+}

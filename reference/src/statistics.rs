@@ -1,0 +1,104 @@
+//! Means over time with confidence intervals, for what can no longer be compared moment by moment.
+
+use statrs::distribution::{ContinuousCDF as _, StudentsT};
+
+/// How many blocks a course is cut into.
+pub const BLOCKS: usize = 8;
+/// The part of all runs whose difference lies within the interval.
+pub const CONFIDENCE: f64 = 0.99;
+
+/// The means of two courses, and how well their difference is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Mean of the first.
+    pub first: f64,
+    /// Mean of the second.
+    pub second: f64,
+    /// Half of the confidence interval of their difference.
+    pub half_width: f64,
+}
+
+/// The difference of two courses sampled at the same times, by block averages: both are cut into `blocks` of equal length
+/// (what is left over at the start is not used), and the differences of the blocks' means are taken for independent, so
+/// that their mean is known to t s/√n with Student's t for n − 1 degrees of freedom and their standard deviation s
+/// (Flyvbjerg & Petersen 1989). What both do together, such as gaining speed, is not in the differences. None where a
+/// block would be empty.
+#[must_use]
+pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estimate> {
+    let length = first.len().min(second.len()) / blocks.max(2);
+    if length == 0 || first.len() != second.len() {
+        return None;
+    }
+    let skipped = first.len() - length * blocks;
+    let means = |values: &[f64]| -> Vec<f64> {
+        values[skipped..].chunks_exact(length).map(|block| block.iter().sum::<f64>() / length as f64).collect()
+    };
+    let (first, second) = (means(first), means(second));
+    let count = blocks as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
+    let differences: Vec<f64> = first.iter().zip(&second).map(|(a, b)| b - a).collect();
+    let of_all = mean(&differences);
+    let variance = differences.iter().map(|value| (value - of_all).powi(2)).sum::<f64>() / (count - 1.0);
+    let half_width = quantile(count - 1.0)? * (variance / count).sqrt();
+    Some(Estimate { first: mean(&first), second: mean(&second), half_width })
+}
+
+/// Half of the interval that the difference of two more values of a kind lies in, from some independent ones: t s √2 with
+/// their standard deviation s. None where there are too few, or all are one.
+#[must_use]
+pub fn spread(values: &[f64]) -> Option<f64> {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    let half_width = quantile(count - 1.0)? * (2.0 * variance).sqrt();
+    (half_width > 0.0).then_some(half_width)
+}
+
+/// Student's t of the two-sided interval.
+fn quantile(degrees_of_freedom: f64) -> Option<f64> {
+    Some(StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    /// Numbers that look drawn by lot, between −0.5 and 0.5.
+    fn noise(seed: u64) -> impl Iterator<Item = f64> {
+        let mut state = seed;
+        std::iter::repeat_with(move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        })
+    }
+
+    /// The interval has the difference in it about as often as it says.
+    #[test]
+    fn the_interval_holds_what_it_says() {
+        let trend = |at: usize| 0.05 * at as f64;
+        let course =
+            |seed: u64| -> Vec<f64> { noise(seed).take(160).enumerate().map(|(at, x)| trend(at) + x).collect() };
+        let outside = |off: f64| {
+            (1..=400_u64)
+                .filter(|&seed| {
+                    let second: Vec<f64> = course(seed + 1000).iter().map(|value| value + off).collect();
+                    let of = difference(&course(seed), &second, BLOCKS).unwrap();
+                    (of.second - of.first).abs() > of.half_width
+                })
+                .count()
+        };
+        assert!(outside(0.0) <= 12, "{}", outside(0.0));
+        assert!(outside(0.3) > 390, "{}", outside(0.3));
+    }
+
+    #[test]
+    fn a_known_interval() {
+        // Differences 1, −1, 1, −1: s² = 4/3, t(.995, 3) = 5.8409.
+        let of = difference(&[0.0; 4], &[1.0, -1.0, 1.0, -1.0], 4).unwrap();
+        assert!((of.half_width - 5.840_909 * (1.0_f64 / 3.0).sqrt()).abs() < 1e-5, "{of:?}");
+        assert_eq!(difference(&[0.0; 3], &[0.0; 3], 4), None);
+        assert_eq!(difference(&[0.0; 8], &[0.0; 9], 4), None);
+    }
+}

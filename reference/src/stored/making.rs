@@ -1,0 +1,147 @@
+//! Makes a stored run with a program that is installed.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+
+use flate2::{Compression, GzBuilder};
+use grainbench_scene::record::{Record, Series};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Failure, Resolution, RunError, Solver};
+
+use super::drift::drift;
+use super::provenance::PARTED;
+use super::scene_hash::scene_hash;
+use super::{HALF_STEP_SERIES, PROVENANCE, Provenance, SERIES};
+use crate::deck::{Program, Stepping, write_deck};
+use crate::live::Live;
+use crate::refined::refined;
+
+/// Most samples that are kept of a run, beside its last one.
+const MOST_SAMPLES: usize = 100;
+/// From how many bytes on a file of the deck is compressed.
+const LARGE: usize = 1 << 14;
+
+/// The files of a stored run: name and bytes of each.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Made {
+    /// The files, `provenance.toml` the last.
+    pub files: Vec<(String, Vec<u8>)>,
+}
+
+/// Runs the scene and its twin with half the time step, and writes both down. `id` is what `reference build` calls it, and
+/// `date` the day (YYYY-MM-DD).
+///
+/// # Errors
+/// When the program cannot express the scene, is not there or fails, or leaves a value that is not finite.
+pub fn make(
+    program: Program,
+    id: &str,
+    title: &str,
+    date: &str,
+    scene: &Scene,
+    resolution: &Resolution,
+) -> Result<Made, RunError> {
+    let live = Live::find(program);
+    let fail = |reason: String| RunError::Resolution { solver: program.name().to_owned(), reason };
+    let stepping = Stepping::of(scene, resolution).map_err(fail)?;
+    let run = live.run(scene, resolution, &mut ())?;
+    let (twin_scene, twin_resolution) = refined(scene, &stepping, 2);
+    let twin = live.run(&twin_scene, &twin_resolution, &mut ())?;
+    let moved = live.run(&with_one_moved(scene), resolution, &mut ())?;
+    let deck = write_deck(scene, resolution, program).map_err(|error| fail(error.to_string()))?;
+    let mut files = Vec::new();
+    for (name, text) in deck.files {
+        if text.len() < LARGE {
+            files.push((name, text.into_bytes()));
+        } else {
+            files.push((format!("{name}.gz"), compressed(&text)));
+        }
+    }
+    files.push((SERIES.to_owned(), compressed(&table(&run, program)?)));
+    files.push((HALF_STEP_SERIES.to_owned(), compressed(&table(&twin, program)?)));
+    let mut commands =
+        vec![program.command().to_owned(), format!("grainbench reference build {}/{id}", program.name())];
+    let packed = files.iter().filter_map(|(name, _)| name.strip_suffix(".gz")).filter(|name| !name.ends_with(".csv"));
+    for name in packed {
+        commands.insert(0, format!("gzip -dk {name}.gz"));
+    }
+    let blake3: BTreeMap<String, String> =
+        files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect();
+    let provenance = Provenance {
+        program: program.to_string(),
+        version: run.provenance.options.first().cloned().unwrap_or_default(),
+        date: date.to_owned(),
+        title: title.to_owned(),
+        scene: scene_hash(scene, &stepping),
+        predictable_steps: predictable_steps(&thinned(&run.series), &moved.series),
+        commands,
+        blake3,
+    };
+    let text = toml::to_string(&provenance).map_err(|error| fail(error.to_string()))?;
+    files.push((PROVENANCE.to_owned(), text.into_bytes()));
+    Ok(Made { files })
+}
+
+/// Some hundred samples of a run as CSV, with all their digits.
+fn table(record: &Record, program: Program) -> Result<String, RunError> {
+    let series = thinned(&record.series);
+    let mut text = "step,time".to_owned();
+    for column in &series.columns {
+        text.push(',');
+        text.push_str(&column.name);
+    }
+    text.push('\n');
+    for (at, (step, time)) in series.step.iter().zip(&series.time).enumerate() {
+        text.push_str(&format!("{step},{time:?}"));
+        for (column, values) in series.columns.iter().zip(&series.values) {
+            if !values[at].is_finite() {
+                let failure = Failure::Output(format!("`{}` is {} at step {step}", column.name, values[at]));
+                return Err(RunError::Program { solver: program.name().to_owned(), failure, last_lines: Vec::new() });
+            }
+            text.push_str(&format!(",{:?}", values[at]));
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// The scene with the grain in the middle of the list moved by one unit in the last place.
+fn with_one_moved(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let middle = scene.grains.len() / 2;
+    if let Some(grain) = scene.grains.get_mut(middle) {
+        // Along an axis where it is not zero, whose next number is no length at all.
+        let axis = (0..3).find(|&axis| grain.position[axis] != 0.0).unwrap_or(0);
+        grain.position[axis] = grain.position[axis].next_up();
+    }
+    scene
+}
+
+/// The last step at which a twin is within [`PARTED`]; none where it is so to the end.
+fn predictable_steps(run: &Series, twin: &Series) -> Option<u64> {
+    let parted = |step: u64| drift(run, twin, step).iter().any(|column| !(column.error().abs() <= PARTED));
+    let first = run.step.partition_point(|&step| !parted(step));
+    (first < run.step.len()).then(|| run.step[first.saturating_sub(1)])
+}
+
+/// Evenly spread samples of a series, the last one among them.
+fn thinned(series: &Series) -> Series {
+    let stride = series.step.len().div_ceil(MOST_SAMPLES).max(1);
+    let keep: Vec<usize> =
+        (0..series.step.len()).filter(|at| at % stride == 0 || at + 1 == series.step.len()).collect();
+    let pick = |values: &[f64]| keep.iter().map(|&at| values[at]).collect::<Vec<f64>>();
+    Series {
+        step: keep.iter().map(|&at| series.step[at]).collect(),
+        time: pick(&series.time),
+        columns: series.columns.clone(),
+        values: series.values.iter().map(|values| pick(values)).collect(),
+    }
+}
+
+/// Gzip without name or time, so that equal texts are equal files.
+fn compressed(text: &str) -> Vec<u8> {
+    let mut encoder = GzBuilder::new().mtime(0).write(Vec::new(), Compression::best());
+    // Memory takes whatever is written to it.
+    let _ = encoder.write_all(text.as_bytes());
+    encoder.finish().unwrap_or_default()
+}

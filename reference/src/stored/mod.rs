@@ -1,0 +1,209 @@
+//! Runs of other programs that are kept with the sources, so that they can be compared with where those programs are
+//! not installed: the deck, what it left at full precision, the same with half the time step, and where they come from.
+
+mod drift;
+mod error;
+mod file_hash;
+mod making;
+mod provenance;
+mod scene_hash;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use grainbench_scene::record::{Cost, Record, Series};
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Failure, Resolution, RunError};
+
+use crate::deck::{Program, Stepping};
+use crate::table::{Table, read_table};
+pub use drift::{Drift, drift};
+pub use error::StoredError;
+pub use file_hash::hash_file;
+pub use making::{Made, make};
+pub use provenance::Provenance;
+pub use scene_hash::scene_hash;
+
+const PROVENANCE: &str = "provenance.toml";
+const SERIES: &str = "series.csv.gz";
+const HALF_STEP_SERIES: &str = "series-half-step.csv.gz";
+
+/// A stored run whose files have been found to be the ones that were stored.
+#[derive(Debug, Clone)]
+pub struct StoredRun {
+    directory: PathBuf,
+    provenance: Provenance,
+    series: Table,
+    half_step: Table,
+}
+
+/// The folder of the run `id` of a program among the sources of this crate.
+#[must_use]
+pub fn folder(program: Program, id: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(program.name()).join(id)
+}
+
+impl StoredRun {
+    /// Loads the run in `directory`: its `provenance.toml`, every file listed there, and its two series.
+    ///
+    /// # Errors
+    /// A file is missing, changed or damaged; see [`StoredError`].
+    pub fn load(directory: &Path) -> Result<Self, StoredError> {
+        let provenance = read_provenance(&directory.join(PROVENANCE))?;
+        for (name, expected) in &provenance.blake3 {
+            verify(directory, name, expected)?;
+        }
+        let listed = |name: &str| {
+            if provenance.blake3.contains_key(name) {
+                return Ok(directory.join(name));
+            }
+            Err(StoredError::Unlisted { provenance: directory.join(PROVENANCE), name: name.to_owned() })
+        };
+        let (series, half_step) = (read_table(&listed(SERIES)?)?, read_table(&listed(HALF_STEP_SERIES)?)?);
+        check_twin(directory, &series, &half_step)?;
+        Ok(Self { directory: directory.to_owned(), provenance, series, half_step })
+    }
+
+    /// The folder of the run.
+    #[must_use]
+    pub fn directory(&self) -> &Path {
+        &self.directory
+    }
+
+    /// Where the run comes from.
+    #[must_use]
+    pub fn provenance(&self) -> &Provenance {
+        &self.provenance
+    }
+
+    /// Whether it was made from this scene at this resolution.
+    #[must_use]
+    pub fn is_of(&self, scene: &Scene, resolution: &Resolution) -> bool {
+        Stepping::of(scene, resolution).is_ok_and(|stepping| scene_hash(scene, &stepping) == self.provenance.scene)
+    }
+
+    /// What the probes of the scene saw.
+    #[must_use]
+    pub fn series(&self, scene: &Scene) -> Series {
+        series(scene, &self.series)
+    }
+
+    /// What they saw at the same times with half the time step: the difference is what the time step of the run is
+    /// worth, its own uncertainty. Steps are counted as those of the run.
+    #[must_use]
+    pub fn half_step(&self, scene: &Scene) -> Series {
+        Series { step: self.series(scene).step, ..series(scene, &self.half_step) }
+    }
+
+    /// The record of the run.
+    ///
+    /// # Errors
+    /// [`RunError::Stale`] when it was made from another scene.
+    pub fn record(&self, scene: &Scene, resolution: &Resolution, program: Program) -> Result<Record, RunError> {
+        let solver = program.name().to_owned();
+        if !self.is_of(scene, resolution) {
+            let reason = format!(
+                "`{}` was made from another scene or at another time step; `grainbench reference build` makes it anew",
+                self.directory.file_name().unwrap_or_default().to_string_lossy()
+            );
+            return Err(RunError::Stale { solver, reason });
+        }
+        let stepping = Stepping::of(scene, resolution)
+            .map_err(|reason| RunError::Resolution { solver: solver.clone(), reason })?;
+        let critical = scene.critical_time_step();
+        Ok(Record {
+            provenance: grainbench_scene::record::Provenance {
+                scene: scene.title.clone(),
+                solver,
+                resolution: resolution.to_string(),
+                time_step: stepping.time_step,
+                critical_time_step: critical.is_finite().then_some(critical),
+                effects: grainbench_scene::effects::Effects::of(scene).words(),
+                options: vec![self.provenance.version.clone(), format!("stored run of {}", self.provenance.date)],
+            },
+            series: self.series(scene),
+            snapshots: Vec::new(),
+            cost: Cost {
+                steps: stepping.steps,
+                particle_steps: stepping.steps * scene.grains.len() as u64,
+                ..Cost::default()
+            },
+        })
+    }
+}
+
+/// A damaged stored run, as a run says it.
+#[must_use]
+pub fn unusable(program: Program, error: &StoredError) -> RunError {
+    let failure = Failure::Output(error.to_string());
+    RunError::Program { solver: program.name().to_owned(), failure, last_lines: Vec::new() }
+}
+
+/// The columns of a table that are those of a scene's probes.
+fn series(scene: &Scene, table: &Table) -> Series {
+    let values =
+        |name: &str| -> Vec<f64> { table.column(name).map(|at| table.values(at).collect()).unwrap_or_default() };
+    let mut series = Series { step: values("step").iter().map(|step| *step as u64).collect(), ..Series::default() };
+    series.time = values("time");
+    for column in Recorder::new(scene, 1.0, 1).finish().0.columns {
+        if let Some(at) = table.column(&column.name) {
+            series.values.push(table.values(at).collect());
+            series.columns.push(column);
+        }
+    }
+    series
+}
+
+/// Refuses a file that is not the stored one.
+fn verify(directory: &Path, name: &str, expected: &str) -> Result<(), StoredError> {
+    check_name(name, &directory.join(PROVENANCE).to_string_lossy())?;
+    let path = directory.join(name);
+    match hash_file(&path) {
+        Ok(found) if found == expected => Ok(()),
+        Ok(found) => Err(StoredError::Changed { path, expected: expected.to_owned(), found }),
+        Err(source) => Err(StoredError::Unreadable { path, source }),
+    }
+}
+
+/// Refuses a series without steps or times, and a twin that was sampled at other times.
+fn check_twin(directory: &Path, run: &Table, twin: &Table) -> Result<(), StoredError> {
+    let column = |table: &Table, file: &str, name: &str| -> Result<Vec<f64>, StoredError> {
+        let path = directory.join(file);
+        let missing = || StoredError::Column { path, name: name.to_owned() };
+        Ok(table.values(table.column(name).ok_or_else(missing)?).collect())
+    };
+    column(run, SERIES, "step")?;
+    let (of_run, of_twin) = (column(run, SERIES, "time")?, column(twin, HALF_STEP_SERIES, "time")?);
+    let differing = |found: String| StoredError::Twin { path: directory.join(HALF_STEP_SERIES), found };
+    if of_run.len() != of_twin.len() {
+        return Err(differing(format!("{} rows where that has {}", of_twin.len(), of_run.len())));
+    }
+    // Steps are summed up in the programs, so that equal times differ in their last digits.
+    match of_run.iter().zip(&of_twin).find(|(run, twin)| (**run - **twin).abs() > 1e-9 * run.max(**twin)) {
+        Some((run, twin)) => Err(differing(format!("{twin:?} where that has {run:?}"))),
+        None => Ok(()),
+    }
+}
+
+fn read_provenance(path: &Path) -> Result<Provenance, StoredError> {
+    let text = fs::read_to_string(path).map_err(|source| StoredError::Unreadable { path: path.to_owned(), source })?;
+    toml::from_str(&text).map_err(|source: toml::de::Error| {
+        let place = source.span().map_or(0, |span| span.start);
+        let before = text.as_bytes().get(..place).unwrap_or_default();
+        StoredError::Provenance {
+            path: path.to_owned(),
+            line: 1 + before.iter().filter(|byte| **byte == b'\n').count(),
+            source: Box::new(source),
+        }
+    })
+}
+
+/// Refuses a name that is a path: a stored run reads nothing outside of its folder.
+fn check_name(name: &str, place: &str) -> Result<(), StoredError> {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"._-".contains(&byte);
+    if !name.is_empty() && !name.starts_with('.') && name.bytes().all(plain) {
+        return Ok(());
+    }
+    Err(StoredError::Name { place: place.to_owned(), name: name.to_owned() })
+}

@@ -1,0 +1,82 @@
+//! The fingerprint of a scene: two scenes of one fingerprint are one run of a program.
+
+use std::fmt::Write as _;
+
+use grainbench_scene::scene::{ContactLaw, Grain, Scene, Wall};
+
+use crate::deck::Stepping;
+
+/// The BLAKE3 hash of all in a scene and its stepping that a run of rigid grains depends on, in lower-case hexadecimal.
+///
+/// Titles, names of materials, how often samples are taken, and what deformable bodies alone have are left out. Numbers go
+/// in with all their digits.
+#[must_use]
+pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
+    let mut text =
+        format!("{:?} {:?} {:?} {}\n", scene.dimension, scene.grain_shape, scene.gravity, scene.global_damping);
+    let _ = writeln!(text, "{:?} {}", stepping.time_step, stepping.steps);
+    if let Some(domain) = scene.domain {
+        let _ = writeln!(text, "domain {:?} {:?} {:?}", domain.low, domain.high, domain.periodic);
+    }
+    for law in &scene.laws {
+        // Named one by one: a law that gains a number makes every stored run another one.
+        let &ContactLaw {
+            normal_stiffness,
+            tangential_stiffness,
+            friction,
+            cohesion,
+            stiffness_damping,
+            normal_damping,
+            tangential_damping,
+            effective_modulus,
+            effective_shear_modulus,
+            damping_ratio,
+            rolling_friction,
+            rolling_damping,
+        } = &law.unwrap_or_default();
+        let springs = [normal_stiffness, tangential_stiffness, effective_modulus, effective_shear_modulus];
+        let dashpots = [stiffness_damping, normal_damping, tangential_damping, damping_ratio];
+        let limits = [friction, cohesion, rolling_friction, rolling_damping];
+        let _ = writeln!(text, "law {} {springs:?} {dashpots:?} {limits:?}", law.is_some());
+    }
+    for Grain { material, radius, mass, inertia, position, velocity, spin } in &scene.grains {
+        let _ = writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");
+    }
+    for Wall { material, shape, motion, .. } in &scene.walls {
+        let _ = writeln!(text, "wall {material} {shape:?} {motion:?}");
+    }
+    for probe in &scene.probes {
+        let _ = writeln!(text, "probe {} {:?}", probe.name, probe.target);
+    }
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use grainbench_scene::solver::Resolution;
+    use grainbench_scene::source::SceneSource;
+    use std::path::Path;
+
+    const SCENE: &str = "title = 'a'\ndimension = 2\nduration = 1.0\n[materials.rock]\ndensity = 1e3\n\
+        [contacts.rock]\nbetween = ['rock', 'rock']\nnormal_stiffness = 1e6\n\
+        [grains.disc]\nmaterial = 'rock'\nradius = 0.5\nposition = [0.0, 0.0]\n";
+
+    #[test]
+    fn physics_counts_and_titles_do_not() {
+        let scene = SceneSource::from_text("s", Path::new("."), SCENE).scene(&|_| Err(String::new())).unwrap();
+        let hash = |change: fn(&mut Scene), step: f64| {
+            let mut scene = scene.clone();
+            change(&mut scene);
+            scene_hash(&scene, &Stepping::of(&scene, &Resolution::TimeStep(step)).unwrap())
+        };
+        let own = hash(|_| {}, 1e-3);
+        assert_eq!(own, hash(|scene| scene.title = "b".to_owned(), 1e-3));
+        assert_ne!(own, hash(|_| {}, 2e-3));
+        assert_ne!(own, hash(|scene| scene.grains[0].position.x = f64::from_bits(1), 1e-3));
+        assert_ne!(own, hash(|scene| scene.change_laws(|law| law.friction = 0.1), 1e-3));
+        assert_ne!(own, hash(|scene| scene.gravity.y = -9.8, 1e-3));
+    }
+}

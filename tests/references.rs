@@ -1,0 +1,89 @@
+//! The stored runs are those that gates read, all there and of the scenes as they are; and what is said where they are not,
+//! or the programs.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::grainbench;
+use grainbench::cases::stored;
+use grainbench::reference::deck::Program;
+use grainbench::reference::stored::{StoredRun, folder};
+use grainbench::scene::solver::RunError;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::process::Command;
+
+#[test]
+fn every_run_that_gates_read_is_stored_and_no_other() {
+    for program in Program::ALL {
+        let wanted: BTreeSet<String> =
+            stored::all().into_iter().filter(|of| of.program == program).map(|of| of.id).collect();
+        let there: BTreeSet<String> = std::fs::read_dir(folder(program, ""))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        assert_eq!(there, wanted, "grainbench reference build makes what is missing");
+    }
+}
+
+/// Two runs of one name would be stored in one folder.
+#[test]
+fn none_is_stale_and_another_scene_is() {
+    for of in stored::all() {
+        let stored = StoredRun::load(&folder(of.program, &of.id)).unwrap();
+        let mut scene = of.scene().unwrap();
+        stored.record(&scene, &of.run.resolution, of.program).unwrap_or_else(|error| panic!("{}: {error}", of.id));
+        scene.change_laws(|law| law.friction += 0.01);
+        let refused = stored.record(&scene, &of.run.resolution, of.program);
+        assert!(matches!(refused, Err(RunError::Stale { .. })), "{}", of.id);
+    }
+}
+
+/// What half the time step changes, at most: the runs' own uncertainty.
+#[test]
+fn the_time_step_is_worth_little_where_it_is_small() {
+    for of in stored::all().iter().filter(|of| of.id.starts_with("incline") && of.id.ends_with("0.5")) {
+        let (stored, scene) = (StoredRun::load(&folder(of.program, &of.id)).unwrap(), of.scene().unwrap());
+        let (run, twin) = (stored.series(&scene), stored.half_step(&scene));
+        let (x, half) = (run.column("grain.x").unwrap(), twin.column("grain.x").unwrap());
+        let worst = x.iter().zip(half).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-3 * x.last().unwrap() && worst > 0.0, "{}: {worst}", of.id);
+    }
+}
+
+#[test]
+fn without_the_programs_the_stored_runs_judge_and_verify_says_that_they_are_missing() {
+    let directory = tempfile::tempdir().unwrap();
+    let without = |arguments: &[&str]| {
+        let command = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+            .args(arguments)
+            .current_dir(directory.path())
+            .env("GRAINBENCH_LAMMPS", "nowhere/lmp")
+            .env("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")
+            .output()
+            .unwrap();
+        let results: Value = serde_json::from_slice(&command.stdout).unwrap();
+        (command.status.code(), results["verdicts"].as_array().unwrap().clone())
+    };
+    let (code, rows) = without(&["run", "collision", "--solver", "lammps", "--solver", "liggghts", "--json"]);
+    assert_eq!(code, Some(0));
+    assert!(rows.len() == 8 && rows.iter().all(|row| row["verdict"] == "pass"), "{rows:?}");
+    assert!(rows.iter().all(|row| row["source"].as_str().unwrap().contains("stored run of 20")), "{rows:?}");
+
+    let (code, rows) = without(&["reference", "verify", "collision-gamma-zeta.1", "--json"]);
+    assert_eq!(code, Some(0));
+    assert!(rows.len() == 2 && rows.iter().all(|row| row["verdict"] == "not-available"), "{rows:?}");
+}
+
+#[test]
+fn a_name_that_none_has_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &["reference", "verify", "lammps/collision-gamma-zeta"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(
+        answer.err.contains("expected a stored run") && answer.err.contains("collision-gamma-zeta.1"),
+        "{}",
+        answer.err
+    );
+}
