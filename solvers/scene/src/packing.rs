@@ -38,7 +38,8 @@ pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> 
         })
         .collect();
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut packing = Packing { radii, scale: SMALL, centres, domain, axes, pairs: Vec::new(), listed: Vec::new(), skin: smallest };
+    let mut packing =
+        Packing { radii, scale: SMALL, centres, domain, axes, pairs: Vec::new(), listed: Vec::new(), skin: smallest };
     for stage in 1..=STAGES {
         packing.scale = SMALL + (1.0 - SMALL) * f64::from(stage) / f64::from(STAGES);
         packing.list();
