@@ -21,6 +21,13 @@ pub(crate) struct Node<S: Space> {
 
 impl<S: Space> Node<S> {
     pub(crate) const EMPTY: Self = Self { mass: 0.0, velocity: S::ORIGIN, change: S::ORIGIN };
+
+    /// Adds what another holds.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.mass += other.mass;
+        self.velocity += other.velocity;
+        self.change += other.change;
+    }
 }
 
 /// Which nodes of the lattice a field stores, and where.
@@ -207,6 +214,61 @@ impl Stencil {
         }
     }
 
+    /// Visits every row of nodes along x.
+    #[inline(always)]
+    pub(crate) fn rows<S: Space, B: Basis>(&self, window: &Window, mut visit: impl FnMut(Row)) {
+        let size = [window.size[0] as usize, window.size[1] as usize];
+        let first = window.along(0, self.axes[0].base);
+        let joined = first + B::WIDTH <= size[0];
+        let [_, y, z] = &self.axes;
+        for k in 0..if S::DIMENSION == 3 { B::WIDTH } else { 1 } {
+            let (layer, value, slope) = if S::DIMENSION == 3 {
+                (window.along(2, z.base + k as i32) * size[1], z.value[k], z.slope[k] * self.inverse[2])
+            } else {
+                (0, 1.0, 0.0)
+            };
+            for j in 0..B::WIDTH {
+                let start = window.start + (layer + window.along(1, y.base + j as i32)) * size[0];
+                visit(Row {
+                    start,
+                    first,
+                    size: size[0],
+                    joined,
+                    across: [j, k],
+                    value: y.value[j] * value,
+                    slope: [y.slope[j] * self.inverse[1] * value, y.value[j] * slope],
+                });
+            }
+        }
+    }
+
+    /// The functions along x: values, and slopes per length (1/m).
+    #[inline(always)]
+    pub(crate) fn along_x(&self) -> ([f64; 3], [f64; 3]) {
+        let ([a, b, c], scale) = (self.axes[0].slope, self.inverse[0]);
+        (self.axes[0].value, [a * scale, b * scale, c * scale])
+    }
+
+    /// What makes the affine part along an axis, node by node (1/m).
+    #[inline(always)]
+    pub(crate) fn affine_along(&self, axis: usize) -> [f64; 3] {
+        let ([a, b, c], scale) = (self.axes[axis].affine, self.inverse[axis]);
+        [a * scale, b * scale, c * scale]
+    }
+
+    /// Value of the function of a node along an axis.
+    #[inline(always)]
+    pub(crate) const fn value_along(&self, axis: usize, node: usize) -> f64 {
+        self.axes[axis].value[node]
+    }
+
+    /// From the point to the first node (m).
+    #[inline(always)]
+    pub(crate) fn arm_of_first<S: Space>(&self) -> S::Vector {
+        let along = |axis: usize| (f64::from(self.axes[axis].base) - self.at[axis]) * self.cell[axis];
+        S::restrict(Vector3::new(along(0), along(1), if S::DIMENSION == 3 { along(2) } else { 0.0 }))
+    }
+
     /// Product over the axes of the functions' values, but along each axis in turn of `other`, per length (1/m).
     #[inline(always)]
     fn along<S: Space>(&self, node: &Reached<S>, other: impl Fn(&Axis) -> &[f64; 3]) -> S::Vector {
@@ -227,23 +289,62 @@ impl Stencil {
         self.along(node, |axis| &axis.slope)
     }
 
-    /// What the node's velocity adds to the affine part at the point (1/m).
-    #[inline(always)]
-    pub(crate) fn affine<S: Space>(&self, node: &Reached<S>) -> S::Vector {
-        self.along(node, |axis| &axis.affine)
-    }
-
     /// Σ w r² along an axis, r from the point to the node (m²).
     #[inline(always)]
     pub(crate) fn spread(&self, axis: usize) -> f64 {
         self.axes[axis].spread * self.cell[axis] * self.cell[axis]
     }
+}
 
-    /// From the point to the node (m).
+/// A row of nodes along x as a point sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    start: usize,
+    first: usize,
+    size: usize,
+    /// Whether its nodes follow each other: they do unless the row goes around a periodic window.
+    joined: bool,
+    /// Which of the stencil's nodes along y and z it is.
+    pub(crate) across: [usize; 2],
+    /// Product of the functions along y and z.
+    pub(crate) value: f64,
+    /// The same with the slope along y, and along z (1/m).
+    pub(crate) slope: [f64; 2],
+}
+
+impl Row {
+    /// Adds to the nodes of the row: `visit` is given as many as the basis reaches; of a row that goes around a periodic
+    /// window, nodes that hold `nothing`, which `sum` then adds to the right ones.
     #[inline(always)]
-    pub(crate) fn arm<S: Space>(&self, node: &Reached<S>) -> S::Vector {
-        let along =
-            |axis: usize| (f64::from(self.axes[axis].base + node.axes[axis] as i32) - self.at[axis]) * self.cell[axis];
-        S::restrict(Vector3::new(along(0), along(1), if S::DIMENSION == 3 { along(2) } else { 0.0 }))
+    pub(crate) fn add<B: Basis, T: Copy>(
+        &self,
+        all: &mut [T],
+        nothing: T,
+        sum: impl Fn(&mut T, &T),
+        visit: impl FnOnce(&mut [T]),
+    ) {
+        // One call of `visit`, so that it becomes part of the loop it is in.
+        let from = self.start + self.first;
+        let mut shares = [nothing; 3];
+        visit(if self.joined { &mut all[from..from + B::WIDTH] } else { &mut shares[..B::WIDTH] });
+        if !self.joined {
+            for (i, share) in shares[..B::WIDTH].iter().enumerate() {
+                sum(&mut all[self.start + (self.first + i) % self.size], share);
+            }
+        }
+    }
+
+    /// Looks at the nodes of the row.
+    #[inline(always)]
+    pub(crate) fn see<B: Basis, T: Copy>(&self, all: &[T], visit: impl FnOnce(&[T])) {
+        let from = self.start + self.first;
+        let copies;
+        visit(if self.joined {
+            &all[from..from + B::WIDTH]
+        } else {
+            let at = |i: usize| all[self.start + (self.first + i) % self.size];
+            copies = [at(0), at(1), at(2)];
+            &copies[..B::WIDTH]
+        });
     }
 }

@@ -27,6 +27,7 @@ pub mod seed;
 mod simulation;
 pub mod solver;
 mod start;
+mod state;
 mod stress;
 mod surface;
 mod transfer;

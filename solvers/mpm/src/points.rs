@@ -2,10 +2,12 @@
 
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// All material points of a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(crate) struct Points<S: Space> {
     /// Number at the start, which stays with the point.
     pub(crate) id: Vec<u32>,
@@ -31,8 +33,6 @@ pub(crate) struct Points<S: Space> {
     pub(crate) stress: Vec<S::Symmetric>,
     /// Equivalent plastic strain.
     pub(crate) plastic_strain: Vec<f64>,
-    /// Velocity gradient of the step under way (1/s).
-    pub(crate) gradient: Vec<S::Matrix>,
 }
 
 impl<S: Space> Points<S> {
@@ -50,7 +50,6 @@ impl<S: Space> Points<S> {
             deformation: Vec::new(),
             stress: Vec::new(),
             plastic_strain: Vec::new(),
-            gradient: Vec::new(),
         }
     }
 
@@ -83,7 +82,26 @@ impl<S: Space> Points<S> {
         self.deformation.push(S::restrict_gradient(Matrix3::identity()));
         self.stress.push(S::Symmetric::default());
         self.plastic_strain.push(0.0);
-        self.gradient.push(S::NO_GRADIENT);
+    }
+
+    /// Whether every point has all of its state.
+    pub(crate) fn is_whole(&self) -> bool {
+        let count = self.len();
+        [
+            self.id.len(),
+            self.start.len(),
+            self.next.len(),
+            self.velocity.len(),
+            self.affine.len(),
+            self.mass.len(),
+            self.reference_volume.len(),
+            self.volume.len(),
+            self.deformation.len(),
+            self.stress.len(),
+            self.plastic_strain.len(),
+        ]
+        .iter()
+        .all(|&length| length == count)
     }
 
     /// Puts the points of a body in the order of `key`, of equal keys in the order they have.

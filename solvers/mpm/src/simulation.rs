@@ -46,6 +46,10 @@ pub(crate) use with_basis;
 /// Nodes beyond which a grid is taken for a mistake.
 const MOST_NODES: f64 = 5e7;
 
+/// Points whose velocity gradients are found before their stresses are: few enough to stay in the cache, enough to share
+/// the choice of basis and law.
+const AT_ONCE: usize = 256;
+
 /// Which velocities of the nodes a stage means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Velocities {
@@ -66,6 +70,8 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) walls: Vec<RigidPlane<S>>,
     pub(crate) nodes: Vec<Node<S>>,
     pub(crate) projected: Vec<S::Vector>,
+    /// Velocity gradients of the points at hand (1/s).
+    gradients: Vec<S::Matrix>,
     /// Nodes in use.
     pub(crate) used: usize,
     pub(crate) friction: FrictionTable,
@@ -91,10 +97,7 @@ pub(crate) struct Simulation<S: Space> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Sets up a scene.
-    ///
-    /// # Errors
-    /// When its bodies reach farther than a grid can, or break while they settle.
+    /// Bodies where a scene has them; not yet settled nor set moving, see [`Simulation::begin`].
     pub(crate) fn new(
         scene: &Scene,
         setting: Setting,
@@ -102,10 +105,10 @@ impl<S: Space> Simulation<S> {
         per_cell: u32,
         time_step: f64,
         critical: f64,
-    ) -> Result<Self, Box<Broken>> {
+    ) -> Self {
         let (bodies, points, tracers) = seed::<S>(scene, &setting, &lattice, per_cell);
         let walls: Vec<RigidPlane<S>> = scene.walls.iter().filter_map(RigidPlane::new).collect();
-        let mut simulation = Self {
+        Self {
             held: Held::new(&bodies, &lattice),
             friction: FrictionTable::of(scene),
             springs: Springs::new(tracers.len()),
@@ -122,6 +125,7 @@ impl<S: Space> Simulation<S> {
             walls,
             nodes: Vec::new(),
             projected: Vec::new(),
+            gradients: vec![S::NO_GRADIENT; AT_ONCE],
             used: 0,
             touches: Vec::new(),
             time_step,
@@ -132,10 +136,17 @@ impl<S: Space> Simulation<S> {
             before: Vec::new(),
             looked: 0,
             cost: Cost::default(),
-        };
-        simulation.settle()?;
-        simulation.set_moving();
-        Ok(simulation)
+        }
+    }
+
+    /// Settles the bodies and sets them moving.
+    ///
+    /// # Errors
+    /// When they reach farther than a grid can, or break while they settle.
+    pub(crate) fn begin(&mut self) -> Result<(), Box<Broken>> {
+        self.settle()?;
+        self.set_moving();
+        Ok(())
     }
 
     /// Takes `steps` steps; after the last one what touches is known.
@@ -351,22 +362,27 @@ impl<S: Space> Simulation<S> {
 
     /// Velocity gradients, then deformation and stress of every point.
     fn update_stress(&mut self, velocities: Velocities) -> Result<(), Box<Broken>> {
-        let Self { lattice, bodies, points, nodes, projected, setting, time_step, .. } = self;
+        let Self { lattice, bodies, points, nodes, projected, gradients, setting, time_step, .. } = self;
         let mut failure: Option<(usize, Failure)> = None;
         for (place, body) in bodies.iter().enumerate() {
             let part: &Part = &body.part;
-            with_basis!(setting.basis, B => match velocities {
-                Velocities::Stepped => {
-                    transfer::gradients::<S, B>(lattice, part, points, |slot| nodes[slot].velocity);
-                }
-                Velocities::Projected => transfer::gradients::<S, B>(lattice, part, points, |slot| projected[slot]),
-            });
-            let found = match body.law {
-                Material::NeoHookean(law) => stress::update(law, part.points.clone(), *time_step, points),
-                Material::Hypoelastic(law) => stress::update(law, part.points.clone(), *time_step, points),
-                Material::VonMises(law) => stress::update(law, part.points.clone(), *time_step, points),
-            };
-            failure = failure.or(found.map(|failure| (place, failure)));
+            for start in part.points.clone().step_by(AT_ONCE) {
+                let range = start..(start + AT_ONCE).min(part.points.end);
+                with_basis!(setting.basis, B => match velocities {
+                    Velocities::Stepped => transfer::gradients::<S, B, _>(
+                        lattice, part, range.clone(), points, nodes, |node| node.velocity, gradients,
+                    ),
+                    Velocities::Projected => transfer::gradients::<S, B, _>(
+                        lattice, part, range.clone(), points, projected, |velocity| *velocity, gradients,
+                    ),
+                });
+                let found = match body.law {
+                    Material::NeoHookean(law) => stress::update(law, range, gradients, *time_step, points),
+                    Material::Hypoelastic(law) => stress::update(law, range, gradients, *time_step, points),
+                    Material::VonMises(law) => stress::update(law, range, gradients, *time_step, points),
+                };
+                failure = failure.or(found.map(|failure| (place, failure)));
+            }
         }
         match failure {
             None => Ok(()),

@@ -5,6 +5,7 @@ use crate::limits;
 use crate::options::{Contact, Setting};
 use crate::simulation::Simulation;
 use grainbench_scene::body::{BlockShape, Hold};
+use grainbench_scene::checkpoint::{Checkpoint, RunIdentity};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Provenance, Record};
 use grainbench_scene::recorder::Recorder;
@@ -84,25 +85,80 @@ impl Mpm {
         Ok(Plan { lattice, points, time_step: time / steps, steps: steps as u64, critical })
     }
 
-    fn run_in<S: Space>(&self, scene: &Scene, plan: &Plan, watch: &mut dyn Watch) -> Result<Done, RunError> {
+    fn run_in<S: Space>(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        plan: &Plan,
+        from: Option<&Checkpoint>,
+        watch: &mut dyn Watch,
+    ) -> Result<Done, RunError> {
         let &Plan { lattice, points, time_step, steps, critical } = plan;
-        let mut simulation = Simulation::<S>::new(scene, self.setting, lattice, points, time_step, critical)?;
-        let mut recorder = Recorder::new(scene, time_step, steps);
+        let mut simulation = Simulation::<S>::new(scene, self.setting, lattice, points, time_step, critical);
+        let solver = format!("{} at {resolution} ({})", self.name(), self.setting.words().join(", "));
+        let identity = RunIdentity::new(solver, scene, time_step, steps, std::any::type_name::<Simulation<S>>());
+        let mut recorder = match from {
+            None => {
+                simulation.begin()?;
+                Recorder::new(scene, time_step, steps)
+            }
+            Some(checkpoint) => simulation.recall(&identity, checkpoint)?,
+        };
+        let first = simulation.step;
+        // No checkpoint is wanted of where the run begins.
+        let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
         let start = Instant::now();
         loop {
             let now = simulation.step;
-            if recorder.is_due(now) {
+            let is_new = from.is_none() || now > first;
+            if is_new && recorder.is_due(now) {
                 recorder.take(scene, simulation.look(recorder.is_snapshot(now)));
             }
             watch.progress(now, steps);
             if now == steps {
                 break;
             }
-            simulation.advance((recorder.next(now) - now).min(STEPS_BETWEEN_PROGRESS))?;
+            if now > first && now.is_multiple_of(between_checkpoints) {
+                watch.checkpoint(simulation.keep(&identity, &recorder)?)?;
+            }
+            let checkpoint = (now / between_checkpoints + 1).saturating_mul(between_checkpoints);
+            let stop = recorder.next(now).min(checkpoint).min(now + STEPS_BETWEEN_PROGRESS);
+            simulation.advance(stop - now)?;
         }
         let mut cost = simulation.cost;
         cost.wall_seconds = start.elapsed().as_secs_f64();
         Ok(Done { recorder, cost })
+    }
+
+    /// Runs from the start or from a checkpoint to the end.
+    fn go(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: Option<&Checkpoint>,
+        watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
+        let plan = self.plan(scene, resolution)?;
+        watch.begin(plan.time_step, plan.steps);
+        let Done { recorder, cost } = match scene.dimension {
+            Dimension::Two => self.run_in::<Plane>(scene, resolution, &plan, from, watch)?,
+            Dimension::Three => self.run_in::<Solid>(scene, resolution, &plan, from, watch)?,
+        };
+        let (series, snapshots) = recorder.finish();
+        Ok(Record {
+            provenance: Provenance {
+                scene: scene.title.clone(),
+                solver: self.name(),
+                resolution: resolution.to_string(),
+                time_step: plan.time_step,
+                critical_time_step: Some(plan.critical),
+                effects: Effects::of(scene).words(),
+                options: self.setting.words(),
+            },
+            series,
+            snapshots,
+            cost,
+        })
     }
 }
 
@@ -172,26 +228,16 @@ impl Solver for Mpm {
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
-        let plan = self.plan(scene, resolution)?;
-        watch.begin(plan.time_step, plan.steps);
-        let Done { recorder, cost } = match scene.dimension {
-            Dimension::Two => self.run_in::<Plane>(scene, &plan, watch)?,
-            Dimension::Three => self.run_in::<Solid>(scene, &plan, watch)?,
-        };
-        let (series, snapshots) = recorder.finish();
-        Ok(Record {
-            provenance: Provenance {
-                scene: scene.title.clone(),
-                solver: self.name(),
-                resolution: resolution.to_string(),
-                time_step: plan.time_step,
-                critical_time_step: Some(plan.critical),
-                effects: Effects::of(scene).words(),
-                options: self.setting.words(),
-            },
-            series,
-            snapshots,
-            cost,
-        })
+        self.go(scene, resolution, None, watch)
+    }
+
+    fn restart(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: &Checkpoint,
+        watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
+        self.go(scene, resolution, Some(from), watch)
     }
 }

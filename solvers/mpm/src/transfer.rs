@@ -2,7 +2,7 @@
 //! transfer; the stages between them are chosen at run time.
 
 use crate::basis::Basis;
-use crate::grid::{Lattice, Node, Stencil, Window};
+use crate::grid::{Lattice, Node, Row, Stencil, Window};
 use crate::points::Points;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
@@ -15,7 +15,7 @@ pub(crate) trait Transfer: Copy + Send + 'static {
     /// Velocity of a point after the step, from that before, the velocity of the nodes around it and their change.
     fn taken<S: Space>(&self, before: S::Vector, around: S::Vector, change: S::Vector) -> S::Vector;
     /// What of a node makes the affine part: its velocity or its change.
-    fn source<S: Space>(node: &Node<S>) -> S::Vector;
+    fn source<S: Space>(velocity: S::Vector, change: S::Vector) -> S::Vector;
     /// Affine part after the step, from that before and the one that the nodes make.
     fn carried<S: Space>(before: S::Matrix, made: S::Matrix, stencil: &Stencil) -> S::Matrix;
 }
@@ -36,7 +36,7 @@ impl Transfer for Flip {
         (before + change) * (1.0 - self.pic) + around * self.pic
     }
     #[inline(always)]
-    fn source<S: Space>(_node: &Node<S>) -> S::Vector {
+    fn source<S: Space>(_velocity: S::Vector, _change: S::Vector) -> S::Vector {
         S::ORIGIN
     }
     #[inline(always)]
@@ -58,8 +58,8 @@ impl Transfer for Apic {
         around
     }
     #[inline(always)]
-    fn source<S: Space>(node: &Node<S>) -> S::Vector {
-        node.velocity
+    fn source<S: Space>(velocity: S::Vector, _change: S::Vector) -> S::Vector {
+        velocity
     }
     #[inline(always)]
     fn carried<S: Space>(_before: S::Matrix, made: S::Matrix, _stencil: &Stencil) -> S::Matrix {
@@ -83,8 +83,8 @@ impl Transfer for Spin {
         before + change
     }
     #[inline(always)]
-    fn source<S: Space>(node: &Node<S>) -> S::Vector {
-        node.change
+    fn source<S: Space>(_velocity: S::Vector, change: S::Vector) -> S::Vector {
+        change
     }
     #[inline(always)]
     fn carried<S: Space>(before: S::Matrix, made: S::Matrix, stencil: &Stencil) -> S::Matrix {
@@ -131,6 +131,64 @@ impl Part {
     }
 }
 
+/// A column of a gradient.
+#[inline(always)]
+fn column<S: Space>(gradient: &nalgebra::Matrix3<f64>, axis: usize) -> S::Vector {
+    S::restrict(Vector3::new(gradient[(0, axis)], gradient[(1, axis)], gradient[(2, axis)]))
+}
+
+/// The gradient with these columns.
+#[inline(always)]
+fn of_columns<S: Space>(columns: [S::Vector; 3]) -> S::Matrix {
+    let [x, y, z] = columns;
+    S::restrict_gradient(nalgebra::Matrix3::from_columns(&[S::embed(x), S::embed(y), S::embed(z)]))
+}
+
+/// The momentum that a point shows to the nodes of a stencil: m (v + A r), r from the point to the node.
+struct Shown<S: Space> {
+    /// At the first node.
+    first: S::Vector,
+    /// More of it from one node to the next along each axis.
+    steps: [S::Vector; 3],
+}
+
+impl<S: Space> Shown<S> {
+    #[inline(always)]
+    fn new<T: Transfer>(
+        lattice: &Lattice,
+        stencil: &Stencil,
+        mass: f64,
+        velocity: S::Vector,
+        affine: S::Matrix,
+    ) -> Self {
+        if !T::AFFINE {
+            return Self { first: velocity * mass, steps: [S::ORIGIN; 3] };
+        }
+        let gradient = S::embed_gradient(affine);
+        let step = |axis| column::<S>(&gradient, axis) * (lattice.cell[axis] * mass);
+        Self { first: (velocity + affine * stencil.arm_of_first::<S>()) * mass, steps: [step(0), step(1), step(2)] }
+    }
+
+    /// At the first node of a row, times the functions across it; and more of it from one node to the next.
+    #[inline(always)]
+    fn along<T: Transfer>(&self, row: &Row) -> [S::Vector; 2] {
+        if !T::AFFINE {
+            return [self.first * row.value, S::ORIGIN];
+        }
+        let mut first = self.first + self.steps[1] * row.across[0] as f64;
+        if S::DIMENSION == 3 {
+            first += self.steps[2] * row.across[1] as f64;
+        }
+        [first * row.value, self.steps[0] * row.value]
+    }
+
+    /// At a node of a row.
+    #[inline(always)]
+    fn at<T: Transfer>([first, step]: [S::Vector; 2], node: usize, value: f64) -> S::Vector {
+        if T::AFFINE { (first + step * node as f64) * value } else { first * value }
+    }
+}
+
 /// Mass, momentum and internal force, −Vσ∇N, of a body's points to its nodes.
 pub(crate) fn scatter<S: Space, B: Basis, T: Transfer>(
     lattice: &Lattice,
@@ -140,15 +198,28 @@ pub(crate) fn scatter<S: Space, B: Basis, T: Transfer>(
 ) {
     for at in part.points.clone() {
         let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
-        let (mass, velocity, affine) = (points.mass[at], points.velocity[at], points.affine[at]);
-        let (stress, volume) = (points.stress[at], -points.volume[at]);
-        stencil.each::<S, B>(&part.window, |node| {
-            let shown = if T::AFFINE { velocity + affine * stencil.arm(&node) } else { velocity };
-            let share = node.weight * mass;
-            let to = &mut nodes[node.slot];
-            to.mass += share;
-            to.velocity += shown * share;
-            to.change += S::apply(stress, stencil.gradient(&node)) * volume;
+        let mass = points.mass[at];
+        let shown = Shown::<S>::new::<T>(lattice, &stencil, mass, points.velocity[at], points.affine[at]);
+        let stress = S::embed_symmetric(points.stress[at]);
+        let volume = -points.volume[at];
+        let pull =
+            [column::<S>(&stress, 0) * volume, column::<S>(&stress, 1) * volume, column::<S>(&stress, 2) * volume];
+        let (values, slopes) = stencil.along_x();
+        stencil.rows::<S, B>(&part.window, |row| {
+            let momentum = shown.along::<T>(&row);
+            let share = mass * row.value;
+            let along = pull[0] * row.value;
+            let mut across = pull[1] * row.slope[0];
+            if S::DIMENSION == 3 {
+                across += pull[2] * row.slope[1];
+            }
+            row.add::<B, _>(nodes, Node::EMPTY, Node::add, |nodes| {
+                for (i, node) in nodes.iter_mut().enumerate() {
+                    node.mass += share * values[i];
+                    node.velocity += Shown::<S>::at::<T>(momentum, i, values[i]);
+                    node.change += along * slopes[i] + across * values[i];
+                }
+            });
         });
     }
 }
@@ -197,45 +268,87 @@ pub(crate) fn gather<S: Space, B: Basis, T: Transfer, const PROJECT: bool>(
 ) {
     for at in part.points.clone() {
         let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
-        let (mut around, mut change, mut affine) = (S::ORIGIN, S::ORIGIN, S::NO_GRADIENT);
-        stencil.each::<S, B>(&part.window, |node| {
-            let from = &nodes[node.slot];
-            around += from.velocity * node.weight;
-            change += from.change * node.weight;
+        let (mut around, mut change, mut made) = (S::ORIGIN, S::ORIGIN, [S::ORIGIN; 3]);
+        let (values, _) = stencil.along_x();
+        let [x, y, z] = [stencil.affine_along(0), stencil.affine_along(1), stencil.affine_along(2)];
+        stencil.rows::<S, B>(&part.window, |row| {
+            let (mut row_around, mut row_change, mut row_made) = (S::ORIGIN, S::ORIGIN, S::ORIGIN);
+            row.see::<B, _>(nodes, |nodes| {
+                for (i, node) in nodes.iter().enumerate() {
+                    row_around += node.velocity * values[i];
+                    row_change += node.change * values[i];
+                    if T::AFFINE {
+                        row_made += T::source::<S>(node.velocity, node.change) * x[i];
+                    }
+                }
+            });
+            around += row_around * row.value;
+            change += row_change * row.value;
             if T::AFFINE {
-                affine += S::outer(T::source::<S>(from), stencil.affine(&node));
+                let source = T::source::<S>(row_around, row_change);
+                let [j, k] = row.across;
+                made[0] += row_made * row.value;
+                let deep = if S::DIMENSION == 3 { stencil.value_along(2, k) } else { 1.0 };
+                made[1] += source * (y[j] * deep);
+                if S::DIMENSION == 3 {
+                    made[2] += source * (stencil.value_along(1, j) * z[k]);
+                }
             }
         });
         let velocity = transfer.taken::<S>(points.velocity[at], around, change);
         points.velocity[at] = velocity;
         if T::AFFINE {
-            affine = T::carried::<S>(points.affine[at], affine, &stencil);
-            points.affine[at] = affine;
+            points.affine[at] = T::carried::<S>(points.affine[at], of_columns::<S>(made), &stencil);
         }
         points.next[at] = points.position[at] + around * time_step;
         if PROJECT {
-            let mass = points.mass[at];
-            stencil.each::<S, B>(&part.window, |node| {
-                let shown = if T::AFFINE { velocity + affine * stencil.arm(&node) } else { velocity };
-                projected[node.slot] += shown * (node.weight * mass);
+            let shown = Shown::<S>::new::<T>(lattice, &stencil, points.mass[at], velocity, points.affine[at]);
+            stencil.rows::<S, B>(&part.window, |row| {
+                let momentum = shown.along::<T>(&row);
+                row.add::<B, _>(
+                    projected,
+                    S::ORIGIN,
+                    |to, share| *to += *share,
+                    |projected| {
+                        for (i, projected) in projected.iter_mut().enumerate() {
+                            *projected += Shown::<S>::at::<T>(momentum, i, values[i]);
+                        }
+                    },
+                );
             });
         }
     }
 }
 
-/// Velocity gradients at a body's points.
-pub(crate) fn gradients<S: Space, B: Basis>(
+/// Velocity gradients (1/s) at a range of a body's points.
+pub(crate) fn gradients<S: Space, B: Basis, N: Copy>(
     lattice: &Lattice,
     part: &Part,
-    points: &mut Points<S>,
-    velocity: impl Fn(usize) -> S::Vector,
+    range: Range<usize>,
+    points: &Points<S>,
+    nodes: &[N],
+    velocity: impl Fn(&N) -> S::Vector,
+    gradients: &mut [S::Matrix],
 ) {
-    for at in part.points.clone() {
+    for (at, gradient) in range.zip(gradients) {
         let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
-        let mut gradient = S::NO_GRADIENT;
-        stencil.each::<S, B>(&part.window, |node| {
-            gradient += S::outer(velocity(node.slot), stencil.gradient(&node));
+        let (values, slopes) = stencil.along_x();
+        let mut columns = [S::ORIGIN; 3];
+        stencil.rows::<S, B>(&part.window, |row| {
+            let (mut along, mut across) = (S::ORIGIN, S::ORIGIN);
+            row.see::<B, _>(nodes, |nodes| {
+                for (i, node) in nodes.iter().enumerate() {
+                    let velocity = velocity(node);
+                    along += velocity * slopes[i];
+                    across += velocity * values[i];
+                }
+            });
+            columns[0] += along * row.value;
+            columns[1] += across * row.slope[0];
+            if S::DIMENSION == 3 {
+                columns[2] += across * row.slope[1];
+            }
         });
-        points.gradient[at] = gradient;
+        *gradient = of_columns::<S>(columns);
     }
 }

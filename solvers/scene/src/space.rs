@@ -69,7 +69,7 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     /// Gradient of a vector.
     type Matrix: Linear + Mul<Output = Self::Matrix> + Mul<Self::Vector, Output = Self::Vector>;
     /// Symmetric tensor with its parts out of the plane (plane strain): xx, yy, zz, xy, (yz, zx).
-    type Symmetric: Copy + Debug + PartialEq + Default + Send + Sync + 'static;
+    type Symmetric: Copy + Debug + PartialEq + Default + Serialize + DeserializeOwned + Send + Sync + 'static;
     /// The vector zero.
     const ORIGIN: Self::Vector;
     /// The gradient zero.
@@ -119,6 +119,23 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn embed_symmetric(tensor: Self::Symmetric) -> Matrix3<f64>;
     /// The components of a symmetric matrix that this space keeps.
     fn restrict_symmetric(tensor: Matrix3<f64>) -> Self::Symmetric;
+    /// Determinant of a gradient.
+    fn determinant(gradient: Self::Matrix) -> f64;
+    /// `F Fᵀ` of a deformation gradient that stretches nothing out of the plane.
+    fn finger(deformation: Self::Matrix) -> Self::Symmetric;
+    /// Symmetric part of a gradient.
+    fn symmetric_part(gradient: Self::Matrix) -> Self::Symmetric;
+    /// `R σ Rᵀ` with the rotation of the midpoint rule, R = (1 − W/2)⁻¹(1 + W/2), W the skew part of a displacement
+    /// gradient (Hughes & Winget 1980).
+    fn turned(tensor: Self::Symmetric, increment: Self::Matrix) -> Self::Symmetric;
+    /// `a f + b`.
+    fn scaled_sum(a: Self::Symmetric, factor: f64, b: Self::Symmetric) -> Self::Symmetric;
+    /// A multiple of the unit tensor of three dimensions.
+    fn isotropic(value: f64) -> Self::Symmetric;
+    /// Trace in three dimensions.
+    fn trace(tensor: Self::Symmetric) -> f64;
+    /// `σ : σ` in three dimensions.
+    fn norm_squared(tensor: Self::Symmetric) -> f64;
     /// A symmetric tensor times a vector of this space.
     fn apply(tensor: Self::Symmetric, vector: Self::Vector) -> Self::Vector;
     /// A component of a vector.
@@ -220,6 +237,44 @@ impl Space for Plane {
         [t.m11, t.m22, t.m33, t.m12]
     }
     #[inline(always)]
+    fn determinant(g: Matrix2<f64>) -> f64 {
+        g.m11 * g.m22 - g.m12 * g.m21
+    }
+    #[inline(always)]
+    fn finger(f: Matrix2<f64>) -> [f64; 4] {
+        [f.m11 * f.m11 + f.m12 * f.m12, f.m21 * f.m21 + f.m22 * f.m22, 1.0, f.m11 * f.m21 + f.m12 * f.m22]
+    }
+    #[inline(always)]
+    fn symmetric_part(g: Matrix2<f64>) -> [f64; 4] {
+        [g.m11, g.m22, 0.0, 0.5 * (g.m12 + g.m21)]
+    }
+    #[inline(always)]
+    fn turned([xx, yy, zz, xy]: [f64; 4], increment: Matrix2<f64>) -> [f64; 4] {
+        let w = 0.5 * (increment.m21 - increment.m12);
+        let quarter = 0.25 * w * w;
+        let inverse = 1.0 / (1.0 + quarter);
+        let (c, s) = ((1.0 - quarter) * inverse, w * inverse);
+        let (cc, cs, ss) = (c * c, c * s, s * s);
+        let mixed = 2.0 * cs * xy;
+        [cc * xx - mixed + ss * yy, ss * xx + mixed + cc * yy, zz, cs * (xx - yy) + (cc - ss) * xy]
+    }
+    #[inline(always)]
+    fn scaled_sum(a: [f64; 4], factor: f64, b: [f64; 4]) -> [f64; 4] {
+        [a[0] * factor + b[0], a[1] * factor + b[1], a[2] * factor + b[2], a[3] * factor + b[3]]
+    }
+    #[inline(always)]
+    fn isotropic(value: f64) -> [f64; 4] {
+        [value, value, value, 0.0]
+    }
+    #[inline(always)]
+    fn trace([xx, yy, zz, _]: [f64; 4]) -> f64 {
+        xx + yy + zz
+    }
+    #[inline(always)]
+    fn norm_squared([xx, yy, zz, xy]: [f64; 4]) -> f64 {
+        xx * xx + yy * yy + zz * zz + 2.0 * xy * xy
+    }
+    #[inline(always)]
     fn apply([xx, yy, _, xy]: [f64; 4], v: Vector2<f64>) -> Vector2<f64> {
         Vector2::new(xx * v.x + xy * v.y, xy * v.x + yy * v.y)
     }
@@ -317,6 +372,43 @@ impl Space for Solid {
         [t.m11, t.m22, t.m33, t.m12, t.m23, t.m31]
     }
     #[inline(always)]
+    fn determinant(g: Matrix3<f64>) -> f64 {
+        g.determinant()
+    }
+    #[inline(always)]
+    fn finger(f: Matrix3<f64>) -> [f64; 6] {
+        Self::restrict_symmetric(f * f.transpose())
+    }
+    #[inline(always)]
+    fn symmetric_part(g: Matrix3<f64>) -> [f64; 6] {
+        Self::restrict_symmetric((g + g.transpose()) * 0.5)
+    }
+    #[inline(always)]
+    fn turned(tensor: [f64; 6], increment: Matrix3<f64>) -> [f64; 6] {
+        // R = 1 + (W + W²/2)/(1 + |w|²/4), w the axial vector of W.
+        let skew = (increment - increment.transpose()) * 0.5;
+        let axial = skew.m12 * skew.m12 + skew.m23 * skew.m23 + skew.m31 * skew.m31;
+        let rotation = Matrix3::identity() + (skew + skew * skew * 0.5) / (1.0 + 0.25 * axial);
+        Self::restrict_symmetric(rotation * Self::embed_symmetric(tensor) * rotation.transpose())
+    }
+    #[inline(always)]
+    fn scaled_sum(a: [f64; 6], factor: f64, b: [f64; 6]) -> [f64; 6] {
+        let at = |at: usize| a[at] * factor + b[at];
+        [at(0), at(1), at(2), at(3), at(4), at(5)]
+    }
+    #[inline(always)]
+    fn isotropic(value: f64) -> [f64; 6] {
+        [value, value, value, 0.0, 0.0, 0.0]
+    }
+    #[inline(always)]
+    fn trace([xx, yy, zz, ..]: [f64; 6]) -> f64 {
+        xx + yy + zz
+    }
+    #[inline(always)]
+    fn norm_squared([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> f64 {
+        xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx)
+    }
+    #[inline(always)]
     fn apply([xx, yy, zz, xy, yz, zx]: [f64; 6], v: Vector3<f64>) -> Vector3<f64> {
         Vector3::new(xx * v.x + xy * v.y + zx * v.z, xy * v.x + yy * v.y + yz * v.z, zx * v.x + yz * v.y + zz * v.z)
     }
@@ -338,6 +430,18 @@ mod tests {
         let flat = Plane::slip_velocity(velocity, rolling, normal);
         let full = Solid::slip_velocity(Plane::embed(velocity), Plane::embed_spin(rolling), Plane::embed(normal));
         assert!((Plane::embed(Plane::along(flat, normal)) - full).norm() < 1e-15);
+
+        let (tensor, gradient) = ([1.0, -2.0, 0.5, 0.7], Matrix2::new(0.01, 0.2, -0.1, 0.03));
+        let unit = gradient + Matrix2::identity();
+        let mut solid_unit = Plane::embed_gradient(unit);
+        solid_unit.m33 = 1.0;
+        let same = |flat: [f64; 4], full: [f64; 6]| {
+            (Plane::embed_symmetric(flat) - Solid::embed_symmetric(full)).norm() < 1e-14
+        };
+        let embedded = Solid::restrict_symmetric(Plane::embed_symmetric(tensor));
+        assert!(same(Plane::turned(tensor, gradient), Solid::turned(embedded, Plane::embed_gradient(gradient))));
+        assert!(same(Plane::finger(unit), Solid::finger(solid_unit)));
+        assert!((Plane::determinant(unit) - Solid::determinant(solid_unit)).abs() < 1e-15);
 
         let force = Plane::along(displacement, normal);
         let torque = Plane::torque(normal, force);

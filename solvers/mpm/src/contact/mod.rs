@@ -6,9 +6,10 @@ pub(crate) mod penalty;
 pub(crate) mod shared;
 
 use grainbench_scene::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// What a body touches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Other {
     Body(u32),
     Wall(u16),

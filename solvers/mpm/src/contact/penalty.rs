@@ -12,6 +12,7 @@ use crate::surface::Tracers;
 use crate::transfer::Part;
 use crate::walls::RigidPlane;
 use grainbench_scene::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// Depth at which surfaces are taken to have passed through each other, and are let go (cells).
 const DEEPEST: f64 = 0.8;
@@ -86,7 +87,8 @@ pub(crate) fn rub<S: Space>(
 const AT_ONCE: usize = 4;
 
 /// A spring along the surface, stretched since `stamp` − some steps.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 struct Spring<S: Space> {
     /// What the tracer touches.
     other: Other,
@@ -96,7 +98,8 @@ struct Spring<S: Space> {
 }
 
 /// Springs along the surface of every tracer; one that did not touch at the last evaluation has been forgotten.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(crate) struct Springs<S: Space> {
     of: Vec<[Spring<S>; AT_ONCE]>,
     now: u64,
@@ -106,6 +109,11 @@ impl<S: Space> Springs<S> {
     pub(crate) fn new(tracers: usize) -> Self {
         let none = Spring { other: Other::Wall(u16::MAX), stamp: 0, stretch: S::ORIGIN };
         Self { of: vec![[none; AT_ONCE]; tracers], now: 1 }
+    }
+
+    /// Of how many tracers.
+    pub(crate) fn len(&self) -> usize {
+        self.of.len()
     }
 
     /// Begins an evaluation.

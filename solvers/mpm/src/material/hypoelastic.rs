@@ -1,6 +1,7 @@
 //! Hypoelasticity.
 
 use super::{Law, State};
+use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
 
 /// σ̂ = 2G dev D + K tr D 1 with the Jaumann rate σ̂ = σ̇ − Wσ + σW, D and W the symmetric and skew parts of ∇v (1/s).
@@ -17,12 +18,18 @@ pub struct Hypoelastic {
 
 impl Law for Hypoelastic {
     #[inline(always)]
-    fn update(&self, increment: &Matrix3<f64>, _volume_ratio: f64, state: &mut State) {
-        let strain = (increment + increment.transpose()) * 0.5;
-        let volumetric = strain.trace();
-        let turned = turn(&state.stress, increment);
-        let pressure = (self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus) * volumetric;
-        state.stress = turned + strain * (2.0 * self.shear_modulus) + Matrix3::from_diagonal_element(pressure);
+    fn follow<S: Space>(
+        &self,
+        increment: S::Matrix,
+        _volume_ratio: f64,
+        _deformation: S::Matrix,
+        stress: S::Symmetric,
+        _plastic_strain: &mut f64,
+    ) -> S::Symmetric {
+        let strain = S::symmetric_part(increment);
+        let pressure = (self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus) * S::trace(strain);
+        let turned = S::turned(stress, increment);
+        S::scaled_sum(strain, 2.0 * self.shear_modulus, S::scaled_sum(turned, 1.0, S::isotropic(pressure)))
     }
 
     fn energy(&self, state: &State) -> f64 {
@@ -35,13 +42,4 @@ impl Law for Hypoelastic {
     fn under_pressure(&self, pressure: f64, _dimensions: usize) -> (f64, Matrix3<f64>) {
         (1.0, Matrix3::from_diagonal_element(-pressure))
     }
-}
-
-/// R σ Rᵀ, R = (1 − W/2)⁻¹(1 + W/2) = 1 + (W + W²/2)/(1 + |w|²/4), w the axial vector of W.
-#[inline(always)]
-fn turn(stress: &Matrix3<f64>, increment: &Matrix3<f64>) -> Matrix3<f64> {
-    let skew = (increment - increment.transpose()) * 0.5;
-    let axial = skew.m12 * skew.m12 + skew.m23 * skew.m23 + skew.m31 * skew.m31;
-    let rotation = Matrix3::identity() + (skew + skew * skew * 0.5) / (1.0 + 0.25 * axial);
-    rotation * stress * rotation.transpose()
 }

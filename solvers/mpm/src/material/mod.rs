@@ -8,6 +8,7 @@ pub use hypoelastic::Hypoelastic;
 pub use neo_hookean::NeoHookean;
 pub use von_mises::VonMises;
 
+use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;
 
 /// The state of a material point.
@@ -29,9 +30,23 @@ impl Default for State {
 
 /// A law between deformation and stress.
 pub trait Law: Copy + Send + Sync + 'static {
-    /// The stress after a step with the displacement gradient `increment` = Δt ∇v, of which `state` holds the
-    /// deformation after the step and the stress before it; `volume_ratio` is the determinant of the deformation.
-    fn update(&self, increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State);
+    /// The stress after a step with the displacement gradient `increment` = Δt ∇v, from the stress before it and the
+    /// deformation after it, of which `volume_ratio` is the determinant.
+    fn follow<S: Space>(
+        &self,
+        increment: S::Matrix,
+        volume_ratio: f64,
+        deformation: S::Matrix,
+        stress: S::Symmetric,
+        plastic_strain: &mut f64,
+    ) -> S::Symmetric;
+    /// The same of a state in three dimensions, which holds the deformation after the step and the stress before it.
+    fn update(&self, increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State) {
+        let stress = Solid::restrict_symmetric(state.stress);
+        let plastic_strain = &mut state.plastic_strain;
+        let stress = self.follow::<Solid>(*increment, volume_ratio, state.deformation, stress, plastic_strain);
+        state.stress = Solid::embed_symmetric(stress);
+    }
     /// Elastic energy per volume at the start (J/m³).
     fn energy(&self, state: &State) -> f64;
     /// The deformation, equal along the axes that can deform, at which a pressure (Pa) acts along them, as a stretch;

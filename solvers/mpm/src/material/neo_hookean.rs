@@ -1,6 +1,7 @@
 //! Neo-Hookean elasticity.
 
 use super::{Law, State};
+use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;
 
 /// Kirchhoff stress τ = Jσ = λ ln J 1 + G (b − 1), b = F Fᵀ, J = det F.
@@ -14,17 +15,24 @@ pub struct NeoHookean {
 
 impl NeoHookean {
     #[inline(always)]
-    fn stress(&self, deformation: &Matrix3<f64>, volume_ratio: f64) -> Matrix3<f64> {
-        let finger = deformation * deformation.transpose();
-        let part = self.lame * volume_ratio.ln() - self.shear_modulus;
-        (finger * self.shear_modulus + Matrix3::from_diagonal_element(part)) / volume_ratio
+    fn stress<S: Space>(&self, deformation: S::Matrix, volume_ratio: f64) -> S::Symmetric {
+        let inverse = 1.0 / volume_ratio;
+        let part = (self.lame * volume_ratio.ln() - self.shear_modulus) * inverse;
+        S::scaled_sum(S::finger(deformation), self.shear_modulus * inverse, S::isotropic(part))
     }
 }
 
 impl Law for NeoHookean {
     #[inline(always)]
-    fn update(&self, _increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State) {
-        state.stress = self.stress(&state.deformation, volume_ratio);
+    fn follow<S: Space>(
+        &self,
+        _increment: S::Matrix,
+        volume_ratio: f64,
+        deformation: S::Matrix,
+        _stress: S::Symmetric,
+        _plastic_strain: &mut f64,
+    ) -> S::Symmetric {
+        self.stress::<S>(deformation, volume_ratio)
     }
 
     /// W = λ/2 ln²J + G/2 (tr b − 3 − 2 ln J).
@@ -38,7 +46,7 @@ impl Law for NeoHookean {
         let deformed = |stretch: f64| {
             let mut deformation = Matrix3::identity();
             (0..dimensions).for_each(|axis| deformation[(axis, axis)] = stretch);
-            self.stress(&deformation, stretch.powi(dimensions as i32))
+            Solid::embed_symmetric(self.stress::<Solid>(deformation, stretch.powi(dimensions as i32)))
         };
         // Secant steps: the stress is nearly linear in the stretch at pressures far below the moduli.
         let (mut before, mut now) = (1.0, 1.0 - pressure / (dimensions as f64 * self.lame + 2.0 * self.shear_modulus));

@@ -1,6 +1,7 @@
 //! Plasticity.
 
 use super::{Hypoelastic, Law, State};
+use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
 
 /// Hypoelastic up to q = Y + H ε_p with q = √(3/2 s:s), s = dev σ; beyond, radial return:
@@ -17,18 +18,26 @@ pub struct VonMises {
 
 impl Law for VonMises {
     #[inline(always)]
-    fn update(&self, increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State) {
-        self.elastic.update(increment, volume_ratio, state);
-        let mean = Matrix3::from_diagonal_element(state.stress.trace() / 3.0);
-        let deviator = state.stress - mean;
-        let equivalent = (1.5 * deviator.norm_squared()).sqrt();
-        let excess = equivalent - self.yield_stress - self.hardening_modulus * state.plastic_strain;
-        if excess > 0.0 {
-            let stiffness = 3.0 * self.elastic.shear_modulus;
-            let flow = excess / (stiffness + self.hardening_modulus);
-            state.plastic_strain += flow;
-            state.stress = mean + deviator * (1.0 - stiffness * flow / equivalent);
+    fn follow<S: Space>(
+        &self,
+        increment: S::Matrix,
+        volume_ratio: f64,
+        deformation: S::Matrix,
+        stress: S::Symmetric,
+        plastic_strain: &mut f64,
+    ) -> S::Symmetric {
+        let stress = self.elastic.follow::<S>(increment, volume_ratio, deformation, stress, plastic_strain);
+        let mean = S::trace(stress) / 3.0;
+        let deviator = S::scaled_sum(stress, 1.0, S::isotropic(-mean));
+        let equivalent = (1.5 * S::norm_squared(deviator)).sqrt();
+        let excess = equivalent - self.yield_stress - self.hardening_modulus * *plastic_strain;
+        if excess <= 0.0 {
+            return stress;
         }
+        let stiffness = 3.0 * self.elastic.shear_modulus;
+        let flow = excess / (stiffness + self.hardening_modulus);
+        *plastic_strain += flow;
+        S::scaled_sum(deviator, 1.0 - stiffness * flow / equivalent, S::isotropic(mean))
     }
 
     fn energy(&self, state: &State) -> f64 {

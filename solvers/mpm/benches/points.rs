@@ -1,0 +1,76 @@
+//! Points of a second: `cargo bench -p grainbench-mpm`.
+//!
+//! `points` counts material points times steps: an elastic block of 60,000 points that vibrates, in hat functions with FLIP and in
+//! the best setting, and 36 discs with friction that are squeezed, in the best setting. The set-up is not counted.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use grainbench_mpm::options::{Contact, Setting};
+use grainbench_mpm::solver::Mpm;
+use grainbench_scene::record::Cost;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, Solver};
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+use std::time::Duration;
+
+fn scene(text: &str) -> Scene {
+    let source = SceneSource::from_text("bench", Path::new(""), &format!("title = 'bench'\ndimension = 2\n{text}"));
+    source.scene(&|_| Err("no data files here".to_owned())).expect("the scene is right")
+}
+
+/// A square of 122.5 × 122.5 cells, free all around, that breathes.
+fn block() -> Scene {
+    scene(
+        "duration = 0.15\nreference_length = 1.0\noutput.every = 1.0\n\
+         materials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
+         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\nwave = { amplitude = 0.01 }\n\
+         [probes]\nall.system = true\n",
+    )
+}
+
+/// Six by six discs in touch between four walls that close in.
+fn discs() -> Scene {
+    let wall = |name: &str, point: &str, normal: &str, velocity: &str| {
+        format!(
+            "[walls.{name}]\nmaterial = 'm'\nplane = {{ point = [{point}], normal = [{normal}] }}\nmotion = [{{ velocity = [{velocity}] }}]\n"
+        )
+    };
+    let walls = [
+        wall("west", "-1.0, 0.0", "1.0, 0.0", "0.01, 0.0"),
+        wall("east", "11.0, 0.0", "-1.0, 0.0", "-0.01, 0.0"),
+        wall("south", "0.0, -1.0", "0.0, 1.0", "0.0, 0.01"),
+        wall("north", "0.0, 11.0", "0.0, -1.0", "0.0, -0.01"),
+    ];
+    scene(&format!(
+        "duration = 6.0\noutput.every = 6.0\n\
+         materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
+         contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.5 }}\n\
+         grains.d = {{ material = 'm', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [2.0, 2.0], count = [6, 6] }} }}\n\
+         {}[probes]\nall.system = true\n",
+        walls.concat()
+    ))
+}
+
+fn points(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("points");
+    group.sample_size(10).measurement_time(Duration::from_secs(20));
+    let linear = Mpm::BEST.with(|setting| *setting = Setting::classic(Contact::Penalty));
+    let cases = [
+        ("block, hat functions, FLIP", linear, block(), Resolution::grid(122.5, 2)),
+        ("block, best setting", Mpm::BEST, block(), Resolution::grid(122.5, 2)),
+        ("36 discs with friction, best setting", Mpm::BEST, discs(), Resolution::grid(8.0, 3)),
+    ];
+    for (name, solver, scene, resolution) in cases {
+        let cost = || -> Cost { solver.run(&scene, &resolution, &mut ()).expect("the run ends well").cost };
+        let counted = cost();
+        println!("{name}: {} points, {} steps", counted.particle_steps / counted.steps, counted.steps);
+        group.throughput(Throughput::Elements(counted.particle_steps));
+        group.bench_function(name, |bencher| {
+            bencher.iter_custom(|count| (0..count).map(|_| Duration::from_secs_f64(cost().wall_seconds)).sum());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, points);
+criterion_main!(benches);

@@ -1,0 +1,74 @@
+//! What a simulation must remember between two steps, to go on to the same bits.
+//!
+//! Points in the order that they are in, since sums at nodes depend on it in their last bit; where tracers are and how far their
+//! springs are stretched. Nodes, windows, pairs and planes are found anew in each step.
+
+use crate::contact::penalty::Springs;
+use crate::points::Points;
+use crate::simulation::Simulation;
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::record::Cost;
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::space::Space;
+use serde::{Deserialize, Serialize};
+
+#[derive(Serialize, Deserialize)]
+#[serde(bound = "")]
+struct State<S: Space> {
+    points: Points<S>,
+    /// Where tracers are (m), and their areas (m²).
+    tracers: Vec<(S::Vector, S::Vector)>,
+    springs: Springs<S>,
+    /// Rotation of every body as last looked at (rad).
+    angles: Vec<f64>,
+    looked: u64,
+    travelled: f64,
+    step: u64,
+    cost: Cost,
+    recorder: Recorder,
+}
+
+impl<S: Space> Simulation<S> {
+    /// The state after the last step, with the record so far.
+    pub(crate) fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
+        let tracers = self.tracers.position.iter().copied().zip(self.tracers.area.iter().copied());
+        let state = State::<S> {
+            points: self.points.clone(),
+            tracers: tracers.collect(),
+            springs: self.springs.clone(),
+            angles: self.bodies.iter().map(|body| body.angle).collect(),
+            looked: self.looked,
+            travelled: self.travelled,
+            step: self.step,
+            cost: self.cost,
+            recorder: recorder.clone(),
+        };
+        Checkpoint::keep(identity, self.step, &state)
+    }
+
+    /// Goes to a state that was kept; the record so far.
+    pub(crate) fn recall(
+        &mut self,
+        identity: &RunIdentity,
+        checkpoint: &Checkpoint,
+    ) -> Result<Recorder, CheckpointError> {
+        let state: State<S> = checkpoint.state(identity)?;
+        let same = state.points.is_whole()
+            && state.points.len() == self.points.len()
+            && state.tracers.len() == self.tracers.len()
+            && state.springs.len() == self.tracers.len()
+            && state.angles.len() == self.bodies.len();
+        if !same {
+            return Err(CheckpointError::Damaged("it has another number of points, tracers or bodies".to_owned()));
+        }
+        self.before.clone_from(&state.points.velocity);
+        self.points = state.points;
+        (self.tracers.position, self.tracers.area) = state.tracers.into_iter().unzip();
+        self.springs = state.springs;
+        self.bodies.iter_mut().zip(state.angles).for_each(|(body, angle)| body.angle = angle);
+        (self.looked, self.travelled) = (state.looked, state.travelled);
+        (self.step, self.cost) = (state.step, state.cost);
+        self.find_bounds();
+        Ok(state.recorder)
+    }
+}

@@ -1,0 +1,94 @@
+//! A run that is continued from a checkpoint ends as the run that was never interrupted, in every bit.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_mpm::solver::Mpm;
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench_scene::record::{Cost, Record};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use support::{collision, incline, scene};
+
+/// Keeps every checkpoint of a run, as a reader of its file has it.
+struct Keeper {
+    every: u64,
+    kept: Vec<Checkpoint>,
+}
+
+impl Watch for Keeper {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(self.every)
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.kept.push(Checkpoint::from_bytes(&checkpoint.to_bytes()?)?);
+        Ok(())
+    }
+}
+
+/// A record without its times, in every bit.
+fn untimed(record: Record) -> String {
+    format!("{:?}", Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record })
+}
+
+fn checkpoints(solver: Mpm, text: &str, at: &Resolution, every: u64) -> (String, Vec<Checkpoint>) {
+    let mut keeper = Keeper { every, kept: Vec::new() };
+    let whole = untimed(solver.run(&scene(text), at, &mut keeper).unwrap());
+    (whole, keeper.kept)
+}
+
+/// A sphere that rolls, cut short.
+fn sphere() -> String {
+    "dimension = 3\nduration = 0.05\ngravity = [3.0, 0.0, -9.0]\n\
+     materials.m = { density = 1000.0, bulk_modulus = 6.0e6, shear_modulus = 3.0e6 }\n\
+     contacts.m = { between = ['m', 'm'], law = 'coulomb', friction = 0.5 }\n\
+     [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0, 1.0]\n\
+     [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
+     [probes]\ng.grain = 'g'\nall.system = true\n"
+        .to_owned()
+}
+
+/// Contact with friction between bodies and at a plane, settled, in space: every way to touch, from early and from late.
+#[test]
+fn a_continued_run_leaves_the_same_bits() {
+    let sampled = |text: String| format!("{text}[output]\nsnapshots = 3\n");
+    let cases = [
+        ("mpm", sampled(collision(0.1, 0.9, 0.5))),
+        ("mpm:gap", sampled(collision(0.1, 0.9, 0.5))),
+        ("mpm:2001", sampled(collision(0.1, 0.9, 0.5))),
+        ("mpm:no-slip", sampled(collision(0.1, 0.9, 0.5))),
+        ("mpm", sampled(incline(60.0, 0.9, 0.05, true))),
+        ("mpm", sampled(sphere())),
+    ];
+    for (name, text) in cases {
+        let (solver, at) = (Mpm::named(name).unwrap(), Resolution::grid(4.0, 2));
+        let (whole, kept) = checkpoints(solver, &text, &at, 13);
+        assert!(whole == untimed(solver.run(&scene(&text), &at, &mut ()).unwrap()), "{name}: another run when watched");
+        for checkpoint in [kept.first().unwrap(), kept.last().unwrap()] {
+            let continued = untimed(solver.restart(&scene(&text), &at, checkpoint, &mut ()).unwrap());
+            assert!(whole == continued, "{name} from step {} is another run", checkpoint.step());
+        }
+    }
+}
+
+/// Another scene, setting, resolution or solver is refused, each by its name; and so is a file that was cut.
+#[test]
+fn another_run_and_half_a_file_are_refused() {
+    let (text, at) = (collision(0.1, 0.9, 0.5), Resolution::grid(4.0, 2));
+    let (_, kept) = checkpoints(Mpm::BEST, &text, &at, 13);
+    let refused = |solver: Mpm, text: &str, at: Resolution| match solver.restart(&scene(text), &at, &kept[0], &mut ()) {
+        Err(RunError::Checkpoint(error)) => error.to_string(),
+        other => format!("{other:?}"),
+    };
+    let other_scene = refused(Mpm::BEST, &collision(0.1, 0.8, 0.5), at);
+    assert!(other_scene.contains("another run") && other_scene.contains("fingerprint"), "{other_scene}");
+    for message in [
+        refused(Mpm::named("mpm:gap").unwrap(), &text, at),
+        refused(Mpm::BEST.with(|setting| setting.penalty = 3.0), &text, at),
+        refused(Mpm::BEST, &text, Resolution::grid(4.0, 3)),
+    ] {
+        assert!(message.contains("another run") && message.contains("solver"), "{message}");
+    }
+    let bytes = kept[0].to_bytes().unwrap();
+    assert!(matches!(Checkpoint::from_bytes(&bytes[..bytes.len() / 2]), Err(CheckpointError::Length { .. })));
+}
