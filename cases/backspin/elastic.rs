@@ -85,7 +85,8 @@ pub(super) fn gates() -> Vec<Gate> {
     gates.push(Gate::new(
         ("displacement at .8 s over the rigid one, less 1, R/4", "1"),
         vec![run("disc", "mpm:2000", 4.0).known(
-            "nodal contact holds the disc up over a patch of about √(2Rh): it does not come to roll, and brakes on its flat side",
+            "nodal contact holds the disc up over a patch of about √(2Rh): as the disc turns, new material is pressed into the \
+             patch, and its normal force and friction are several times the weight's",
         )],
         (Evidence::Analytic, "Rω₀/3 for a disc (derivation)"),
         (0.05, "what a contact that acts at the surface reaches at this resolution"),
@@ -108,8 +109,8 @@ pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "elastic",
         "Backspin of an elastic disc, R/4",
-        "`mpm` slides, then rolls and rings. With the 2000 paper's contact the velocity alone looks right for a while: the disc \
-         is braked on a flat side and does not roll.",
+        "`mpm` slides, then rolls and rings. With the 2000 paper's contact turning presses new material into the patch that holds \
+         the disc up: it is spun down at once, by several times the friction of its weight.",
         [Axis::linear("time t (s)"), Axis::linear("velocity v, surface speed ΩR (m/s)")],
         curves,
     ))

@@ -12,7 +12,7 @@ use grainbench_scene::solver::{Resolution, RunError};
 
 const LADDER: &[Rung] = &[rung("1/16", 16.0), rung("1/32", 32.0), rung("1/64", 64.0)];
 const SOLVERS: [(&str, &str); 3] =
-    [("`mpm`", "mpm"), ("uGIMP, FLIP", "mpm+gimp+flip"), ("hat functions, FLIP", "mpm+linear+flip")];
+    [("quadratic B-splines, FLIP with spin", "mpm"), ("uGIMP, FLIP", "mpm+gimp+flip"), ("hat functions, FLIP", "mpm+linear+flip")];
 const KEEPS_NO_NOISE: &str = "mpm+apic";
 const SOURCE: &str = "manufactured solution (derivation)";
 
