@@ -22,8 +22,10 @@ impl Shelf {
     pub fn open(folder: &Path, fresh: bool) -> Result<Self, WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
         let shelf = Self { folder: Some(folder.to_owned()), fresh };
-        // Of a program that was killed while it wrote; a piece itself is never half-written.
-        shelf.sweep().map_err(|source| WriteError::new(folder, source))?;
+        // Of a program that was killed while it wrote, here or in the directory of the report; what has its name is whole.
+        for place in [Some(folder), folder.parent()].into_iter().flatten() {
+            sweep(place).map_err(|source| WriteError::new(place, source))?;
+        }
         Ok(shelf)
     }
 
@@ -35,18 +37,6 @@ impl Shelf {
 
     fn path(&self, name: &str) -> Option<PathBuf> {
         self.folder.as_ref().map(|folder| folder.join(format!("{name}.json")))
-    }
-
-    fn sweep(&self) -> io::Result<()> {
-        let Some(folder) = &self.folder else { return Ok(()) };
-        for entry in fs::read_dir(folder)? {
-            let path = entry?.path();
-            let left = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".grainbench-"));
-            if left && path.is_dir() {
-                fs::remove_dir_all(path)?;
-            }
-        }
-        Ok(())
     }
 
     /// A piece of that name, if it stands here and can be read. One that cannot is done again.
@@ -70,6 +60,20 @@ impl Shelf {
     }
 }
 
+/// Takes away what was on its way into a folder.
+fn sweep(folder: &Path) -> io::Result<()> {
+    // The parent of a bare name is the current directory.
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let left = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".grainbench-"));
+        if left && path.is_dir() {
+            fs::remove_dir_all(path)?;
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -90,11 +94,15 @@ mod tests {
 
     #[test]
     fn clears_what_a_killed_program_left_beside() {
-        let folder = tempfile::tempdir().unwrap();
-        fs::create_dir(folder.path().join(".grainbench-x")).unwrap();
-        fs::write(folder.path().join(".grainbench-x/half"), "{").unwrap();
-        fs::write(folder.path().join("mine"), "").unwrap();
-        Shelf::open(folder.path(), false).unwrap();
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        let out = tempfile::tempdir().unwrap();
+        let folder = out.path().join("points");
+        for place in [out.path(), &folder] {
+            fs::create_dir_all(place.join(".grainbench-x")).unwrap();
+            fs::write(place.join(".grainbench-x/half"), "{").unwrap();
+            fs::write(place.join("mine"), "").unwrap();
+        }
+        Shelf::open(&folder, false).unwrap();
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+        assert_eq!(fs::read_dir(out.path()).unwrap().count(), 2);
     }
 }

@@ -1,0 +1,96 @@
+//! The least that discs on undamped springs need, written by hand: what the kernel is held to where a scene calls for
+//! nothing more. The same method and nothing else: a list of neighbours with a skin in rows, forces from the overlap, kick and
+//! drift, and how far the fastest disc has moved from where it was listed.
+
+/// Discs of one radius, mass and stiffness.
+pub(crate) struct Minimal {
+    position: Vec<[f64; 2]>,
+    velocity: Vec<[f64; 2]>,
+    force: Vec<[f64; 2]>,
+    radius: Vec<f64>,
+    inverse_mass: Vec<f64>,
+    reference: Vec<[f64; 2]>,
+    /// Rows of the list: neighbours of disc k are `partner[start[k]..start[k + 1]]`.
+    start: Vec<u32>,
+    partner: Vec<u32>,
+    /// Materials by disc, and the stiffness between two of them: any scene has a table of pairs.
+    material: Vec<u16>,
+    stiffness: Vec<f64>,
+    /// Contacts evaluated.
+    pub(crate) touching: u64,
+    /// Farthest that any disc is from where it was listed, squared.
+    pub(crate) farthest: f64,
+}
+
+impl Minimal {
+    /// Discs with a list of those nearer than `skin` to touching.
+    pub(crate) fn new(discs: &[([f64; 2], f64, f64)], stiffness: f64, skin: f64) -> Self {
+        let (mut start, mut partner) = (vec![0], Vec::new());
+        for (row, (a, radius, _)) in discs.iter().enumerate() {
+            for (other, (b, reach, _)) in discs.iter().enumerate().skip(row + 1) {
+                if f64::hypot(b[0] - a[0], b[1] - a[1]) < radius + reach + skin {
+                    partner.push(other as u32);
+                }
+            }
+            start.push(partner.len() as u32);
+        }
+        let position: Vec<[f64; 2]> = discs.iter().map(|(place, ..)| *place).collect();
+        let mut minimal = Self {
+            reference: position.clone(),
+            position,
+            velocity: vec![[0.0; 2]; discs.len()],
+            force: vec![[0.0; 2]; discs.len()],
+            radius: discs.iter().map(|(_, radius, _)| *radius).collect(),
+            inverse_mass: discs.iter().map(|(.., mass)| 1.0 / mass).collect(),
+            start,
+            partner,
+            material: vec![0; discs.len()],
+            stiffness: vec![stiffness],
+            touching: 0,
+            farthest: 0.0,
+        };
+        minimal.forces();
+        minimal
+    }
+
+    /// One calculation cycle.
+    pub(crate) fn step(&mut self, time_step: f64) {
+        self.farthest = 0.0;
+        for k in 0..self.position.len() {
+            let mut squared = 0.0;
+            for axis in 0..2 {
+                self.velocity[k][axis] += self.force[k][axis] * self.inverse_mass[k] * time_step;
+                self.force[k][axis] = 0.0;
+                self.position[k][axis] += self.velocity[k][axis] * time_step;
+                squared += (self.position[k][axis] - self.reference[k][axis]).powi(2);
+            }
+            self.farthest = self.farthest.max(squared);
+        }
+        self.forces();
+    }
+
+    fn forces(&mut self) {
+        for row in 0..self.position.len() {
+            let (place, radius) = (self.position[row], self.radius[row]);
+            let laws = &self.stiffness[usize::from(self.material[row])..];
+            let mut sum = [0.0; 2];
+            for &partner in &self.partner[self.start[row] as usize..self.start[row + 1] as usize] {
+                let other = partner as usize;
+                let between = [self.position[other][0] - place[0], self.position[other][1] - place[1]];
+                let squared = between[0] * between[0] + between[1] * between[1];
+                let reach = radius + self.radius[other];
+                if squared < reach * reach {
+                    self.touching += 1;
+                    let distance = squared.sqrt();
+                    let push = laws[usize::from(self.material[other])] * (reach - distance) / distance;
+                    for axis in 0..2 {
+                        sum[axis] -= push * between[axis];
+                        self.force[other][axis] += push * between[axis];
+                    }
+                }
+            }
+            self.force[row][0] += sum[0];
+            self.force[row][1] += sum[1];
+        }
+    }
+}
