@@ -41,7 +41,7 @@ fn with_costs(root: &str, names: &[String], code: &mut String) -> std::fmt::Resu
         writeln!(code, "#[path = {file:?}]\nmod {}_cost;", name.replace('-', "_"))?;
     }
     writeln!(code, "/// What accuracy is measured by, of cases that say it themselves.")?;
-    writeln!(code, "pub(crate) static COSTS: &[(&str, fn() -> Vec<crate::subject::Subject>)] = &[")?;
+    writeln!(code, "pub(crate) static COSTS: &[crate::subject::Own] = &[")?;
     for name in &own {
         writeln!(code, "    ({name:?}, {}_cost::subjects),", name.replace('-', "_"))?;
     }

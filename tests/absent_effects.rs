@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "../benches/minimal.rs"]
+#[path = "../benches/minimal/mod.rs"]
 mod minimal;
 
 use grainbench::cases::effect::Effect;
@@ -74,7 +74,7 @@ fn instructions(name: &str, steps: u64) -> Option<f64> {
         .ok()?;
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stdout));
-    let line = text.lines().find(|line| line.contains("Collected :")).unwrap_or_else(|| panic!("{text}"));
+    let line = text.lines().find(|line| line.contains("Collected :")).expect("callgrind says how many it counted");
     line.split(':').nth(1)?.trim().parse().ok()
 }
 

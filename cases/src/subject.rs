@@ -77,6 +77,9 @@ pub struct Subject {
     pub lanes: Vec<Lane>,
 }
 
+/// What a case says itself: its name, and its subjects.
+pub(crate) type Own = (&'static str, fn() -> Vec<Subject>);
+
 /// Subjects taken from gates, of one case at most.
 const MOST: usize = 2;
 
