@@ -122,8 +122,8 @@ fn add(case: &'static Case, gate: &Gate, subjects: &mut Vec<Subject>) {
     if gate.evidence != Evidence::Analytic || run.standing == Standing::Refused {
         return;
     }
-    // What follows a comma says how this row asks, and tells rows of one quantity apart.
-    let quantity = gate.quantity.split(',').next().unwrap_or_default().to_owned();
+    // Rows of one quantity, word for word, have one expectation: what follows a comma may be what is expected.
+    let quantity = gate.quantity.clone();
     let lane = |method, about| Lane {
         method,
         knobs: run.adjustment.as_ref().map(|(name, _)| name.clone()).unwrap_or_default(),
