@@ -206,7 +206,7 @@ impl<S: Space> Simulation<S> {
         spots
     }
 
-    /// Energy in the springs of contacts, as the last step had them (J).
+    /// Energy in the springs of contacts (J).
     fn spring_energy(&self) -> f64 {
         self.touches.iter().map(|touch| touch.energy).sum()
     }

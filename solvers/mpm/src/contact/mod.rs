@@ -30,7 +30,7 @@ pub(crate) struct Touch<S: Space> {
     /// How deep the surfaces overlap (m).
     pub(crate) depth: f64,
     pub(crate) slipping: bool,
-    /// Energy in its springs (J).
+    /// Energy in its springs at the end of the step (J).
     pub(crate) energy: f64,
 }
 

@@ -83,6 +83,23 @@ pub(crate) fn rub<S: Space>(
     }
 }
 
+/// Energy (J) in the springs of a tracer at the end of the step, when points and stresses are looked at: forces are those
+/// at its beginning, and `slip` (m) is what the surfaces move against each other in a step. A spring that slips stores no more.
+#[inline(always)]
+fn energy_ahead<S: Space>(
+    stiffness: f64,
+    depth: f64,
+    stretch: S::Vector,
+    slip: S::Vector,
+    normal: S::Vector,
+    slipping: bool,
+) -> f64 {
+    let away = S::dot(slip, normal);
+    let deeper = (depth - away).max(0.0);
+    let stretched = if slipping { stretch * (deeper / depth) } else { stretch + slip - normal * away };
+    0.5 * stiffness * (deeper * deeper + S::dot(stretched, stretched))
+}
+
 /// Springs along the surface that a tracer can have at a time.
 const AT_ONCE: usize = 4;
 
@@ -184,7 +201,7 @@ pub(crate) fn at_walls<S: Space, B: Basis>(
                 grip.push::<B>(&body.part, force, nodes);
                 wall.force -= force;
                 if let Some(touches) = touches.as_mut() {
-                    let energy = 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
+                    let energy = energy_ahead::<S>(spring, depth, stretched, slip, wall.normal, slipping);
                     let body = place as u32;
                     touches.push(Touch { body, other, point: position, push, shear, depth, slipping, energy });
                 }
@@ -250,7 +267,7 @@ pub(crate) fn between<S: Space, B: Basis>(
             one.push::<B>(&first.part, force, nodes);
             two.push::<B>(&second.part, -force, nodes);
             if let Some(touches) = touches.as_mut() {
-                let energy = 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
+                let energy = energy_ahead::<S>(spring, depth, stretched, slip, out, slipping);
                 let body = pair.first;
                 touches.push(Touch { body, other, point: there, push, shear, depth, slipping, energy });
             }
