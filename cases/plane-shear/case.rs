@@ -73,16 +73,14 @@ fn gates() -> Vec<Gate> {
     let mut gates = Vec::new();
     let [lammps, liggghts] = PAIRS;
     let other = |solver| Control::solver("ours in the convention of the other program", solver);
-    let known = |run: Run| run.known(STALE_STRETCH);
-    let without = |rung: Rung| Control::without_the_error("our solver, which forgets", liggghts[1], rung.resolution);
+    let without = Control::without_the_error("our solver, which forgets", liggghts[1], LADDER[0].resolution);
     gates.push(beginning(2000, lammps.map(short), other(liggghts[1])));
     gates.push(beginning(85, liggghts.map(first), other(lammps[1])));
-    gates.push(beginning(2000, [known(short(liggghts[0])), short(liggghts[1])], without(LADDER[1])));
     let twins = || [long(lammps[1]).aside(), long(lammps[1]).adjusted(TWIN, chaos::move_one).aside()];
     let with_twins = |runs: [Run; 2]| [runs.as_slice(), &twins()].concat();
     gates.push(chaos::pointwise(PARTING, with_twins(lammps.map(long)), other(liggghts[1])));
-    let runs = [known(long(liggghts[0])), long(liggghts[1])];
-    gates.push(chaos::pointwise(PARTING, with_twins(runs), without(LADDER[0])));
+    let runs = [long(liggghts[0]).known(STALE_STRETCH), long(liggghts[1])];
+    gates.push(chaos::pointwise(PARTING, with_twins(runs), without));
     for pair in PAIRS {
         let runs = || with_twins(pair.map(long));
         for sum in SUMS {
