@@ -1,9 +1,10 @@
-//! Judging what any program left of a case: by the exact answers of the case's gates, and by what our solvers make of the
-//! same scene.
+//! Judging what any program left of a case: by the exact answers of the case's gates, by what our solvers make of the same
+//! scene, and by the stored runs of other programs.
 
 mod exact;
 mod figures;
 mod ours;
+mod stored;
 
 use exact::exact;
 use figures::figures;
@@ -198,12 +199,13 @@ fn section(case: &'static Case, candidate: &Candidate, outputs: &Outputs, observ
             verdicts.push(Verdict { detail: Some(reason), because: "none was made".to_owned(), ..row(quantity, "1") });
         }
     }
+    verdicts.extend(stored::compare(case, candidate, outputs, observed, &row));
     Section {
         name: case.name.to_owned(),
         title: format!("{}: {file}", case.title),
         claim: format!(
             "The output of another program, `{file}`, printed with up to {} significant digits, against the exact answers of \
-             this case and against our solvers on the same scene.",
+             this case, against our solvers on the same scene, and against stored runs of it where there are some.",
             outputs.significant_digits()
         ),
         derivation: case.derivation.to_owned(),
