@@ -14,7 +14,7 @@ use crate::staged::StagedDir;
 use crate::write::WriteError;
 
 /// Adds every format to `out`: `series.csv`, `record.json`, `snapshots.dump`, and under `vtk/` one file a snapshot
-/// with `grains.pvd` and `contacts.pvd` to open them by.
+/// with `grains.pvd` and `contacts.pvd` to open them by, and `points.pvd` where bodies have material points.
 ///
 /// # Errors
 /// When the disk refuses.
@@ -24,6 +24,7 @@ pub fn write_record(record: &Record, out: &mut StagedDir) -> Result<(), WriteErr
     out.write_with("snapshots.dump", |file| dump::write(&record.snapshots, file))?;
     let mut grains = Vec::new();
     let mut contacts = Vec::new();
+    let mut points = Vec::new();
     for (index, snapshot) in record.snapshots.iter().enumerate() {
         let grain_file = format!("grains-{index:06}.vtp");
         let contact_file = format!("contacts-{index:06}.vtp");
@@ -31,6 +32,14 @@ pub fn write_record(record: &Record, out: &mut StagedDir) -> Result<(), WriteErr
         out.write_with(format!("vtk/{contact_file}"), |file| vtk::write_contacts(snapshot, file))?;
         grains.push((snapshot.time, grain_file));
         contacts.push((snapshot.time, contact_file));
+        if !snapshot.points.is_empty() {
+            let point_file = format!("points-{index:06}.vtp");
+            out.write_with(format!("vtk/{point_file}"), |file| vtk::write_points(snapshot, file))?;
+            points.push((snapshot.time, point_file));
+        }
+    }
+    if !points.is_empty() {
+        out.write("vtk/points.pvd", vtk::collection(&points))?;
     }
     out.write("vtk/grains.pvd", vtk::collection(&grains))?;
     out.write("vtk/contacts.pvd", vtk::collection(&contacts))
@@ -41,12 +50,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn material_points_have_files_of_their_own() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("out");
+        let mut out = StagedDir::new(&target).unwrap();
+        let record = Record { snapshots: vec![sample::snapshot(), sample::deformable()], ..sample::record() };
+        write_record(&record, &mut out).unwrap();
+        out.commit().unwrap();
+        assert!(target.join("vtk/points-000001.vtp").is_file() && target.join("vtk/points.pvd").is_file());
+        assert!(!target.join("vtk/points-000000.vtp").exists());
+    }
+
+    #[test]
     fn writes_every_format() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("out");
         let mut out = StagedDir::new(&target).unwrap();
         write_record(&sample::record(), &mut out).unwrap();
         out.commit().unwrap();
+        assert!(!target.join("vtk/points.pvd").exists(), "rigid grains have no points");
         for name in [
             "series.csv",
             "record.json",

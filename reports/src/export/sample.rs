@@ -1,7 +1,7 @@
 //! A record small enough to read: two discs and a wall, one contact across a periodic boundary.
 
 use grainbench_scene::record::{
-    Column, ContactState, Cost, GrainState, Partner, Provenance, Record, Series, Snapshot, WallState,
+    Column, ContactState, Cost, GrainState, Owner, Partner, PointState, Provenance, Record, Series, Snapshot, WallState,
 };
 use nalgebra::Vector3;
 
@@ -58,6 +58,20 @@ pub(crate) fn snapshot() -> Snapshot {
         bodies: Vec::new(),
         points: Vec::new(),
     }
+}
+
+/// The same with a material point of a grain and one of a block.
+pub(crate) fn deformable() -> Snapshot {
+    let point = |owner, x: f64| PointState {
+        owner,
+        position: Vector3::new(x, 0.25, 0.0),
+        displacement: Vector3::new(0.5, 0.0, 0.0),
+        velocity: Vector3::new(0.1, -2e-7, 0.0),
+        stress: [-1e3, 2e3, -0.5, 0.125, 0.0, 0.0],
+        plastic_strain: 0.01,
+        volume: 0.0625,
+    };
+    Snapshot { points: vec![point(Owner::Grain(2), 0.5), point(Owner::Body(0), 1.5)], ..snapshot() }
 }
 
 pub(crate) fn series() -> Series {

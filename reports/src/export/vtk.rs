@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use grainbench_scene::record::{ContactState, GrainState, Partner, Snapshot};
+use grainbench_scene::record::{ContactState, GrainState, Owner, Partner, Snapshot};
 use maud::Escaper;
 use nalgebra::Vector3;
 
@@ -29,6 +29,37 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
     vectors(&mut out, "points", grains.iter().map(|grain| grain.position))?;
     writeln!(out, "</Points>")?;
     cells(&mut out, "Verts", 1, grains.len())?;
+    close(&mut out)
+}
+
+/// Writes the material points of deformable bodies: `body` is a grain's id, or −1 − the place of a body that is no grain;
+/// `stress` is Cauchy's, xx yy zz xy yz xz (Pa), tension positive.
+///
+/// # Errors
+/// When `out` refuses.
+pub fn write_points(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
+    let points = &snapshot.points;
+    open(&mut out, snapshot.time, points.len(), points.len(), 0)?;
+    writeln!(out, "<PointData Scalars=\"body\" Vectors=\"velocity\" Tensors=\"stress\">")?;
+    let body = |owner| match owner {
+        Owner::Grain(id) => i64::from(id),
+        Owner::Body(place) => -1 - i64::from(place),
+    };
+    whole(&mut out, "Int64", "body", points.iter().map(|point| body(point.owner)))?;
+    vectors(&mut out, "velocity", points.iter().map(|point| point.velocity))?;
+    vectors(&mut out, "displacement", points.iter().map(|point| point.displacement))?;
+    array(&mut out, "Float64", "stress", 6, points.iter().map(|point| point.stress), |line, stress| {
+        for (at, value) in stress.iter().enumerate() {
+            let gap = if at == 0 { "" } else { " " };
+            let _ = write!(line, "{gap}{value:?}");
+        }
+    })?;
+    scalars(&mut out, "plastic_strain", points.iter().map(|point| point.plastic_strain))?;
+    scalars(&mut out, "volume", points.iter().map(|point| point.volume))?;
+    writeln!(out, "</PointData>\n<Points>")?;
+    vectors(&mut out, "points", points.iter().map(|point| point.position))?;
+    writeln!(out, "</Points>")?;
+    cells(&mut out, "Verts", 1, points.len())?;
     close(&mut out)
 }
 
@@ -177,6 +208,11 @@ mod tests {
     #[test]
     fn grains_carry_their_state() {
         insta::assert_snapshot!(text(|out| write_grains(&sample::snapshot(), out)));
+    }
+
+    #[test]
+    fn points_carry_their_state() {
+        insta::assert_snapshot!(text(|out| write_points(&sample::deformable(), out)));
     }
 
     #[test]
