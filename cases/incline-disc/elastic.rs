@@ -163,7 +163,7 @@ fn order(slope: Elastic) -> Gate {
 fn stiff(slope: Elastic) -> Gate {
     Gate::new(
         (format!("displacement at {} s over the rigid one, less 1, moduli × 10, 8 cells a radius", slope.time), "1"),
-        vec![stiffened(slope, "mpm", 8.0, 10.0)],
+        vec![stiffened(slope, "mpm", 8.0, 10.0).slow()],
         (Evidence::Analytic, "MPM 2000 eq. 25"),
         (0.01, "flattening falls with the modulus; what is left is the discretisation of the contact at this resolution"),
         telling(slope),

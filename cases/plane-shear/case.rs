@@ -83,8 +83,7 @@ fn gates() -> Vec<Gate> {
     gates.push(chaos::pointwise(PARTING, with_twins(runs), without));
     for pair in PAIRS {
         for sum in SUMS {
-            // The main job has those of one program.
-            let runs = pair.map(long).map(|run| if pair == liggghts { run.slow() } else { run });
+            let runs = pair.map(long).map(Run::slow);
             gates.push(chaos::statistics(PARTING, sum, with_twins(runs), friction.clone()));
         }
     }
