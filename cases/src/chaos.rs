@@ -58,7 +58,7 @@ fn last_together(of: Parting, run: &Done, twin: &Done) -> Result<usize, Missing>
     for column in of.columns {
         let (a, b) = together(run, twin, column)?;
         let largest = a.iter().map(|value| value.abs()).fold(0.0, f64::max);
-        let parted = |(a, b): (&f64, &f64)| !((a - b).abs() <= PARTED * largest);
+        let parted = |(a, b): (&f64, &f64)| (a - b).is_nan() || (a - b).abs() > PARTED * largest;
         last = last.min(a.iter().zip(&b).position(parted).unwrap_or(last));
     }
     last.checked_sub(1).ok_or_else(|| Missing("moment at which twins are together".to_owned()))

@@ -6,7 +6,7 @@ use crate::shelf::Shelf;
 use grainbench_cases::bench::Bench;
 use grainbench_cases::case::Case;
 use grainbench_cases::effect::Effect;
-use grainbench_cases::gate::{Done, Gate, Run, Standing};
+use grainbench_cases::gate::{Done, Gate, Run, Set, Standing};
 use grainbench_cases::solvers;
 use grainbench_cases::study::ledger::{Entry, Shift, Worth};
 use grainbench_cases::subject::Method;
@@ -42,7 +42,9 @@ impl Ledger {
     pub fn new(case: &'static Case) -> Self {
         let mut gates = (case.gates)();
         gates.retain(|gate| {
-            gate.standing() == Standing::Passes && gate.runs.iter().all(|run| !solvers::is_program(run.solver))
+            gate.standing() == Standing::Passes
+                && gate.set() < Set::Long
+                && gate.runs.iter().all(|run| !solvers::is_program(run.solver))
         });
         Self { case, bench: Bench::new(case), gates, without: BTreeMap::new() }
     }
