@@ -119,7 +119,9 @@ fn with_one_moved(scene: &Scene) -> Scene {
 
 /// The last step at which a twin is within [`PARTED`]; none where it is so to the end.
 fn predictable_steps(run: &Series, twin: &Series) -> Option<u64> {
-    let parted = |step: u64| drift(run, twin, step).iter().any(|column| column.error().is_nan() || column.error().abs() > PARTED);
+    let parted = |step: u64| {
+        drift(run, twin, step).iter().any(|column| column.error().is_nan() || column.error().abs() > PARTED)
+    };
     let first = run.step.partition_point(|&step| !parted(step));
     (first < run.step.len()).then(|| run.step[first.saturating_sub(1)])
 }
