@@ -79,18 +79,19 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
     for (dump, code, red) in [
         ("lammps-oblique.dump.gz", 0, 0),
         ("lammps-2025-granular-oblique.dump.gz", 0, 0),
-        ("lammps-2025-oblique.dump.gz", 1, 8),
+        ("lammps-2025-oblique.dump.gz", 1, 6),
     ] {
         let (found, rows) = check("oblique-impact/damped", dump, &[]);
-        assert_eq!((found, count(&rows, "fail"), rows.len()), (code, red, 13), "{dump}");
-        // Exact answers, our solvers, and the stored runs of both programs.
+        assert_eq!((found, count(&rows, "fail"), rows.len()), (code, red, 10), "{dump}");
+        // Our solvers, and the stored runs of both programs; exact answers to damped impacts hang on the dashpot's convention.
         let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run of 20"));
         assert_eq!(stored.count(), 5, "{dump}");
     }
-    // 3.8878 m/s along the wall where 3.1280 m/s are right.
+    // 3.8878 m/s along the wall where LAMMPS itself has 3.1267 m/s.
     let (_, rows) = check("oblique-impact/damped", "lammps-2025-oblique.dump.gz", &[]);
-    let along = rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with("velocity along")).unwrap();
-    assert!((along["error"].as_f64().unwrap() - 0.2429).abs() < 1e-3, "{along}");
+    let along = rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with("grain.vx at")).unwrap();
+    assert!((along["value"].as_f64().unwrap() - 3.8878).abs() < 1e-3, "{along}");
+    assert!(along["error"].as_f64().unwrap() > 0.19, "{along}");
     let directory = tempfile::tempdir().unwrap();
     let dump = data("lammps-2025-undamped-oblique.dump.gz");
     let answer = grainbench(directory.path(), &["check", "oblique-impact/elastic", "--dump", &dump]);

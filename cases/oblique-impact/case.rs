@@ -108,8 +108,8 @@ fn gates() -> Vec<Gate> {
                     quantity: quantity.to_owned(),
                     unit,
                     evidence: Evidence::Analytic,
-                    // One row is enough for strangers, who need not limit the dashpot along the wall as the two programs do.
-                    scope: if solver == "dem:lammps" && variant != "damped" { Scope::AnySolver } else { Scope::Named },
+                    // One row is enough for strangers, whose dashpots need not end and be limited as the two programs' are.
+                    scope: if solver == "dem:lammps" && variant == "elastic" { Scope::AnySolver } else { Scope::Named },
                     source: "momentum and Coulomb's limit, by quadrature (derivation)",
                     allowed,
                     because,
