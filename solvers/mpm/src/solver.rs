@@ -72,7 +72,7 @@ impl Mpm {
             return Err(self.resolution_error(format!("expected positive numbers, found {resolution}")));
         }
         let lattice = lattice(scene, &self.setting, scene.reference_length / cells);
-        let speed = fastest_wave(scene);
+        let speed = scene.fastest_wave();
         let critical = lattice.shortest(scene.dimension.count()) / speed;
         let Duration::Seconds(time) = scene.duration else {
             return Err(self.resolution_error("expected a duration in seconds".to_owned()));
@@ -181,22 +181,6 @@ pub struct Plan {
     pub steps: u64,
     /// Time that the fastest wave takes through a cell (s).
     pub critical: f64,
-}
-
-/// Speed of longitudinal waves in the stiffest material in use, √((K + 4G/3)/ρ) (m/s).
-fn fastest_wave(scene: &Scene) -> f64 {
-    let dimensions = scene.dimension.count();
-    let of = |material: u16, density: f64| {
-        let deformable = scene.deformable.get(usize::from(material)).copied().flatten();
-        deformable.map_or(0.0, |deformable| (deformable.longitudinal_modulus() / density).sqrt())
-    };
-    let volume = |radius: f64| match dimensions {
-        2 => std::f64::consts::PI * radius * radius,
-        _ => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
-    };
-    let grains = scene.grains.iter().map(|grain| of(grain.material, grain.mass / volume(grain.radius)));
-    let bodies = scene.bodies.iter().map(|body| of(body.material, body.density));
-    grains.chain(bodies).fold(0.0, f64::max)
 }
 
 /// Cells of about `cell` (m): along periodic axes a whole number of them. Nodes stand on the faces of the domain along

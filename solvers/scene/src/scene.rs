@@ -318,6 +318,19 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Speed of longitudinal waves in the stiffest deformable material in use, √((K + 4G/3)/ρ) (m/s); zero where there is none.
+    #[must_use]
+    pub fn fastest_wave(&self) -> f64 {
+        let of = |material: u16, density: f64| {
+            let deformable = self.deformable.get(usize::from(material)).copied().flatten();
+            deformable.map_or(0.0, |deformable| (deformable.longitudinal_modulus() / density).sqrt())
+        };
+        let volume = |radius: f64| self.grain_shape.mass(radius, 1.0);
+        let grains = self.grains.iter().map(|grain| of(grain.material, grain.mass / volume(grain.radius)));
+        let bodies = self.bodies.iter().map(|body| of(body.material, body.density));
+        grains.chain(bodies).fold(0.0, f64::max)
+    }
+
     /// The law between two materials, if the scene has one.
     #[must_use]
     pub fn law(&self, a: u16, b: u16) -> Option<&ContactLaw> {

@@ -128,20 +128,10 @@ pub fn nominal_seconds(scene: &Scene, resolution: &Resolution) -> f64 {
 fn grid_seconds(scene: &Scene, cells: f64, points: u32, courant: f64, seconds: f64) -> f64 {
     let dimensions = scene.dimension.count();
     let cell = scene.reference_length / cells;
-    let volume = |radius: f64| match dimensions {
-        2 => std::f64::consts::PI * radius * radius,
-        _ => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
-    };
-    let grains: f64 = scene.grains.iter().map(|grain| volume(grain.radius)).sum();
+    let grains: f64 = scene.grains.iter().map(|grain| scene.grain_shape.mass(grain.radius, 1.0)).sum();
     let bodies: f64 = scene.bodies.iter().map(|body| body.shape.volume(dimensions)).sum();
     let count = (grains + bodies) / cell.powi(dimensions as i32) * f64::from(points).powi(dimensions as i32);
-    let wave = |material: u16, density: f64| {
-        let deformable = scene.deformable.get(usize::from(material)).copied().flatten();
-        deformable.map_or(0.0, |deformable| (deformable.longitudinal_modulus() / density).sqrt())
-    };
-    let of_grains = scene.grains.iter().map(|grain| wave(grain.material, grain.mass / volume(grain.radius)));
-    let speed = of_grains.chain(scene.bodies.iter().map(|body| wave(body.material, body.density))).fold(0.0, f64::max);
     let settling = scene.start.settle.map_or(0.0, |settle| settle.duration);
-    let steps = (seconds + settling) * speed / (courant * cell);
+    let steps = (seconds + settling) * scene.fastest_wave() / (courant * cell);
     steps * count * if dimensions == 2 { 250e-9 } else { 900e-9 }
 }
