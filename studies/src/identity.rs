@@ -23,13 +23,7 @@ pub fn of_this_program() -> String {
 /// What a run is, by content: program, solver, scene, resolution, and what is read from it.
 #[must_use]
 pub fn of_run(program: &str, solver: &str, scene: &Scene, resolution: &Resolution, read: &str) -> String {
-    let mut hasher = blake3::Hasher::new();
-    for part in [program, solver, &format!("{scene:?}"), &format!("{resolution:?}"), read] {
-        // The length before each part keeps two lists of parts from running into one.
-        hasher.update(&(part.len() as u64).to_le_bytes());
-        hasher.update(part.as_bytes());
-    }
-    hasher.finalize().to_hex().to_string()
+    of_words(program, &[solver, &format!("{scene:?}"), &format!("{resolution:?}"), read])
 }
 
 /// What a piece of work is whose content is all in words.
@@ -37,6 +31,7 @@ pub fn of_run(program: &str, solver: &str, scene: &Scene, resolution: &Resolutio
 pub fn of_words(program: &str, words: &[&str]) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in std::iter::once(&program).chain(words) {
+        // The length before each part keeps two lists of parts from running into one.
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     }
