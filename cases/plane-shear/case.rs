@@ -10,6 +10,7 @@ use crate::program_rows::PAIRS;
 use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
+use grainbench_reference::twin::move_one;
 use grainbench_scene::solver::{Resolution, RunError};
 
 const LADDER: &[Rung] = &[
@@ -76,7 +77,7 @@ fn gates() -> Vec<Gate> {
     let without = Control::without_the_error("our solver, which forgets", liggghts[1], LADDER[0].resolution);
     gates.push(beginning(2000, lammps.map(short), other(liggghts[1])));
     gates.push(beginning(85, liggghts.map(first), other(lammps[1])));
-    let twins = || [long(lammps[1]).aside(), long(lammps[1]).adjusted(TWIN, chaos::move_one).aside()];
+    let twins = || [long(lammps[1]).aside(), long(lammps[1]).adjusted(TWIN, move_one).aside()];
     let with_twins = |runs: [Run; 2]| [runs.as_slice(), &twins()].concat();
     gates.push(chaos::pointwise(PARTING, with_twins(lammps.map(long)), other(liggghts[1])));
     let runs = [long(liggghts[0]).known(STALE_STRETCH).slow(), long(liggghts[1])];
@@ -87,7 +88,7 @@ fn gates() -> Vec<Gate> {
             gates.push(chaos::statistics(PARTING, sum, with_twins(runs), friction.clone()));
         }
     }
-    gates.push(chaos::horizon(PARTING, HORIZON, [long(PAIRS[0][1]), long(PAIRS[0][1]).adjusted(TWIN, chaos::move_one)]));
+    gates.push(chaos::horizon(PARTING, HORIZON, [long(PAIRS[0][1]), long(PAIRS[0][1]).adjusted(TWIN, move_one)]));
     gates.push(rigid_rows::refuses_periodic_axes(PLAIN));
     gates
 }
@@ -117,7 +118,7 @@ fn beginning(steps: u32, runs: [Run; 2], control: Control) -> Gate {
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
     let right = bench.run(&long(PAIRS[0][1]))?;
-    let twin = bench.run(&long(PAIRS[0][1]).adjusted(TWIN, chaos::move_one))?;
+    let twin = bench.run(&long(PAIRS[0][1]).adjusted(TWIN, move_one))?;
     let horizon = chaos::time_of_horizon(PARTING, &right, &twin).unwrap_or(f64::NAN);
     let mut partings = vec![("a twin moved by 1 ulp".to_owned(), right.clone(), twin)];
     let mut courses = Vec::new();

@@ -27,6 +27,7 @@ mod snapshot;
 pub mod statistics;
 pub mod stored;
 mod table;
+pub mod twin;
 
 pub use atom::Atom;
 pub use data_file::{DataFile, parse_data, read_data_file};

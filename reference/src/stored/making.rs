@@ -9,12 +9,12 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver};
 
 use super::drift::drift;
-use super::provenance::PARTED;
 use super::scene_hash::scene_hash;
 use super::{HALF_STEP_SERIES, PROVENANCE, Provenance, SERIES};
 use crate::deck::{Program, Stepping, write_deck};
 use crate::live::Live;
 use crate::refined::refined;
+use crate::twin::{PARTED, move_one};
 
 /// Most samples that are kept of a run, beside its last one.
 const MOST_SAMPLES: usize = 100;
@@ -47,7 +47,9 @@ pub fn make(
     let run = live.run(scene, resolution, &mut ())?;
     let (twin_scene, twin_resolution) = refined(scene, &stepping, 2);
     let twin = live.run(&twin_scene, &twin_resolution, &mut ())?;
-    let moved = live.run(&with_one_moved(scene), resolution, &mut ())?;
+    let mut moved_scene = scene.clone();
+    move_one(&mut moved_scene);
+    let moved = live.run(&moved_scene, resolution, &mut ())?;
     let deck = write_deck(scene, resolution, program).map_err(|error| fail(error.to_string()))?;
     let mut files = Vec::new();
     for (name, text) in deck.files {
@@ -103,18 +105,6 @@ fn table(record: &Record, program: Program) -> Result<String, RunError> {
         text.push('\n');
     }
     Ok(text)
-}
-
-/// The scene with the grain in the middle of the list moved by one unit in the last place.
-fn with_one_moved(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    let middle = scene.grains.len() / 2;
-    if let Some(grain) = scene.grains.get_mut(middle) {
-        // Along an axis where it is not zero, whose next number is no length at all.
-        let axis = (0..3).find(|&axis| grain.position[axis] != 0.0).unwrap_or(0);
-        grain.position[axis] = grain.position[axis].next_up();
-    }
-    scene
 }
 
 /// The last step at which a twin is within [`PARTED`]; none where it is so to the end.

@@ -4,9 +4,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// How far twins have parted, in units of what moves, when a run can no longer be predicted.
-pub(super) const PARTED: f64 = 1e-9;
-
 /// What `provenance.toml` of a stored run says.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
