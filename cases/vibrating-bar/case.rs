@@ -2,9 +2,9 @@
 
 use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung, cells};
+use crate::elastic::stiffen;
 use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
-use crate::scope::Scope;
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
 use crate::verdict::Evidence;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::RunError;
@@ -51,65 +51,48 @@ fn period(done: &Done) -> Result<f64, Missing> {
 }
 
 fn gates() -> Vec<Gate> {
-    let softer = || {
-        Control::scene("two per cent softer", |scene| {
-            for material in scene.deformable.iter_mut().flatten() {
-                material.bulk_modulus *= 0.98;
-                material.shear_modulus *= 0.98;
-            }
-        })
-    };
-    let gate = |quantity: &str, unit, rung: Rung, control| Gate {
-        quantity: quantity.to_owned(),
-        unit,
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: SOURCE,
-        allowed: 0.0,
-        because: "",
-        runs: vec![Run::new(PLAIN, "mpm", rung.resolution)],
-        measure: measure(|_| Err(Missing("measure".to_owned()))),
-        control,
-    };
+    let softer = || Control::scene("two per cent softer", |scene| stiffen(scene, 0.98));
+    let runs = |rung: Rung| vec![Run::new(PLAIN, "mpm", rung.resolution)];
     let mut gates: Vec<Gate> = LADDER
         .iter()
         .zip([5e-3, 1.3e-3, 4e-4])
-        .map(|(&rung, allowed)| Gate {
-            allowed,
-            because: "dispersion of the grid, falling with the cell, and the strain of .01",
-            measure: measure(|done| {
-                let exact = 2.0 * PI / mode(&done[0].scene).0;
-                Ok(Measured::new(period(&done[0])?, exact, exact))
-            }),
-            ..gate(&format!("period, {} cells", rung.name), "s", rung, softer())
+        .map(|(&rung, allowed)| {
+            Gate::new(
+                (format!("period, {} cells", rung.name), "s"),
+                runs(rung),
+                (Evidence::Analytic, SOURCE),
+                (allowed, "dispersion of the grid, falling with the cell, and the strain of .01"),
+                softer(),
+                |done| {
+                    let exact = 2.0 * PI / mode(&done[0].scene).0;
+                    Ok(Measured::new(period(&done[0])?, exact, exact))
+                },
+            )
         })
         .collect();
-    gates.push(Gate {
-        allowed: 0.02,
-        because: "phase after two periods, and the strain of .01; in units of the amplitude",
-        measure: measure(|done| {
+    gates.push(Gate::new(
+        ("mean velocity over two periods, worst", "m/s"),
+        runs(LADDER[1]),
+        (Evidence::Analytic, SOURCE),
+        (0.02, "phase after two periods, and the strain of .01; in units of the amplitude"),
+        softer(),
+        |done| {
             let (frequency, amplitude) = mode(&done[0].scene);
             let exact = |time: f64| amplitude * (frequency * time).cos();
             Ok(Measured::worst(&done[0].series().time, done[0].column("bar.vx")?, exact, amplitude))
-        }),
-        ..gate("mean velocity over two periods, worst", "m/s", LADDER[1], softer())
-    });
-    gates.push(Gate {
-        allowed: 4e-3,
-        because: "half a step between velocities and stresses",
-        source: "conservation of energy",
-        evidence: Evidence::Invariant,
-        measure: measure(|done| {
+        },
+    ));
+    gates.push(Gate::new(
+        ("total energy over two periods, worst", "J"),
+        runs(LADDER[1]),
+        (Evidence::Invariant, "conservation of energy"),
+        (4e-3, "half a step between velocities and stresses"),
+        Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01),
+        |done| {
             let energy = done[0].column("all.total_energy")?;
             Ok(Measured::worst(&done[0].series().time, energy, |_| energy[0], energy[0]))
-        }),
-        ..gate(
-            "total energy over two periods, worst",
-            "J",
-            LADDER[1],
-            Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01),
-        )
-    });
+        },
+    ));
     gates
 }
 
