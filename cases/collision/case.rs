@@ -2,6 +2,7 @@
 
 use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
+use crate::effect::Effect;
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
@@ -215,7 +216,27 @@ fn angular_momentum() -> Vec<Gate> {
         }),
         control: Control::solver("torque arm R − overlap/2", "dem:liggghts"),
     };
-    vec![kept, lost]
+    vec![kept, lost, at_the_limit()]
+}
+
+/// In the oblique impact the tangential spring is at Coulomb's limit at every step: the spin of the first disc.
+fn at_the_limit() -> Gate {
+    Gate::new(
+        ("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s"),
+        vec![Run::new("oblique", "dem", LADDER[1].resolution)],
+        (Evidence::Analytic, "Coulomb's limit at every step (derivation)"),
+        (1e-12, "rounding, relative to the change"),
+        Control::without(Effect::Friction),
+        |done| {
+            let grain = &done[0].scene.grains[0];
+            let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
+            let overlap: f64 = done[0].column("contact.overlap")?.iter().sum();
+            let limit = law.friction * law.normal_stiffness * overlap * done[0].record.provenance.time_step;
+            // Both discs are turned clockwise.
+            let expected = -limit * grain.radius / grain.inertia;
+            Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+        },
+    )
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
