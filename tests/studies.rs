@@ -20,11 +20,11 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 #[test]
-fn exact_limits_are_found_to_a_hundredth() {
+fn exact_limits_are_found_to_half_a_hundredth() {
     for assembly in assembly::all().unwrap() {
         let (limit, _) = of_assembly("", &assembly, "dem", &Shelf::none()).unwrap();
         let error = limit.error.unwrap_or_else(|| panic!("{}: {}", limit.scene, limit.detail));
-        assert!(error.abs() < 0.01, "{} {:?}: {:?}, exact {}", limit.scene, limit.at, limit.found, assembly.exact);
+        assert!(error.abs() < 0.005, "{} {:?}: {:?}, exact {}", limit.scene, limit.at, limit.found, assembly.exact);
     }
 }
 
@@ -56,17 +56,10 @@ fn hard_cases_hold_or_say_why_not() {
     }
 }
 
-/// Effects that a case calls for and no gate feels; everything else that is on must turn a gate red when it is off. The oblique
-/// collision is judged by what is conserved, with friction or without; the nine discs come to the same rest with one damping
-/// as with two; the block is long enough for the disc not to come near its periodic ends; and what the settled column feels of
-/// friction and damping it feels beside other programs' runs, which have their effects whatever ours has.
-const NOT_FELT: &[(&str, Effect)] = &[
-    ("collision", Effect::Friction),
-    ("nine-discs", Effect::ContactDamping),
-    ("rolling-on-block", Effect::PeriodicAxes),
-    ("settled-column", Effect::Friction),
-    ("settled-column", Effect::ContactDamping),
-];
+/// Effects that a case calls for and no gate feels; everything else that is on must turn a gate red when it is off. The nine discs
+/// come to the same rest with one damping as with two; the block is long enough for the disc not to come near its periodic ends.
+const NOT_FELT: &[(&str, Effect)] =
+    &[("nine-discs", Effect::ContactDamping), ("rolling-on-block", Effect::PeriodicAxes)];
 
 #[test]
 fn an_effect_that_is_needed_is_caught_when_it_is_off() {

@@ -37,16 +37,13 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// The ledger of a case: of its gates that pass, with solvers of ours.
+    /// The ledger of a case: of its gates that pass, of which all runs can be had here.
     #[must_use]
     pub fn new(case: &'static Case) -> Self {
+        let bench = Bench::new(case);
         let mut gates = (case.gates)();
-        gates.retain(|gate| {
-            gate.standing() == Standing::Passes
-                && gate.set() < Set::Long
-                && gate.runs.iter().all(|run| !solvers::is_program(run.solver))
-        });
-        Self { case, bench: Bench::new(case), gates, without: BTreeMap::new() }
+        gates.retain(|gate| gate.standing() == Standing::Passes && gate.set() < Set::Long && bench.is_available(gate));
+        Self { case, bench, gates, without: BTreeMap::new() }
     }
 
     /// Every variant that gates look at with every effect, on or off.
@@ -129,7 +126,7 @@ impl Ledger {
             (false, false) => Worth::NotWorthSimulating,
             (false, true) => Worth::Untold,
         };
-        if let Some(run) = gates.first().map(|gate| &gate.runs[0]) {
+        if let Some(run) = gates.iter().flat_map(|gate| &gate.runs).find(|run| is_judged(run)) {
             let with = self.bench.run(run);
             if let (Ok(with), Ok(without)) = (with, self.run_without(run, piece.effect)) {
                 let work = |record: &Record| (record.cost.particle_steps + record.cost.contact_evaluations) as f64;
@@ -161,8 +158,12 @@ impl Ledger {
         }
     }
 
-    /// A run of a gate whose solver is given the scene without the effect; the scene of the claim stays what it was.
+    /// A run of a gate whose solver is given the scene without the effect; the scene of the claim stays what it was, and so do
+    /// the runs that others are judged by.
     fn run_without(&mut self, run: &Run, effect: Effect) -> Result<Done, RunError> {
+        if !is_judged(run) {
+            return self.bench.run(run);
+        }
         let key = (effect, run.key());
         if let Some(done) = self.without.get(&key) {
             return done.clone();
@@ -185,7 +186,8 @@ impl Ledger {
 
     /// The first run on springs of the variant, with the effect compiled in.
     fn idle(&self, piece: &Piece) -> Option<Entry> {
-        let is_ours = |run: &&Run| run.variant == piece.variant && Method::of(run.solver) == Some(Method::Dem);
+        let is_ours =
+            |run: &&Run| is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == Some(Method::Dem);
         let run = self.gates.iter().flat_map(|gate| &gate.runs).find(is_ours)?;
         let scene = self.bench.scene(run).ok()?;
         let idle = try_idly(run.solver, &scene, &run.resolution, piece.effect).ok()??;
@@ -194,4 +196,9 @@ impl Ledger {
         (entry.counts, entry.time) = (Some(idle.counts), Some(idle.time));
         Some(entry)
     }
+}
+
+/// Whether a run is one of ours that is judged, and not one that others are judged by.
+fn is_judged(run: &Run) -> bool {
+    !run.aside && !solvers::is_program(run.solver)
 }
