@@ -135,6 +135,11 @@ refused_edits! {
     huge_lattice:
         "position = [0.0, 0.1]" => "lattice = { origin = [0.0, 0.1], spacing = [0.2, 0.2], count = [100000, 10000] }";
     huge_random: "position = [0.0, 0.1]" => "random = { count = 1000000000, seed = 1 }";
+    packed_without_domain: "radius = 0.1\nposition = [0.0, 0.1]" => "packed = { seed = 1, radii = [[0.1, 5]] }";
+    packed_with_nothing: "radius = 0.1\nposition = [0.0, 0.1]" => "packed = { seed = 1, radii = [] }";
+    packed_into_too_little_room:
+        "[materials.rock]" => "[domain]\nlow = [-1.0, 0.0]\nhigh = [1.0, 2.0]\n\n[grains.more]\nmaterial = \"rock\"\n\
+                               packed = { seed = 1, radii = [[0.1, 500]] }\n\n[materials.rock]";
 }
 
 #[test]

@@ -68,7 +68,7 @@ pub(super) fn gates() -> Vec<Gate> {
         ("ΩR/v at 1 s, where a rigid sphere has 1, R/2", "1"),
         vec![run(rolls, "mpm:2000", 2.0)],
         (Evidence::Paper, "Bardenhagen et al. 2001, Fig. 3: at R/2 the sphere does not roll"),
-        (0.1, "it turns by no more than its flat side rocks"),
+        (0.02, "it turns by no more than its flat side rocks"),
         Control::solver("springs at the surface", "mpm"),
         |done| {
             let (_, state) = last(&done[0])?;

@@ -148,7 +148,7 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Gate> {
     let mut gates = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
-            let allowed = (1e-9, "the same cycle: rounding; relative to the velocity before");
+            let allowed = (1e-12, "the same cycle: rounding; relative to the velocity before");
             let control = Control::ours("friction ×1.001 in ours", |scene| {
                 scene.change_laws(|law| law.friction *= 1.001);
             });
@@ -156,7 +156,7 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Gate> {
             gates.push(row("velocity over the impact, worst", "m/s", allowed, runs, control.clone(), |done| {
                 worst(done, &["grain.vx", "grain.vy"], done[0].scene.grains[0].velocity.norm())
             }));
-            let allowed = (1e-9, "the same cycle: rounding; relative to the largest force of the spring, v√(km)");
+            let allowed = (1e-12, "the same cycle: rounding; relative to the largest force of the spring, v√(km)");
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
             gates.push(row("force on the wall, worst", "N", allowed, runs, control, |done| {
                 let (grain, law) = (&done[0].scene.grains[0], done[0].scene.laws[0].unwrap_or_default());

@@ -8,6 +8,7 @@ use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::f64::consts::PI;
 
 /// Most grains: the pairs are found by a sweep along x.
 pub const MOST: u32 = 20_000;
@@ -25,8 +26,14 @@ const MARGIN: f64 = 1e-4;
 /// seed gives the same packing on every machine.
 #[must_use]
 pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
-    let mut generator = Pcg64::seed_from_u64(seed);
     let axes = dimension.count();
+    // More than fills the box need not be tried, and would list every pair.
+    let ball = |radius: f64| if axes == 2 { PI * radius * radius } else { 4.0 / 3.0 * PI * radius.powi(3) };
+    let room: f64 = (0..axes).map(|axis| domain.high[axis] - domain.low[axis]).product();
+    if radii.iter().map(|&radius| ball(radius)).sum::<f64>() > room {
+        return None;
+    }
+    let mut generator = Pcg64::seed_from_u64(seed);
     let centres = radii
         .iter()
         .map(|_| {
@@ -182,7 +189,7 @@ mod tests {
 
     /// Edge of a square in which the grains take up a fraction.
     fn edge(radii: &[f64], fraction: f64) -> f64 {
-        (std::f64::consts::PI * radii.iter().map(|radius| radius * radius).sum::<f64>() / fraction).sqrt()
+        (PI * radii.iter().map(|radius| radius * radius).sum::<f64>() / fraction).sqrt()
     }
 
     #[test]
@@ -212,6 +219,9 @@ mod tests {
 
     #[test]
     fn more_than_fits_is_not_packed() {
-        assert_eq!(pack(&radii(60), 1, &domain(25.0, false), Dimension::Two), None);
+        for fraction in [0.9, 1.1, 100.0] {
+            let edge = edge(&radii(60), fraction);
+            assert_eq!(pack(&radii(60), 1, &domain(edge, false), Dimension::Two), None, "{fraction}");
+        }
     }
 }
