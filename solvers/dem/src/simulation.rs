@@ -115,8 +115,8 @@ pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
     pub(crate) time_step: f64,
     critical: f64,
     pub(crate) step: u64,
-    /// Farthest that any grain was from its reference at the last drift, squared (m²).
-    moved_squared: f64,
+    /// Whether no grain has moved half of the skin since the pairs were listed.
+    list_holds: bool,
     /// Bound on the distance from any wall's centre of rotation to any grain (m).
     pub(crate) extent: f64,
     pub(crate) cost: Cost,
@@ -141,7 +141,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             time_step,
             critical: scene.critical_time_step(),
             step: 0,
-            moved_squared: 0.0,
+            list_holds: true,
             extent: 0.0,
             cost: Cost::default(),
             stage: PhantomData,
@@ -172,10 +172,11 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
 
     /// One cycle: motion from the forces of the last, walls, and the forces for the next.
     fn cycle<const RECORD: bool>(&mut self) -> Result<(), Box<Broken>> {
-        if self.scene.global_damping == 0.0 {
-            self.drift::<NoDrag>()
-        } else {
-            self.drift::<MassProportional>()
+        match (self.scene.global_damping == 0.0, self.gravity == S::ORIGIN) {
+            (true, true) => self.drift::<NoDrag, false>(),
+            (true, false) => self.drift::<NoDrag, true>(),
+            (false, true) => self.drift::<MassProportional, false>(),
+            (false, false) => self.drift::<MassProportional, true>(),
         }
         self.step += 1;
         let time = self.step as f64 * self.time_step;
@@ -185,9 +186,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             walls_moved = walls_moved.max(wall.moved_since_list(self.extent));
         }
         let half_skin = 0.5 * self.neighbours.skin;
-        // Written so that a position that is not a number leads to the rebuild, which looks at every grain.
-        let still_valid = self.moved_squared <= half_skin * half_skin && walls_moved <= half_skin;
-        if !still_valid {
+        if !(self.list_holds && walls_moved <= half_skin) {
             self.rebuild()?;
         }
         self.evaluate_forces::<RECORD>(self.time_step);
@@ -197,24 +196,27 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
     }
 
     /// Kick and drift of every grain (eqs. 22 and 22a); forces are taken up and set to zero.
-    fn drift<D: Drag>(&mut self) {
+    fn drift<D: Drag, const GRAVITY: bool>(&mut self) {
         let (keep, gain) = D::factors(self.scene.global_damping, self.time_step);
         let (gravity, time_step) = (self.gravity, self.time_step);
+        let half_skin = 0.5 * self.neighbours.skin;
+        let near_enough = half_skin * half_skin;
         let grains = &mut self.grains;
-        let mut farthest = 0.0_f64;
-        let mut not_a_number = false;
+        let mut moved = false;
         let linear = grains.place.iter_mut().zip(&mut grains.movement).zip(&mut grains.force);
         for (((place, movement), force), reference) in linear.zip(&self.neighbours.reference) {
-            let acceleration = *force * movement.inverse_mass + gravity;
+            let mut acceleration = *force * movement.inverse_mass;
+            if GRAVITY {
+                acceleration += gravity;
+            }
             *force = S::ORIGIN;
             movement.velocity = D::keep(movement.velocity, keep) + acceleration * gain;
             place.position += movement.velocity * time_step;
             let away = place.position - *reference;
-            let squared = S::dot(away, away);
-            not_a_number |= squared.is_nan();
-            farthest = farthest.max(squared);
+            // A position that is not a number counts as moved: listing anew looks at every grain.
+            moved |= !(S::dot(away, away) <= near_enough);
         }
-        self.moved_squared = if not_a_number { f64::NAN } else { farthest };
+        self.list_holds = !moved;
         if T::ACTIVE {
             for (rotation, torque) in grains.rotation.iter_mut().zip(&mut grains.torque) {
                 rotation.advance(*torque, keep, gain, time_step);
@@ -248,7 +250,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             before.iter().for_each(|&(id, _)| remembered[id as usize] = Memory::<S, T, R>::default());
         }
         self.extent += self.largest_radius + self.neighbours.skin;
-        self.moved_squared = 0.0;
+        self.list_holds = true;
         self.cost.neighbour_builds = self.neighbours.builds;
         Ok(())
     }
@@ -308,11 +310,14 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
     fn pairs<const RECORD: bool, const ACROSS: bool>(&mut self, elapsed: f64) {
         let (grains, neighbours) = (&mut self.grains, &mut self.neighbours);
         let pairs = if ACROSS { &mut neighbours.across } else { &mut neighbours.near };
+        if pairs.partner.is_empty() {
+            return;
+        }
         self.cost.pair_tests += pairs.partner.len() as u64;
         let mut touching = 0_u64;
         for (row, ends) in pairs.start.windows(2).enumerate() {
             let range = ends[0] as usize..ends[1] as usize;
-            if range.is_empty() {
+            if ACROSS && range.is_empty() {
                 continue;
             }
             let (place, movement, rotation) = (grains.place[row], grains.movement[row], grains.rotation[row]);
@@ -394,6 +399,8 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
                 let movement = grains.movement[slot];
                 let touch = Touch {
                     law,
+                    between: facing.normal,
+                    inverse_distance: 1.0,
                     normal: facing.normal,
                     overlap: place.radius - facing.distance,
                     velocity: movement.velocity - facing.velocity,
@@ -502,11 +509,14 @@ fn respond<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>, const RECORD: b
     history: &mut Memory<S, T, R>,
 ) -> Answer<S> {
     let distance = pair.squared.sqrt();
+    let inverse_distance = 1.0 / distance;
     let [first, second] = pair.radii;
     let overlap = first + second - distance;
     let touch = Touch {
         law: pair.law,
-        normal: pair.between * (1.0 / distance),
+        between: pair.between,
+        inverse_distance,
+        normal: pair.between * inverse_distance,
         overlap,
         velocity: pair.velocity,
         effective_mass: if N::DAMPED { 1.0 / (pair.inverse_masses[0] + pair.inverse_masses[1]) } else { 0.0 },
@@ -538,7 +548,7 @@ fn stages<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>, const RECORD: bo
     let mut answer = Answer {
         normal: touch.normal,
         overlap: touch.overlap,
-        force: touch.normal * -normal.total,
+        force: touch.between * -(normal.total * touch.inverse_distance),
         twist: S::NO_SPIN,
         rolling: S::NO_SPIN,
         arms,

@@ -16,7 +16,12 @@ use grainbench_scene::space::Space;
 pub struct Touch<'a, S: Space> {
     /// The law between their materials.
     pub law: &'a ContactLaw,
-    /// Unit vector `e` from the first body to the second.
+    /// A vector from the first body towards the second, of any length: centre to centre, or `e` at a wall (m).
+    pub between: S::Vector,
+    /// One over its length (1/m).
+    pub inverse_distance: f64,
+    /// Unit vector `e = between · inverse_distance`. The normal force is taken along `between`, so that nothing needs `e` where no
+    /// dashpot and no tangential stage read it.
     pub normal: S::Vector,
     /// Overlap δ (m), positive.
     pub overlap: f64,
