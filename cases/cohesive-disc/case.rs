@@ -2,6 +2,7 @@
 
 use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung, fraction};
+use crate::effect::Effect;
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 
@@ -75,7 +76,7 @@ fn gates() -> Vec<Gate> {
         Run::new(PLAIN, "rigid", rigid_rows::DEFAULT),
         "refusal of cohesion",
         "rapier's contacts only push",
-        Control::scene("no cohesion", |scene| scene.change_laws(|law| law.cohesion = 0.0)),
+        Control::without(Effect::Cohesion),
     );
     vec![
         rigid,

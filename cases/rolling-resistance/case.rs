@@ -2,6 +2,7 @@
 
 use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
+use crate::effect::Effect;
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::incline::wrong_inertia;
@@ -47,7 +48,7 @@ fn gates() -> Vec<Gate> {
         Run::new(FLAT[0], "rigid", rigid_rows::DEFAULT),
         "refusal of rolling resistance",
         "rapier has no resistance against rolling",
-        Control::scene("no rolling resistance", |scene| scene.change_laws(|law| law.rolling_friction = 0.0)),
+        Control::without(Effect::RollingResistance),
     );
     FLAT.into_iter().flat_map(flat).chain(SLOPE.into_iter().flat_map(threshold)).chain([rigid]).collect()
 }
