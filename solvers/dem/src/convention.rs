@@ -48,6 +48,16 @@ pub enum History {
     Projected,
 }
 
+/// Which angular velocity rolls at a wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WallRolling {
+    /// The grain's own, ω.
+    Spin,
+    /// The velocity of its surface at the torque arm over the distance of the wall, ω (R − δ/2)/(R − δ): between grains the
+    /// two are the same (LIGGGHTS `rolling_friction epsd`).
+    Surface,
+}
+
 /// A convention: the options together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Convention {
@@ -63,6 +73,8 @@ pub struct Convention {
     pub tension: Tension,
     /// Stretch at a contact that turns.
     pub history: History,
+    /// Angular velocity against which walls resist.
+    pub wall_rolling: WallRolling,
 }
 
 impl Convention {
@@ -74,6 +86,7 @@ impl Convention {
         torque_arm: TorqueArm::Radius,
         tension: Tension::Allowed,
         history: History::Turned,
+        wall_rolling: WallRolling::Spin,
     };
     /// LAMMPS `gran/hooke/history`.
     pub const LAMMPS: Self = Self {
@@ -83,6 +96,7 @@ impl Convention {
         torque_arm: TorqueArm::Radius,
         tension: Tension::Allowed,
         history: History::Projected,
+        wall_rolling: WallRolling::Spin,
     };
     /// LIGGGHTS `hooke/stiffness tangential history`.
     pub const LIGGGHTS: Self = Self {
@@ -92,6 +106,7 @@ impl Convention {
         torque_arm: TorqueArm::ContactPoint,
         tension: Tension::Allowed,
         history: History::Projected,
+        wall_rolling: WallRolling::Surface,
     };
     /// Cundall & Strack with the normal force never below zero.
     pub const NO_TENSION: Self = Self { name: "dem:no-tension", tension: Tension::Clipped, ..Self::CUNDALL_STRACK };
@@ -136,6 +151,13 @@ impl Convention {
                 match self.history {
                     History::Turned => "turned with the contact",
                     History::Projected => "projected on the tangent",
+                }
+            ),
+            format!(
+                "rolling at walls by {}",
+                match self.wall_rolling {
+                    WallRolling::Spin => "the spin",
+                    WallRolling::Surface => "the surface",
                 }
             ),
         ]

@@ -409,9 +409,10 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
                 };
                 let arms = [place.radius - self.options.arm_reduction * touch.overlap, 0.0];
                 let spin = grains.rotation[slot].spin();
+                let rolling = if R::ACTIVE && self.options.rolls_by_surface { arms[0] / facing.distance } else { 1.0 };
                 let turning = spin.map(|spin| Turning {
                     surface: spin * arms[0],
-                    relative: spin,
+                    relative: spin * rolling,
                     inertia: grains.rotation[slot].inertia() + touch.effective_mass * place.radius * place.radius,
                 });
                 let answer = stages::<S, N, T, R, RECORD>(&touch, arms, turning, &self.options, elapsed, history);
@@ -461,7 +462,7 @@ struct Pair<'a, S: Space> {
 struct Turning<S: Space> {
     /// ω₁a₁ + ω₂a₂ (m/s).
     surface: S::Spin,
-    /// ω₁ − ω₂ (rad/s).
+    /// ω₁ − ω₂ (rad/s), or what rolls in its place at walls.
     relative: S::Spin,
     /// Moment of inertia of the pair about the contact, [1/(I₁ + m₁R₁²) + 1/(I₂ + m₂R₂²)]⁻¹ (kg m²).
     inertia: f64,

@@ -62,7 +62,7 @@ impl Dem {
     fn start_in<S: Space>(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, Box<Broken>> {
         let effects = Effects::of(scene);
         let convention = &self.convention;
-        let options = Options::new(convention.torque_arm, convention.tension, convention.cap_normal);
+        let options = Options::of(convention);
         macro_rules! kernel {
             ($normal:ty, $tangential:ty, $rolling:ty) => {
                 Box::new(Kernel::<S, $normal, $tangential, $rolling>::new(scene, options, time_step)?)

@@ -7,7 +7,7 @@ pub mod normal;
 pub mod rolling;
 pub mod tangential;
 
-use crate::convention::{CapNormal, Tension, TorqueArm};
+use crate::convention::{CapNormal, Convention, Tension, TorqueArm, WallRolling};
 use grainbench_scene::scene::ContactLaw;
 use grainbench_scene::space::Space;
 
@@ -42,25 +42,28 @@ pub struct Options {
     pub least_normal_force: f64,
     /// Weight of the dashpot in the normal force that Coulomb's limit is proportional to: 0 or 1.
     pub dashpot_in_cap: f64,
+    /// Whether grains roll at walls by their surface's velocity over the distance of the wall, and not by their spin.
+    pub rolls_by_surface: bool,
 }
 
 impl Options {
     /// The values of a convention's options.
     #[must_use]
-    pub const fn new(arm: TorqueArm, tension: Tension, cap_normal: CapNormal) -> Self {
+    pub const fn of(convention: &Convention) -> Self {
         Self {
-            arm_reduction: match arm {
+            arm_reduction: match convention.torque_arm {
                 TorqueArm::Radius => 0.0,
                 TorqueArm::ContactPoint => 0.5,
             },
-            least_normal_force: match tension {
+            least_normal_force: match convention.tension {
                 Tension::Allowed => f64::NEG_INFINITY,
                 Tension::Clipped => 0.0,
             },
-            dashpot_in_cap: match cap_normal {
+            dashpot_in_cap: match convention.cap_normal {
                 CapNormal::Spring => 0.0,
                 CapNormal::Total => 1.0,
             },
+            rolls_by_surface: matches!(convention.wall_rolling, WallRolling::Surface),
         }
     }
 }
