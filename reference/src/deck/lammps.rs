@@ -1,16 +1,13 @@
-//! LAMMPS: `gran/hooke/history` between grains and at walls.
+//! LAMMPS: contacts of `gran/hooke/history` and its like between grains and at walls.
 
-use std::fmt::Write as _;
+use grainbench_scene::effects::Effects;
+use grainbench_scene::scene::{Probe, ProbeTarget, Scene, Wall};
 
-use grainbench_scene::motion::{Moment, Motion};
-use grainbench_scene::scene::{ContactLaw, Probe, ProbeTarget, Scene, Wall, WallShape};
-
-use super::dashpots::{Dashpots, Side};
 use super::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
+use super::lammps_contact::{at_wall, between_grains};
 use super::logged::logged;
-use super::outline::{
-    AXES, AxisPlane, grain_materials, has_discs, inertia_factor, is_flat, one_inertia, refuse_turning,
-};
+use super::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
+use super::region::region;
 use super::{COLUMNS, END, SAMPLES, Stepping, Written, heading, thermo};
 
 pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
@@ -50,7 +47,12 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str) -> Result<String, St
     say(&boundary(scene, GROWING));
     say("newton off\ncomm_modify vel yes\nread_data data.grains");
     say(&format!("neighbor {:?} bin\nneigh_modify every 1 delay 0 check yes", skin(scene)));
-    say(&format!("pair_style gran/hooke/history {}\npair_coeff * *", pair_law(scene)?));
+    let effects = Effects::of(scene);
+    if effects.hertz && effects.restitution {
+        say("# The number behind the stiffness is what the polynomial of `damping tsuji` makes sqrt(5) zeta of:");
+        say("# with it the dashpot is 2 sqrt(5/6) zeta sqrt(S m_eff), as the coefficient of restitution asks for.");
+    }
+    say(&between_grains(scene)?);
     say(&format!("timestep {:?}", stepping.time_step));
     let strength = scene.gravity.norm();
     if strength > 0.0 {
@@ -79,49 +81,9 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str) -> Result<String, St
     Ok(text)
 }
 
-/// `k_n k_t γ_n γ_t μ 1` of a law, with the dashpots of a partner.
-fn numbers(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result<String, String> {
-    let Dashpots { normal, tangential } = Dashpots::of(scene, law, material, side)?;
-    let (k_n, k_t, friction) = (law.normal_stiffness, law.tangential_stiffness, law.friction);
-    Ok(format!("{k_n:?} {k_t:?} {normal:?} {tangential:?} {friction:?} 1"))
-}
-
-/// The one law that LAMMPS has between grains.
-fn pair_law(scene: &Scene) -> Result<String, String> {
-    let materials = grain_materials(scene);
-    let mut found: Option<String> = None;
-    for &a in &materials {
-        for &b in materials.iter().filter(|&&b| b >= a) {
-            let Some(law) = scene.law(a, b) else { continue };
-            // A lone grain touches no other, whatever masses its law would need.
-            let said = if scene.grains.len() == 1 { Side::Wall } else { Side::Grains(b) };
-            same(&mut found, numbers(scene, law, a, said)?, "gran/hooke/history has one law for all pairs of grains")?;
-        }
-    }
-    // No two grains can touch.
-    Ok(found.unwrap_or_else(|| "1.0 0.0 0.0 0.0 0.0 0".to_owned()))
-}
-
-/// Takes a law, or refuses a second one.
-fn same(found: &mut Option<String>, law: String, reason: &str) -> Result<(), String> {
-    match found {
-        Some(before) if *before != law => Err(format!("{reason}, and the scene has several")),
-        _ => {
-            *found = Some(law);
-            Ok(())
-        }
-    }
-}
-
 fn wall_lines(scene: &Scene, wall: &Wall, number: u32, stepping: &Stepping) -> Result<String, String> {
-    refuse_turning(wall)?;
-    let mut law: Option<String> = None;
-    for material in grain_materials(scene) {
-        let Some(of_pair) = scene.law(material, wall.material) else { continue };
-        let reason = format!("wall/gran has one law for all grains at the wall `{}`", wall.name);
-        same(&mut law, numbers(scene, of_pair, material, Side::Wall)?, &reason)?;
-    }
-    let Some(law) = law else { return Ok(String::new()) };
+    let Some(law) = at_wall(scene, wall.material, &wall.name)? else { return Ok(String::new()) };
+    let tells = tells(scene, number);
     if let Some(plane) = AxisPlane::of(wall) {
         let axis = AXES[plane.axis];
         let (low, high) = if plane.is_low {
@@ -130,62 +92,8 @@ fn wall_lines(scene: &Scene, wall: &Wall, number: u32, stepping: &Stepping) -> R
             ("NULL".to_owned(), format!("{:?}", plane.at))
         };
         let shear = plane.shear.map(|(along, speed)| format!(" shear {} {speed:?}", AXES[along])).unwrap_or_default();
-        let tells = tells(scene, number);
-        return Ok(format!(
-            "fix wall{number} all wall/gran hooke/history {law} {axis}plane {low} {high}{shear}{tells}"
-        ));
+        return Ok(format!("fix wall{number} all wall/gran {law} {axis}plane {low} {high}{shear}{tells}"));
     }
-    let WallShape::Plane { point, normal } = wall.shape else {
-        return Err(format!("LAMMPS has no wall of finite extent such as `{}`", wall.name));
-    };
-    let mut lines = String::new();
-    let mut moves = String::new();
-    if wall.motion.is_moving() {
-        moves.push_str(" move");
-        for (axis, name) in AXES.into_iter().enumerate() {
-            let path = path(&wall.motion, axis, stepping);
-            if path.is_empty() {
-                moves.push_str(" NULL");
-            } else {
-                let _ = writeln!(lines, "variable wall{number}{} equal \"{path}\"", name);
-                let _ = write!(moves, " v_wall{number}{}", name);
-            }
-        }
-    }
-    let (p, n) = (point, normal);
-    let _ = writeln!(
-        lines,
-        "region wall{number} plane {:?} {:?} {:?} {:?} {:?} {:?} side in units box{moves}",
-        p.x, p.y, p.z, n.x, n.y, n.z
-    );
-    let tells = tells(scene, number);
-    let _ = write!(lines, "fix wall{number} all wall/gran/region hooke/history {law} region wall{number}{tells}");
-    Ok(lines)
-}
-
-/// The displacement along an axis as a formula of step and time step; empty where there is none.
-fn path(motion: &Motion, axis: usize, stepping: &Stepping) -> String {
-    let time = |moment: Moment| match moment {
-        Moment::Seconds(time) => format!("{time:?}"),
-        Moment::Cycle(cycle) => format!("({cycle}*dt)"),
-        Moment::Never => format!("{:?}", f64::MAX),
-    };
-    let mut terms = Vec::new();
-    for phase in motion.phases.iter().filter(|phase| phase.velocity[axis] != 0.0) {
-        let speed = phase.velocity[axis];
-        let start = phase.start.seconds(stepping.time_step);
-        let elapsed = if phase.stop == Moment::Never {
-            "(step*dt)".to_owned()
-        } else {
-            let stop = time(phase.stop);
-            format!("((step*dt<{stop})*(step*dt)+(step*dt>={stop})*{stop})")
-        };
-        terms.push(if start > 0.0 {
-            let start = time(phase.start);
-            format!("({speed:?})*(step*dt>{start})*({elapsed}-{start})")
-        } else {
-            format!("({speed:?})*{elapsed}")
-        });
-    }
-    terms.join("+")
+    let region = region(wall, number, stepping)?;
+    Ok(format!("{region}\nfix wall{number} all wall/gran/region {law} region wall{number}{tells}"))
 }

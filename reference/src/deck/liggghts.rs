@@ -1,4 +1,4 @@
-//! LIGGGHTS: `hooke/stiffness tangential history` between grains and at walls.
+//! LIGGGHTS: contacts of `hooke/stiffness tangential history` and its like between grains and at walls.
 //!
 //! Scenes in the plane are run in two dimensions where every wall is a primitive one. Meshes, which all other walls need,
 //! work in three dimensions only: there the grains are one layer of spheres.
@@ -6,15 +6,16 @@
 use std::fmt::Write as _;
 
 use grainbench_scene::effects::Effects;
-use grainbench_scene::scene::{ContactLaw, ProbeTarget, Scene, Wall};
-use nalgebra::Vector3;
+use grainbench_scene::motion::Motion;
+use grainbench_scene::scene::{ProbeTarget, Scene, Wall};
+use nalgebra::{Unit, Vector3};
 
-use super::dashpots::{Dashpots, Side};
 use super::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
+use super::liggghts_contact::{Model, type_of_wall};
 use super::logged::logged;
 use super::mesh::{Triangle, stl, triangles};
-use super::outline::{AXES, AxisPlane, grain_materials, has_discs, is_flat, one_inertia, refuse_turning};
-use super::schedule::{changes, velocity_from};
+use super::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
+use super::schedule::{Rates, changes, rates_from};
 use super::{COLUMNS, END, SAMPLES, Stepping, Written, heading, thermo};
 
 /// A wall that needs a mesh.
@@ -29,9 +30,10 @@ pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, Strin
     let (mut low, mut high) = box_of(scene);
     let (centre, reach) = (0.5 * (low + high), (high - low).norm() + way(scene, stepping));
     for (number, wall) in (1..).zip(&scene.walls) {
-        refuse_turning(wall)?;
         if AxisPlane::of(wall).is_none() {
-            meshes.push(Mesh { number, wall, triangles: triangles(&wall.shape, centre, reach) });
+            // A plane that turns meets grains with other parts of itself.
+            let aside = if turns(&wall.motion) { 2.0 * (wall.motion.centre - centre).norm() } else { 0.0 };
+            meshes.push(Mesh { number, wall, triangles: triangles(&wall.shape, centre, reach + aside) });
         }
     }
     let flat = is_flat(scene) && has_discs(scene) && meshes.is_empty();
@@ -92,15 +94,24 @@ fn around(
     let (mut least, mut most) = (low, high);
     let end = stepping.steps as f64 * stepping.time_step;
     for mesh in meshes {
-        let moved = mesh.wall.motion.displacement(end, stepping.time_step).translation;
+        let motion = &mesh.wall.motion;
+        let moved = motion.displacement(end, stepping.time_step).translation;
         for corner in mesh.triangles.iter().flatten() {
-            for place in [*corner, corner + moved] {
-                (least, most) = (least.inf(&place), most.sup(&place));
+            // Whatever the angle, it stays as far from the centre.
+            let (centre, room) =
+                if turns(motion) { (motion.centre, (corner - motion.centre).norm()) } else { (*corner, 0.0) };
+            for place in [centre, centre + moved] {
+                (least, most) = (least.inf(&place.add_scalar(-room)), most.sup(&place.add_scalar(room)));
             }
         }
     }
     let margin = Vector3::repeat(0.1 * reach);
     (least - margin, most + margin)
+}
+
+/// Whether a wall ever turns.
+fn turns(motion: &Motion) -> bool {
+    motion.phases.iter().any(|phase| phase.spin != Vector3::zeros())
 }
 
 fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], printed: &str) -> Result<String, String> {
@@ -122,10 +133,16 @@ fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], pr
         boundary.push_str(open);
     }
     say(&boundary);
-    say("newton off\ncommunicate single vel yes\nread_data data.grains");
+    say("newton off\ncommunicate single vel yes");
+    let model = Model::of(scene);
+    let (words, switches) = (model.words(), model.switches());
+    if let Some(line) = model.preparation() {
+        say(line);
+    }
+    say("read_data data.grains");
     say(&format!("neighbor {:?} bin\nneigh_modify every 1 delay 0 check yes", skin(scene)));
-    say(&properties(scene)?);
-    say("pair_style gran model hooke/stiffness tangential history\npair_coeff * *");
+    say(&model.properties(scene)?);
+    say(&format!("pair_style gran model {words}{switches}\npair_coeff * *"));
     say(&format!("timestep {:?}", stepping.time_step));
     let strength = scene.gravity.norm();
     if strength > 0.0 {
@@ -133,13 +150,13 @@ fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], pr
         say(&format!("fix gravity all gravity {strength:?} vector {:?} {:?} {:?}", g.x, g.y, g.z));
     }
     for (number, wall) in (1..).zip(&scene.walls) {
-        let kind = type_of_wall(scene, wall);
+        let kind = type_of_wall(scene, wall.material);
         if let Some(plane) = AxisPlane::of(wall) {
             let axis = AXES[plane.axis];
             let shear =
                 plane.shear.map(|(along, speed)| format!(" shear {} {speed:?}", AXES[along])).unwrap_or_default();
             say(&format!(
-                "fix wall{number} all wall/gran model hooke/stiffness tangential history primitive type {kind} {axis}plane {:?}{shear}{}",
+                "fix wall{number} all wall/gran model {words} primitive type {kind} {axis}plane {:?}{shear}{}{switches}",
                 plane.at,
                 if is_asked(scene, number) { " store_force yes" } else { "" }
             ));
@@ -151,7 +168,7 @@ fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], pr
     if !meshes.is_empty() {
         let names: Vec<String> = meshes.iter().map(|mesh| format!("mesh{}", mesh.number)).collect();
         say(&format!(
-            "fix walls all wall/gran model hooke/stiffness tangential history mesh n_meshes {} meshes {}",
+            "fix walls all wall/gran model {words} mesh n_meshes {} meshes {}{switches}",
             names.len(),
             names.join(" ")
         ));
@@ -175,76 +192,49 @@ fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], pr
     Ok(text)
 }
 
-/// The runs, one for each stretch in which no mesh changes its velocity.
+/// The runs, one for each stretch in which no mesh changes its velocity or its spin.
 fn runs(stepping: &Stepping, meshes: &[Mesh<'_>]) -> Result<String, String> {
     let changes = changes(meshes.iter().map(|mesh| &mesh.wall.motion), stepping)?;
     let mut text = String::new();
-    let mut now = vec![Vector3::zeros(); meshes.len()];
+    let mut now = vec![Rates::default(); meshes.len()];
     for stretch in changes.windows(2) {
         for (mesh, now) in meshes.iter().zip(&mut now) {
-            let (number, velocity) = (mesh.number, velocity_from(&mesh.wall.motion, stretch[0], stepping)?);
-            if velocity == *now {
+            let motion = &mesh.wall.motion;
+            let (number, rates) = (mesh.number, rates_from(motion, stretch[0], stepping)?);
+            if rates == *now {
                 continue;
             }
-            if *now != Vector3::zeros() {
+            if *now != Rates::default() {
                 let _ = writeln!(text, "unfix move{number}");
             }
-            if velocity != Vector3::zeros() {
-                let [x, y, z] = velocity.into();
-                let _ = writeln!(text, "fix move{number} all move/mesh mesh mesh{number} linear {x:?} {y:?} {z:?}");
+            let how = match (rates.velocity != Vector3::zeros(), Unit::try_new(rates.spin, 0.0)) {
+                (false, None) => None,
+                (true, None) => {
+                    let [x, y, z] = rates.velocity.into();
+                    Some(format!("linear {x:?} {y:?} {z:?}"))
+                }
+                (false, Some(axis)) => {
+                    let time = stretch[0] as f64 * stepping.time_step;
+                    let [x, y, z] = (motion.centre + motion.displacement(time, stepping.time_step).translation).into();
+                    let period = std::f64::consts::TAU / rates.spin.norm();
+                    Some(format!(
+                        "rotate origin {x:?} {y:?} {z:?} axis {:?} {:?} {:?} period {period:?}",
+                        axis.x, axis.y, axis.z
+                    ))
+                }
+                (true, Some(_)) => {
+                    let name = &mesh.wall.name;
+                    return Err(format!(
+                        "`{name}` moves and turns at the same time, and `move/mesh rotate` turns about a point at rest"
+                    ));
+                }
+            };
+            if let Some(how) = how {
+                let _ = writeln!(text, "fix move{number} all move/mesh mesh mesh{number} {how}");
             }
-            *now = velocity;
+            *now = rates;
         }
         let _ = writeln!(text, "run {}", stretch[1] - stretch[0]);
     }
     Ok(text.trim_end().to_owned())
-}
-
-/// Walls have types of their own, behind those of the grains, for dashpots may differ there.
-fn type_of_wall(scene: &Scene, wall: &Wall) -> usize {
-    scene.materials.len() + usize::from(wall.material) + 1
-}
-
-/// The properties of every pair of types.
-fn properties(scene: &Scene) -> Result<String, String> {
-    let count = scene.materials.len();
-    let grains = grain_materials(scene);
-    let mut table: Vec<(ContactLaw, Dashpots)> = Vec::with_capacity(4 * count * count);
-    for a in 0..2 * count {
-        for b in 0..2 * count {
-            table.push(entry(scene, &grains, (a, b))?.unwrap_or_default());
-        }
-    }
-    type Pick = fn(&(ContactLaw, Dashpots)) -> f64;
-    let picks: [(&str, Pick); 6] = [
-        ("kn", |(law, _)| law.normal_stiffness),
-        ("kt", |(law, _)| law.tangential_stiffness),
-        ("gamman", |(_, dashpots)| dashpots.normal),
-        ("gammat", |(_, dashpots)| dashpots.tangential),
-        ("coefficientFriction", |(law, _)| law.friction),
-        // Asked for, and not used with stiffnesses.
-        ("coefficientRestitution", |_| 0.5),
-    ];
-    let mut lines = Vec::new();
-    for (name, pick) in picks {
-        let values: Vec<String> = table.iter().map(|entry| format!("{:?}", pick(entry))).collect();
-        lines.push(format!("fix {name} all property/global {name} peratomtypepair {} {}", 2 * count, values.join(" ")));
-    }
-    Ok(lines.join("\n"))
-}
-
-/// Law and dashpots between two types; none where they never meet.
-fn entry(scene: &Scene, grains: &[u16], (a, b): (usize, usize)) -> Result<Option<(ContactLaw, Dashpots)>, String> {
-    let count = scene.materials.len();
-    let material = |kind: usize| (kind % count) as u16;
-    let is_grain = |kind: usize| kind < count && grains.contains(&material(kind));
-    let is_wall = |kind: usize| kind >= count;
-    let (grain, side) = match (is_grain(a), is_grain(b)) {
-        (true, true) if scene.grains.len() > 1 => (a, Side::Grains(material(b))),
-        (true, _) if is_wall(b) => (a, Side::Wall),
-        (_, true) if is_wall(a) => (b, Side::Wall),
-        _ => return Ok(None),
-    };
-    let Some(law) = scene.law(material(a), material(b)) else { return Ok(None) };
-    Ok(Some((*law, Dashpots::of(scene, law, material(grain), side)?)))
 }

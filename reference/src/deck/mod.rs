@@ -6,10 +6,14 @@
 mod dashpots;
 mod data;
 mod lammps;
+mod lammps_contact;
 mod liggghts;
+mod liggghts_contact;
 pub(crate) mod logged;
 mod mesh;
+mod moduli;
 mod outline;
+mod region;
 mod schedule;
 
 use std::fmt;
@@ -21,9 +25,9 @@ use grainbench_scene::solver::Resolution;
 /// Whose input a deck is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Program {
-    /// LAMMPS, `pair_style gran/hooke/history`.
+    /// LAMMPS, `pair_style gran/hooke/history` and its like.
     Lammps,
-    /// LIGGGHTS, `model hooke/stiffness tangential history`.
+    /// LIGGGHTS, `model hooke/stiffness tangential history` and its like.
     Liggghts,
 }
 

@@ -14,14 +14,21 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     if scene.global_damping != 0.0 {
         return Err("mass-proportional damping of translation and rotation (`global_damping`) is in neither".to_owned());
     }
-    if laws().any(|law| law.is_hertz()) {
-        return Err("Hertz contacts are not written yet".to_owned());
-    }
     if laws().any(|law| law.cohesion != 0.0) {
-        return Err("Coulomb's limit has no cohesion".to_owned());
+        let here = "cohesion is shear strength that needs no load here, |F_s| <= F_n tan phi + c, and never pulls";
+        return Err(format!("{here}; both have cohesion only as an attraction along the normal"));
     }
-    if laws().any(|law| law.rolling_friction != 0.0) {
-        return Err("rolling resistance is not written yet".to_owned());
+    if laws()
+        .any(|law| law.is_hertz() && (law.normal_damping != 0.0 || law.has_friction() && law.tangential_damping != 0.0))
+    {
+        let here = "a dashpot gamma m_eff at a Hertz contact does not depend on the overlap here";
+        return Err(format!("{here}; both multiply it by sqrt(R_eff overlap)"));
+    }
+    if laws().any(|law| law.is_hertz() && law.rolling_friction != 0.0) {
+        let here = "the rolling spring of a Hertz contact is stiffer where the contact is";
+        return Err(format!(
+            "{here}; LAMMPS has one of constant stiffness, and LIGGGHTS remembers its moment and not its angle"
+        ));
     }
     Ok(())
 }
@@ -96,12 +103,4 @@ impl AxisPlane {
         }
         Some(plane)
     }
-}
-
-/// Refuses walls that turn.
-pub(crate) fn refuse_turning(wall: &Wall) -> Result<(), String> {
-    if wall.motion.phases.iter().any(|phase| phase.spin != Vector3::zeros()) {
-        return Err(format!("walls that turn are not written yet, and `{}` does", wall.name));
-    }
-    Ok(())
 }

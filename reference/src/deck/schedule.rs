@@ -34,15 +34,25 @@ pub(crate) fn changes<'m>(motions: impl Iterator<Item = &'m Motion>, stepping: &
     Ok(steps)
 }
 
-/// Velocity (m/s) from a step on, to the next change.
-pub(crate) fn velocity_from(motion: &Motion, step: u64, stepping: &Stepping) -> Result<Vector3<f64>, String> {
-    let mut velocity = Vector3::zeros();
+/// How a wall moves over a stretch.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Rates {
+    /// Velocity (m/s).
+    pub(crate) velocity: Vector3<f64>,
+    /// Angular velocity (rad/s).
+    pub(crate) spin: Vector3<f64>,
+}
+
+/// Velocity and spin from a step on, to the next change.
+pub(crate) fn rates_from(motion: &Motion, step: u64, stepping: &Stepping) -> Result<Rates, String> {
+    let mut rates = Rates::default();
     for phase in &motion.phases {
         let starts = step_of(phase.start, stepping)?.is_some_and(|start| start <= step);
         let stopped = step_of(phase.stop, stepping)?.is_some_and(|stop| stop <= step);
         if starts && !stopped {
-            velocity += phase.velocity;
+            rates.velocity += phase.velocity;
+            rates.spin += phase.spin;
         }
     }
-    Ok(velocity)
+    Ok(rates)
 }

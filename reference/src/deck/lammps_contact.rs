@@ -1,0 +1,162 @@
+//! Contacts as LAMMPS has them: `gran/hooke/history` and `gran/hertz/history`, and `granular` where its law is the scene's.
+
+use grainbench_scene::scene::{ContactLaw, Scene};
+
+use super::dashpots::{Dashpots, Side};
+use super::outline::grain_materials;
+
+/// The lines that give the one law that LAMMPS has between grains.
+pub(crate) fn between_grains(scene: &Scene) -> Result<String, String> {
+    let materials = grain_materials(scene);
+    let mut found: Option<String> = None;
+    for &a in &materials {
+        for &b in materials.iter().filter(|&&b| b >= a) {
+            let Some(law) = scene.law(a, b) else { continue };
+            // A lone grain touches no other, whatever masses its law would need.
+            let lines = if scene.grains.len() == 1 {
+                pair_style(&history(scene, law, a, Side::Wall)?)
+            } else {
+                pair(scene, law, a, b)?
+            };
+            same(&mut found, lines, "LAMMPS is given one law for all pairs of grains")?;
+        }
+    }
+    // No two grains can touch.
+    Ok(found.unwrap_or_else(|| pair_style("hooke/history 1.0 0.0 0.0 0.0 0.0 0")))
+}
+
+fn pair_style(law: &str) -> String {
+    format!("pair_style gran/{law}\npair_coeff * *")
+}
+
+fn pair(scene: &Scene, law: &ContactLaw, a: u16, b: u16) -> Result<String, String> {
+    const ARM: &str = "`granular` alone has, whose torque arm between grains is R - overlap/2 and not R";
+    if law.rolling_friction != 0.0 {
+        return Err(format!("it has rolling resistance between grains, which {ARM}"));
+    }
+    if !(law.is_hertz() && law.damping_ratio != 0.0) {
+        return Ok(pair_style(&history(scene, law, a, Side::Grains(b))?));
+    }
+    if law.has_friction() {
+        return Err(format!("it has friction and `restitution` at Hertz contacts between grains, which {ARM}"));
+    }
+    Ok(format!("pair_style granular\npair_coeff * * {}", tsuji(law)?))
+}
+
+/// The one law of a wall with all grains, style and numbers; none where no grain can touch it.
+pub(crate) fn at_wall(scene: &Scene, material: u16, name: &str) -> Result<Option<String>, String> {
+    let mut found: Option<String> = None;
+    for grains in grain_materials(scene) {
+        let Some(law) = scene.law(grains, material) else { continue };
+        let said = if law.rolling_friction != 0.0 {
+            format!("granular {}", rolling(scene, law, grains)?)
+        } else if law.is_hertz() && law.damping_ratio != 0.0 {
+            format!("granular {}", tsuji(law)?)
+        } else {
+            history(scene, law, grains, Side::Wall)?
+        };
+        same(&mut found, said, &format!("wall/gran has one law for all grains at the wall `{name}`"))?;
+    }
+    Ok(found)
+}
+
+/// Takes a law, or refuses a second one.
+fn same(found: &mut Option<String>, law: String, reason: &str) -> Result<(), String> {
+    match found {
+        Some(before) if *before != law => Err(format!("{reason}, and the scene has several")),
+        _ => {
+            *found = Some(law);
+            Ok(())
+        }
+    }
+}
+
+/// `hooke/history` or `hertz/history` with `K_n K_t γ_n γ_t μ 1`: at Hertz contacts F_n = √(R_eff δ) K_n δ and
+/// F_t = √(R_eff δ) K_t s, hence K_n = (4/3)E* and K_t = 8G*, without dashpots.
+fn history(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result<String, String> {
+    let friction = law.friction;
+    if law.is_hertz() {
+        let (normal, tangential) = hertz(law);
+        return Ok(format!("hertz/history {normal:?} {tangential:?} 0.0 0.0 {friction:?} 1"));
+    }
+    let Dashpots { normal, tangential } = Dashpots::of(scene, law, material, side)?;
+    let (k_n, k_t) = (law.normal_stiffness, law.tangential_stiffness);
+    Ok(format!("hooke/history {k_n:?} {k_t:?} {normal:?} {tangential:?} {friction:?} 1"))
+}
+
+/// (4/3)E* and 8G* (Pa).
+pub(crate) fn hertz(law: &ContactLaw) -> (f64, f64) {
+    (4.0 / 3.0 * law.effective_modulus, 8.0 * law.effective_shear_modulus)
+}
+
+/// `granular` with Tsuji's dashpot, c = α √(k_n a m_eff) with k_n = (4/3)E* and a = √(R_eff δ): the scene's
+/// 2√(5/6) ζ √(S m_eff), S = 2E*a, where α = √5 ζ.
+fn tsuji(law: &ContactLaw) -> Result<String, String> {
+    let alpha = 5.0_f64.sqrt() * law.damping_ratio;
+    let coefficient = coefficient_for(alpha).ok_or_else(|| {
+        let ratio = law.damping_ratio;
+        format!("`restitution` asks for a damping ratio of {ratio:.4}, and the largest of `damping tsuji` is .5692")
+    })?;
+    let (normal, tangential) = hertz(law);
+    let friction = law.friction;
+    Ok(format!("hertz {normal:?} {coefficient:?} tangential mindlin {tangential:?} 0.0 {friction:?} damping tsuji"))
+}
+
+/// The coefficient of restitution that LAMMPS' polynomial turns into α. It is fitted to restitution to some thousandths;
+/// with this coefficient the dashpot is the scene's to rounding.
+fn coefficient_for(alpha: f64) -> Option<f64> {
+    const FIT: [f64; 7] = [1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218];
+    let fitted = |coefficient: f64| FIT.iter().rev().fold(0.0, |sum, factor| sum * coefficient + factor);
+    let (mut low, mut high) = (0.0_f64, 1.0_f64);
+    if alpha > fitted(low) || alpha < fitted(high) {
+        return None;
+    }
+    // It falls from 0 to 1, and halving ends where no number lies between.
+    while (low + high) / 2.0 > low && (low + high) / 2.0 < high {
+        let middle = (low + high) / 2.0;
+        if fitted(middle) > alpha { low = middle } else { high = middle }
+    }
+    Some(low)
+}
+
+/// `granular hooke` with `rolling sds`: a spring k against the rolling displacement R_eff θ, k = 2.25 k_n μ_r², limited by
+/// μ_r F_n.
+fn rolling(scene: &Scene, law: &ContactLaw, material: u16) -> Result<String, String> {
+    if law.rolling_damping != 0.0 {
+        return Err(
+            "the dashpot of the rolling spring acts while that has not yielded, and in `rolling sds` the limit is on \
+                    spring and dashpot together (`rolling_damping`)"
+                .to_owned(),
+        );
+    }
+    let Dashpots { normal, tangential } = Dashpots::of(scene, law, material, Side::Wall)?;
+    if normal == 0.0 && tangential != 0.0 {
+        return Err("`granular` has the tangential dashpot as a multiple of the normal one, which is none".to_owned());
+    }
+    let ratio = if normal == 0.0 { 0.0 } else { tangential / normal };
+    let (k_n, k_t, friction) = (law.normal_stiffness, law.tangential_stiffness, law.friction);
+    let stiffness = 2.25 * k_n * law.rolling_friction * law.rolling_friction;
+    Ok(format!(
+        "hooke {k_n:?} {normal:?} tangential linear_history {k_t:?} {ratio:?} {friction:?} rolling sds {stiffness:?} 0.0 {:?} \
+         damping mass_velocity",
+        law.rolling_friction
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// c of both at e = .5: 2√(5/6) ζ √(2E*a m) = √5 ζ √((4/3)E*a m).
+    #[test]
+    fn the_polynomial_is_inverted() {
+        for alpha in [0.001, 0.014, 0.48, 1.27] {
+            let e = coefficient_for(alpha).unwrap_or(f64::NAN);
+            let fitted = 1.2728 - 4.2783 * e + 11.087 * e.powi(2) - 22.348 * e.powi(3) + 27.467 * e.powi(4)
+                - 18.022 * e.powi(5)
+                + 4.8218 * e.powi(6);
+            assert!((fitted - alpha).abs() < 1e-14, "{alpha}: {fitted}");
+        }
+        assert_eq!((coefficient_for(1.28), coefficient_for(0.0)), (None, None));
+    }
+}

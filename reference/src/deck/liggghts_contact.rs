@@ -1,0 +1,129 @@
+//! Contacts as LIGGGHTS has them: `hooke/stiffness`, `hertz/stiffness` and `hertz` with `tangential history`, and
+//! `rolling_friction epsd`.
+
+use grainbench_scene::effects::Effects;
+use grainbench_scene::scene::{ContactLaw, Scene};
+
+use super::dashpots::{Dashpots, Side};
+use super::lammps_contact::hertz;
+use super::moduli::moduli;
+use super::outline::grain_materials;
+
+/// The model of all contacts.
+#[derive(Clone, Copy)]
+pub(crate) struct Model {
+    effects: Effects,
+}
+
+impl Model {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        Self { effects: Effects::of(scene) }
+    }
+
+    /// Hertz contacts whose dashpots give a coefficient of restitution: LIGGGHTS has them with moduli, others with stiffnesses.
+    fn has_moduli(self) -> bool {
+        self.effects.hertz && self.effects.restitution
+    }
+
+    /// Its name.
+    pub(crate) fn words(self) -> String {
+        let normal = match (self.effects.hertz, self.has_moduli()) {
+            (false, _) => "hooke/stiffness",
+            (true, false) => "hertz/stiffness",
+            (true, true) => "hertz",
+        };
+        let rolling = if self.effects.rolling_resistance { " rolling_friction epsd" } else { "" };
+        format!("{normal} tangential history{rolling}")
+    }
+
+    /// Its switches, which come last on a line.
+    pub(crate) fn switches(self) -> &'static str {
+        if self.has_moduli() { " tangential_damping off" } else { "" }
+    }
+
+    /// Young's moduli above 1 GPa are refused without it.
+    pub(crate) fn preparation(self) -> Option<&'static str> {
+        self.has_moduli().then_some("hard_particles yes")
+    }
+
+    /// The properties of every type and pair of types: those of grains, then those of walls, one of each a material.
+    pub(crate) fn properties(self, scene: &Scene) -> Result<String, String> {
+        let types = 2 * scene.materials.len();
+        let grains = grain_materials(scene);
+        let mut table: Vec<Option<(ContactLaw, Dashpots)>> = Vec::with_capacity(types * types);
+        for a in 0..types {
+            for b in 0..types {
+                table.push(self.entry(scene, &grains, (a, b))?);
+            }
+        }
+        type Pick = fn(&(ContactLaw, Dashpots)) -> f64;
+        let mut picks: Vec<(&str, Pick)> = match (self.effects.hertz, self.has_moduli()) {
+            (false, _) => vec![("kn", |(law, _)| law.normal_stiffness), ("kt", |(law, _)| law.tangential_stiffness)],
+            (true, false) => vec![("kn", |(law, _)| hertz(law).0), ("kt", |(law, _)| hertz(law).1)],
+            (true, true) => Vec::new(),
+        };
+        if !self.has_moduli() {
+            picks.push(("gamman", |(_, dashpots)| dashpots.normal));
+            picks.push(("gammat", |(_, dashpots)| dashpots.tangential));
+        }
+        picks.push(("coefficientFriction", |(law, _)| law.friction));
+        // Asked for, and not used with stiffnesses.
+        let coefficient: Pick = if self.has_moduli() { |(law, _)| restitution(law) } else { |_| 0.5 };
+        picks.push(("coefficientRestitution", coefficient));
+        if self.effects.rolling_resistance {
+            picks.push(("coefficientRollingFriction", |(law, _)| law.rolling_friction));
+            picks.push(("coefficientRollingViscousDamping", |(law, _)| law.rolling_damping));
+        }
+        let mut lines = Vec::new();
+        if self.has_moduli() {
+            let laws: Vec<Option<ContactLaw>> = table.iter().map(|entry| entry.map(|(law, _)| law)).collect();
+            let (young, poisson) = moduli(&laws, types)?;
+            for (name, values) in [("youngsModulus", young), ("poissonsRatio", poisson)] {
+                lines.push(format!("fix {name} all property/global {name} peratomtype {}", list(values)));
+            }
+        }
+        for (name, pick) in picks {
+            let values = table.iter().map(|entry| pick(&entry.unwrap_or_default()));
+            lines.push(format!("fix {name} all property/global {name} peratomtypepair {types} {}", list(values)));
+        }
+        Ok(lines.join("\n"))
+    }
+
+    /// Law and dashpots between two types; none where they never meet.
+    fn entry(
+        self,
+        scene: &Scene,
+        grains: &[u16],
+        (a, b): (usize, usize),
+    ) -> Result<Option<(ContactLaw, Dashpots)>, String> {
+        let count = scene.materials.len();
+        let material = |kind: usize| (kind % count) as u16;
+        let is_grain = |kind: usize| kind < count && grains.contains(&material(kind));
+        let is_wall = |kind: usize| kind >= count;
+        let (grain, side) = match (is_grain(a), is_grain(b)) {
+            (true, true) if scene.grains.len() > 1 => (a, Side::Grains(material(b))),
+            (true, _) if is_wall(b) => (a, Side::Wall),
+            (_, true) if is_wall(a) => (b, Side::Wall),
+            _ => return Ok(None),
+        };
+        let Some(law) = scene.law(material(a), material(b)) else { return Ok(None) };
+        let dashpots =
+            if self.effects.hertz { Dashpots::default() } else { Dashpots::of(scene, law, material(grain), side)? };
+        Ok(Some((*law, dashpots)))
+    }
+}
+
+/// Walls have types of their own, behind those of the grains, for dashpots may differ there.
+pub(crate) fn type_of_wall(scene: &Scene, material: u16) -> usize {
+    scene.materials.len() + usize::from(material) + 1
+}
+
+/// e of a damping ratio, exp(−πζ/√(1 − ζ²)).
+fn restitution(law: &ContactLaw) -> f64 {
+    let ratio = law.damping_ratio;
+    (-std::f64::consts::PI * ratio / (1.0 - ratio * ratio).sqrt()).exp()
+}
+
+fn list(values: impl IntoIterator<Item = f64>) -> String {
+    values.into_iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,118 @@
+//! Young's moduli and Poisson's ratios of single types that give the effective moduli of pairs.
+
+use grainbench_scene::scene::ContactLaw;
+
+/// Young's modulus (Pa) of what does not deform beside any real material.
+const RIGID: f64 = 1e40;
+/// What of a compliance is taken for rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Shares of one type in the compliances of its pairs (1/Pa): 1/E* = a₁ + a₂ with a = (1 − ν²)/E, and 1/G* = b₁ + b₂ with
+/// b = 2(2 − ν)(1 + ν)/E.
+#[derive(Clone, Copy)]
+struct Shares {
+    normal: f64,
+    tangential: f64,
+}
+
+impl Shares {
+    fn of_pair(law: &ContactLaw) -> Self {
+        Self { normal: 1.0 / law.effective_modulus, tangential: 1.0 / law.effective_shear_modulus }
+    }
+
+    /// E and ν: b/a = 2(2 − ν)/(1 − ν).
+    fn moduli(self) -> Option<(f64, f64)> {
+        let quotient = self.tangential / self.normal;
+        let poisson = (quotient - 4.0) / (quotient - 2.0);
+        let within = (-ROUNDING..=0.5 + ROUNDING).contains(&poisson);
+        let poisson = poisson.clamp(0.0, 0.5);
+        within.then(|| ((1.0 - poisson * poisson) / self.normal, poisson))
+    }
+}
+
+/// Young's modulus and Poisson's ratio of every type, from the laws of all pairs, `types` a row; rigid where a type meets
+/// none.
+///
+/// Types that meet themselves have half of what two of them have together. The others have what their partners leave, or all
+/// of it if their partners are left to be chosen too.
+pub(crate) fn moduli(laws: &[Option<ContactLaw>], types: usize) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let pair = |a: usize, b: usize| laws[a * types + b].as_ref().map(Shares::of_pair);
+    let mut shares: Vec<Option<Shares>> = (0..types)
+        .map(|a| pair(a, a).map(|own| Shares { normal: 0.5 * own.normal, tangential: 0.5 * own.tangential }))
+        .collect();
+    for a in 0..types {
+        if shares[a].is_some() {
+            continue;
+        }
+        let partners = || (0..types).filter_map(|b| Some((pair(a, b)?, shares[b])));
+        let least = |pick: fn(&Shares) -> f64| {
+            let left = partners().map(|(both, other)| pick(&both) - other.as_ref().map_or(0.0, pick));
+            left.fold(f64::INFINITY, f64::min)
+        };
+        let share = Shares { normal: least(|of| of.normal), tangential: least(|of| of.tangential) };
+        shares[a] = share.normal.is_finite().then_some(share);
+    }
+    let (mut young, mut poisson) = (Vec::new(), Vec::new());
+    for a in 0..types {
+        let whole = (0..types).filter_map(|b| pair(a, b)).map(|both| both.normal).fold(0.0, f64::max);
+        let share = shares[a].filter(|share| share.normal.abs() > ROUNDING * whole);
+        let found = share.map_or(Some((RIGID, 0.25)), Shares::moduli);
+        let (modulus, ratio) = found.ok_or_else(|| not_of_materials("of no material with 0 ≤ ν ≤ 1/2"))?;
+        if modulus < 0.0 {
+            return Err(not_of_materials("of no material"));
+        }
+        for b in (0..types).filter(|&b| b <= a) {
+            let (Some(both), Some(one), Some(other)) = (pair(a, b), shares[a], shares[b]) else { continue };
+            if (one.normal + other.normal - both.normal).abs() > ROUNDING * both.normal
+                || (one.tangential + other.tangential - both.tangential).abs() > ROUNDING * both.tangential
+            {
+                return Err(not_of_materials("not sums of what two materials have"));
+            }
+        }
+        young.push(modulus);
+        poisson.push(ratio);
+    }
+    Ok((young, poisson))
+}
+
+fn not_of_materials(how: &str) -> String {
+    format!("`hertz` has moduli of materials, and those of the scene's pairs are {how}")
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    /// 1/E* and 1/G* as two materials have them.
+    fn law(first: (f64, f64), second: Option<(f64, f64)>) -> Option<ContactLaw> {
+        let of =
+            |(young, ratio): (f64, f64)| ((1.0 - ratio * ratio) / young, 2.0 * (2.0 - ratio) * (1.0 + ratio) / young);
+        let ((a, b), (c, d)) = (of(first), second.map_or((0.0, 0.0), of));
+        Some(ContactLaw {
+            effective_modulus: 1.0 / (a + c),
+            effective_shear_modulus: 1.0 / (b + d),
+            ..Default::default()
+        })
+    }
+
+    #[test]
+    fn materials_are_found_again() {
+        let (glass, steel) = ((48e9, 0.2), (210e9, 0.3));
+        let laws = [law(glass, Some(glass)), law(glass, Some(steel)), law(steel, Some(glass)), None];
+        let (young, poisson) = moduli(&laws, 2).unwrap();
+        for (found, expected) in young.iter().chain(&poisson).zip([48e9, 210e9, 0.2, 0.3]) {
+            assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_partner_of_none_is_rigid_and_others_are_not() {
+        let glass = (48e9, 0.2);
+        let (young, poisson) = moduli(&[None, law(glass, None), law(glass, None), None], 2).unwrap();
+        assert!((young[0] - 48e9).abs() < 1.0 && (poisson[0] - 0.2).abs() < 1e-12 && young[1] == RIGID);
+        let three = [law(glass, Some(glass)), law((1e9, 0.2), None), law((1e9, 0.2), None), law(glass, Some(glass))];
+        assert!(moduli(&three, 2).is_err());
+    }
+}

@@ -1,0 +1,132 @@
+//! Walls that are no primitive ones as regions of LAMMPS: planes in any direction, and rectangles as blocks without
+//! thickness; all may move and turn.
+
+use std::fmt::Write as _;
+
+use grainbench_scene::motion::{Moment, Motion, Phase};
+use grainbench_scene::scene::{Wall, WallShape};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+
+use super::Stepping;
+use super::outline::AXES;
+
+/// What a region is before it turns, and how far it turns before the run begins.
+struct Placed {
+    shape: String,
+    /// Where the axis of rotation passes at the start (m).
+    centre: Vector3<f64>,
+    /// Rotation vector at the start (rad).
+    rotation: Vector3<f64>,
+}
+
+/// The commands that define the region `wallN` and its motion.
+pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping) -> Result<String, String> {
+    let motion = &wall.motion;
+    let Placed { shape, centre, rotation } = placed(wall)?;
+    let (mut lines, mut moves) = (String::new(), String::new());
+    if motion.phases.iter().any(|phase| phase.velocity != Vector3::zeros()) {
+        moves.push_str(" move");
+        for (axis, name) in AXES.into_iter().enumerate() {
+            let path = course(motion, |phase| phase.velocity[axis], stepping);
+            if path.is_empty() {
+                moves.push_str(" NULL");
+            } else {
+                let _ = writeln!(lines, "variable wall{number}{name} equal \"{path}\"");
+                let _ = write!(moves, " v_wall{number}{name}");
+            }
+        }
+    }
+    let spin = motion.phases.iter().map(|phase| phase.spin).find(|spin| *spin != Vector3::zeros());
+    if let Some(axis) = Unit::try_new(spin.unwrap_or(rotation), 0.0) {
+        // Of a wall that both lies turned and turns, the axis is one.
+        let start = rotation.dot(&axis);
+        let turned = course(motion, |phase| phase.spin.dot(&axis), stepping);
+        let angle = [format!("{start:?}"), turned].into_iter().filter(|part| !part.is_empty() && part != "0.0");
+        let angle = angle.collect::<Vec<_>>().join("+");
+        let _ = writeln!(lines, "variable wall{number}turn equal \"{angle}\"");
+        let (c, a) = (centre, axis);
+        let _ = write!(moves, " rotate v_wall{number}turn {:?} {:?} {:?} {:?} {:?} {:?}", c.x, c.y, c.z, a.x, a.y, a.z);
+    }
+    let _ = write!(lines, "region wall{number} {shape} units box{moves}");
+    Ok(lines)
+}
+
+fn placed(wall: &Wall) -> Result<Placed, String> {
+    let motion = &wall.motion;
+    match wall.shape {
+        WallShape::Plane { point: p, normal: n } => Ok(Placed {
+            shape: format!("plane {:?} {:?} {:?} {:?} {:?} {:?} side in", p.x, p.y, p.z, n.x, n.y, n.z),
+            centre: motion.centre,
+            rotation: Vector3::zeros(),
+        }),
+        WallShape::Segment { ends: [a, b] } => {
+            let across = Vector3::z() * (b - a).norm();
+            rectangle(wall, a - across, [b - a, across * 2.0])
+        }
+        WallShape::Rectangle { corner, edges } => rectangle(wall, corner, edges),
+    }
+}
+
+/// A block along the axes, turned about the centre of rotation so that it lies as the rectangle does.
+fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Result<Placed, String> {
+    let along_axes = |edge: Vector3<f64>| edge.iter().filter(|part| **part != 0.0).count() == 1;
+    let spin = wall.motion.phases.iter().map(|phase| phase.spin).find(|spin| *spin != Vector3::zeros());
+    let centre = if spin.is_some() { wall.motion.centre } else { corner };
+    if along_axes(u) && along_axes(v) {
+        return Ok(Placed { shape: block(corner, corner + u + v), centre, rotation: Vector3::zeros() });
+    }
+    // A segment's second edge is along z, and stays there.
+    let axes = if along_axes(v) && v.z != 0.0 {
+        Matrix3::from_columns(&[u.normalize(), Vector3::z().cross(&u).normalize(), Vector3::z()])
+    } else {
+        Matrix3::from_columns(&[u.normalize(), v.normalize(), u.cross(&v).normalize()])
+    };
+    let rotation = Rotation3::from_matrix_unchecked(axes).scaled_axis();
+    if let Some(spin) = spin
+        && rotation.cross(&spin).norm() > 1e-12 * rotation.norm() * spin.norm()
+    {
+        let reason = "which turns about one axis and lies turned about another: LAMMPS has one rotation of a region";
+        return Err(format!("a rectangle such as `{}`, {reason}", wall.name));
+    }
+    let upright = |point: Vector3<f64>| centre + axes.transpose() * (point - centre);
+    let (mut low, mut high) = (upright(corner), upright(corner + u + v));
+    // Rounding must not leave it a thickness: it lies in the plane that its second edge, or the axis left, says.
+    let flat = if along_axes(v) && v.z != 0.0 { 1 } else { 2 };
+    high[flat] = low[flat];
+    (low, high) = (low.inf(&high), low.sup(&high));
+    Ok(Placed { shape: block(low, high), centre, rotation })
+}
+
+/// A block between two corners; a grain outside sees its nearest point.
+fn block(a: Vector3<f64>, b: Vector3<f64>) -> String {
+    let (low, high) = (a.inf(&b), a.sup(&b));
+    let sides: Vec<String> = (0..3).map(|axis| format!("{:?} {:?}", low[axis], high[axis])).collect();
+    format!("block {} side out", sides.join(" "))
+}
+
+/// What a rate of the phases has summed up to, as a formula of step and time step; empty where there is none.
+fn course(motion: &Motion, rate: impl Fn(&Phase) -> f64, stepping: &Stepping) -> String {
+    let time = |moment: Moment| match moment {
+        Moment::Seconds(time) => format!("{time:?}"),
+        Moment::Cycle(cycle) => format!("({cycle}*dt)"),
+        Moment::Never => format!("{:?}", f64::MAX),
+    };
+    let mut terms = Vec::new();
+    for phase in motion.phases.iter().filter(|phase| rate(phase) != 0.0) {
+        let rate = rate(phase);
+        let start = phase.start.seconds(stepping.time_step);
+        let elapsed = if phase.stop == Moment::Never {
+            "(step*dt)".to_owned()
+        } else {
+            let stop = time(phase.stop);
+            format!("((step*dt<{stop})*(step*dt)+(step*dt>={stop})*{stop})")
+        };
+        terms.push(if start > 0.0 {
+            let start = time(phase.start);
+            format!("({rate:?})*(step*dt>{start})*({elapsed}-{start})")
+        } else {
+            format!("({rate:?})*{elapsed}")
+        });
+    }
+    terms.join("+")
+}
