@@ -6,6 +6,7 @@
 mod atom;
 mod blocks;
 pub mod comparison;
+mod contacts;
 mod data_file;
 mod data_header;
 mod data_parser;
@@ -21,6 +22,7 @@ mod log;
 mod numbers;
 pub mod observer;
 pub mod outputs;
+mod pair_forces;
 mod read_error;
 pub mod refined;
 mod snapshot;

@@ -5,12 +5,17 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
 use nalgebra::Vector3;
 
+use crate::contacts::{Forces, contacts};
 use crate::digits::Digits;
+use crate::pair_forces::{PairForce, PairForces};
 use crate::read_error::ReadError;
 use crate::snapshot::{Coordinate, DumpSnapshot};
 
 /// What a file calls its columns, where that is not what LAMMPS calls them: pairs of `x`, `vx`, `omegaz`, … and the
 /// file's own name.
+///
+/// LAMMPS has no names for these: `angle`, of a disc (rad); `WALL.force_x`, the force of the scene's wall `WALL` on a grain;
+/// and in dumps of contacts `id1`, `id2`, `force_x` (the force on the first) and, where it stands apart, `tangential_x`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Names(pub Vec<(String, String)>);
 
@@ -41,15 +46,21 @@ pub struct Observer<'s> {
     /// Samples as printed, and with all numbers larger by what the digits leave open: along the axes, and outwards.
     recorders: [Recorder; 3],
     known: Known,
+    /// Forces between grains, where a dump of contacts tells them.
+    pairs: PairForces,
     snapshots: Vec<Snapshot>,
     last: Option<Snapshot>,
 }
 
 /// What all snapshots so far have told.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Known {
     velocity: bool,
     spin: bool,
+    angle: bool,
+    pairs: bool,
+    /// The forces of each wall on the grains.
+    walls: Vec<bool>,
 }
 
 /// The columns of a snapshot that tell of grains.
@@ -58,6 +69,9 @@ struct Columns {
     position: [Option<Coordinate>; 3],
     velocity: [Option<usize>; 3],
     spin: [Option<usize>; 3],
+    angle: Option<usize>,
+    /// Forces of each wall on the grains.
+    walls: Vec<[Option<usize>; 3]>,
 }
 
 /// How digits that were not printed are taken.
@@ -75,15 +89,25 @@ impl<'s> Observer<'s> {
         let sampled = Scene { sampling: Sampling::Cycles(1), snapshots: 0, ..scene.clone() };
         let recorder = || Recorder::new(&sampled, 1.0, u64::MAX);
         let recorders = [recorder(), recorder(), recorder()];
-        let known = Known { velocity: true, spin: true };
-        Self { scene, sampled, recorders, known, snapshots: Vec::new(), last: None }
+        let known =
+            Known { velocity: true, spin: true, angle: true, pairs: false, walls: vec![true; scene.walls.len()] };
+        let pairs = PairForces::default();
+        Self { scene, sampled, recorders, known, pairs, snapshots: Vec::new(), last: None }
+    }
+
+    /// The same, with forces between grains.
+    pub(crate) fn with_pairs(mut self, pairs: PairForces) -> Self {
+        self.known.pairs = !pairs.is_empty();
+        self.pairs = pairs;
+        self
     }
 
     /// Takes a snapshot of the file `file`, at a time (s). `digits` are what its columns show to the end of the file, in
     /// the order of its columns; without them printed numbers are taken as exact.
     ///
     /// # Errors
-    /// When it lacks the id or the position of a grain, or has another number of grains than the scene.
+    /// When it lacks the id or the position of a grain, or has another number of grains than the scene, or the contacts of
+    /// its step are missing where those of others are told.
     pub fn take(
         &mut self,
         file: &str,
@@ -98,7 +122,15 @@ impl<'s> Observer<'s> {
         let all = |axes: &[Option<usize>]| axes.iter().all(Option::is_some);
         self.known.velocity &= all(&columns.velocity[..self.scene.dimension.count()]);
         self.known.spin &= if flat { columns.spin[2].is_some() } else { all(&columns.spin) };
+        self.known.angle &= columns.angle.is_some();
+        for (known, wall) in self.known.walls.iter_mut().zip(&columns.walls) {
+            *known &= all(&wall[..self.scene.dimension.count()]);
+        }
         let order = self.order(file, snapshot, &columns)?;
+        if self.known.pairs && !self.pairs.has(snapshot.step) {
+            let expected = format!("the contacts of step {} in a dump of contacts", snapshot.step);
+            return Err(ReadError::at(file, snapshot.first_line, expected, "grains alone"));
+        }
         let of_file = digits.map(|digits| digits.iter().fold(Digits::default(), |all, digits| all.with(digits)));
         let shifts = if digits.is_some() { &[Shift::None, Shift::Along, Shift::Outwards][..] } else { &[Shift::None] };
         for (&shift, recorder) in shifts.iter().zip(&mut self.recorders) {
@@ -130,10 +162,30 @@ impl<'s> Observer<'s> {
                     position: Vector3::from(position),
                     velocity: vector(&columns.velocity),
                     spin: vector(&columns.spin),
+                    angle: columns.angle.and_then(|column| row.get(column)).copied().unwrap_or(0.0)
+                        + value(row, columns.angle, 1.0),
                     ..GrainState::start(id, grain)
                 }
             });
-            let seen = Snapshot::of_grains(self.scene, snapshot.step, time, grains.collect());
+            let mut seen = Snapshot::of_grains(self.scene, snapshot.step, time, grains.collect());
+            let id = |grain: usize| columns.id.map_or(1, |id| snapshot.row(order[grain])[id] as u64);
+            let of_wall = |wall: usize, grain: usize| {
+                let row = snapshot.row(order[grain]);
+                let at = columns.walls[wall];
+                all(&at[..self.scene.dimension.count()]).then(|| PairForce {
+                    force: Vector3::from(at.map(|at| at.and_then(|at| row.get(at)).copied().unwrap_or(0.0))),
+                    open: at.iter().map(|&at| value(row, at, 1.0).abs()).sum(),
+                })
+            };
+            let of_pair = |a: usize, b: usize| self.pairs.on(snapshot.step, id(a), id(b));
+            let forces = Forces { of_pair: &of_pair, of_wall: &of_wall };
+            let times = if matches!(shift, Shift::None) { 0.0 } else { 1.0 };
+            seen.contacts = contacts(self.scene, time, snapshot.step, &seen.grains, &forces, times);
+            for (number, wall) in seen.walls.iter_mut().enumerate() {
+                let on_grains = (0..order.len()).filter_map(|grain| of_wall(number, grain));
+                // What the digits leave open adds up along every axis.
+                wall.force = -on_grains.map(|of| of.force.add_scalar(times * of.open)).sum::<Vector3<f64>>();
+            }
             if matches!(shift, Shift::None) {
                 self.last = Some(seen.clone());
                 if keep {
@@ -170,7 +222,15 @@ impl<'s> Observer<'s> {
             }
         }
         let vector = |names: [&str; 3]| names.map(column);
-        Ok(Columns { id, position, velocity: vector(["vx", "vy", "vz"]), spin: vector(["omegax", "omegay", "omegaz"]) })
+        let of_wall = |name: &str| ["x", "y", "z"].map(|axis| column(&format!("{name}.force_{axis}")));
+        Ok(Columns {
+            id,
+            position,
+            velocity: vector(["vx", "vy", "vz"]),
+            spin: vector(["omegax", "omegay", "omegaz"]),
+            angle: column("angle"),
+            walls: self.scene.walls.iter().map(|wall| of_wall(&wall.name)).collect(),
+        })
     }
 
     /// The row of each grain: ids in their order are the grains in that of the scene.
@@ -203,7 +263,7 @@ impl<'s> Observer<'s> {
             values.iter().zip(other).map(|(value, other)| (other - value).abs()).collect()
         };
         for (at, (column, values)) in printed.columns.into_iter().zip(printed.values).enumerate() {
-            if !is_known(self.scene, &column.name, self.known) {
+            if !is_known(self.scene, &column.name, &self.known) {
                 continue;
             }
             let (along, outwards) = (shifted(&along, at, &values), shifted(&outwards, at, &values));
@@ -230,14 +290,18 @@ impl Observed {
 }
 
 /// Whether a dump of grains tells a column of the series.
-fn is_known(scene: &Scene, name: &str, known: Known) -> bool {
+fn is_known(scene: &Scene, name: &str, known: &Known) -> bool {
     let Some((probe, quantity)) = name.rsplit_once('.') else { return false };
     match scene.probes.iter().find(|other| other.name == probe).map(|probe| probe.target) {
         Some(ProbeTarget::Grain(_)) => match quantity {
             "x" | "y" | "z" => true,
             "vx" | "vy" | "vz" => known.velocity,
+            "angle" => known.angle,
             _ => known.spin && quantity.starts_with("omega"),
         },
+        Some(ProbeTarget::Pair(..)) => is_known_of_contact(quantity, known.pairs),
+        Some(ProbeTarget::GrainWall(_, wall)) => is_known_of_contact(quantity, known.walls[wall]),
+        Some(ProbeTarget::Wall(wall)) => known.walls[wall],
         Some(ProbeTarget::System) => match quantity {
             "gravitational_energy" => true,
             "kinetic_energy" | "momentum_x" | "momentum_y" | "momentum_z" => known.velocity,
@@ -246,4 +310,9 @@ fn is_known(scene: &Scene, name: &str, known: Known) -> bool {
         },
         _ => false,
     }
+}
+
+/// Overlaps follow from where grains are; whether a contact slips nobody prints.
+fn is_known_of_contact(quantity: &str, forces: bool) -> bool {
+    quantity == "overlap" || forces && quantity.ends_with("_force")
 }

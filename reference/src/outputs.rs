@@ -12,6 +12,7 @@ use crate::digits::Digits;
 use crate::dump::DumpReader;
 use crate::line_reader::LineReader;
 use crate::log::{Log, read_log};
+use crate::pair_forces::PairForces;
 use crate::observer::{Names, Observed, Observer};
 use crate::read_error::{ReadError, one_line, quoted};
 use crate::snapshot::{DumpKind, DumpSnapshot};
@@ -72,6 +73,8 @@ pub struct Outputs {
     time_step: Option<f64>,
     /// Most significant digits of any number.
     significant: u32,
+    /// Ids of the grains, in their order.
+    ids: Vec<u64>,
 }
 
 impl Outputs {
@@ -81,7 +84,8 @@ impl Outputs {
     /// A file is damaged, or they do not fit together.
     pub fn survey(sources: Sources) -> Result<Self, OutputError> {
         let log = sources.log.as_deref().map(read_log).transpose()?;
-        let mut outputs = Self { digits: Vec::new(), table: None, log, time_step: None, significant: 0, sources };
+        let mut outputs =
+            Self { digits: Vec::new(), table: None, log, time_step: None, significant: 0, ids: Vec::new(), sources };
         let files = outputs.sources.files.clone();
         if let [file] = &files[..]
             && !is_dump(file)?
@@ -100,6 +104,9 @@ impl Outputs {
             let mut reader = DumpReader::open(file)?;
             let mut snapshot = DumpSnapshot::default();
             while reader.read(&mut snapshot)? {
+                if snapshot.kind == DumpKind::Atoms && outputs.ids.is_empty() {
+                    outputs.ids = ids(&snapshot, &outputs.sources.names);
+                }
                 if let Some(time) = snapshot.time {
                     first = first.or(Some((snapshot.step, time)));
                     last = Some((snapshot.step, time));
@@ -155,7 +162,7 @@ impl Outputs {
         if let Some(table) = &self.table {
             return self.observe_table(scene, table);
         }
-        let mut observer = Observer::new(scene);
+        let mut observer = Observer::new(scene).with_pairs(self.contacts(scene)?);
         let mut last = None;
         let mut any = false;
         for (file, digits) in self.sources.files.iter().zip(&self.digits) {
@@ -183,6 +190,22 @@ impl Outputs {
         }
         let named = self.sources.files.first().map(|file| shown(file)).unwrap_or_default();
         if any { Ok(observer.finish()) } else { Err(OutputError::NoGrains(named)) }
+    }
+
+    /// What dumps of contacts tell of the pairs that the scene asks for.
+    fn contacts(&self, scene: &Scene) -> Result<PairForces, OutputError> {
+        let mut pairs = PairForces::of(scene, &self.ids);
+        for (file, digits) in self.sources.files.iter().zip(&self.digits) {
+            let mut reader = DumpReader::open(file)?;
+            let mut snapshot = DumpSnapshot::default();
+            while pairs.is_asked() && reader.read(&mut snapshot)? {
+                if snapshot.kind != DumpKind::Entries {
+                    break;
+                }
+                pairs.take(&shown(file), &snapshot, &self.sources.names, Some(digits))?;
+            }
+        }
+        Ok(pairs)
     }
 
     /// A table has a column `time` (or `t`), and columns called as the scene's probes are; the probe's name may be left
@@ -232,6 +255,16 @@ impl Outputs {
         }
         Ok(observed)
     }
+}
+
+/// The ids of a snapshot, in their order.
+fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
+    let mut ids: Vec<u64> = match snapshot.column(names.of("id")) {
+        Some(column) => snapshot.values(column).map(|id| id as u64).collect(),
+        None => Vec::new(),
+    };
+    ids.sort_unstable();
+    ids
 }
 
 /// Whether a file begins as a dump does; an empty one does not say, and the reader of dumps then will.

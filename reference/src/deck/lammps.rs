@@ -1,14 +1,18 @@
 //! LAMMPS: contacts of `gran/hooke/history` and its like between grains and at walls.
 
 use grainbench_scene::effects::Effects;
-use grainbench_scene::scene::{Probe, ProbeTarget, Scene, Wall};
+use grainbench_scene::scene::{Scene, Wall};
 
 use super::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
 use super::lammps_contact::{at_wall, between_grains};
 use super::logged::logged;
 use super::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
 use super::region::region;
-use super::{COLUMNS, END, SAMPLES, Stepping, Written, heading, thermo};
+use super::{
+    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs, asks_for_wall,
+    heading, thermo,
+};
+use crate::observer::Names;
 
 pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     one_inertia(scene, inertia_factor(scene))?;
@@ -16,8 +20,29 @@ pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, Strin
     let data = data_file(scene, scene.materials.len(), box_of(scene), of_sphere);
     let (commands, logged) = logged(scene, "NULL", forces_of_wall)?;
     let printed = thermo(&commands, &logged, stepping);
-    let files = vec![("in.lammps".to_owned(), input(scene, stepping, &printed)?), ("data.grains".to_owned(), data)];
-    Ok((files, logged))
+    let names = names(scene);
+    let input = input(scene, stepping, &printed, &names)?;
+    Ok(Written { files: vec![("in.lammps".to_owned(), input), ("data.grains".to_owned(), data)], logged, names })
+}
+
+/// What the dumps call the forces that probes ask for: `fix wall/gran … contacts` has that of a wall behind a flag, and
+/// `pair/local` that along the normal and that along the tangent apart.
+fn names(scene: &Scene) -> Names {
+    let mut names = Vec::new();
+    for (number, wall) in (1..).zip(&scene.walls).filter(|&(number, _)| asks_for_contacts_at(scene, number)) {
+        for (axis, column) in AXES.into_iter().zip(2..) {
+            names.push((format!("{}.force_{axis}", wall.name), format!("f_wall{number}[{column}]")));
+        }
+    }
+    if asks_for_pairs(scene) {
+        names.extend([("id1".to_owned(), "c_pairs[1]".to_owned()), ("id2".to_owned(), "c_pairs[2]".to_owned())]);
+        for (part, first) in [("force", 1), ("tangential", 4)] {
+            for (axis, column) in AXES.into_iter().zip(first..) {
+                names.push((format!("{part}_{axis}"), format!("c_forces[{column}]")));
+            }
+        }
+    }
+    Names(names)
 }
 
 /// The command that adds up the forces of a wall on the grains, and the components of the sum.
@@ -29,11 +54,10 @@ fn forces_of_wall(number: usize) -> (String, [String; 3]) {
 
 /// What lets a wall tell its forces, where a probe asks for them.
 fn tells(scene: &Scene, number: u32) -> &'static str {
-    let is_asked = |probe: &Probe| probe.target == ProbeTarget::Wall(number as usize - 1);
-    if scene.probes.iter().any(is_asked) { " contacts" } else { "" }
+    if asks_for_wall(scene, number as usize) { " contacts" } else { "" }
 }
 
-fn input(scene: &Scene, stepping: &Stepping, printed: &str) -> Result<String, String> {
+fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Result<String, String> {
     let flat = is_flat(scene);
     let mut text = format!("# {}\n", heading(scene));
     let mut say = |line: &str| {
@@ -67,16 +91,29 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str) -> Result<String, St
         say("fix plane all enforce2d");
     }
     say(printed);
-    let columns = COLUMNS.join(" ");
-    let dump = |name: &str, interval: u64, file: &str| {
-        format!(
+    let of_walls = names.0.iter().map(|(_, column)| column.as_str()).filter(|column| column.starts_with("f_"));
+    let columns = COLUMNS.into_iter().chain(of_walls).collect::<Vec<_>>().join(" ");
+    let of_pairs: Vec<&str> = names.0.iter().map(|(_, column)| column.as_str()).filter(|it| it.starts_with("c_")).collect();
+    let of_pairs = of_pairs.join(" ");
+    let dump = |name: &str, interval: u64, [file, contacts]: [&str; 2]| {
+        let grains = format!(
             "dump {name} all custom {interval} {file} {columns}\ndump_modify {name} format float %.17g sort id time yes units yes"
+        );
+        if of_pairs.is_empty() {
+            return grains;
+        }
+        format!(
+            "{grains}\ndump {name}2 all local {interval} {contacts} {of_pairs}\ndump_modify {name}2 format float %.17g"
         )
     };
-    say(&dump("samples", stepping.interval, SAMPLES));
+    if !of_pairs.is_empty() {
+        say("compute pairs all property/local patom1 patom2\ncompute forces all pair/local fx fy fz p1 p2 p3");
+    }
+    say(&dump("samples", stepping.interval, [SAMPLES, CONTACTS]));
     say(&format!("run {}", stepping.steps));
     if !stepping.ends_on_a_sample() {
-        say(&format!("undump samples\n{}\nrun 0", dump("end", 1, END)));
+        let no_more = if of_pairs.is_empty() { "" } else { "\nundump samples2" };
+        say(&format!("undump samples{no_more}\n{}\nrun 0", dump("end", 1, [END, END_CONTACTS])));
     }
     Ok(text)
 }

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use grainbench_scene::effects::Effects;
 use grainbench_scene::motion::Motion;
-use grainbench_scene::scene::{ProbeTarget, Scene, Wall};
+use grainbench_scene::scene::{Scene, Wall};
 use nalgebra::{Unit, Vector3};
 
 use super::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
@@ -16,7 +16,11 @@ use super::logged::logged;
 use super::mesh::{Triangle, stl, triangles};
 use super::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
 use super::schedule::{Rates, changes, rates_from};
-use super::{COLUMNS, END, SAMPLES, Stepping, Written, heading, thermo};
+use super::{
+    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs, asks_for_wall,
+    heading, thermo,
+};
+use crate::observer::Names;
 
 /// A wall that needs a mesh.
 struct Mesh<'s> {
@@ -55,10 +59,32 @@ pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, Strin
     let data = data_file(scene, types, corners, if flat { of_disc } else { of_sphere });
     let (commands, logged) = logged(scene, "thermo_temp", |number| forces_of_wall(number, &meshes))?;
     let printed = thermo(&commands, &logged, stepping);
-    let input = input(scene, stepping, flat, &meshes, &printed)?;
+    let names = names(scene, &meshes);
+    let input = input(scene, stepping, flat, &meshes, &printed, &names)?;
     let mut files = vec![("in.liggghts".to_owned(), input), ("data.grains".to_owned(), data)];
     files.extend(meshes.iter().map(|mesh| (format!("wall-{}.stl", mesh.number), stl(&mesh.triangles))));
-    Ok((files, logged))
+    Ok(Written { files, logged, names })
+}
+
+/// What the dumps call the forces that probes ask for. Meshes do not tell their forces grain by grain.
+fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
+    let mut names = Vec::new();
+    for (number, wall) in (1..).zip(&scene.walls).filter(|&(number, _)| asks_for_contacts_at(scene, number)) {
+        if meshes.iter().any(|mesh| mesh.number == number) {
+            continue;
+        }
+        for (axis, column) in AXES.into_iter().zip(1..) {
+            names.push((format!("{}.force_{axis}", wall.name), format!("f_force_wall{number}[{column}]")));
+        }
+    }
+    if asks_for_pairs(scene) {
+        // Behind the two ids stands whether a pair is one across a periodic face.
+        names.extend([("id1".to_owned(), "c_pairs[1]".to_owned()), ("id2".to_owned(), "c_pairs[2]".to_owned())]);
+        for (axis, column) in AXES.into_iter().zip(4..) {
+            names.push((format!("force_{axis}"), format!("c_pairs[{column}]")));
+        }
+    }
+    Names(names)
 }
 
 /// The command that adds up the forces of a wall on the grains, and the components of the sum. A mesh does so by itself,
@@ -70,11 +96,6 @@ fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
     let fix = format!("f_force_wall{number}");
     let command = format!("compute wall{number} all reduce sum {fix}[1] {fix}[2] {fix}[3]\n");
     (command, [1, 2, 3].map(|at| format!("c_wall{number}[{at}]")))
-}
-
-/// Whether a probe asks for the force on a wall.
-fn is_asked(scene: &Scene, number: usize) -> bool {
-    scene.probes.iter().any(|probe| probe.target == ProbeTarget::Wall(number - 1))
 }
 
 /// How far a grain may go that meets nothing (m), so that it stays above planes that are meshes.
@@ -114,7 +135,14 @@ fn turns(motion: &Motion) -> bool {
     motion.phases.iter().any(|phase| phase.spin != Vector3::zeros())
 }
 
-fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], printed: &str) -> Result<String, String> {
+fn input(
+    scene: &Scene,
+    stepping: &Stepping,
+    flat: bool,
+    meshes: &[Mesh<'_>],
+    printed: &str,
+    names: &Names,
+) -> Result<String, String> {
     let mut text = format!("# {}\n", heading(scene));
     let mut say = |line: &str| {
         text.push_str(line);
@@ -158,10 +186,10 @@ fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], pr
             say(&format!(
                 "fix wall{number} all wall/gran model {words} primitive type {kind} {axis}plane {:?}{shear}{}{switches}",
                 plane.at,
-                if is_asked(scene, number) { " store_force yes" } else { "" }
+                if asks_for_wall(scene, number) { " store_force yes" } else { "" }
             ));
         } else {
-            let style = if is_asked(scene, number) { "mesh/surface/stress" } else { "mesh/surface" };
+            let style = if asks_for_wall(scene, number) { "mesh/surface/stress" } else { "mesh/surface" };
             say(&format!("fix mesh{number} all {style} file wall-{number}.stl type {kind}"));
         }
     }
@@ -179,15 +207,30 @@ fn input(scene: &Scene, stepping: &Stepping, flat: bool, meshes: &[Mesh<'_>], pr
     }
     say(printed);
     // One format serves the whole row.
-    let dump = |name: &str, interval: u64, file: &str| {
-        let columns = COLUMNS.join(" ");
-        let format = format!("%d %d{}", " %.17g".repeat(COLUMNS.len() - 2));
-        format!("dump {name} all custom {interval} {file} {columns}\ndump_modify {name} format \"{format}\" sort id")
+    let of_walls = names.0.iter().map(|(_, column)| column.as_str()).filter(|column| column.starts_with("f_"));
+    let columns: Vec<&str> = COLUMNS.into_iter().chain(of_walls).collect();
+    let of_pairs: Vec<&str> = names.0.iter().map(|(_, column)| column.as_str()).filter(|it| it.starts_with("c_")).collect();
+    let dump = |name: &str, interval: u64, [file, contacts]: [&str; 2]| {
+        let format = format!("%d %d{}", " %.17g".repeat(columns.len() - 2));
+        let columns = columns.join(" ");
+        let grains =
+            format!("dump {name} all custom {interval} {file} {columns}\ndump_modify {name} format \"{format}\" sort id");
+        if of_pairs.is_empty() {
+            return grains;
+        }
+        let (columns, format) = (of_pairs.join(" "), ["%.17g"].repeat(of_pairs.len()).join(" "));
+        format!(
+            "{grains}\ndump {name}2 all local {interval} {contacts} {columns}\ndump_modify {name}2 format \"{format}\""
+        )
     };
-    say(&dump("samples", stepping.interval, SAMPLES));
+    if !of_pairs.is_empty() {
+        say("compute pairs all pair/gran/local id force");
+    }
+    say(&dump("samples", stepping.interval, [SAMPLES, CONTACTS]));
     say(&runs(stepping, meshes)?);
     if !stepping.ends_on_a_sample() {
-        say(&format!("undump samples\n{}\nrun 0", dump("end", 1, END)));
+        let no_more = if of_pairs.is_empty() { "" } else { "\nundump samples2" };
+        say(&format!("undump samples{no_more}\n{}\nrun 0", dump("end", 1, [END, END_CONTACTS])));
     }
     Ok(text)
 }

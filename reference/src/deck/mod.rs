@@ -19,8 +19,10 @@ mod schedule;
 use std::fmt;
 
 use grainbench_scene::recorder::Recorder;
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{ProbeTarget, Scene};
 use grainbench_scene::solver::Resolution;
+
+use crate::observer::Names;
 
 /// Whose input a deck is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,13 +96,19 @@ pub struct Deck {
     pub stepping: Stepping,
     /// What its log tells.
     pub(crate) logged: Vec<logged::Logged>,
+    /// What its dumps call forces.
+    pub(crate) names: Names,
 }
 
 /// The dump of the samples that a deck's run leaves.
 pub const SAMPLES: &str = "dump.grains";
 /// The dump of the end, where that is no sample.
 pub const END: &str = "dump.end";
-/// The columns of both.
+/// The dump of contacts at the samples, where probes ask for some between grains.
+pub(crate) const CONTACTS: &str = "dump.contacts";
+/// The same of the end.
+pub(crate) const END_CONTACTS: &str = "dump.end-contacts";
+/// The columns of both dumps of grains.
 const COLUMNS: [&str; 19] = [
     "id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz", "fx", "fy", "fz",
     "tqx", "tqy", "tqz",
@@ -149,12 +157,33 @@ pub fn write_deck(scene: &Scene, resolution: &Resolution, program: Program) -> R
         Program::Lammps => lammps::files(scene, &stepping),
         Program::Liggghts => liggghts::files(scene, &stepping),
     };
-    let (files, logged) = written.map_err(unsupported)?;
-    Ok(Deck { files, stepping, logged })
+    let Written { files, logged, names } = written.map_err(unsupported)?;
+    Ok(Deck { files, stepping, logged, names })
 }
 
-/// Files of a deck, and what its log is asked for.
-type Written = (Vec<(String, String)>, Vec<logged::Logged>);
+/// Files of a deck, what its log is asked for, and what its dumps call forces.
+pub(crate) struct Written {
+    pub(crate) files: Vec<(String, String)>,
+    pub(crate) logged: Vec<logged::Logged>,
+    pub(crate) names: Names,
+}
+
+/// Whether a probe asks for the force on a wall, or at one of its contacts; walls are counted from 1.
+fn asks_for_wall(scene: &Scene, number: usize) -> bool {
+    asks_for_contacts_at(scene, number)
+        || scene.probes.iter().any(|probe| probe.target == ProbeTarget::Wall(number - 1))
+}
+
+/// Whether a probe asks for a contact of a wall.
+fn asks_for_contacts_at(scene: &Scene, number: usize) -> bool {
+    let is_at = |target: ProbeTarget| matches!(target, ProbeTarget::GrainWall(_, wall) if wall + 1 == number);
+    scene.probes.iter().any(|probe| is_at(probe.target))
+}
+
+/// Whether a probe asks for a contact between grains.
+fn asks_for_pairs(scene: &Scene) -> bool {
+    scene.probes.iter().any(|probe| matches!(probe.target, ProbeTarget::Pair(..)))
+}
 
 /// The lines that say what is printed: nothing but the end of the run, or sums at every sample.
 fn thermo(commands: &str, logged: &[logged::Logged], stepping: &Stepping) -> String {

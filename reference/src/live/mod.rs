@@ -11,11 +11,12 @@ use grainbench_scene::record::{Cost, Provenance, Record};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
-use crate::deck::{Deck, DeckError, END, Program, SAMPLES, logged, write_deck};
+use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, logged, write_deck};
 use crate::dump::DumpReader;
 use crate::log::read_log;
 use crate::numbers::NotFinite;
-use crate::observer::{Names, Observed, Observer};
+use crate::observer::{Observed, Observer};
+use crate::pair_forces::PairForces;
 use crate::read_error::ReadError;
 use crate::snapshot::DumpSnapshot;
 
@@ -126,8 +127,19 @@ impl Solver for Live {
 /// Reads what a deck's run left in a folder. Values that are not finite are kept: gates have something to say of them.
 fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadError> {
     let stepping = deck.stepping;
-    let mut observer = Observer::new(scene);
     let mut snapshot = DumpSnapshot::default();
+    let ids: Vec<u64> = (1..=scene.grains.len() as u64).collect();
+    let mut pairs = PairForces::of(scene, &ids);
+    for (name, is_there) in [(CONTACTS, true), (END_CONTACTS, !stepping.ends_on_a_sample())] {
+        if !pairs.is_asked() || !is_there {
+            continue;
+        }
+        let mut reader = DumpReader::open(&folder.join(name))?.not_finite(NotFinite::Kept);
+        while reader.read(&mut snapshot)? {
+            pairs.take(name, &snapshot, &deck.names, None)?;
+        }
+    }
+    let mut observer = Observer::new(scene).with_pairs(pairs);
     // Snapshots are taken at the samples next to where they are due.
     let parts = u64::from(scene.snapshots) + 1;
     let due = |taken: u64| (stepping.steps as f64 * taken as f64 / parts as f64) as u64;
@@ -142,7 +154,7 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadEr
             let keep = snapshot.step >= due(taken);
             taken += u64::from(keep);
             let time = snapshot.step as f64 * stepping.time_step;
-            observer.take(name, &snapshot, &Names::default(), time, None, keep)?;
+            observer.take(name, &snapshot, &deck.names, time, None, keep)?;
         }
     }
     Ok(observer.finish())

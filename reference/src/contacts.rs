@@ -1,0 +1,92 @@
+//! Contacts that the probes of a scene ask for, from where the grains are and from the forces that dumps tell.
+
+use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_segment};
+use grainbench_scene::record::{ContactState, GrainState, Partner};
+use grainbench_scene::scene::{ProbeTarget, Scene, WallShape};
+use nalgebra::Vector3;
+
+use crate::pair_forces::PairForce;
+
+/// Where forces come from: of a grain on another, and of a wall on a grain, by places in the scene; none where unknown.
+pub(crate) struct Forces<'f> {
+    pub(crate) of_pair: &'f dyn Fn(usize, usize) -> Option<PairForce>,
+    pub(crate) of_wall: &'f dyn Fn(usize, usize) -> Option<PairForce>,
+}
+
+/// The contacts that are asked for and touch. Forces that are not known are not a number; `shift` is how many times what the
+/// digits leave open is added to the magnitude of each.
+pub(crate) fn contacts(
+    scene: &Scene,
+    time: f64,
+    step: u64,
+    grains: &[GrainState],
+    forces: &Forces<'_>,
+    shift: f64,
+) -> Vec<ContactState> {
+    let time_step = if step == 0 { 0.0 } else { time / step as f64 };
+    let mut found = Vec::new();
+    for probe in &scene.probes {
+        let (grain, partner, (normal, distance), reach, force) = match probe.target {
+            ProbeTarget::Pair(a, b) => {
+                let reach = scene.grains[a].radius + scene.grains[b].radius;
+                let between = nearest_image(scene, grains[b].position - grains[a].position);
+                (a, Partner::Grain(b as u32 + 1), direction(between), reach, (forces.of_pair)(a, b))
+            }
+            ProbeTarget::GrainWall(grain, wall) => {
+                let at = grains[grain].position;
+                let (shape, motion) = (&scene.walls[wall].shape, &scene.walls[wall].motion);
+                let shape = shape.moved(motion, &motion.displacement(time, time_step));
+                let to_wall = to_wall(at, &shape);
+                (grain, Partner::Wall(wall as u16), to_wall, scene.grains[grain].radius, (forces.of_wall)(wall, grain))
+            }
+            _ => continue,
+        };
+        let overlap = reach - distance;
+        // Where few digits were printed the force tells better than the overlap whether they touch.
+        let pushed = force.is_some_and(|known| known.force != Vector3::zeros());
+        if !(overlap > 0.0 || pushed) {
+            continue;
+        }
+        let known = force.unwrap_or(PairForce { force: Vector3::repeat(f64::NAN), open: 0.0 });
+        let pushes = -known.force.dot(&normal);
+        let shear = known.force + normal * pushes;
+        let open = shift * known.open;
+        found.push(ContactState {
+            grain: grain as u32 + 1,
+            partner,
+            point: grains[grain].position + normal * (scene.grains[grain].radius - 0.5 * overlap),
+            normal,
+            overlap,
+            normal_force: pushes + open,
+            shear_force: if shear.norm() > 0.0 { shear * (1.0 + open / shear.norm()) } else { shear },
+            slipping: false,
+        });
+    }
+    found
+}
+
+/// Unit vector and length of a line.
+fn direction(line: Vector3<f64>) -> (Vector3<f64>, f64) {
+    let length = line.norm();
+    (line / length, length)
+}
+
+/// Direction and distance from a grain to the nearest point of a wall; into the solid of a plane.
+fn to_wall(at: Vector3<f64>, shape: &WallShape) -> (Vector3<f64>, f64) {
+    match shape {
+        WallShape::Plane { point, normal } => (-normal, (at - point).dot(normal)),
+        WallShape::Segment { ends } => direction(nearest_on_segment(at, ends) - at),
+        WallShape::Rectangle { corner, edges } => direction(nearest_on_rectangle(at, corner, edges) - at),
+    }
+}
+
+/// A line between centres, to the nearest image along periodic axes.
+fn nearest_image(scene: &Scene, mut line: Vector3<f64>) -> Vector3<f64> {
+    if let Some(domain) = &scene.domain {
+        for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
+            let length = domain.high[axis] - domain.low[axis];
+            line[axis] -= length * (line[axis] / length).round();
+        }
+    }
+    line
+}
