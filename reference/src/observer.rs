@@ -86,7 +86,8 @@ impl<'s> Observer<'s> {
     /// Of a scene.
     #[must_use]
     pub fn new(scene: &'s Scene) -> Self {
-        let sampled = Scene { sampling: Sampling::Cycles(1), snapshots: 0, ..scene.clone() };
+        let sampled =
+            Scene { sampling: Sampling::Cycles(1), snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
         let recorder = || Recorder::new(&sampled, 1.0, u64::MAX);
         let recorders = [recorder(), recorder(), recorder()];
         let known =

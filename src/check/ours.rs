@@ -43,7 +43,8 @@ pub(super) fn ours(scene: &Scene, step: f64, observed: &Observed) -> Result<Ours
     }
     let run = |convention: Convention, halves: u64| {
         let stepping = Stepping { time_step: step, steps: last, interval };
-        let (scene, resolution) = refined(&Scene { snapshots: 0, ..scene.clone() }, &stepping, halves);
+        let (scene, resolution) =
+            refined(&Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() }, &stepping, halves);
         let record = Dem::new(convention).run(&scene, &resolution, &mut ());
         record.map(|record| record.series).map_err(|error| error.to_string())
     };

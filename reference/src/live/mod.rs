@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Cost, Provenance, Record};
+use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
@@ -141,9 +142,8 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadEr
     }
     let mut observer = Observer::new(scene).with_pairs(pairs);
     // Snapshots are taken at the samples next to where they are due.
-    let parts = u64::from(scene.snapshots) + 1;
-    let due = |taken: u64| (stepping.steps as f64 * taken as f64 / parts as f64) as u64;
-    let mut taken = 0;
+    let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
+    let mut due = recorder.snapshot_steps();
     for name in [SAMPLES, END] {
         if name == END && stepping.ends_on_a_sample() {
             continue;
@@ -151,10 +151,10 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadEr
         let path = folder.join(name);
         let mut reader = DumpReader::open(&path)?.not_finite(NotFinite::Kept);
         while reader.read(&mut snapshot)? {
-            let keep = snapshot.step >= due(taken);
-            taken += u64::from(keep);
+            let past = due.partition_point(|&step| step <= snapshot.step);
+            due = &due[past..];
             let time = snapshot.step as f64 * stepping.time_step;
-            observer.take(name, &snapshot, &deck.names, time, None, keep)?;
+            observer.take(name, &snapshot, &deck.names, time, None, past > 0)?;
         }
     }
     Ok(observer.finish())

@@ -69,6 +69,7 @@ pub(crate) fn deformable() -> Snapshot {
         velocity: Vector3::new(0.1, -2e-7, 0.0),
         stress: [-1e3, 2e3, -0.5, 0.125, 0.0, 0.0],
         plastic_strain: 0.01,
+        rotation: 0.25,
         volume: 0.0625,
     };
     Snapshot { points: vec![point(Owner::Grain(2), 0.5), point(Owner::Body(0), 1.5)], ..snapshot() }

@@ -55,6 +55,7 @@ pub fn write_points(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
         }
     })?;
     scalars(&mut out, "plastic_strain", points.iter().map(|point| point.plastic_strain))?;
+    scalars(&mut out, "rotation", points.iter().map(|point| point.rotation))?;
     scalars(&mut out, "volume", points.iter().map(|point| point.volume))?;
     writeln!(out, "</PointData>\n<Points>")?;
     vectors(&mut out, "points", points.iter().map(|point| point.position))?;

@@ -134,9 +134,8 @@ impl<S: Space> Simulation<S> {
         };
         let angle = if S::DIMENSION == 2 {
             // Of the turns that the deformation may have made, the one nearest to that of the last look and the spin since.
-            let wrapped = (mean.m21 - mean.m12).atan2(mean.m11 + mean.m22);
             let expected = self.bodies[body].angle + spin.z * self.time_step * (self.step - self.looked) as f64;
-            wrapped + ((expected - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU
+            nearest_turn(rotation_of(mean), expected)
         } else {
             0.0
         };
@@ -176,6 +175,11 @@ impl<S: Space> Simulation<S> {
             velocity: self.velocity(at),
             stress: [stress.m11, stress.m22, stress.m33, stress.m12, stress.m23, stress.m31],
             plastic_strain: points.plastic_strain[at],
+            rotation: if S::DIMENSION == 2 {
+                nearest_turn(rotation_of(S::embed_gradient(points.deformation[at])), body.angle)
+            } else {
+                0.0
+            },
             volume: points.volume[at],
         }
     }
@@ -272,6 +276,16 @@ impl<S: Space> Simulation<S> {
     }
 }
 
+/// Rotation about z that is nearest to a plane deformation gradient (rad, from −π to π): R of F = R U.
+fn rotation_of(deformation: Matrix3<f64>) -> f64 {
+    (deformation.m21 - deformation.m12).atan2(deformation.m11 + deformation.m22)
+}
+
+/// The angle that differs by whole turns from `angle` and is nearest to `expected` (rad).
+fn nearest_turn(angle: f64, expected: f64) -> f64 {
+    angle + ((expected - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
+}
+
 fn mean(found: &[(u32, PointState)]) -> Option<PointState> {
     let mut all = found.iter().map(|(_, point)| *point);
     let first = all.next()?;
@@ -281,6 +295,7 @@ fn mean(found: &[(u32, PointState)]) -> Option<PointState> {
         sum.velocity += point.velocity;
         sum.stress.iter_mut().zip(point.stress).for_each(|(sum, stress)| *sum += stress);
         sum.plastic_strain += point.plastic_strain;
+        sum.rotation += point.rotation;
         sum.volume += point.volume;
         sum
     });
@@ -290,5 +305,6 @@ fn mean(found: &[(u32, PointState)]) -> Option<PointState> {
     sum.velocity *= share;
     sum.stress.iter_mut().for_each(|stress| *stress *= share);
     sum.plastic_strain *= share;
+    sum.rotation *= share;
     Some(sum)
 }

@@ -36,6 +36,26 @@ fn free_flight_keeps_momentum() {
     }
 }
 
+/// Points turn with their body, past a whole turn too, and stand in the snapshots that were asked for.
+#[test]
+fn points_turn_with_their_body() {
+    let text = "dimension = 2\nduration = 1.0\n\
+        materials.m = { density = 1.0, bulk_modulus = 1e5, shear_modulus = 6e4 }\n\
+        [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0]\nspin = 8.0\n\
+        [output]\nsnapshot_times = [0.25, 0.1]\n";
+    let record = run("mpm", text, 4.0, 2);
+    let times: Vec<f64> = record.snapshots.iter().map(|snapshot| snapshot.time).collect();
+    assert_eq!(times.len(), 4);
+    for (time, wanted) in times.iter().zip([0.0, 0.1, 0.25, 1.0]) {
+        assert!((time - wanted).abs() < record.provenance.time_step, "{times:?}");
+    }
+    for snapshot in &record.snapshots {
+        let angle = snapshot.grains[0].angle;
+        assert!((angle - 8.0 * snapshot.time).abs() < 0.05 * (1.0 + snapshot.time), "{angle} at {} s", snapshot.time);
+        assert!(snapshot.points.iter().all(|point| (point.rotation - angle).abs() < 0.02), "{angle}");
+    }
+}
+
 /// Fixed–free bar, ν = 0: period 10 s and mean velocity .063662 cos ωt (exact).
 #[test]
 fn a_bar_vibrates_at_its_period() {

@@ -537,6 +537,9 @@ pub struct OutputSpec {
     /// Number of snapshots, evenly spread, beside the first and the last. Default 0.
     #[serde(default)]
     pub snapshots: u32,
+    /// Times of further snapshots (s), each taken at the nearest cycle.
+    #[serde(default)]
+    pub snapshot_times: Vec<f64>,
 }
 
 /// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `stress` and `system`.

@@ -114,7 +114,7 @@ pub enum Owner {
 pub struct PointState {
     /// Which body it belongs to.
     pub owner: Owner,
-    /// Position (m).
+    /// Position (m); along periodic axes not taken back into the domain.
     pub position: Vector3<f64>,
     /// Displacement since the start (m).
     pub displacement: Vector3<f64>,
@@ -124,6 +124,9 @@ pub struct PointState {
     pub stress: [f64; 6],
     /// Equivalent plastic strain.
     pub plastic_strain: f64,
+    /// Rotation R of the deformation F = R U (rad), about z, in the turn nearest to that of its body; zero in three dimensions.
+    #[serde(default)]
+    pub rotation: f64,
     /// Volume (m³; m² in the plane).
     pub volume: f64,
 }

@@ -29,6 +29,9 @@ impl Recorder {
         // More snapshots than steps are one a step, whatever number was asked for.
         let parts = (u128::from(scene.snapshots) + 1).min(u128::from(steps.max(1)));
         let mut snapshot_steps: Vec<u64> = (0..=parts).map(|part| (u128::from(steps) * part / parts) as u64).collect();
+        let nearest = |time: &f64| ((time / time_step).round() as u64).min(steps);
+        snapshot_steps.extend(scene.snapshot_times.iter().map(nearest));
+        snapshot_steps.sort_unstable();
         snapshot_steps.dedup();
         let series = probe::empty_series(scene);
         Self { interval: interval.max(1), snapshot_steps, steps, series, snapshots: Vec::new() }
@@ -49,6 +52,12 @@ impl Recorder {
     #[must_use]
     pub fn is_snapshot(&self, step: u64) -> bool {
         self.snapshot_steps.binary_search(&step).is_ok()
+    }
+
+    /// Steps at which snapshots are due, in order.
+    #[must_use]
+    pub fn snapshot_steps(&self) -> &[u64] {
+        &self.snapshot_steps
     }
 
     /// Whether a sample or a snapshot is due at a step.
@@ -72,7 +81,7 @@ impl Recorder {
         if self.is_sample(step) {
             probe::sample(&mut self.series, scene, &look);
         }
-        if self.snapshot_steps.binary_search(&step).is_ok() {
+        if self.is_snapshot(step) {
             self.snapshots.push(look.snapshot);
         }
     }

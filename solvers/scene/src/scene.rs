@@ -311,6 +311,8 @@ pub struct Scene {
     pub sampling: Sampling,
     /// Number of snapshots between the first and the last.
     pub snapshots: u32,
+    /// Times of further snapshots (s).
+    pub snapshot_times: Vec<f64>,
     /// Named time series.
     pub probes: Vec<Probe>,
     /// Places that [`ProbeTarget::Point`] refers to.

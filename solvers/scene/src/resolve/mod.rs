@@ -105,6 +105,7 @@ impl Resolver<'_> {
             laws,
             sampling: self.sampling()?,
             snapshots: file.output.snapshots,
+            snapshot_times: self.snapshot_times()?,
             probes,
             spots,
             deformable,
@@ -232,6 +233,16 @@ impl Resolver<'_> {
             (None, Some(every)) => Ok(Sampling::Cycles(every)),
             (None, None) => Ok(Sampling::Count(200)),
         }
+    }
+
+    fn snapshot_times(&self) -> Result<Vec<f64>, SceneError> {
+        let end = self.file.duration.unwrap_or(f64::INFINITY);
+        let times = &self.file.output.snapshot_times;
+        if let Some(outside) = times.iter().find(|&&time| !(time.is_finite() && (0.0..=end).contains(&time))) {
+            let expected = format!("times (s) between 0 and the end of the run at {end}");
+            return Err(self.check.error("output.snapshot_times", &expected, &outside.to_string()));
+        }
+        Ok(times.clone())
     }
 
     fn material(&self, key: &str, name: &str) -> Result<u16, SceneError> {
