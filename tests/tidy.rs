@@ -66,10 +66,11 @@ fn crates_depend_in_one_direction() {
         ("solvers/mpm", solver),
         ("solvers/rigid", solver),
         ("reference", solver),
-        ("cases", &["scene", "dem", "mpm", "rigid", "reference"]),
-        ("reports", &["scene", "cases"]),
+        ("fields", solver),
+        ("cases", &["scene", "dem", "mpm", "rigid", "reference", "fields"]),
+        ("reports", &["scene", "fields", "cases"]),
         ("studies", &["scene", "dem", "mpm", "rigid", "reference", "cases", "reports"]),
-        (".", &["scene", "dem", "mpm", "rigid", "reference", "cases", "reports", "studies"]),
+        (".", &["scene", "dem", "mpm", "rigid", "reference", "fields", "cases", "reports", "studies"]),
     ];
     let manifest: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
     let members = manifest["workspace"]["members"].as_array().unwrap();

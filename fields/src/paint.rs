@@ -1,0 +1,278 @@
+//! Grains of a plane snapshot as pixels: which body each belongs to, and a quantity of its material there.
+
+use crate::disc::LoadedDisc;
+use crate::points::PointCloud;
+use crate::quantity::Quantity;
+use crate::raster::{RIM, Raster, VOID, level};
+use grainbench_scene::record::{Owner, Snapshot};
+use nalgebra::Vector2;
+
+/// The part of the plane that is seen, in square pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Lower left corner (m).
+    pub low: [f64; 2],
+    /// Side of a pixel (m).
+    pub pixel: f64,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+}
+
+impl View {
+    /// From corner to corner, `longest` pixels along the longer side.
+    #[must_use]
+    pub fn new(low: [f64; 2], high: [f64; 2], longest: u32) -> Self {
+        let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(f64::MIN_POSITIVE));
+        let pixel = size[0].max(size[1]) / f64::from(longest.max(1));
+        let [width, height] = size.map(|size| (size / pixel).round().clamp(1.0, f64::from(longest.max(1))) as u32);
+        Self { low, pixel, width, height }
+    }
+
+    /// All of a snapshot: its domain along periodic axes, else the box around its grains and material points.
+    #[must_use]
+    pub fn of(snapshot: &Snapshot, longest: u32) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));
+        let points = snapshot.points.iter().map(|point| (point.position, 0.5 * point.volume.sqrt()));
+        for (place, reach) in grains.chain(points).filter(|(place, _)| place.iter().all(|part| part.is_finite())) {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(place[axis] - reach);
+                high[axis] = high[axis].max(place[axis] + reach);
+            }
+        }
+        for axis in 0..2 {
+            if snapshot.periodic[axis] || low[axis] > high[axis] {
+                (low[axis], high[axis]) = (snapshot.bounds.0[axis], snapshot.bounds.1[axis]);
+            }
+        }
+        let margin = 0.01 * (high[0] - low[0]).max(high[1] - low[1]);
+        for axis in (0..2).filter(|&axis| !snapshot.periodic[axis]) {
+            low[axis] -= margin;
+            high[axis] += margin;
+        }
+        Self::new(low, high, longest)
+    }
+
+    /// Upper right corner (m).
+    #[must_use]
+    pub fn high(&self) -> [f64; 2] {
+        [self.low[0] + f64::from(self.width) * self.pixel, self.low[1] + f64::from(self.height) * self.pixel]
+    }
+
+    /// Centre of a pixel (m), rows counted from the top.
+    fn centre(&self, column: u32, row: u32) -> [f64; 2] {
+        [
+            self.low[0] + (f64::from(column) + 0.5) * self.pixel,
+            self.low[1] + (f64::from(self.height - 1 - row) + 0.5) * self.pixel,
+        ]
+    }
+}
+
+/// Pixels with the body and the value of each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Painting {
+    view: View,
+    /// Zero where nothing is.
+    owners: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl Painting {
+    /// Of the material points of a snapshot, or of its discs where it has none.
+    #[must_use]
+    pub fn new(snapshot: &Snapshot, quantity: Quantity, view: View) -> Self {
+        let pixels = view.width as usize * view.height as usize;
+        let mut painting = Self { view, owners: vec![0; pixels], values: vec![f64::NAN; pixels] };
+        if snapshot.points.is_empty() {
+            painting.discs(snapshot, quantity);
+        } else {
+            painting.points(snapshot, quantity);
+        }
+        painting
+    }
+
+    fn points(&mut self, snapshot: &Snapshot, quantity: Quantity) {
+        let cloud = PointCloud::new(snapshot);
+        for row in 0..self.view.height {
+            for column in 0..self.view.width {
+                let Some((owner, point)) = cloud.at(self.view.centre(column, row)) else { continue };
+                let at = (row * self.view.width + column) as usize;
+                self.owners[at] = match owner {
+                    Owner::Grain(id) => id,
+                    Owner::Body(place) => u32::MAX - place,
+                };
+                self.values[at] = quantity.at_point(&point);
+            }
+        }
+    }
+
+    fn discs(&mut self, snapshot: &Snapshot, quantity: Quantity) {
+        let loaded = match quantity {
+            Quantity::StressDifference | Quantity::Fringes(_) => LoadedDisc::of_snapshot(snapshot),
+            Quantity::PlasticStrain | Quantity::Rotation | Quantity::Speed => Vec::new(),
+        };
+        // Where two discs overlap, the one is seen that the pixel is deeper in.
+        let mut depth = vec![f64::NEG_INFINITY; self.owners.len()];
+        let length = snapshot.bounds.1 - snapshot.bounds.0;
+        let shifts = |axis: usize| -> &[f64] { if snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] } };
+        for (place, grain) in snapshot.grains.iter().enumerate() {
+            for (&i, &j) in shifts(0).iter().flat_map(|i| shifts(1).iter().map(move |j| (i, j))) {
+                let centre = [grain.position.x + i * length.x, grain.position.y + j * length.y];
+                for (column, row) in self.box_around(centre, grain.radius) {
+                    let seen = self.view.centre(column, row);
+                    let arm = Vector2::new(seen[0] - centre[0], seen[1] - centre[1]);
+                    let at = (row * self.view.width + column) as usize;
+                    let inside = grain.radius - arm.norm();
+                    if inside < 0.0 || inside <= depth[at] {
+                        continue;
+                    }
+                    depth[at] = inside;
+                    self.owners[at] = grain.id;
+                    self.values[at] = match quantity {
+                        Quantity::StressDifference | Quantity::Fringes(_) => {
+                            quantity.of_stress(&loaded[place].stress(arm))
+                        }
+                        Quantity::PlasticStrain => 0.0,
+                        Quantity::Rotation => grain.angle,
+                        Quantity::Speed => {
+                            let turning = Vector2::new(-arm.y, arm.x) * grain.spin.z;
+                            (grain.velocity.xy() + turning).norm()
+                        }
+                    };
+                }
+            }
+        }
+    }
+
+    /// Pixels of the square around a disc that are in view.
+    fn box_around(&self, centre: [f64; 2], radius: f64) -> Vec<(u32, u32)> {
+        let View { low, pixel, width, height } = self.view;
+        let range = |axis: usize, count: u32| {
+            let at = |place: f64| ((place - low[axis]) / pixel).floor().clamp(0.0, f64::from(count)) as u32;
+            at(centre[axis] - radius)..(at(centre[axis] + radius) + 1).min(count)
+        };
+        let (columns, rows) = (range(0, width), range(1, height));
+        rows.flat_map(|row| columns.clone().map(move |column| (column, height - 1 - row))).collect()
+    }
+
+    /// The value below which a part of all pixels with a value lies; zero where there are none.
+    #[must_use]
+    pub fn quantile(&self, part: f64) -> f64 {
+        let mut values: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
+        values.sort_by(f64::total_cmp);
+        let at = (part * values.len().saturating_sub(1) as f64).round() as usize;
+        values.get(at).copied().unwrap_or(0.0)
+    }
+
+    /// Levels within a range of values, with a rim around every body.
+    #[must_use]
+    pub fn raster(&self, range: (f64, f64)) -> Raster {
+        let View { width, height, .. } = self.view;
+        let across = width as usize;
+        let levels = (0..self.owners.len()).map(|at| {
+            let right = if (at + 1).is_multiple_of(across) { at } else { at + 1 };
+            let below = if at + across < self.owners.len() { at + across } else { at };
+            let own = self.owners[at];
+            if own != self.owners[right] || own != self.owners[below] {
+                RIM
+            } else if own == 0 {
+                VOID
+            } else {
+                level(self.values[at], range)
+            }
+        });
+        Raster { width, height, levels: levels.collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::{HIGH, LOW};
+    use grainbench_scene::record::{GrainState, PointState};
+    use nalgebra::Vector3;
+
+    fn snapshot(points: Vec<PointState>) -> Snapshot {
+        let grain = GrainState {
+            id: 1,
+            material: 0,
+            radius: 0.4,
+            mass: 1.0,
+            position: Vector3::new(0.0, 0.5, 0.0),
+            velocity: Vector3::zeros(),
+            spin: Vector3::new(0.0, 0.0, 2.0),
+            angle: 0.3,
+            force: Vector3::zeros(),
+            torque: Vector3::zeros(),
+        };
+        Snapshot {
+            step: 0,
+            time: 0.0,
+            bounds: (Vector3::zeros(), Vector3::new(2.0, 1.0, 0.0)),
+            periodic: [true, false, false],
+            grains: vec![grain],
+            contacts: Vec::new(),
+            walls: Vec::new(),
+            bodies: Vec::new(),
+            points,
+        }
+    }
+
+    /// A square lattice of points, `width` apart, that fills the unit square around (0, ½), sheared by nothing.
+    fn points(width: f64) -> Vec<PointState> {
+        let count = (1.0 / width).round() as i32;
+        let point = |i: i32, j: i32| {
+            let x = (f64::from(i) + 0.5) * width - 0.5;
+            PointState {
+                owner: if x < 0.0 { Owner::Grain(1) } else { Owner::Grain(2) },
+                position: Vector3::new(x, (f64::from(j) + 0.5) * width, 0.0),
+                displacement: Vector3::zeros(),
+                velocity: Vector3::zeros(),
+                stress: [3.0 * x, x, 0.0, 0.0, 0.0, 0.0],
+                plastic_strain: 0.5,
+                rotation: 0.0,
+                volume: width * width,
+            }
+        };
+        (0..count * count).map(|at| point(at % count, at / count)).collect()
+    }
+
+    #[test]
+    fn a_disc_across_a_periodic_side_is_seen_on_both() {
+        let view = View::new([0.0, 0.0], [2.0, 1.0], 200);
+        let painting = Painting::new(&snapshot(Vec::new()), Quantity::Rotation, view);
+        let area = painting.owners.iter().filter(|&&owner| owner == 1).count() as f64 * view.pixel * view.pixel;
+        assert!((area / (std::f64::consts::PI * 0.16) - 1.0).abs() < 5e-3, "{area}");
+        let raster = painting.raster((0.0, 0.3));
+        let middle = |column: usize| raster.levels[50 * 200 + column];
+        assert_eq!([middle(5), middle(100), middle(195)], [HIGH, VOID, HIGH]);
+        assert!((39..=40).any(|column| middle(column) == RIM));
+        // |ω| r, at most at the rim.
+        let speed = Painting::new(&snapshot(Vec::new()), Quantity::Speed, view);
+        assert!((speed.quantile(1.0) - 0.8).abs() < 0.02);
+    }
+
+    #[test]
+    fn points_fill_their_bodies_and_blur_over_no_contact() {
+        let view = View::new([0.0, -0.2], [2.0, 1.2], 200);
+        let painting = Painting::new(&snapshot(points(0.05)), Quantity::StressDifference, view);
+        let of =
+            |owner: u32| painting.owners.iter().filter(|&&found| found == owner).count() as f64 * view.pixel.powi(2);
+        // Half a square each, and a seam of (.85 − .5) widths around it.
+        for owner in [1, 2] {
+            assert!((0.5..0.56).contains(&of(owner)), "{}", of(owner));
+        }
+        // |σ_xx − σ_yy| = 2|x|: linear, so that blurring changes nothing inside.
+        let at = |column: usize, row: usize| painting.values[row * 200 + column];
+        let x = 25.5 * view.pixel;
+        assert!((at(25, 70) - 2.0 * x).abs() < 0.01, "{}", at(25, 70));
+        assert!((at(174, 70) - 2.0 * x).abs() < 0.01, "{}", at(174, 70));
+        // Beside the contact the other body has no say.
+        assert!((at(0, 70) - 2.0 * 0.025).abs() < 0.03 && at(0, 70) > 0.0);
+        let strain = Painting::new(&snapshot(points(0.05)), Quantity::PlasticStrain, view);
+        assert!((strain.quantile(0.0) - 0.5).abs() < 1e-12 && (strain.quantile(1.0) - 0.5).abs() < 1e-12);
+        assert_eq!(strain.raster((0.5, 1.0)).levels[70 * 200 + 25], LOW);
+    }
+}

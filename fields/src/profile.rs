@@ -1,0 +1,129 @@
+//! Profiles: means over slices of a plane scene, as experiments on shear bands draw them.
+
+use crate::coarse::inside;
+use crate::overlap::disc_in_box;
+use grainbench_scene::record::Snapshot;
+use nalgebra::Vector3;
+
+/// What a profile is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Displacement since the first snapshot (m).
+    Displacement,
+    /// Velocity (m/s).
+    Velocity,
+}
+
+/// The mean of one component of displacement or velocity over slices across `axis`, weighted by the material in each: points
+/// (middle of the slice, mean), of the last of `snapshots`. Displacements of discs are those of their centres, followed from one
+/// snapshot to the next across periodic sides: no grain may pass half the domain between two.
+#[must_use]
+pub fn profile(
+    snapshots: &[Snapshot],
+    motion: Motion,
+    axis: usize,
+    component: usize,
+    slices: usize,
+) -> Vec<(f64, f64)> {
+    let (Some(last), true) = (snapshots.last(), axis < 2 && component < 3) else { return Vec::new() };
+    let (low, high) = (last.bounds.0[axis], last.bounds.1[axis]);
+    let width = (high - low) / slices.max(1) as f64;
+    let mut sums = vec![(0.0, 0.0); slices];
+    if last.points.is_empty() {
+        let moved = match motion {
+            Motion::Displacement => displacements(snapshots),
+            Motion::Velocity => last.grains.iter().map(|grain| grain.velocity).collect(),
+        };
+        for (grain, moved) in last.grains.iter().zip(moved) {
+            for (slice, sum) in sums.iter_mut().enumerate() {
+                let from = low + width * slice as f64 - grain.position[axis];
+                if from.abs().min((from + width).abs()) > grain.radius && from * (from + width) > 0.0 {
+                    continue;
+                }
+                let far = 2.0 * grain.radius;
+                let area = disc_in_box(grain.radius, [from, -far], [from + width, far]);
+                *sum = (sum.0 + area, sum.1 + area * moved[component]);
+            }
+        }
+    } else {
+        for point in &last.points {
+            let place = (inside(last, point.position)[axis] - low) / width;
+            let moved = match motion {
+                Motion::Displacement => point.displacement,
+                Motion::Velocity => point.velocity,
+            };
+            if let Some(sum) = (place >= 0.0).then(|| sums.get_mut(place as usize)).flatten() {
+                *sum = (sum.0 + point.volume, sum.1 + point.volume * moved[component]);
+            }
+        }
+    }
+    let middle = |slice: usize| low + width * (slice as f64 + 0.5);
+    sums.iter().enumerate().filter(|(_, sum)| sum.0 > 0.0).map(|(slice, sum)| (middle(slice), sum.1 / sum.0)).collect()
+}
+
+/// How far every grain has come since the first snapshot (m).
+fn displacements(snapshots: &[Snapshot]) -> Vec<Vector3<f64>> {
+    let count = snapshots.first().map_or(0, |first| first.grains.len());
+    let mut moved = vec![Vector3::zeros(); count];
+    for pair in snapshots.windows(2) {
+        let length = pair[1].bounds.1 - pair[1].bounds.0;
+        for ((moved, before), after) in moved.iter_mut().zip(&pair[0].grains).zip(&pair[1].grains) {
+            let mut step = after.position - before.position;
+            for axis in (0..3).filter(|&axis| pair[1].periodic[axis]) {
+                step[axis] -= (step[axis] / length[axis]).round() * length[axis];
+            }
+            *moved += step;
+        }
+    }
+    moved
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_scene::record::GrainState;
+
+    fn snapshot(time: f64) -> Snapshot {
+        let grain = |id: u32| {
+            let x = f64::from(id) - 0.5;
+            GrainState {
+                id,
+                material: 0,
+                radius: 0.5,
+                mass: 1.0,
+                position: Vector3::new(x, (3.0 + x * time).rem_euclid(4.0), 0.0),
+                velocity: Vector3::new(0.0, x, 0.0),
+                spin: Vector3::zeros(),
+                angle: 0.0,
+                force: Vector3::zeros(),
+                torque: Vector3::zeros(),
+            }
+        };
+        Snapshot {
+            step: 0,
+            time,
+            bounds: (Vector3::zeros(), Vector3::new(4.0, 4.0, 0.0)),
+            periodic: [false, true, false],
+            grains: (1..=4).map(grain).collect(),
+            contacts: Vec::new(),
+            walls: Vec::new(),
+            bodies: Vec::new(),
+            points: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_sheared_row_of_discs_has_a_straight_profile_around_the_domain() {
+        let snapshots: Vec<Snapshot> = (0..=8).map(|step| snapshot(0.5 * f64::from(step))).collect();
+        for (x, moved) in profile(&snapshots, Motion::Displacement, 0, 1, 4) {
+            assert!((moved - 4.0 * x).abs() < 1e-12, "{x} {moved}");
+        }
+        for (x, velocity) in profile(&snapshots, Motion::Velocity, 0, 1, 8) {
+            // A slice holds half of one disc: its velocity.
+            assert!((velocity - (x.floor() + 0.5)).abs() < 1e-12, "{x} {velocity}");
+        }
+        // Passing more than half the domain between two snapshots cannot be followed.
+        let rare = [snapshots[0].clone(), snapshots[8].clone()];
+        assert!(profile(&rare, Motion::Displacement, 0, 1, 4).iter().any(|(x, moved)| (moved - 4.0 * x).abs() > 1.0));
+    }
+}

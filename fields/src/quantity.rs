@@ -1,0 +1,58 @@
+//! What a picture of the inside of grains shows.
+
+use grainbench_scene::record::PointState;
+use nalgebra::Matrix2;
+use serde::{Deserialize, Serialize};
+
+/// A quantity at every place of the material.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Quantity {
+    /// Difference of the principal stresses in the plane, σ₁ − σ₂ (Pa).
+    StressDifference,
+    /// cos((σ₁ − σ₂)/c) of a stress c (Pa): the photoelastic fringes of Bardenhagen and others (2001). Bright where there is no
+    /// stress.
+    Fringes(f64),
+    /// Equivalent plastic strain.
+    PlasticStrain,
+    /// Rotation since the start (rad).
+    Rotation,
+    /// Speed (m/s).
+    Speed,
+}
+
+impl Quantity {
+    /// Words and unit.
+    #[must_use]
+    pub const fn label(self) -> (&'static str, &'static str) {
+        match self {
+            Self::StressDifference => ("σ₁ − σ₂", "Pa"),
+            Self::Fringes(_) => ("cos((σ₁ − σ₂)/c)", "1"),
+            Self::PlasticStrain => ("plastic strain", "1"),
+            Self::Rotation => ("rotation", "rad"),
+            Self::Speed => ("speed", "m/s"),
+        }
+    }
+
+    /// Its value at a material point.
+    #[must_use]
+    pub fn at_point(self, point: &PointState) -> f64 {
+        let [xx, yy, _, xy, ..] = point.stress;
+        match self {
+            Self::StressDifference | Self::Fringes(_) => self.of_stress(&Matrix2::new(xx, xy, xy, yy)),
+            Self::PlasticStrain => point.plastic_strain,
+            Self::Rotation => point.rotation,
+            Self::Speed => point.velocity.norm(),
+        }
+    }
+
+    /// Its value where the stress in the plane is known (Pa); not a number for those that do not depend on stress.
+    #[must_use]
+    pub fn of_stress(self, stress: &Matrix2<f64>) -> f64 {
+        let difference = (stress.m11 - stress.m22).hypot(2.0 * stress.m12);
+        match self {
+            Self::StressDifference => difference,
+            Self::Fringes(constant) => (difference / constant).cos(),
+            Self::PlasticStrain | Self::Rotation | Self::Speed => f64::NAN,
+        }
+    }
+}
