@@ -1,7 +1,8 @@
 //! Points of a second: `cargo bench -p grainbench-mpm`.
 //!
 //! `points` counts material points times steps: an elastic block of 60,000 points that vibrates, in hat functions with FLIP and in
-//! the best setting, and 36 discs with friction that are squeezed, in the best setting. The set-up is not counted.
+//! the best setting, and 36 discs with friction that are squeezed, in the best setting. `grains` does so for ten, a hundred and a thousand
+//! discs of the same resolution. The set-up is not counted.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use grainbench_mpm::options::{Contact, Setting};
@@ -28,6 +29,17 @@ fn block() -> Scene {
     )
 }
 
+/// Discs in a square lattice that overlap a little and push each other away, ten to a thousand of them.
+fn grains(count: [u32; 2]) -> Scene {
+    scene(&format!(
+        "duration = 0.5\noutput.every = 1.0\n\
+         materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
+         contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.5 }}\n\
+         grains.d = {{ material = 'm', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.99, 1.99], count = [{}, {}] }} }}\n",
+        count[0], count[1]
+    ))
+}
+
 /// Six by six discs in touch between four walls that close in.
 fn discs() -> Scene {
     let wall = |name: &str, point: &str, normal: &str, velocity: &str| {
@@ -52,25 +64,37 @@ fn discs() -> Scene {
 }
 
 fn points(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("points");
-    group.sample_size(10).measurement_time(Duration::from_secs(20));
     let linear = Mpm::BEST.with(|setting| *setting = Setting::classic(Contact::Penalty));
     let cases = [
         ("block, hat functions, FLIP", linear, block(), Resolution::grid(122.5, 2)),
         ("block, best setting", Mpm::BEST, block(), Resolution::grid(122.5, 2)),
         ("36 discs with friction, best setting", Mpm::BEST, discs(), Resolution::grid(8.0, 3)),
     ];
+    time(criterion, "points", &cases);
+}
+
+/// Time of a point in a step as grains become more: the same for ten and for a thousand.
+fn number_of_grains(criterion: &mut Criterion) {
+    let at = Resolution::grid(4.0, 2);
+    let cases = [("10", [2, 5]), ("100", [10, 10]), ("1000", [25, 40])]
+        .map(|(name, count)| (name, Mpm::BEST, grains(count), at));
+    time(criterion, "grains", &cases);
+}
+
+fn time(criterion: &mut Criterion, name: &str, cases: &[(&str, Mpm, Scene, Resolution)]) {
+    let mut group = criterion.benchmark_group(name);
+    group.sample_size(10).measurement_time(Duration::from_secs(20));
     for (name, solver, scene, resolution) in cases {
-        let cost = || -> Cost { solver.run(&scene, &resolution, &mut ()).expect("the run ends well").cost };
+        let cost = || -> Cost { solver.run(scene, resolution, &mut ()).expect("the run ends well").cost };
         let counted = cost();
         println!("{name}: {} points, {} steps", counted.particle_steps / counted.steps, counted.steps);
         group.throughput(Throughput::Elements(counted.particle_steps));
-        group.bench_function(name, |bencher| {
+        group.bench_function(*name, |bencher| {
             bencher.iter_custom(|count| (0..count).map(|_| Duration::from_secs_f64(cost().wall_seconds)).sum());
         });
     }
     group.finish();
 }
 
-criterion_group!(benches, points);
+criterion_group!(benches, points, number_of_grains);
 criterion_main!(benches);

@@ -3,11 +3,16 @@
 use crate::contact::nodal;
 use crate::contact::penalty::{self, Rules};
 use crate::contact::shared::{Projected, Stepped};
-use crate::options::Contact;
+use crate::options::{Contact, StressUpdate};
 use crate::simulation::{Simulation, with_basis};
 use grainbench_scene::space::Space;
 
 impl<S: Space> Simulation<S> {
+    /// Whether there is anything to touch.
+    pub(crate) fn can_touch(&self) -> bool {
+        self.bodies.len() > 1 || !self.walls.is_empty()
+    }
+
     /// Whether contact is a condition at nodes, and anything can touch.
     pub(crate) fn is_nodal(&self) -> bool {
         let several = self.bodies.len() > 1 && self.setting.contact != Contact::NoSlip;
@@ -20,10 +25,10 @@ impl<S: Space> Simulation<S> {
             return;
         }
         let cell = self.lattice.shortest(S::DIMENSION);
-        let Self { lattice, setting, bodies, shared, pairs, walls, nodes, points, tracers, used, .. } = self;
+        let Self { lattice, setting, bodies, shared, pairs, walls, nodes, points, tracers, used, cost, .. } = self;
         let margin = if setting.contact == Contact::Gap { 0.0 } else { 3.0 * cell };
         let fields = if setting.contact == Contact::NoSlip { 1 } else { bodies.len() };
-        pairs.found.clear();
+        pairs.clear();
         if fields > 1 {
             pairs.find(bodies, lattice, margin);
         }
@@ -33,6 +38,10 @@ impl<S: Space> Simulation<S> {
         } else {
             shared.find(lattice, bodies, fields, &pairs.found, walls, nodes);
         }
+        cost.pair_tests += pairs.tests;
+        // Velocities of the step and, where the stress comes from projected ones, those too.
+        let times = if setting.stress_update == StressUpdate::Last { 1 } else { 2 };
+        cost.contact_evaluations += times * (shared.members.len() + shared.meetings.len()) as u64;
         if setting.contact == Contact::NoSlip {
             return;
         }
@@ -45,7 +54,7 @@ impl<S: Space> Simulation<S> {
 
     /// Forces of springs between surfaces.
     pub(crate) fn spring_forces(&mut self, record: bool) {
-        if self.setting.contact != Contact::Penalty {
+        if self.setting.contact != Contact::Penalty || !self.can_touch() {
             return;
         }
         self.touches.clear();
@@ -70,7 +79,8 @@ impl<S: Space> Simulation<S> {
                 }
             }
         });
-        cost.pair_tests += pairs.found.len() as u64;
+        cost.pair_tests += pairs.tests;
+        cost.contact_evaluations += springs.touched;
     }
 
     /// Velocities of the step that contact at nodes allows.

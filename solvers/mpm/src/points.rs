@@ -36,6 +36,13 @@ pub(crate) struct Points<S: Space> {
 }
 
 impl<S: Space> Points<S> {
+    /// Memory that a point takes up (B).
+    pub(crate) const BYTES: usize = size_of::<u32>()
+        + 4 * size_of::<S::Vector>()
+        + 2 * size_of::<S::Matrix>()
+        + size_of::<S::Symmetric>()
+        + 4 * size_of::<f64>();
+
     pub(crate) const fn new() -> Self {
         Self {
             id: Vec::new(),

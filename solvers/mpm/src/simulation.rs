@@ -207,7 +207,21 @@ impl<S: Space> Simulation<S> {
         self.step += 1;
         self.cost.steps += 1;
         self.cost.particle_steps += self.points.len() as u64;
+        self.cost.bytes = self.cost.bytes.max(self.bytes() as u64);
         Ok(())
+    }
+
+    /// Memory that points, tracers, nodes and contacts take up (B), by their numbers.
+    fn bytes(&self) -> usize {
+        let of_a_tracer = Tracers::<S>::BYTES + Springs::<S>::BYTES;
+        let of_a_node = size_of::<Node<S>>() + size_of::<S::Vector>();
+        // The velocity at the last look is a point's too.
+        self.points.len() * (Points::<S>::BYTES + size_of::<S::Vector>())
+            + self.tracers.len() * of_a_tracer
+            + self.used * of_a_node
+            + self.shared.bytes()
+            + self.pairs.bytes()
+            + self.bodies.len() * size_of::<Body>()
     }
 
     /// Puts points in the order of their cells when some may have crossed one.
@@ -320,8 +334,10 @@ impl<S: Space> Simulation<S> {
         let half = 0.5 * self.damping * self.time_step;
         let (keep, gain) = ((1.0 - half) / (1.0 + half), self.time_step / (1.0 + half));
         let gravity = self.gravity;
+        let mut stepped = 0;
         for node in &mut self.nodes[..self.used] {
             if node.mass > 0.0 {
+                stepped += 1;
                 let inverse = 1.0 / node.mass;
                 let before = node.velocity * inverse;
                 node.velocity = before * keep + (node.change * inverse + gravity) * gain;
@@ -330,6 +346,7 @@ impl<S: Space> Simulation<S> {
                 (node.velocity, node.change) = (S::ORIGIN, S::ORIGIN);
             }
         }
+        self.cost.node_updates += stepped;
         self.held.hold(&self.bodies, &mut self.nodes);
         self.meet_stepped();
         for node in &mut self.nodes[..self.used] {

@@ -1,7 +1,10 @@
 //! How a run starts: pressed, settled, set moving.
 
 use crate::bodies::{Body, press};
+use crate::contact::penalty::Springs;
+use crate::options::Contact;
 use crate::simulation::Simulation;
+use crate::surface::Tracers;
 use grainbench_scene::manufactured::Medium;
 use grainbench_scene::record::{Cost, Owner};
 use grainbench_scene::solver::Broken;
@@ -16,6 +19,7 @@ impl<S: Space> Simulation<S> {
         if start.initial_pressure.is_some() {
             press(&self.bodies, &mut self.points, &self.tracers, gravity);
         }
+        self.drop_idle_surfaces();
         self.find_bounds();
         if let Some(settle) = start.settle {
             (self.gravity, self.damping, self.settling) = (S::restrict(gravity), settle.damping, true);
@@ -27,6 +31,17 @@ impl<S: Space> Simulation<S> {
             self.touches.clear();
         }
         Ok(())
+    }
+
+    /// Surfaces that nothing can touch, or that contact does not ask for, cost nothing: they are needed for pressing only.
+    pub(crate) fn drop_idle_surfaces(&mut self) {
+        if self.can_touch() && matches!(self.setting.contact, Contact::Penalty | Contact::Gap) {
+            return;
+        }
+        (self.tracers, self.springs) = (Tracers::new(), Springs::new(0));
+        for body in &mut self.bodies {
+            (body.tracers, body.chunks) = (0..0, 0..0);
+        }
     }
 
     /// Gives every point the velocity that the scene asks for, half a step before the clock starts, so that every step is

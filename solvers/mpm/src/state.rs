@@ -53,6 +53,7 @@ impl<S: Space> Simulation<S> {
         checkpoint: &Checkpoint,
     ) -> Result<Recorder, CheckpointError> {
         let state: State<S> = checkpoint.state(identity)?;
+        self.drop_idle_surfaces();
         let same = state.points.is_whole()
             && state.points.len() == self.points.len()
             && state.tracers.len() == self.tracers.len()

@@ -68,6 +68,10 @@ const RUN: usize = 16;
 const FACING: f64 = -0.2;
 
 impl<S: Space> Tracers<S> {
+    /// Memory that a tracer takes up (B), its part of a run included.
+    pub(crate) const BYTES: usize =
+        2 * size_of::<S::Vector>() + size_of::<[u32; 2]>() + size_of::<Chunk<S>>().div_ceil(RUN);
+
     pub(crate) const fn new() -> Self {
         Self { position: Vec::new(), area: Vec::new(), neighbours: Vec::new(), chunks: Vec::new() }
     }

@@ -276,6 +276,12 @@ pub struct Cost {
     pub pair_tests: u64,
     /// Neighbour lists built.
     pub neighbour_builds: u64,
+    /// Nodes of a grid that took a step, in all steps.
+    #[serde(default)]
+    pub node_updates: u64,
+    /// Memory that the state of the simulation takes up at its largest (B), where it is counted.
+    #[serde(default)]
+    pub bytes: u64,
     /// Wall-clock time of the stepping loop (s).
     pub wall_seconds: f64,
 }

@@ -14,51 +14,95 @@ pub(crate) struct Pair<S: Space> {
     pub(crate) shift: S::Vector,
 }
 
-/// Finds pairs by sorting bodies along an axis.
+/// Finds pairs by the cells of a coarse grid that their boxes reach, so that the work grows with the number of bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Pairs<S: Space> {
-    order: Vec<u32>,
-    /// Each pair twice, once in each order.
+    /// Cells that bodies reach, by number, and the bodies.
+    reached: Vec<(u64, u32)>,
+    /// Each pair once, the lower body first.
     pub(crate) found: Vec<Pair<S>>,
+    /// How many pairs of boxes were held against each other.
+    pub(crate) tests: u64,
 }
 
 impl<S: Space> Pairs<S> {
     pub(crate) const fn new() -> Self {
-        Self { order: Vec::new(), found: Vec::new() }
+        Self { reached: Vec::new(), found: Vec::new(), tests: 0 }
+    }
+
+    /// No pairs.
+    pub(crate) fn clear(&mut self) {
+        self.found.clear();
+        self.tests = 0;
+    }
+
+    /// Memory that is in use (B).
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.reached) + size_of_val(&*self.found)
     }
 
     /// All pairs whose boxes are closer than `margin` (m).
     pub(crate) fn find(&mut self, bodies: &[Body], lattice: &Lattice, margin: f64) {
-        self.found.clear();
-        if self.order.len() != bodies.len() {
-            self.order = (0..bodies.len() as u32).collect();
-        }
-        // Sorting helps along an axis on which nothing comes again.
-        let axis = (0..S::DIMENSION).find(|&axis| lattice.period[axis].is_none());
-        if let Some(axis) = axis {
-            let low = |body: u32| bodies[body as usize].bounds[0][axis];
-            self.order.sort_by(|&a, &b| low(a).total_cmp(&low(b)).then(a.cmp(&b)));
-        }
-        for (at, &a) in self.order.iter().enumerate() {
-            let bounds = &bodies[a as usize].bounds;
-            for &b in &self.order[at + 1..] {
-                let others = &bodies[b as usize].bounds;
-                if axis.is_some_and(|axis| others[0][axis] > bounds[1][axis] + margin) {
-                    break;
-                }
-                let shift = shift(lattice, bounds, others);
-                let apart = (0..S::DIMENSION).any(|axis| {
-                    others[0][axis] + shift[axis] > bounds[1][axis] + margin
-                        || bounds[0][axis] > others[1][axis] + shift[axis] + margin
-                });
-                if !apart {
-                    let (first, second) = (a.min(b), a.max(b));
-                    let shift = S::restrict(if first == a { shift } else { -shift });
-                    self.found.push(Pair { first, second, shift });
+        self.clear();
+        self.reach(bodies, lattice, margin);
+        for group in self.reached.chunk_by(|a, b| a.0 == b.0) {
+            for (at, &(_, a)) in group.iter().enumerate() {
+                let bounds = &bodies[a as usize].bounds;
+                for &(_, b) in &group[at + 1..] {
+                    self.tests += 1;
+                    let others = &bodies[b as usize].bounds;
+                    let shift = shift(lattice, bounds, others);
+                    let apart = (0..S::DIMENSION).any(|axis| {
+                        others[0][axis] + shift[axis] > bounds[1][axis] + margin
+                            || bounds[0][axis] > others[1][axis] + shift[axis] + margin
+                    });
+                    if !apart {
+                        self.found.push(Pair { first: a, second: b, shift: S::restrict(shift) });
+                    }
                 }
             }
         }
         self.found.sort_by_key(|pair| (pair.first, pair.second));
+        self.found.dedup_by_key(|pair| (pair.first, pair.second));
+    }
+
+    /// Finds the cells that each box with half of `margin` (m) around it reaches, in order of cells and bodies. Cells are as large as bodies
+    /// are in the mean.
+    fn reach(&mut self, bodies: &[Body], lattice: &Lattice, margin: f64) {
+        self.reached.clear();
+        let extent =
+            |body: &Body| (0..S::DIMENSION).map(|axis| body.bounds[1][axis] - body.bounds[0][axis]).fold(0.0, f64::max);
+        let sum: f64 = bodies.iter().map(extent).sum();
+        let size = sum / bodies.len() as f64 + margin;
+        // Along periodic axes a whole number of cells.
+        let periods = [0, 1, 2].map(|axis| {
+            let length = f64::from(lattice.period[axis]?) * lattice.cell[axis];
+            Some((length, (length / size).floor().max(1.0)))
+        });
+        for (number, body) in bodies.iter().enumerate() {
+            let [mut low, mut high] = [[0_i64; 3]; 2];
+            for axis in 0..S::DIMENSION {
+                let per_length = periods[axis].map_or(1.0 / size, |(length, count)| count / length);
+                let cell = |at: f64| ((at - lattice.origin[axis]) * per_length).floor() as i64;
+                low[axis] = cell(body.bounds[0][axis] - 0.5 * margin);
+                high[axis] = cell(body.bounds[1][axis] + 0.5 * margin);
+                if let Some((_, count)) = periods[axis] {
+                    high[axis] = high[axis].min(low[axis] + count as i64 - 1);
+                }
+            }
+            let number_of = |cell: [i64; 3]| {
+                (0..3).fold(0, |number, axis| {
+                    let at = periods[axis].map_or(cell[axis], |(_, count)| cell[axis].rem_euclid(count as i64));
+                    number << 21 | (at as u64 & 0x1f_ffff)
+                })
+            };
+            for z in low[2]..=high[2] {
+                for y in low[1]..=high[1] {
+                    self.reached.extend((low[0]..=high[0]).map(|x| (number_of([x, y, z]), number as u32)));
+                }
+            }
+        }
+        self.reached.sort_unstable();
     }
 }
 

@@ -120,12 +120,17 @@ struct Spring<S: Space> {
 pub(crate) struct Springs<S: Space> {
     of: Vec<[Spring<S>; AT_ONCE]>,
     now: u64,
+    /// How many have touched since the evaluation began.
+    pub(crate) touched: u64,
 }
 
 impl<S: Space> Springs<S> {
+    /// Memory that the springs of a tracer take up (B).
+    pub(crate) const BYTES: usize = size_of::<[Spring<S>; AT_ONCE]>();
+
     pub(crate) fn new(tracers: usize) -> Self {
         let none = Spring { other: Other::Wall(u16::MAX), stamp: 0, stretch: S::ORIGIN };
-        Self { of: vec![[none; AT_ONCE]; tracers], now: 1 }
+        Self { of: vec![[none; AT_ONCE]; tracers], now: 1, touched: 0 }
     }
 
     /// Of how many tracers.
@@ -136,11 +141,13 @@ impl<S: Space> Springs<S> {
     /// Begins an evaluation.
     pub(crate) fn begin(&mut self) {
         self.now += 1;
+        self.touched = 0;
     }
 
     /// Stretch of the spring of a tracer to what it touches; it counts as touching now.
     #[inline(always)]
     fn stretch(&mut self, tracer: usize, other: Other) -> &mut S::Vector {
+        self.touched += 1;
         let (now, springs) = (self.now, &mut self.of[tracer]);
         let same = springs.iter().position(|spring| spring.other == other);
         let oldest = || (1..AT_ONCE).fold(0, |a, b| if springs[b].stamp < springs[a].stamp { b } else { a });

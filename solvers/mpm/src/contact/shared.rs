@@ -123,6 +123,16 @@ impl<S: Space> Shared<S> {
         }
     }
 
+    /// Memory that is in use (B).
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.members)
+            + size_of_val(&*self.groups)
+            + size_of_val(&*self.faces)
+            + size_of_val(&*self.meetings)
+            + size_of_val(&*self.densities)
+            + size_of_val(&*self.touching)
+    }
+
     pub(crate) fn groups(&self) -> impl Iterator<Item = Group<S>> + '_ {
         self.groups.iter().map(|(members, wall, position)| Group {
             members: members.clone(),

@@ -1,0 +1,57 @@
+//! What a run costs, by counts that do not depend on the machine.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_scene::record::Cost;
+use support::run;
+
+const MATERIAL: &str = "materials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
+    contacts.m = { between = ['m', 'm'], law = 'coulomb', friction = 0.5 }\n";
+
+/// Discs in a square lattice that overlap a little: every one has four contacts but those at the rim.
+fn discs(count: [u32; 2]) -> Cost {
+    let text = format!(
+        "dimension = 2\nduration = 0.2\n{MATERIAL}\
+         grains.d = {{ material = 'm', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.99, 1.99], count = [{}, {}] }} }}\n",
+        count[0], count[1]
+    );
+    run("mpm", &text, 3.0, 2).cost
+}
+
+/// Growth from ten to a thousand grains at the same points a grain, as exponents of their number.
+#[test]
+fn cost_grows_with_the_number_of_grains_and_no_faster() {
+    let [few, many] = [discs([2, 5]), discs([25, 40])];
+    assert_eq!(few.steps, many.steps);
+    assert_eq!(100 * few.particle_steps, many.particle_steps);
+    let exponent = |of: fn(&Cost) -> u64| (of(&many) as f64 / of(&few) as f64).log10() / 2.0;
+    // Ten discs have 13 contacts, a thousand have 1935: what is counted by contact grows as 148.8 = 100^1.086.
+    let contacts = (1935.0_f64 / 13.0).log10() / 2.0;
+    let nodes = exponent(|cost| cost.node_updates);
+    let memory = exponent(|cost| cost.bytes);
+    let springs = exponent(|cost| cost.contact_evaluations) / contacts;
+    let pairs = exponent(|cost| cost.pair_tests) / contacts;
+    for (what, exponent) in [("nodes", nodes), ("memory", memory), ("springs", springs), ("pairs", pairs)] {
+        assert!((0.95..=1.05).contains(&exponent), "{what}: {exponent}");
+    }
+}
+
+/// A body by itself has no surface, no pairs and no springs: the run takes as much memory as one in which bodies cannot tell each
+/// other apart, and evaluates no contact.
+#[test]
+fn a_body_by_itself_pays_nothing_for_contact() {
+    let text = format!(
+        "dimension = 2\nduration = 0.5\n{MATERIAL}[grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0]\nspin = 0.1\n"
+    );
+    let costs = ["mpm:penalty", "mpm:gap", "mpm:2000", "mpm:2001", "mpm:no-slip"].map(|solver| {
+        let cost = run(solver, &text, 8.0, 2).cost;
+        assert_eq!((cost.contact_evaluations, cost.pair_tests), (0, 0), "{solver}");
+        (cost.bytes, cost.node_updates)
+    });
+    assert!(costs.iter().all(|cost| *cost == costs[0]), "{costs:?}");
+    // With a wall that it never meets it has a surface, and that is what it costs.
+    let wall = "[walls.w]\nmaterial = 'm'\nplane = { point = [0.0, -9.0], normal = [0.0, 1.0] }\n";
+    let with_wall = run("mpm:penalty", &(text + wall), 8.0, 2).cost;
+    assert!(with_wall.bytes > costs[0].0 && with_wall.contact_evaluations == 0, "{with_wall:?}");
+}
