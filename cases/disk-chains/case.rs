@@ -2,6 +2,8 @@
 
 #[path = "elastic.rs"]
 mod elastic;
+#[path = "fringes.rs"]
+mod fringes;
 #[path = "modal.rs"]
 mod modal;
 
@@ -32,7 +34,7 @@ pub(crate) static CASE: Case = Case {
             that sticks passes it on sooner than one that slips, and so does the line.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "A disc is one mass on springs here: it has no stress inside, and no fringes. When a contact is first felt is a \
+    weakness: "To DEM a disc is one mass on springs: no stress wave inside, and no fringes that run. When a contact is first felt is a \
                matter of the stiffness that was put in. The paper states its order of speeds for fringes, and prints no \
                arrival times.",
     ladder: LADDER,
@@ -229,5 +231,6 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         arrivals,
     ));
     figures.push(elastic::figure(bench)?);
+    figures.extend(fringes::figures(bench)?);
     Ok(figures)
 }

@@ -7,7 +7,7 @@
 //! Springs of the default stiffness, 2.2 E'/h, hold up the wave by a tenth of a transit at each contact, as much as a cell of
 //! material more would. These rows have twice that stiffness, which static forces do not need.
 
-use super::WAVE_SPEED;
+use super::{WAVE_SPEED, fringes};
 use crate::bench::Bench;
 use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
@@ -24,14 +24,18 @@ const ARRIVED: f64 = 0.1;
 const NEARLY_INCOMPRESSIBLE: f64 = 0.48;
 
 /// Cells a radius; shorter steps than usual, for the striker.
-const fn grid(cells: f64, points: u32) -> Resolution {
+pub(super) const fn grid(cells: f64, points: u32) -> Resolution {
     Resolution::Grid { cells, points, courant: 0.3 }
 }
 
 /// A run that is watched at the centre of every disc for so many transits.
-fn run(variant: &'static str, solver: &'static str, resolution: Resolution, transits: f64) -> Run {
+pub(super) fn run(variant: &'static str, solver: &'static str, resolution: Resolution, transits: f64) -> Run {
     Run::new(variant, solver, resolution)
-        .adjusted(&format!("elastic, {transits} transits"), move |scene| watch(scene, transits))
+        .adjusted(&format!("elastic, {transits} transits"), move |scene| {
+            watch(scene, transits);
+            scene.snapshot_times = fringes::times(scene, variant);
+            scene.snapshot_times.retain(|&time| time <= transits * 2.0 * scene.grains[0].radius / WAVE_SPEED);
+        })
 }
 
 fn watch(scene: &mut Scene, transits: f64) {
@@ -67,16 +71,21 @@ fn slower(solver: &'static str, resolution: Resolution) -> Run {
     })
 }
 
+/// Difference of the principal stresses at the centre of a disc (Pa), by sample.
+pub(super) fn principal_difference(done: &Done, disc: usize) -> Result<impl Fn(usize) -> f64, Missing> {
+    let column = |part: &str| done.column(&format!("centre-{disc}.sigma_{part}"));
+    let (xx, yy, xy) = (column("xx")?, column("yy")?, column("xy")?);
+    Ok(move |at: usize| f64::hypot(xx[at] - yy[at], 2.0 * xy[at]))
+}
+
 /// When stress arrives at the centre of a disc (d/c).
 fn arrival(done: &Done, disc: usize) -> Result<f64, Missing> {
     let scene = &done.scene;
-    let column = |part: &str| done.column(&format!("centre-{disc}.sigma_{part}"));
-    let (xx, yy, xy) = (column("xx")?, column("yy")?, column("xy")?);
-    let difference = |at: usize| f64::hypot(xx[at] - yy[at], 2.0 * xy[at]);
+    let difference = principal_difference(done, disc)?;
     let volume = std::f64::consts::PI * scene.grains[0].radius.powi(2);
     let speed = scene.walls[0].motion.phases[0].velocity.norm();
     let threshold = ARRIVED * scene.grains[0].mass / volume * WAVE_SPEED * speed;
-    let at = (1..xx.len()).find(|&at| difference(at) > threshold);
+    let at = (1..done.series().time.len()).find(|&at| difference(at) > threshold);
     let at = at.ok_or_else(|| Missing(format!("stress above .1 ρcv in disc {disc}")))?;
     let time = &done.series().time;
     let share = (threshold - difference(at - 1)) / (difference(at) - difference(at - 1));

@@ -21,6 +21,8 @@ pub struct Bench {
     stranger: Option<Arc<dyn Solver>>,
     /// Whether other programs are run even where their runs are stored.
     live: bool,
+    /// Whether figures may take as long as the finest rungs do.
+    thorough: bool,
     /// By [`Run::key`].
     runs: Mutex<BTreeMap<String, (Run, Slot)>>,
     /// Of negative controls, by run and change.
@@ -31,7 +33,7 @@ impl Bench {
     /// A bench without runs.
     #[must_use]
     pub fn new(case: &'static Case) -> Self {
-        Self { case, stranger: None, live: false, runs: Mutex::default(), wrong: Mutex::default() }
+        Self { case, stranger: None, live: false, thorough: false, runs: Mutex::default(), wrong: Mutex::default() }
     }
 
     /// A bench on which one solver takes the place of every solver that the gates name. It is given their resolutions,
@@ -45,6 +47,18 @@ impl Bench {
     #[must_use]
     pub fn live(self, live: bool) -> Self {
         Self { live, ..self }
+    }
+
+    /// The bench whose figures are drawn from the finest runs, which take minutes.
+    #[must_use]
+    pub fn thorough(self, thorough: bool) -> Self {
+        Self { thorough, ..self }
+    }
+
+    /// Whether figures may take as long as the finest rungs do.
+    #[must_use]
+    pub const fn is_thorough(&self) -> bool {
+        self.thorough
     }
 
     /// The gates of this bench: all of the case, or those that are fair to a stranger.

@@ -1,5 +1,6 @@
 //! What a case wants drawn, as data: reports draw it without knowing any solver.
 
+use grainbench_fields::raster::Raster;
 use serde::{Deserialize, Serialize};
 
 /// One axis of a graph.
@@ -98,6 +99,49 @@ pub struct ForcePlot {
     pub bars: Vec<ForceBar>,
 }
 
+/// How the values of a field are coloured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Shades {
+    /// From dark to light on white: amounts.
+    Amount,
+    /// From black to light on black: what glows, such as stress between crossed polarisers.
+    Glow,
+    /// Two colours that meet in the middle of the range: signed values.
+    Signed,
+    /// Grey: fringes.
+    Fringes,
+}
+
+/// One picture of a field, or the frames of a film of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Panel {
+    /// What stands above it.
+    pub title: String,
+    /// Frames in the order of the times of the field; all of one size.
+    pub frames: Vec<Raster>,
+}
+
+/// A field over the plane, in panels beside one another that share colours and scale.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Field {
+    /// Quantity, such as `σ₁ − σ₂`.
+    pub label: String,
+    /// Its SI unit; `1` for a pure number.
+    pub unit: String,
+    /// Values of the lowest and the highest level.
+    pub range: (f64, f64),
+    /// How they are coloured.
+    pub shades: Shades,
+    /// Side of a pixel (m).
+    pub pixel: f64,
+    /// The panels, equally large.
+    pub panels: Vec<Panel>,
+    /// What the frames of a film are told apart by, such as `time t (s)`.
+    pub clock: String,
+    /// Where each frame stands on that clock; one for a picture.
+    pub times: Vec<f64>,
+}
+
 /// What is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Drawing {
@@ -105,6 +149,8 @@ pub enum Drawing {
     Graph(Graph),
     /// A force plot.
     Forces(ForcePlot),
+    /// A field, as pictures or as a film.
+    Field(Field),
 }
 
 /// One figure of a case.
@@ -129,6 +175,27 @@ impl Figure {
             title: title.to_owned(),
             caption: caption.to_owned(),
             drawing: Drawing::Graph(Graph { x, y, curves }),
+        }
+    }
+    /// A field.
+    #[must_use]
+    pub fn field(name: &str, title: &str, caption: &str, field: Field) -> Self {
+        Self {
+            name: name.to_owned(),
+            title: title.to_owned(),
+            caption: caption.to_owned(),
+            drawing: Drawing::Field(field),
+        }
+    }
+
+    /// Cundall and Strack's force plot.
+    #[must_use]
+    pub fn forces(name: &str, title: &str, caption: &str, plot: ForcePlot) -> Self {
+        Self {
+            name: name.to_owned(),
+            title: title.to_owned(),
+            caption: caption.to_owned(),
+            drawing: Drawing::Forces(plot),
         }
     }
 }

@@ -9,6 +9,7 @@ pub mod chaos;
 pub mod conformance;
 pub mod effect;
 pub mod elastic;
+pub mod field_picture;
 pub mod figure;
 pub mod force_plot;
 pub mod gate;

@@ -65,7 +65,7 @@ pub enum LoadError {
 }
 
 /// Writes `index.html`, `results.json`, `report.json`, `points.csv`, `junit.xml` and `figures/CASE-NAME.svg` into
-/// `dir`, all of them or none.
+/// `dir`, films as `figures/CASE-NAME.png` too, all of them or none.
 ///
 /// # Errors
 /// When the disk refuses or a figure cannot be drawn.
@@ -97,6 +97,9 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
             let stem = page::slug(&format!("{}-{}", section.name, figure.name));
             let name = page::unique(&stem, &mut names);
             out.write(format!("figures/{name}.svg"), plot::draw(figure)?)?;
+            if let Some(film) = plot::film(figure)? {
+                out.write(format!("figures/{name}.png"), film)?;
+            }
         }
     }
     Ok(())

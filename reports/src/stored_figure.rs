@@ -1,7 +1,7 @@
 //! Reading figures back. A run that blew up has points that are not finite; JSON writes those as `null`, and here
 //! `null` becomes not-a-number again, which every drawer leaves out and counts.
 
-use grainbench_cases::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
+use grainbench_cases::figure::{Axis, Curve, Drawing, Field, Figure, ForceBar, ForcePlot, Graph, Stroke};
 use serde::{Deserialize, Deserializer};
 
 /// A number, or `null`.
@@ -21,6 +21,7 @@ struct StoredFigure {
 enum StoredDrawing {
     Graph(StoredGraph),
     Forces(StoredForces),
+    Field(Field),
 }
 
 #[derive(Deserialize)]
@@ -76,6 +77,7 @@ impl StoredFigure {
             drawing: match self.drawing {
                 StoredDrawing::Graph(graph) => Drawing::Graph(graph.read()),
                 StoredDrawing::Forces(forces) => Drawing::Forces(forces.read()),
+                StoredDrawing::Field(field) => Drawing::Field(field),
             },
         }
     }

@@ -56,7 +56,8 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let selected = select::select(cases, &options.solver, &options.rungs)?;
     check_writable(&options.out)?;
     let start = Instant::now();
-    let sections = judge(&selected, !options.no_controls, options.live);
+    let thorough = options.rungs.iter().any(|rung| rung == "all");
+    let sections = judge(&selected, !options.no_controls, options.live, thorough);
     let provenance = provenance(words(cases, options), start.elapsed().as_secs_f64());
     let report = Report { provenance, sections };
     write_report(&options.out, &report).map_err(Fault::input)?;
@@ -118,8 +119,8 @@ enum Task {
     Draw(usize),
 }
 
-fn judge(selected: &[Selected], with_controls: bool, live: bool) -> Vec<Section> {
-    let work: Vec<Work<'_>> = selected.iter().map(|selected| Work::new(selected, live)).collect();
+fn judge(selected: &[Selected], with_controls: bool, live: bool, thorough: bool) -> Vec<Section> {
+    let work: Vec<Work<'_>> = selected.iter().map(|selected| Work::new(selected, live, thorough)).collect();
     let tasks = tasks(selected, with_controls);
     let progress = Progress::new(tasks.len() as u64, "checks");
     let next = AtomicUsize::new(0);
@@ -177,10 +178,10 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
 }
 
 impl<'a> Work<'a> {
-    fn new(selected: &'a Selected, live: bool) -> Self {
+    fn new(selected: &'a Selected, live: bool, thorough: bool) -> Self {
         Self {
             selected,
-            bench: Bench::new(selected.case).live(live),
+            bench: Bench::new(selected.case).live(live).thorough(thorough),
             verdicts: selected.gates.iter().map(|_| OnceLock::new()).collect(),
             controls: selected.gates.iter().map(|_| OnceLock::new()).collect(),
             figures: OnceLock::new(),

@@ -16,7 +16,7 @@ use crate::report::{RunCost, Section};
 const fn plot_class(drawing: &Drawing) -> &'static str {
     match drawing {
         Drawing::Graph(_) => "plot graph",
-        Drawing::Forces(_) => "plot",
+        Drawing::Forces(_) | Drawing::Field(_) => "plot",
     }
 }
 

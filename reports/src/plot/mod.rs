@@ -1,5 +1,6 @@
 //! Figures as SVG text that needs no font and no library to be read.
 
+pub mod field;
 pub mod forces;
 pub mod graph;
 pub mod palette;
@@ -34,6 +35,21 @@ pub fn draw(figure: &Figure) -> Result<String, DrawError> {
         Drawing::Graph(graph) => graph::draw(&figure.title, graph)
             .map_err(|source| DrawError { figure: figure.name.clone(), reason: source.to_string() }),
         Drawing::Forces(plot) => Ok(forces::draw(&figure.title, plot)),
+        Drawing::Field(field) => field::draw(&figure.title, field)
+            .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() }),
+    }
+}
+
+/// The film of a figure by itself, as an animated PNG; none where nothing moves.
+///
+/// # Errors
+/// When the frames are not of one size.
+pub fn film(figure: &Figure) -> Result<Option<Vec<u8>>, DrawError> {
+    match &figure.drawing {
+        Drawing::Field(field) if field.times.len() > 1 => field::film(field)
+            .map(Some)
+            .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() }),
+        _ => Ok(None),
     }
 }
 

@@ -1,0 +1,111 @@
+//! Photoelastic fringes in the discs at the paper's frame times, and a film of the line.
+//!
+//! The paper chose its fringe constant c by eye from its own pictures of the line and does not print it. Here it is fitted once, to
+//! the line as well: at the line's last frame the first grey fringe, cos(Δσ/c) = 0, stands at the centre of the fourth disc. The
+//! zig-zags keep that c.
+
+use super::WAVE_SPEED;
+use super::elastic::{grid, principal_difference, run};
+use crate::bench::Bench;
+use crate::field_picture::{Shot, film, pictures};
+use crate::figure::Figure;
+use crate::gate::Done;
+use grainbench_fields::quantity::Quantity;
+use grainbench_scene::record::Snapshot;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::RunError;
+use std::f64::consts::FRAC_PI_2;
+
+/// Frames of Figs 9, 10 and 11, simulation (experiment), in transits of a disc.
+const FRAMES: [(&str, &str, [f64; 3], [f64; 3]); 3] = [
+    ("line", "four discs in a line, Fig. 9", [2.2, 5.5, 7.7], [2.6, 6.6, 9.2]),
+    ("zig-zag", "zig-zag, μ = .5, Fig. 10", [3.0, 6.0, 9.0], [5.3, 10.5, 15.8]),
+    ("zig-zag-glued", "glued zig-zag, Fig. 11", [1.4, 3.6, 5.8], [1.6, 4.2, 6.8]),
+];
+/// Frames of the film, in quarters of a transit.
+const FILM: u32 = 44;
+const PIXELS: u32 = 640;
+
+/// One transit of a disc, d/c (s).
+fn transit(scene: &Scene) -> f64 {
+    2.0 * scene.grains[0].radius / WAVE_SPEED
+}
+
+/// When snapshots are wanted of a variant (s).
+pub(super) fn times(scene: &Scene, variant: &str) -> Vec<f64> {
+    let frames = FRAMES.iter().filter(|(name, ..)| *name == variant).flat_map(|(_, _, frames, _)| *frames);
+    let film = (1..=FILM).map(|frame| 0.25 * f64::from(frame)).filter(|_| variant == "line");
+    frames.chain(film).map(|transits| transits * transit(scene)).collect()
+}
+
+/// The snapshot nearest to a time in transits.
+fn at(done: &Done, transits: f64) -> Option<&Snapshot> {
+    let time = transits * transit(&done.scene);
+    let away = |snapshot: &&Snapshot| (snapshot.time - time).abs();
+    done.record.snapshots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
+}
+
+/// The fringe constant (Pa) from the line: see above.
+fn constant(line: &Done) -> f64 {
+    let (_, _, frames, _) = FRAMES[0];
+    let time = frames[2] * transit(&line.scene);
+    let sample = line.series().time.iter().position(|&sampled| sampled >= time).unwrap_or_default();
+    principal_difference(line, 4).map_or(f64::NAN, |difference| difference(sample)) / FRAC_PI_2
+}
+
+/// Fringes of all chains at the paper's times, and the film.
+pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let (cells, points) = if bench.is_thorough() { (20.0, 2) } else { (8.0, 2) };
+    let done = |variant| bench.run(&run(variant, "mpm", grid(cells, points), 15.0));
+    let line = done("line")?;
+    let constant = constant(&line);
+    let quantity = Quantity::Fringes(constant);
+    let resolution = format!(
+        "{} cells a diameter, c = {:.3} ρcv, bright without stress; the striker is on the left (the paper's on the right).",
+        2.0 * cells,
+        constant / impact_stress(&line)
+    );
+    let mut figures = Vec::new();
+    for (variant, title, frames, experiment) in FRAMES {
+        let done = done(variant)?;
+        let shots: Vec<Shot<'_>> = frames
+            .iter()
+            .zip(experiment)
+            .filter_map(|(&time, seen)| {
+                Some(Shot::new(format!("t c/d = {time} (in the experiment {seen})"), at(&done, time)?))
+            })
+            .collect();
+        figures.push(Figure::field(
+            &format!("fringes-{variant}"),
+            &format!("Fringes: {title}"),
+            &format!(
+                "cos((σ₁ − σ₂)/c) at the times of the paper's frames, {resolution} c is fitted once, so that at 7.7 the first \
+                 grey fringe stands at the centre of the fourth disc of the line, and then kept."
+            ),
+            pictures(quantity, &shots, PIXELS, None),
+        ));
+    }
+    let clock: Vec<f64> = (1..=FILM).map(|frame| 0.25 * f64::from(frame)).collect();
+    let frames: Vec<&Snapshot> = clock.iter().filter_map(|&time| at(&line, time)).collect();
+    let moving = film(
+        quantity,
+        &[Shot { title: String::new(), frames }],
+        ("time t c/d, transits of a disc", &clock),
+        PIXELS,
+        None,
+    );
+    figures.push(Figure::field(
+        "fringes-film",
+        "Fringes run along the line of four",
+        &format!("The line of Fig. 9 from the strike on, {resolution}"),
+        moving,
+    ));
+    Ok(figures)
+}
+
+/// ρcv of the strike (Pa).
+fn impact_stress(done: &Done) -> f64 {
+    let scene = &done.scene;
+    let density = scene.grains[0].mass / (std::f64::consts::PI * scene.grains[0].radius.powi(2));
+    density * WAVE_SPEED * scene.walls[0].motion.phases[0].velocity.norm()
+}

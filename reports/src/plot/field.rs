@@ -1,0 +1,340 @@
+//! Fields as pixels in a drawing: panels, a bar of colours, a scale bar; films with a bar that runs along their clock.
+
+use std::io;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use grainbench_cases::figure::{Field, Panel, Shades};
+use grainbench_fields::raster::{HIGH, LOW, RIM, Raster, VOID};
+use maud::{Markup, html};
+
+use super::scale::Scale;
+use super::{FONTS, WIDTH, text_width};
+use crate::number;
+
+const MARGIN: f64 = 10.0;
+const TOP: f64 = 48.0;
+/// Above each row of panels, where they have titles.
+const HEAD: f64 = 24.0;
+const GAP: f64 = 14.0;
+/// Right of the panels, for colours.
+const COLOURS: f64 = 116.0;
+const TALLEST: f64 = 560.0;
+const FOOT: f64 = 46.0;
+/// Below a film, for its clock.
+const CLOCK: f64 = 50.0;
+/// Panels of a film stand side by side in one image, this many pixels apart; its clock runs below as high.
+const SEAM: usize = 8;
+/// Tenths of a second that a frame is shown, and the last.
+const PACE: u16 = 1;
+const REST: u16 = 12;
+
+/// Draws a field as a complete SVG document.
+///
+/// # Errors
+/// When it has no panel, or frames differ in size or number.
+pub fn draw(title: &str, field: &Field) -> io::Result<String> {
+    let size = check(field)?;
+    let is_film = field.times.len() > 1;
+    let count = field.panels.len();
+    let across = if is_film { count } else { per_row(count, size) };
+    let rows = count.div_ceil(across);
+    let head = if field.panels.iter().any(|panel| !panel.title.is_empty()) { HEAD } else { 0.0 };
+    let room = WIDTH - 2.0 * MARGIN - COLOURS;
+    let widest = (room - GAP * (across - 1) as f64) / across as f64;
+    let scale = (widest / f64::from(size.0)).min(TALLEST / rows as f64 / f64::from(size.1));
+    let panel = (f64::from(size.0) * scale, f64::from(size.1) * scale);
+    // The seam of a film is as wide as the scale makes it.
+    let gap = if is_film { SEAM as f64 * scale } else { GAP };
+    let row = head + panel.1 + if rows > 1 { GAP } else { 0.0 };
+    let corner = |at: usize| (MARGIN + (panel.0 + gap) * (at % across) as f64, TOP + row * (at / across) as f64 + head);
+    let bottom = TOP + row * rows as f64;
+    let full = panel.0 * across as f64 + gap * (across - 1) as f64;
+    let images = if is_film {
+        let strip = 2.0 * SEAM as f64 * scale;
+        vec![(corner(0), (full, panel.1 + strip), film(field)?)]
+    } else {
+        let still = |(at, panel_of): (usize, &Panel)| {
+            Ok((corner(at), panel, png(field.shades, size, &[panel_of.frames[0].levels.clone()])?))
+        };
+        field.panels.iter().enumerate().map(still).collect::<io::Result<_>>()?
+    };
+    let foot = bottom + if is_film { 2.0 * SEAM as f64 * scale } else { 0.0 };
+    let height = foot + if is_film { CLOCK } else { 0.0 } + FOOT;
+    Ok(html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
+            aria-label=(title) font-family=(FONTS) {
+            title { (title) }
+            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
+            text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (title) }
+            @for (at, panel_of) in field.panels.iter().enumerate() {
+                @let (x, y) = corner(at);
+                text x=(px(x)) y=(px(y - 8.0)) font-size="15" fill="#222" { (panel_of.title) }
+            }
+            @for ((x, y), (width, height), image) in &images {
+                image x=(px(*x)) y=(px(*y)) width=(px(*width)) height=(px(*height)) preserveAspectRatio="none"
+                    href=(format!("data:image/png;base64,{}", STANDARD.encode(image))) {}
+            }
+            @for at in 0..count {
+                @let (x, y) = corner(at);
+                rect x=(px(x)) y=(px(y)) width=(px(panel.0)) height=(px(panel.1)) fill="none" stroke="#777" stroke-width=".8" {}
+            }
+            @if is_film { (clock(field, full, foot)) }
+            (scale_bar(field.pixel / scale, panel.0, height - FOOT + 24.0))
+            (colour_bar(field, MARGIN + full + 20.0, TOP + head, (panel.1 * rows as f64).clamp(120.0, 320.0)))
+        }
+    }
+    .into_string())
+}
+
+/// The film of a field by itself, as an animated PNG: panels side by side and a bar that runs along the clock.
+///
+/// # Errors
+/// When it has no panel, or frames differ in size or number.
+pub fn film(field: &Field) -> io::Result<Vec<u8>> {
+    let (width, height) = check(field)?;
+    let (wide, high) = (width as usize, height as usize);
+    let full = wide * field.panels.len() + SEAM * (field.panels.len() - 1);
+    let frames: Vec<Vec<u8>> = (0..field.times.len())
+        .map(|frame| {
+            let mut levels = vec![VOID; full * (high + 2 * SEAM)];
+            for (at, panel) in field.panels.iter().enumerate() {
+                let left = at * (wide + SEAM);
+                for (row, line) in panel.frames[frame].levels.chunks(wide).enumerate() {
+                    levels[row * full + left..row * full + left + wide].copy_from_slice(line);
+                }
+            }
+            let done = (position(&field.times, frame) * full as f64).round() as usize;
+            for row in high + SEAM..high + 2 * SEAM {
+                levels[row * full..row * full + done.min(full)].fill(RIM);
+            }
+            levels
+        })
+        .collect();
+    png(field.shades, (full as u32, height + 2 * SEAM as u32), &frames)
+}
+
+/// Where a frame stands on the clock, from 0 to 1.
+fn position(times: &[f64], frame: usize) -> f64 {
+    let (first, last) = (times[0], times[times.len() - 1]);
+    if last > first { ((times[frame] - first) / (last - first)).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// Width and height of all frames.
+fn check(field: &Field) -> io::Result<(u32, u32)> {
+    let wrong = |what: &str| io::Error::new(io::ErrorKind::InvalidData, what.to_owned());
+    let first = field.panels.first().and_then(|panel| panel.frames.first()).ok_or_else(|| wrong("no panel"))?;
+    let size = (first.width, first.height);
+    let is_size = |raster: &Raster| {
+        (raster.width, raster.height) == size && raster.levels.len() == size.0 as usize * size.1 as usize
+    };
+    if size.0 == 0 || !field.panels.iter().flat_map(|panel| &panel.frames).all(is_size) {
+        return Err(wrong("frames of different sizes"));
+    }
+    if field.times.is_empty() || field.panels.iter().any(|panel| panel.frames.len() != field.times.len()) {
+        return Err(wrong("not one frame for each time"));
+    }
+    Ok(size)
+}
+
+/// Long panels stand below one another, others up to three in a row.
+const fn per_row(count: usize, (width, height): (u32, u32)) -> usize {
+    if width > 2 * height {
+        1
+    } else if count > 3 {
+        count.div_ceil(count.div_ceil(3))
+    } else {
+        count
+    }
+}
+
+/// Levels with the colours of their shades; several make an animation.
+fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    // Neighbouring levels are no neighbours as bytes of a palette.
+    encoder.set_filter(png::Filter::NoFilter);
+    encoder.set_palette((0..=u8::MAX).flat_map(|level| colour(shades, level)).collect::<Vec<u8>>());
+    if frames.len() > 1 {
+        encoder.set_animated(frames.len() as u32, 0)?;
+        encoder.set_frame_delay(PACE, 10)?;
+    }
+    let mut writer = encoder.write_header()?;
+    for (at, frame) in frames.iter().enumerate() {
+        if frames.len() > 1 {
+            writer.set_frame_delay(if at + 1 == frames.len() { REST } else { PACE }, 10)?;
+        }
+        writer.write_image_data(frame)?;
+    }
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// The colour of a level. The maps can be told apart without colour vision and grow evenly lighter: cividis (Nuñez, Anderton and
+/// Renslow 2018), magma, and ColorBrewer's PuOr, all from the `colorous` crate.
+fn colour(shades: Shades, level: u8) -> [u8; 3] {
+    let part = f64::from(level.saturating_sub(LOW)) / f64::from(HIGH - LOW);
+    match (level, shades) {
+        (VOID, Shades::Glow) => [0x30, 0x30, 0x38],
+        (VOID, _) => [0xff; 3],
+        (RIM, Shades::Glow) => [0x58, 0x58, 0x60],
+        (RIM, Shades::Fringes) => [0x00, 0x72, 0xb2],
+        (RIM, _) => [0x22; 3],
+        (_, Shades::Amount) => colorous::CIVIDIS.eval_continuous(part).as_array(),
+        (_, Shades::Glow) => colorous::MAGMA.eval_continuous(part).as_array(),
+        (_, Shades::Signed) => colorous::PURPLE_ORANGE.eval_continuous(part).as_array(),
+        (_, Shades::Fringes) => [(255.0 * part).round() as u8; 3],
+    }
+}
+
+/// Colours with their values.
+fn colour_bar(field: &Field, x: f64, y: f64, height: f64) -> Markup {
+    const STEPS: u8 = 64;
+    let (low, high) = field.range;
+    let (factor, unit) = with_prefix(low.abs().max(high.abs()), &field.unit);
+    let scale = Scale::fit([low / factor, high / factor].into_iter(), false, 0.0, 6);
+    let step = height / f64::from(STEPS);
+    let label = if unit == "1" { field.label.clone() } else { format!("{} ({unit})", field.label) };
+    html! {
+        g font-size="14" fill="#222" {
+            @for at in 0..STEPS {
+                @let level = LOW + (f64::from(HIGH - LOW) * (f64::from(at) + 0.5) / f64::from(STEPS)) as u8;
+                @let [red, green, blue] = colour(field.shades, level);
+                rect x=(px(x)) y=(px(y + height - step * f64::from(at + 1))) width="16" height=(px(step + 0.3))
+                    fill=(format!("#{red:02x}{green:02x}{blue:02x}")) {}
+            }
+            rect x=(px(x)) y=(px(y)) width="16" height=(px(height)) fill="none" stroke="#777" stroke-width=".8" {}
+            @for tick in scale.ticks() {
+                @let at = y + height * (1.0 - scale.position(tick.value));
+                line x1=(px(x + 16.0)) y1=(px(at)) x2=(px(x + 21.0)) y2=(px(at)) stroke="#222" {}
+                text x=(px(x + 25.0)) y=(px(at + 5.0)) { (tick.label.unwrap_or_default()) }
+            }
+            text transform=(format!("translate({} {}) rotate(-90)", px(x - 6.0), px(y + 0.5 * height))) text-anchor="middle" {
+                (label)
+            }
+        }
+    }
+}
+
+/// A length that one can read, with `unit` metres to the unit of the drawing.
+fn scale_bar(unit: f64, room: f64, y: f64) -> Markup {
+    let longest = 0.4 * room * unit;
+    let decade = 10_f64.powf(longest.log10().floor());
+    let length =
+        [5.0, 2.0, 1.0].into_iter().map(|round| round * decade).find(|round| *round <= longest).unwrap_or(decade);
+    let drawn = length / unit;
+    let (factor, name) = with_prefix(length, "m");
+    html! {
+        rect x=(px(MARGIN)) y=(px(y - 3.0)) width=(px(drawn)) height="4" fill="#222" {}
+        text x=(px(MARGIN + drawn + 8.0)) y=(px(y + 4.0)) font-size="14" fill="#222" {
+            (number::with_unit(length / factor, &name))
+        }
+    }
+}
+
+/// The clock of a film: ticks under the bar that runs in the image.
+fn clock(field: &Field, width: f64, y: f64) -> Markup {
+    let (first, last) = (field.times[0], field.times[field.times.len() - 1]);
+    let scale = Scale::fit([first, last].into_iter(), false, 0.0, 8);
+    html! {
+        g font-size="14" fill="#222" {
+            line x1=(px(MARGIN)) y1=(px(y)) x2=(px(MARGIN + width)) y2=(px(y)) stroke="#222" {}
+            @for tick in scale.ticks() {
+                @let at = MARGIN + width * scale.position(tick.value);
+                line x1=(px(at)) y1=(px(y)) x2=(px(at)) y2=(px(y + 5.0)) stroke="#222" {}
+                @let label = tick.label.unwrap_or_default();
+                @let anchor = if at < MARGIN + 0.5 * text_width(&label, 14.0) { "start" } else { "middle" };
+                text x=(px(at)) y=(px(y + 20.0)) text-anchor=(anchor) { (label) }
+            }
+            text x=(px(MARGIN + 0.5 * width)) y=(px(y + 40.0)) text-anchor="middle" { (field.clock) }
+        }
+    }
+}
+
+/// A unit with the prefix that suits a value, and what to divide by; only units that take one.
+fn with_prefix(value: f64, unit: &str) -> (f64, String) {
+    let prefixes: &[(f64, &str)] = match unit {
+        "Pa" => &[(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, "")],
+        "m" => &[(1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")],
+        _ => &[],
+    };
+    let fits = prefixes.iter().find(|(factor, _)| value >= *factor * (1.0 - 1e-9)).or(prefixes.last());
+    fits.map_or_else(|| (1.0, unit.to_owned()), |(factor, prefix)| (*factor, format!("{prefix}{unit}")))
+}
+
+fn px(length: f64) -> String {
+    let text = format!("{length:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn field(frames: usize, panels: usize) -> Field {
+        let raster = |level: u8| Raster { width: 40, height: 30, levels: vec![level; 1200] };
+        let panel = |at: usize| Panel {
+            title: format!("panel <{at}>"),
+            frames: (0..frames).map(|frame| raster(1 + (frame + 100 * at) as u8)).collect(),
+        };
+        Field {
+            label: "σ₁ − σ₂".to_owned(),
+            unit: "Pa".to_owned(),
+            range: (0.0, 2.5e6),
+            shades: Shades::Glow,
+            pixel: 1e-5,
+            panels: (0..panels).map(panel).collect(),
+            clock: "time t (s)".to_owned(),
+            times: (0..frames).map(|frame| frame as f64).collect(),
+        }
+    }
+
+    #[test]
+    fn pictures_have_a_scale_and_units() {
+        let svg = draw("stress <&>", &field(1, 2)).unwrap_or_default();
+        assert_eq!(svg.matches("data:image/png;base64,").count(), 2);
+        assert!(
+            svg.contains("σ₁ − σ₂ (MPa)") && svg.contains("100\u{202f}µm") && svg.contains("panel &lt;1&gt;"),
+            "{svg}"
+        );
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn a_film_plays_all_panels_in_step_and_forever() {
+        let field = field(3, 2);
+        let bytes = film(&field).unwrap_or_default();
+        let mut reader =
+            png::Decoder::new(io::Cursor::new(&bytes)).read_info().unwrap_or_else(|error| unreachable!("{error}"));
+        let control = reader.info().animation_control.map(|control| (control.num_frames, control.num_plays));
+        assert_eq!(control, Some((3, 0)));
+        assert_eq!(reader.info().size(), (88, 46));
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap_or(0)];
+        for frame in 0..3 {
+            assert!(reader.next_frame(&mut pixels).is_ok());
+            assert_eq!((pixels[0], pixels[44], pixels[87]), (1 + frame, VOID, 101 + frame));
+            // The clock stands at 0, a half and all.
+            let run = pixels[40 * 88..41 * 88].iter().filter(|&&level| level == RIM).count();
+            assert_eq!(run, 44 * usize::from(frame));
+        }
+        let svg = draw("film", &field).unwrap_or_default();
+        assert!(svg.matches("data:image/png;base64,").count() == 1 && svg.contains("time t (s)"));
+    }
+
+    #[test]
+    fn frames_that_do_not_fit_are_refused() {
+        for break_it in [
+            |field: &mut Field| field.panels.clear(),
+            |field: &mut Field| field.times.push(9.0),
+            |field: &mut Field| field.panels[1].frames[0].width = 20,
+            |field: &mut Field| field.panels[0].frames[1].levels.truncate(7),
+        ] {
+            let mut field = field(2, 2);
+            break_it(&mut field);
+            assert!(draw("broken", &field).is_err() && film(&field).is_err());
+        }
+    }
+}
