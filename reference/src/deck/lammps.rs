@@ -4,6 +4,7 @@ use grainbench_scene::effects::Effects;
 use grainbench_scene::scene::{Scene, Wall};
 
 use super::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
+use super::driven::driven;
 use super::lammps_contact::{at_wall, between_grains};
 use super::logged::logged;
 use super::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
@@ -86,7 +87,9 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
     for (number, wall) in (1..).zip(&scene.walls) {
         say(&wall_lines(scene, wall, number, stepping)?);
     }
-    say(if has_discs(scene) { "fix motion all nve/sphere disc" } else { "fix motion all nve/sphere" });
+    let (lines, free) = driven(scene);
+    lines.iter().for_each(|line| say(line));
+    say(&format!("fix motion {free} nve/sphere{}", if has_discs(scene) { " disc" } else { "" }));
     if flat {
         say("fix plane all enforce2d");
     }

@@ -11,6 +11,7 @@ use grainbench_scene::scene::{Scene, Wall};
 use nalgebra::{Unit, Vector3};
 
 use super::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
+use super::driven::driven;
 use super::liggghts_contact::{Model, type_of_wall};
 use super::logged::logged;
 use super::mesh::{Triangle, stl, triangles};
@@ -201,7 +202,9 @@ fn input(
             names.join(" ")
         ));
     }
-    say("fix motion all nve/sphere");
+    let (lines, free) = driven(scene);
+    lines.iter().for_each(|line| say(line));
+    say(&format!("fix motion {free} nve/sphere"));
     if flat {
         say("fix plane all enforce2d");
     }

@@ -5,6 +5,7 @@
 
 mod dashpots;
 mod data;
+mod driven;
 mod lammps;
 mod lammps_contact;
 mod liggghts;

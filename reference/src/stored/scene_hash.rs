@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use grainbench_scene::scene::{ContactLaw, Grain, Scene, Wall};
+use grainbench_scene::scene::{ContactLaw, Driven, Grain, Scene, Wall};
 
 use crate::deck::Stepping;
 
@@ -44,6 +44,9 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     }
     for Wall { material, shape, motion, .. } in &scene.walls {
         let _ = writeln!(text, "wall {material} {shape:?} {motion:?}");
+    }
+    for Driven { grains, velocity, .. } in &scene.driven {
+        let _ = writeln!(text, "driven {grains:?} {velocity:?}");
     }
     for probe in &scene.probes {
         let _ = writeln!(text, "probe {} {:?}", probe.name, probe.target);

@@ -17,6 +17,7 @@ fn grain(id: u32, x: f64, y: f64) -> GrainState {
         angle: 0.25,
         force: Vector3::new(1.0, 2.0, 0.0),
         torque: Vector3::new(0.0, 0.0, -0.125),
+        plastic_strain: 0.0,
     }
 }
 

@@ -10,6 +10,7 @@
 //! Source: P. A. Cundall and O. D. L. Strack, Géotechnique 29 (1979) 47–65. What later codes do differently is named in
 //! [`convention`]. The kernel is compiled once for each combination of effects ([`contact`]) and picked in [`solver`].
 
+mod accounts;
 mod cells;
 pub mod contact;
 pub mod convention;

@@ -12,7 +12,13 @@ use nalgebra::Vector3;
 
 pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel: &Kernel<S, N, T, R>) -> Look {
     let scene = &kernel.scene;
-    let grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(kernel, id)).collect();
+    let mut grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(kernel, id)).collect();
+    for driven in &scene.driven {
+        for &grain in &driven.grains {
+            (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
+        }
+    }
+    let budget = kernel.accounting.then(|| kernel.budget(&grains));
     let mut contacts: Vec<ContactState> = kernel
         .seen
         .iter()
@@ -36,20 +42,19 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
             WallState { name: wall.name().to_owned(), corners, infinite, force: S::embed(wall.force) }
         })
         .collect();
-    Look::of_rigid(
-        Snapshot {
-            step: kernel.step,
-            time: kernel.step as f64 * kernel.time_step,
-            bounds: record::bounds(scene, &grains),
-            periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
-            grains,
-            contacts,
-            walls,
-            bodies: Vec::new(),
-            points: Vec::new(),
-        },
-        kernel.seen.iter().map(|seen| seen.elastic_energy).sum(),
-    )
+    let snapshot = Snapshot {
+        step: kernel.step,
+        time: kernel.step as f64 * kernel.time_step,
+        bounds: record::bounds(scene, &grains),
+        periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
+        grains,
+        contacts,
+        walls,
+        bodies: Vec::new(),
+        points: Vec::new(),
+    };
+    let elastic_energy = kernel.seen.iter().map(|seen| seen.elastic_energy).sum();
+    Look { driven: kernel.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
 }
 
 /// A grain with its velocity brought from half a step before to this step.
@@ -80,16 +85,13 @@ fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
         start.spin.z * kernel.step as f64 * kernel.time_step * f64::from(u8::from(S::DIMENSION == 2))
     };
     GrainState {
-        id: id as u32 + 1,
-        material: start.material,
-        radius: start.radius,
-        mass: start.mass,
         position: S::embed(domain.map_or(position, |domain| wrapped::<S>(position, &domain))),
         velocity: (S::embed(movement.velocity) + acceleration * half) * drag,
         spin,
         angle,
         force: S::embed(grains.force[slot]),
         torque: S::embed_spin(T::Rotation::torque(grains.torque[slot])),
+        ..GrainState::start(id as u32 + 1, start)
     }
 }
 

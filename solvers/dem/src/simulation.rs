@@ -1,5 +1,6 @@
 //! One simulation: the calculation cycle of Cundall & Strack, compiled for the effects of its scene.
 
+use crate::accounts::Accounts;
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::{Rotation, Tangential};
@@ -29,6 +30,7 @@ pub(crate) struct Seen<S: Space> {
     pub(crate) shear: S::Tangent,
     pub(crate) slipping: bool,
     pub(crate) elastic_energy: f64,
+    pub(crate) rubbed: f64,
 }
 
 /// Global damping of the equation of motion, or its absence.
@@ -120,6 +122,11 @@ pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
     /// Bound on the distance from any wall's centre of rotation to any grain (m).
     pub(crate) extent: f64,
     pub(crate) cost: Cost,
+    /// Whether the energy budget is asked for.
+    pub(crate) accounting: bool,
+    pub(crate) accounts: Accounts,
+    /// Mass of the grains that are not driven (kg).
+    pub(crate) free_mass: f64,
     stage: PhantomData<N>,
 }
 
@@ -144,12 +151,23 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             list_holds: true,
             extent: 0.0,
             cost: Cost::default(),
+            accounting: scene.asks_for_budget(),
+            accounts: Accounts::default(),
+            free_mass: {
+                let groups = scene.driven_group_of_grains();
+                let free = scene.grains.iter().zip(groups).filter(|(_, group)| group.is_none());
+                free.map(|(grain, _)| grain.mass).sum()
+            },
             stage: PhantomData,
             scene: scene.clone(),
         };
         kernel.rebuild()?;
         kernel.evaluate_forces::<true>(0.0);
         kernel.step_back_half();
+        kernel.drive(0.0);
+        if kernel.accounting {
+            kernel.account();
+        }
         Ok(kernel)
     }
 
@@ -170,14 +188,41 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         }
     }
 
+    /// Nothing that acts on driven grains moves them.
+    fn shield_driven(&mut self) {
+        let grains = &mut self.grains;
+        for &grain in self.scene.driven.iter().flat_map(|driven| &driven.grains) {
+            let slot = grains.slot[grain] as usize;
+            grains.force[slot] = S::ORIGIN;
+            grains.torque[slot] = Default::default();
+        }
+    }
+
+    /// Driven grains keep their velocity and do not turn, whatever gravity and drag have made of them in `drifted` (s).
+    fn drive(&mut self, drifted: f64) {
+        let grains = &mut self.grains;
+        for driven in &self.scene.driven {
+            let velocity = S::restrict(driven.velocity);
+            for &grain in &driven.grains {
+                let slot = grains.slot[grain] as usize;
+                let movement = &mut grains.movement[slot];
+                grains.place[slot].position += (velocity - movement.velocity) * drifted;
+                movement.velocity = velocity;
+                grains.rotation[slot].set_spin(S::NO_SPIN);
+            }
+        }
+    }
+
     /// One cycle: motion from the forces of the last, walls, and the forces for the next.
     fn cycle<const RECORD: bool>(&mut self) -> Result<(), Box<Broken>> {
+        self.shield_driven();
         match (self.scene.global_damping == 0.0, self.gravity == S::ORIGIN) {
             (true, true) => self.drift::<NoDrag, false>(),
             (true, false) => self.drift::<NoDrag, true>(),
             (false, true) => self.drift::<MassProportional, false>(),
             (false, false) => self.drift::<MassProportional, true>(),
         }
+        self.drive(self.time_step);
         self.step += 1;
         let time = self.step as f64 * self.time_step;
         let mut walls_moved = 0.0_f64;
@@ -190,6 +235,9 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             self.rebuild()?;
         }
         self.evaluate_forces::<RECORD>(self.time_step);
+        if RECORD && self.accounting {
+            self.account();
+        }
         self.cost.steps += 1;
         self.cost.particle_steps += self.grains.len() as u64;
         Ok(())
@@ -484,6 +532,8 @@ struct Answer<S: Space> {
     slipping: bool,
     /// Energy in the springs (J), only when it is recorded.
     elastic_energy: f64,
+    /// Work of friction in the step (J), only when it is recorded.
+    rubbed: f64,
 }
 
 impl<S: Space> Answer<S> {
@@ -498,6 +548,7 @@ impl<S: Space> Answer<S> {
             shear: self.shear,
             slipping: self.slipping,
             elastic_energy: self.elastic_energy,
+            rubbed: self.rubbed,
         }
     }
 }
@@ -557,13 +608,18 @@ fn stages<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>, const RECORD: bo
         shear: S::NO_TANGENT,
         slipping: false,
         elastic_energy: 0.0,
+        rubbed: 0.0,
     };
     if let (true, Some(turning)) = (T::ACTIVE, turning) {
         let slip = S::slip_velocity(touch.velocity, turning.surface, touch.normal);
+        let before = history.0;
         let shear = T::respond::<N>(touch, normal, slip, elapsed, &mut history.0);
         let force = S::along(shear.force, touch.normal);
         answer.force += force;
         answer.twist = S::torque(touch.normal, force);
+        if RECORD {
+            answer.rubbed = T::rubbed::<N>(touch, slip, elapsed, before, history.0);
+        }
         (answer.shear, answer.slipping) = (shear.force, shear.slipping);
         if R::ACTIVE {
             answer.rolling = R::moment::<N>(touch, normal, turning.relative, elapsed, turning.inertia, &mut history.1);
@@ -579,7 +635,11 @@ fn stages<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>, const RECORD: bo
 impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Simulation for Kernel<S, N, T, R> {
     fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>> {
         for _ in 1..steps {
-            self.cycle::<false>()?;
+            if self.accounting {
+                self.cycle::<true>()?;
+            } else {
+                self.cycle::<false>()?;
+            }
         }
         // The last cycle leaves its contacts to be looked at.
         if steps > 0 { self.cycle::<true>() } else { Ok(()) }

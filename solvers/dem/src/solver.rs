@@ -121,6 +121,9 @@ impl Dem {
         if let Some(what) = scene.needs_deformable() {
             return unsupported(format!("it has {what}, and grains are rigid here"));
         }
+        if let Some(reason) = crate::accounts::reason(scene).filter(|_| scene.asks_for_budget()) {
+            return unsupported(reason);
+        }
         if scene.laws.iter().flatten().any(|law| !law.has_stiffness()) {
             return unsupported("a contact law gives friction and no stiffness".to_owned());
         }

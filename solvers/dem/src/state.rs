@@ -2,6 +2,7 @@
 //!
 //! Not the neighbour list's pairs alone but their order too: sums of forces depend on it in their last bit.
 
+use crate::accounts::Accounts;
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
@@ -24,6 +25,7 @@ struct State<S: Space, T: Tangential<S>, R: Rolling<S>> {
     step: u64,
     extent: f64,
     cost: Cost,
+    accounts: Accounts,
     recorder: Recorder,
 }
 
@@ -37,6 +39,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             step: self.step,
             extent: self.extent,
             cost: self.cost,
+            accounts: self.accounts.clone(),
             recorder: recorder.clone(),
         };
         Checkpoint::keep(identity, self.step, &state)
@@ -58,6 +61,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         self.step = state.step;
         self.extent = state.extent;
         self.cost = state.cost;
+        self.accounts = state.accounts;
         Ok(state.recorder)
     }
 }

@@ -68,6 +68,11 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
         self.wall.material
     }
 
+    /// Mean velocity of its centre over the last step (m/s).
+    pub(crate) fn velocity(&self) -> Vector3<f64> {
+        self.velocity
+    }
+
     pub(crate) fn name(&self) -> &str {
         &self.wall.name
     }

@@ -170,3 +170,37 @@ fn a_grain_in_the_plane_is_what_the_scene_says() {
         assert!((last(&record, "g.vx") / (2.5 * share) - 1.0).abs() < 1e-3, "{shape}: I/(mR²) = {factor}");
     }
 }
+
+/// Two driven discs shear a third one between them, with friction: what moves as it is told does, momentum is what was given,
+/// and the energy that was brought in is stored or rubbed away, to the order of the method.
+#[test]
+fn driven_grains_give_what_they_say() {
+    let friction = "contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6 }";
+    let rough =
+        "contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e6, friction = 0.3 }";
+    let text = format!(
+        "{}{}",
+        MATERIAL.replace('"', "'").replace(friction, rough),
+        "dimension = 2\nduration = 0.5\n\
+         domain = { low = [-0.1, -1.0], high = [0.3, 1.0] }\n\
+         [grains.row]\nmaterial = 'm'\nradius = 0.1\nlattice = { origin = [-0.1, 0.0], spacing = [0.199, 0.2], count = [3, 1] }\n\
+         [driven.left]\nface = 'x-low'\n[driven.right]\nface = 'x-high'\nvelocity = [0.0, 0.2]\n\
+         [probes]\nmoved.grain = 'row.3'\nstill.grain = 'row.1'\nfree.grain = 'row.2'\nbudget.budget = true\nright.driven = 'right'\n"
+    );
+    let source = SceneSource::from_text("test", Path::new(""), &text);
+    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
+    assert_eq!(scene.driven.iter().map(|driven| driven.grains.clone()).collect::<Vec<_>>(), [[0], [2]]);
+    let record =
+        Dem::new(Convention::CUNDALL_STRACK).run(&scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap();
+    assert!((last(&record, "moved.y") - 0.1).abs() < 1e-12 && last(&record, "still.y") == 0.0);
+    assert!(last(&record, "moved.omega") == 0.0 && last(&record, "free.omega") != 0.0);
+    let of = |entry: &str| last(&record, &format!("budget.{entry}"));
+    for axis in ["x", "y"] {
+        let start = record.series.column(&format!("budget.momentum_{axis}")).unwrap()[0];
+        let off = of(&format!("momentum_{axis}")) - start - of(&format!("impulse_{axis}"));
+        assert!(off.abs() < 1e-10, "{axis}: {off}");
+    }
+    let open = of("unbalanced") - record.series.column("budget.unbalanced").unwrap()[0];
+    assert!(of("friction") > 0.0 && open.abs() < 1e-3 * of("work").abs(), "{open} of {}", of("work"));
+    assert!((open - of("friction")).abs() > 1e-2 * of("work").abs(), "it would not close without friction");
+}

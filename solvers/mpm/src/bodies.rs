@@ -65,6 +65,8 @@ pub(crate) struct Body {
     pub(crate) angle: f64,
     /// Sides that are held, and where they are (m).
     pub(crate) held: Option<(Sides, [Vector3<f64>; 2])>,
+    /// The group of driven grains that it is in.
+    pub(crate) driven: Option<u16>,
 }
 
 /// What a body looks like before it is seeded.
@@ -126,6 +128,7 @@ pub(crate) fn seed<S: Space>(
     });
     let (mut points, mut tracers) = (Points::new(), Tracers::new());
     let half = 0.5 / f64::from(per_cell);
+    let driven = scene.driven_group_of_grains();
     let bodies = grains
         .chain(blocks)
         .map(|blank| {
@@ -146,6 +149,10 @@ pub(crate) fn seed<S: Space>(
                 bounds: [Vector3::zeros(); 2],
                 angle: 0.0,
                 held: blank.held,
+                driven: match blank.owner {
+                    Owner::Grain(id) => driven[id as usize - 1],
+                    Owner::Body(_) => None,
+                },
             }
         })
         .collect();

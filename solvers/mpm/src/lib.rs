@@ -11,9 +11,11 @@
 //! Type parameters stand for space, basis, transfer and material, each only in the loops over points that need it, and an
 //! enum chooses between the stages; so kernels add and do not multiply.
 
+mod accounts;
 mod basis;
 mod bodies;
 mod contact;
+mod driven;
 mod failure;
 mod grid;
 mod held;

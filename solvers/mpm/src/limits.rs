@@ -30,6 +30,9 @@ pub(crate) fn reason(scene: &Scene, setting: &Setting) -> Option<String> {
     if scene.laws.iter().flatten().any(|law| law.rolling_friction > 0.0) {
         return Some("resistance against rolling comes from the deformation here, not from a coefficient".to_owned());
     }
+    if let Some(reason) = crate::accounts::reason(scene).filter(|_| scene.asks_for_budget()) {
+        return Some(reason);
+    }
     if matches!(scene.duration, Duration::Cycles(_)) {
         return Some("its duration is a number of calculation cycles of another method; seconds can be run".to_owned());
     }

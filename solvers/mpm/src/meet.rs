@@ -1,6 +1,6 @@
 //! The stages of a cycle at which bodies meet: springs as forces, conditions at nodes on velocities.
 
-use crate::contact::nodal;
+use crate::contact::nodal::{self, Felt};
 use crate::contact::penalty::{self, Rules};
 use crate::contact::shared::{Projected, Stepped};
 use crate::options::{Contact, StressUpdate};
@@ -66,16 +66,17 @@ impl<S: Space> Simulation<S> {
             penalty: self.setting.penalty,
             time_step: self.time_step,
         };
-        let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, .. } = self;
+        let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, accounts, .. } = self;
+        let tally = &mut accounts.tally;
         let mut touches = record.then_some(touches);
         with_basis!(setting.basis, B => {
-            penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, touches.as_deref_mut());
+            penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, tally, touches.as_deref_mut());
             if !pairs.found.is_empty() {
                 tracers.find_boxes();
             }
             for pair in &pairs.found {
                 for pair in [*pair, pair.exchanged()] {
-                    penalty::between::<S, B>(&rules, bodies, &pair, tracers, springs, nodes, touches.as_deref_mut());
+                    penalty::between::<S, B>(&rules, bodies, &pair, tracers, springs, nodes, tally, touches.as_deref_mut());
                 }
             }
         });
@@ -88,11 +89,12 @@ impl<S: Space> Simulation<S> {
         if !self.is_nodal() {
             return;
         }
-        let Self { lattice, friction, setting, time_step, bodies, shared, walls, nodes, .. } = self;
+        let Self { lattice, friction, setting, time_step, bodies, shared, walls, nodes, driven, accounts, .. } = self;
         let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
+        let mut felt = Felt { walls, driven: &mut driven.groups, tally: &mut accounts.tally };
         match setting.contact {
-            Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, walls, &mut Stepped(nodes)),
-            _ => nodal::apply(&rules, bodies, shared, walls, &mut Stepped(nodes)),
+            Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, &mut felt, &mut Stepped(nodes)),
+            _ => nodal::apply(&rules, bodies, shared, &mut felt, &mut Stepped(nodes)),
         }
     }
 
@@ -101,11 +103,13 @@ impl<S: Space> Simulation<S> {
         if !self.is_nodal() {
             return;
         }
-        let Self { lattice, friction, setting, time_step, bodies, shared, walls, projected, .. } = self;
+        let Self { lattice, friction, setting, time_step, bodies, shared, walls, projected, driven, accounts, .. } =
+            self;
         let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
+        let mut felt = Felt { walls, driven: &mut driven.groups, tally: &mut accounts.tally };
         match setting.contact {
-            Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, walls, &mut Projected(projected)),
-            _ => nodal::apply(&rules, bodies, shared, walls, &mut Projected(projected)),
+            Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, &mut felt, &mut Projected(projected)),
+            _ => nodal::apply(&rules, bodies, shared, &mut felt, &mut Projected(projected)),
         }
     }
 }

@@ -22,13 +22,15 @@ struct Whole {
     /// Kinetic energy of all points (J).
     kinetic: f64,
     angle: f64,
+    /// Mean over the mass.
+    plastic_strain: f64,
 }
 
 impl<S: Space> Simulation<S> {
     /// The simulation now; with `points`, every material point.
     pub(crate) fn look(&mut self, with_points: bool) -> Look {
         let wholes: Vec<Whole> = (0..self.bodies.len()).map(|body| self.whole(body)).collect();
-        let mut elastic_energy = self.spring_energy();
+        let mut elastic_energy = 0.0;
         let mut inner_kinetic_energy = 0.0;
         let (mut grains, mut bodies) = (Vec::new(), Vec::new());
         for (body, whole) in self.bodies.iter().zip(&wholes) {
@@ -43,6 +45,7 @@ impl<S: Space> Simulation<S> {
                         velocity: whole.velocity,
                         spin: whole.spin,
                         angle: whole.angle,
+                        plastic_strain: whole.plastic_strain,
                         ..GrainState::start(id, grain)
                     });
                 }
@@ -82,9 +85,11 @@ impl<S: Space> Simulation<S> {
             Vec::new()
         };
         Look {
-            elastic_energy,
+            elastic_energy: elastic_energy + self.spring_energy(),
             inner_kinetic_energy,
             spots: self.spots(),
+            driven: self.driven.groups.iter().map(|group| S::embed(group.force)).collect(),
+            budget: self.accounting.then(|| self.budget(elastic_energy)),
             snapshot: Snapshot {
                 step: self.step,
                 time: self.step as f64 * self.time_step,
@@ -117,6 +122,7 @@ impl<S: Space> Simulation<S> {
         let momentum: Vector3<f64> = range.clone().map(|at| self.velocity(at) * points.mass[at]).sum();
         let velocity = momentum / mass;
         let (mut angular, mut inertia, mut kinetic) = (Vector3::zeros(), Matrix3::zeros(), 0.0);
+        let mut flowed = 0.0;
         let mut mean = Matrix3::zeros();
         for at in range {
             let arm = S::embed(points.position[at]) - position;
@@ -125,6 +131,7 @@ impl<S: Space> Simulation<S> {
             angular += arm.cross(&own) * share;
             inertia += (Matrix3::from_diagonal_element(arm.norm_squared()) - arm * arm.transpose()) * share;
             kinetic += 0.5 * share * own.norm_squared();
+            flowed += points.plastic_strain[at] * share;
             mean += S::embed_gradient(points.deformation[at]) * share;
         }
         let (spin, inertia) = if S::DIMENSION == 2 {
@@ -143,7 +150,7 @@ impl<S: Space> Simulation<S> {
         if body + 1 == self.bodies.len() {
             self.looked = self.step;
         }
-        Whole { mass, position, velocity, spin, inertia, kinetic, angle }
+        Whole { mass, position, velocity, spin, inertia, kinetic, angle, plastic_strain: flowed / mass }
     }
 
     /// Velocity of a point at the time of the look, half a step on.

@@ -1,10 +1,12 @@
 //! One simulation: the cycle points → nodes → points.
 
+use crate::accounts::{Accounts, Flow, Tally};
 use crate::bodies::{Body, Material, seed};
 use crate::contact::pairs::Pairs;
 use crate::contact::penalty::Springs;
 use crate::contact::shared::Shared;
 use crate::contact::{FrictionTable, Touch};
+use crate::driven::Driven;
 use crate::grid::{Lattice, Node, Window};
 use crate::held::Held;
 use crate::material::Law;
@@ -76,6 +78,10 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) used: usize,
     pub(crate) friction: FrictionTable,
     pub(crate) held: Held,
+    pub(crate) driven: Driven<S>,
+    /// Whether the energy budget is asked for.
+    pub(crate) accounting: bool,
+    pub(crate) accounts: Accounts<S>,
     pub(crate) springs: Springs<S>,
     pub(crate) shared: Shared<S>,
     pub(crate) pairs: Pairs<S>,
@@ -110,6 +116,9 @@ impl<S: Space> Simulation<S> {
         let walls: Vec<RigidPlane<S>> = scene.walls.iter().filter_map(RigidPlane::new).collect();
         Self {
             held: Held::new(&bodies, &lattice),
+            driven: Driven::new(scene),
+            accounting: false,
+            accounts: Accounts::default(),
             friction: FrictionTable::of(scene),
             springs: Springs::new(tracers.len()),
             pairs: Pairs::new(),
@@ -146,6 +155,7 @@ impl<S: Space> Simulation<S> {
     pub(crate) fn begin(&mut self) -> Result<(), Box<Broken>> {
         self.settle()?;
         self.set_moving();
+        self.open_accounts();
         Ok(())
     }
 
@@ -178,6 +188,7 @@ impl<S: Space> Simulation<S> {
         }
         self.place_windows()?;
         self.scatter();
+        self.find_driven();
         self.find_shared();
         if self.setting.stress_update == StressUpdate::First {
             self.project_momentum();
@@ -185,13 +196,18 @@ impl<S: Space> Simulation<S> {
             self.scatter_force_again();
         }
         self.body_force(time);
+        self.note_internal_forces();
         self.spring_forces(record);
         self.held.fold(&self.bodies, &mut self.nodes);
+        self.note_forces();
         self.step_nodes();
         self.gather();
+        self.driven.carry(&self.bodies, &mut self.points, self.time_step);
+        self.account_for_nodes();
         if self.setting.stress_update == StressUpdate::ModifiedLast {
             self.finish_projection();
         }
+        self.account_for_contacts();
         match self.setting.stress_update {
             StressUpdate::First => self.move_tracers(Velocities::Stepped),
             StressUpdate::Last => {
@@ -277,6 +293,17 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
+    /// Begins the step for driven bodies and contacts.
+    fn find_driven(&mut self) {
+        self.accounts.tally = Tally::default();
+        self.driven.begin(self.settling);
+        if !self.driven.groups.is_empty() {
+            let one_field = self.setting.contact == Contact::NoSlip;
+            let Self { driven, lattice, bodies, points, setting, .. } = self;
+            driven.find_held(lattice, bodies, points, setting.basis, one_field);
+        }
+    }
+
     fn scatter(&mut self) {
         let Self { lattice, bodies, points, nodes, setting, .. } = self;
         for body in bodies.iter() {
@@ -298,12 +325,13 @@ impl<S: Space> Simulation<S> {
 
     /// Projected momenta become velocities that contacts and held sides allow.
     fn finish_projection(&mut self) {
-        let Self { bodies, nodes, projected, held, used, .. } = self;
+        let Self { bodies, nodes, projected, held, driven, used, .. } = self;
         held.fold_projected::<S>(bodies, projected);
         for (projected, node) in projected[..*used].iter_mut().zip(nodes.iter()) {
             *projected = if node.mass > 0.0 { *projected * (1.0 / node.mass) } else { S::ORIGIN };
         }
         held.hold_projected::<S>(bodies, projected);
+        driven.hold_projected(projected, nodes);
         self.meet_projected();
     }
 
@@ -348,6 +376,7 @@ impl<S: Space> Simulation<S> {
         }
         self.cost.node_updates += stepped;
         self.held.hold(&self.bodies, &mut self.nodes);
+        self.driven.hold(&mut self.nodes, self.time_step);
         self.meet_stepped();
         for node in &mut self.nodes[..self.used] {
             node.change = node.velocity - node.change;
@@ -379,7 +408,8 @@ impl<S: Space> Simulation<S> {
 
     /// Velocity gradients, then deformation and stress of every point.
     fn update_stress(&mut self, velocities: Velocities) -> Result<(), Box<Broken>> {
-        let Self { lattice, bodies, points, nodes, projected, gradients, setting, time_step, .. } = self;
+        let Self { lattice, bodies, points, nodes, projected, gradients, setting, time_step, accounting, .. } = self;
+        let mut flow = Flow::default();
         let mut failure: Option<(usize, Failure)> = None;
         for (place, body) in bodies.iter().enumerate() {
             let part: &Part = &body.part;
@@ -393,14 +423,24 @@ impl<S: Space> Simulation<S> {
                         lattice, part, range.clone(), points, projected, |velocity| *velocity, gradients,
                     ),
                 });
+                macro_rules! update {
+                    ($law:ident) => {
+                        if *accounting {
+                            stress::update::<S, _, true>($law, range, gradients, *time_step, points, &mut flow)
+                        } else {
+                            stress::update::<S, _, false>($law, range, gradients, *time_step, points, &mut flow)
+                        }
+                    };
+                }
                 let found = match body.law {
-                    Material::NeoHookean(law) => stress::update(law, range, gradients, *time_step, points),
-                    Material::Hypoelastic(law) => stress::update(law, range, gradients, *time_step, points),
-                    Material::VonMises(law) => stress::update(law, range, gradients, *time_step, points),
+                    Material::NeoHookean(law) => update!(law),
+                    Material::Hypoelastic(law) => update!(law),
+                    Material::VonMises(law) => update!(law),
                 };
                 failure = failure.or(found.map(|failure| (place, failure)));
             }
         }
+        self.account_for_flow(flow);
         match failure {
             None => Ok(()),
             Some((place, Failure { point, cause })) => Err(self.broken(place, point, cause)),

@@ -72,7 +72,7 @@ impl<S: Space> Simulation<S> {
                         block.velocity + Vector3::new(wave, 0.0, 0.0)
                     }
                 };
-                let mut behind = velocity - lag;
+                let mut behind = if body.driven.is_some() { velocity } else { velocity - lag };
                 if let Some(motion) = &self.scene.start.manufactured {
                     velocity += motion.velocity(&medium, position, 0.0);
                     behind += motion.velocity(&medium, position, -half);

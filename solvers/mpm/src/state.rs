@@ -3,6 +3,7 @@
 //! Points in the order that they are in, since sums at nodes depend on it in their last bit; where tracers are and how far their
 //! springs are stretched. Nodes, windows, pairs and planes are found anew in each step.
 
+use crate::accounts::{Sums, Tally};
 use crate::contact::penalty::Springs;
 use crate::points::Points;
 use crate::simulation::Simulation;
@@ -25,6 +26,8 @@ struct State<S: Space> {
     travelled: f64,
     step: u64,
     cost: Cost,
+    sums: Sums,
+    tally: Tally,
     recorder: Recorder,
 }
 
@@ -41,6 +44,8 @@ impl<S: Space> Simulation<S> {
             travelled: self.travelled,
             step: self.step,
             cost: self.cost,
+            sums: self.accounts.sums,
+            tally: self.accounts.tally,
             recorder: recorder.clone(),
         };
         Checkpoint::keep(identity, self.step, &state)
@@ -69,6 +74,8 @@ impl<S: Space> Simulation<S> {
         self.bodies.iter_mut().zip(state.angles).for_each(|(body, angle)| body.angle = angle);
         (self.looked, self.travelled) = (state.looked, state.travelled);
         (self.step, self.cost) = (state.step, state.cost);
+        self.open_accounts();
+        (self.accounts.sums, self.accounts.tally) = (state.sums, state.tally);
         self.find_bounds();
         Ok(state.recorder)
     }

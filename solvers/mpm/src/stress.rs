@@ -1,5 +1,6 @@
 //! From velocity gradients to deformation and stress, material by material.
 
+use crate::accounts::Flow;
 use crate::material::Law;
 use crate::points::Points;
 use grainbench_scene::solver::Cause;
@@ -25,13 +26,15 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
 }
 
 /// F ← (1 + Δt ∇v) F, volume and stress of every point of a range, of which `gradients` are the velocity gradients (1/s);
-/// the first point that broke, if any did.
-pub(crate) fn update<S: Space, L: Law>(
+/// the first point that broke, if any did. With `COUNT` adds what the stresses did to `flow`: the work of the mean stress on
+/// the mean volume, and that of plastic flow, the flow stress after the step times the plastic strain of it.
+pub(crate) fn update<S: Space, L: Law, const COUNT: bool>(
     law: L,
     range: Range<usize>,
     gradients: &[S::Matrix],
     time_step: f64,
     points: &mut Points<S>,
+    flow: &mut Flow,
 ) -> Option<Failure> {
     let mut failure = None;
     let deformations = &mut points.deformation[range.clone()];
@@ -48,8 +51,16 @@ pub(crate) fn update<S: Space, L: Law>(
         if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
             failure = Some(Failure { point: at, cause: cause::<S>(increment, volume_ratio) });
         }
+        let before = (*volume, *stress, *plastic_strain);
         *volume = reference * volume_ratio;
         *stress = law.follow::<S>(increment, volume_ratio, *deformation, *stress, plastic_strain);
+        if COUNT {
+            let mean = S::embed_symmetric(S::scaled_sum(*stress, 1.0, before.1)) * 0.5;
+            let half = 0.5 * (before.0 + *volume);
+            let strain = S::embed_symmetric(S::symmetric_part(increment));
+            flow.power += half * mean.dot(&strain);
+            flow.plastic += half * law.flow_stress(*plastic_strain) * (*plastic_strain - before.2);
+        }
     }
     failure
 }

@@ -48,6 +48,11 @@ fn sphere() -> String {
         .to_owned()
 }
 
+/// A collision in which one disc is driven, with its energy budget.
+fn driven() -> String {
+    format!("{}budget.budget = true\n[driven.ram]\ngrains = 'a'\nvelocity = [0.05, 0.0]\n", collision(0.1, 0.9, 0.5))
+}
+
 /// Contact with friction between bodies and at a plane, settled, in space: every way to touch, from early and from late.
 #[test]
 fn a_continued_run_leaves_the_same_bits() {
@@ -59,6 +64,8 @@ fn a_continued_run_leaves_the_same_bits() {
         ("mpm:no-slip", sampled(collision(0.1, 0.9, 0.5))),
         ("mpm", sampled(incline(60.0, 0.9, 0.05, true))),
         ("mpm", sampled(sphere())),
+        ("mpm", sampled(driven())),
+        ("mpm:no-slip", sampled(driven())),
     ];
     for (name, text) in cases {
         let (solver, at) = (Mpm::named(name).unwrap(), Resolution::grid(4.0, 2));

@@ -9,6 +9,9 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if let Some(what) = scene.needs_deformable() {
         return Some(format!("it has {what}, and rapier's grains are rigid"));
     }
+    if !scene.driven.is_empty() {
+        return Some("grains that are moved as walls are were not written for rapier".to_owned());
+    }
     let effects = Effects::of(scene);
     if effects.periodic {
         return Some("rapier has no periodic axes".to_owned());

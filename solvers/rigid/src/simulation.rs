@@ -165,16 +165,11 @@ impl<'a> Simulation<'a> {
     fn grain(&self, at: usize) -> GrainState {
         let (start, now) = (&self.scene.grains[at], &self.state[at]);
         GrainState {
-            id: at as u32 + 1,
-            material: start.material,
-            radius: start.radius,
-            mass: start.mass,
             position: now.position,
             velocity: now.velocity,
             spin: now.spin,
             angle: self.angles[at],
-            force: Vector3::zeros(),
-            torque: Vector3::zeros(),
+            ..GrainState::start(at as u32 + 1, start)
         }
     }
 

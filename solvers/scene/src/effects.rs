@@ -22,7 +22,7 @@ pub struct Effects {
     pub gravity: bool,
     /// Periodic axes.
     pub periodic: bool,
-    /// Walls that move.
+    /// Walls, or driven grains, that move.
     pub moving_walls: bool,
 }
 
@@ -39,7 +39,8 @@ impl Effects {
             global_damping: scene.global_damping != 0.0,
             gravity: scene.gravity.norm() > 0.0,
             periodic: scene.is_periodic(),
-            moving_walls: scene.walls.iter().any(|wall| wall.motion.is_moving()),
+            moving_walls: scene.walls.iter().any(|wall| wall.motion.is_moving())
+                || scene.driven.iter().any(|driven| driven.velocity.norm() > 0.0),
         }
     }
 

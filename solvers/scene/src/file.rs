@@ -67,6 +67,9 @@ pub struct SceneFile {
     /// Walls by name.
     #[serde(default)]
     pub walls: IndexMap<String, WallSpec>,
+    /// Grains that are moved as walls are, by a name for each group of them.
+    #[serde(default)]
+    pub driven: IndexMap<String, DrivenSpec>,
     /// What is written down during the run.
     #[serde(default)]
     pub output: OutputSpec,
@@ -443,6 +446,9 @@ pub struct PackedSpec {
     pub radii: Vec<(f64, u32)>,
     /// Seed of the generator: the same seed gives the same packing on every machine.
     pub seed: u64,
+    /// Whether faces that are not periodic cut grains: such a face holds centres then, not whole grains.
+    #[serde(default)]
+    pub cut: bool,
 }
 
 /// Grains read from a file.
@@ -523,6 +529,22 @@ pub struct MotionSpec {
     pub stop_cycle: Option<u64>,
 }
 
+/// Grains that do not obey forces: they move at a constant velocity and do not turn, nor deform. Exactly one of `grains`
+/// and `face`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DrivenSpec {
+    /// All grains of a group.
+    #[serde(default)]
+    pub grains: Option<String>,
+    /// The grains that a face of the domain cuts at the start.
+    #[serde(default)]
+    pub face: Option<SideSpec>,
+    /// Velocity (m/s); at rest when absent.
+    #[serde(default)]
+    pub velocity: Option<Vec<f64>>,
+}
+
 /// What is written down during the run.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -542,7 +564,7 @@ pub struct OutputSpec {
     pub snapshot_times: Vec<f64>,
 }
 
-/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `stress` and `system`.
+/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `driven`, `stress`, `budget` and `system`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeSpec {
@@ -564,6 +586,14 @@ pub struct ProbeSpec {
     /// A wall: columns force_x, … of the grains on it.
     #[serde(default)]
     pub wall: Option<String>,
+    /// A group of driven grains: columns force_x, … of the other grains on them.
+    #[serde(default)]
+    pub driven: Option<String>,
+    /// Where energy comes from and goes: columns kinetic, elastic, springs, gravitational, work, plastic, friction, damping,
+    /// transfer, contact (J), unbalanced (J), and momentum_x, impulse_x, … (kg m/s); see
+    /// [`crate::budget::Budget`].
+    #[serde(default)]
+    pub budget: Option<bool>,
     /// Mean stress of the grains, from the contacts between them: σ_ij = (1/V) Σ l_i f_j with the line l from the centre of
     /// one grain to that of the other, the force f on the first, and V the volume of the domain (Love 1927; Weber 1966).
     /// Tension is positive, walls are left out. Columns sigma_xx, sigma_yy, sigma_xy (and sigma_zz, sigma_xz, sigma_yz),

@@ -26,6 +26,16 @@ const MARGIN: f64 = 1e-4;
 /// seed gives the same packing on every machine.
 #[must_use]
 pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
+    packed(radii, seed, domain, dimension, false)
+}
+
+/// The same, but faces that are not periodic hold centres and not whole grains: they cut those that lie at them.
+#[must_use]
+pub fn pack_cut(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
+    packed(radii, seed, domain, dimension, true)
+}
+
+fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<Vec<Vector3<f64>>> {
     let axes = dimension.count();
     // More than fills the box need not be tried, and would list every pair.
     let ball = |radius: f64| if axes == 2 { PI * radius * radius } else { 4.0 / 3.0 * PI * radius.powi(3) };
@@ -45,8 +55,17 @@ pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> 
         })
         .collect();
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut packing =
-        Packing { radii, scale: SMALL, centres, domain, axes, pairs: Vec::new(), listed: Vec::new(), skin: smallest };
+    let mut packing = Packing {
+        radii,
+        scale: SMALL,
+        centres,
+        domain,
+        axes,
+        cut,
+        pairs: Vec::new(),
+        listed: Vec::new(),
+        skin: smallest,
+    };
     for stage in 1..=STAGES {
         packing.scale = SMALL + (1.0 - SMALL) * f64::from(stage) / f64::from(STAGES);
         packing.list();
@@ -68,6 +87,8 @@ struct Packing<'a> {
     centres: Vec<Vector3<f64>>,
     domain: &'a Domain,
     axes: usize,
+    /// Whether faces that are not periodic hold centres.
+    cut: bool,
     /// Pairs that were within the skin when they were listed.
     pairs: Vec<(u32, u32)>,
     /// Centres at that time.
@@ -152,7 +173,7 @@ impl Packing<'_> {
                 if self.domain.periodic[axis] {
                     *place = low + (*place - low).rem_euclid(high - low);
                 } else {
-                    let margin = radius * self.scale;
+                    let margin = if self.cut { 0.0 } else { radius * self.scale };
                     worst = worst.max(low + margin - *place).max(*place + margin - high);
                     *place = place.min(high - margin).max(low + margin);
                 }

@@ -1,10 +1,29 @@
 //! Time series of a scene's probes.
 
+use crate::budget::Budget;
 use crate::record::{BodyState, Column, ContactState, GrainState, Look, Partner, Series, Snapshot};
 use crate::scene::{Dimension, Probe, ProbeTarget, Scene};
 use nalgebra::{Matrix3, Vector3};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// What a record has of a solver that does not know.
+const UNKNOWN: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
+
+/// The entries of an energy budget, by name.
+const ENERGIES: [(&str, fn(&Budget) -> f64); 11] = [
+    ("kinetic", |budget| budget.kinetic),
+    ("elastic", |budget| budget.elastic),
+    ("springs", |budget| budget.springs),
+    ("gravitational", |budget| budget.gravitational),
+    ("work", |budget| budget.work),
+    ("plastic", |budget| budget.plastic),
+    ("friction", |budget| budget.friction),
+    ("damping", |budget| budget.damping),
+    ("transfer", |budget| budget.transfer),
+    ("contact", |budget| budget.contact),
+    ("unbalanced", Budget::unbalanced),
+];
 
 /// Components of the stress, in the order of [`crate::record::PointState::stress`].
 const STRESSES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
@@ -104,7 +123,14 @@ fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static s
         ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) => {
             plain(&[("overlap", "m"), ("normal_force", "N"), ("shear_force", "N"), ("slipping", "1")])
         }
-        ProbeTarget::Wall(_) => named("force_", "N"),
+        ProbeTarget::Wall(_) | ProbeTarget::Driven(_) => named("force_", "N"),
+        ProbeTarget::Budget => {
+            let energies = ENERGIES.map(|(name, _)| (name.to_owned(), "J"));
+            let mut all = Vec::from(energies);
+            all.extend(named("momentum_", "kg m/s"));
+            all.extend(named("impulse_", "N s"));
+            all
+        }
         ProbeTarget::Stress => {
             let of = |&(i, j): &(usize, usize)| (format!("sigma_{}{}", AXES[i], AXES[j]), "Pa");
             let mut all: Vec<_> = mean_stresses(dimension).iter().map(of).collect();
@@ -165,6 +191,14 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
         ProbeTarget::Pair(a, b) => contact_values(look, a, Partner::Grain(b as u32 + 1), flat),
         ProbeTarget::GrainWall(grain, wall) => contact_values(look, grain, Partner::Wall(wall as u16), flat),
         ProbeTarget::Wall(wall) => vector(&snapshot.walls[wall].force),
+        ProbeTarget::Driven(group) => vector(look.driven.get(group).unwrap_or(&UNKNOWN)),
+        ProbeTarget::Budget => {
+            let Some(budget) = &look.budget else { return vec![f64::NAN; ENERGIES.len() + 2 * count] };
+            let mut all = Vec::from(ENERGIES.map(|(_, of)| of(budget)));
+            all.extend(vector(&budget.momentum));
+            all.extend(vector(&budget.impulse));
+            all
+        }
         ProbeTarget::Stress => mean_stress(snapshot, scene.dimension),
         ProbeTarget::System => {
             let bodies = &snapshot.bodies;

@@ -1,5 +1,6 @@
 //! What a run leaves behind: time series, snapshots, cost, provenance.
 
+use crate::budget::Budget;
 use crate::scene::{Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -58,6 +59,9 @@ pub struct GrainState {
     pub force: Vector3<f64>,
     /// Sum of all torques (N m; N for discs).
     pub torque: Vector3<f64>,
+    /// Equivalent plastic strain, its mean over the mass; zero for a grain that does not yield.
+    #[serde(default)]
+    pub plastic_strain: f64,
 }
 
 impl GrainState {
@@ -75,6 +79,7 @@ impl GrainState {
             angle: 0.0,
             force: Vector3::zeros(),
             torque: Vector3::zeros(),
+            plastic_strain: 0.0,
         }
     }
 }
@@ -253,13 +258,25 @@ pub struct Look {
     pub inner_kinetic_energy: f64,
     /// The material at the places that probes ask for, in the order of [`Scene::spots`].
     pub spots: Vec<PointState>,
+    /// Force of the other grains on each group of driven ones (N), in the order of [`Scene::driven`]; empty where it is not
+    /// known.
+    pub driven: Vec<Vector3<f64>>,
+    /// Where energy comes from and goes, where a probe asks for it and the solver knows.
+    pub budget: Option<Budget>,
 }
 
 impl Look {
     /// Of rigid grains.
     #[must_use]
     pub const fn of_rigid(snapshot: Snapshot, elastic_energy: f64) -> Self {
-        Self { snapshot, elastic_energy, inner_kinetic_energy: 0.0, spots: Vec::new() }
+        Self {
+            snapshot,
+            elastic_energy,
+            inner_kinetic_energy: 0.0,
+            spots: Vec::new(),
+            driven: Vec::new(),
+            budget: None,
+        }
     }
 }
 

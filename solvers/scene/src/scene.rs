@@ -195,6 +195,17 @@ pub struct Wall {
     pub motion: Motion,
 }
 
+/// Grains that are moved as a wall is: at a constant velocity, whatever the forces on them; they do not turn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Driven {
+    /// Name in the file.
+    pub name: String,
+    /// Which grains, by place in [`Scene::grains`].
+    pub grains: Vec<usize>,
+    /// Velocity (m/s).
+    pub velocity: Vector3<f64>,
+}
+
 /// How long the run lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Duration {
@@ -230,6 +241,10 @@ pub enum ProbeTarget {
     GrainWall(usize, usize),
     /// A wall.
     Wall(usize),
+    /// A group of driven grains, by place in [`Scene::driven`].
+    Driven(usize),
+    /// Where energy comes from and goes.
+    Budget,
     /// Mean stress and number of contacts of the grains.
     Stress,
     /// Everything.
@@ -307,6 +322,8 @@ pub struct Scene {
     pub reference_length: f64,
     /// Walls.
     pub walls: Vec<Wall>,
+    /// Groups of grains that are moved as walls are.
+    pub driven: Vec<Driven>,
     /// How often probes are sampled.
     pub sampling: Sampling,
     /// Number of snapshots between the first and the last.
@@ -331,6 +348,22 @@ impl Scene {
         let grains = self.grains.iter().map(|grain| of(grain.material, grain.mass / volume(grain.radius)));
         let bodies = self.bodies.iter().map(|body| of(body.material, body.density));
         grains.chain(bodies).fold(0.0, f64::max)
+    }
+
+    /// The group of driven grains that each grain is in, by place in [`Scene::driven`]; none for those that move freely.
+    #[must_use]
+    pub fn driven_group_of_grains(&self) -> Vec<Option<u16>> {
+        let mut group_of = vec![None; self.grains.len()];
+        for (place, driven) in self.driven.iter().enumerate() {
+            driven.grains.iter().for_each(|&grain| group_of[grain] = Some(place as u16));
+        }
+        group_of
+    }
+
+    /// Whether a probe asks where energy comes from and goes.
+    #[must_use]
+    pub fn asks_for_budget(&self) -> bool {
+        self.probes.iter().any(|probe| probe.target == ProbeTarget::Budget)
     }
 
     /// The law between two materials, if the scene has one.

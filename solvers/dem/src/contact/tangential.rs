@@ -156,6 +156,16 @@ pub trait Tangential<S: Space>: Copy + Send + 'static {
         history: &mut Self::History,
     ) -> Shear<S>;
 
+    /// Work of friction in a step (J) that began with a history and ended with another: the mean force of the spring times
+    /// what its end slid, ½ k (s + s')·(s + ṡ Δt − s') with s the stretch carried to the normal of now, ṡ the slip velocity.
+    fn rubbed<N: Normal>(
+        touch: &Touch<'_, S>,
+        slip: S::Tangent,
+        elapsed: f64,
+        before: Self::History,
+        after: Self::History,
+    ) -> f64;
+
     /// The history with the roles of first and second grain exchanged.
     fn exchange(history: Self::History) -> Self::History;
     /// Energy in the tangential spring (J).
@@ -180,6 +190,9 @@ impl<S: Space> Tangential<S> for Frictionless {
         _history: &mut (),
     ) -> Shear<S> {
         Shear { force: S::NO_TANGENT, slipping: false }
+    }
+    fn rubbed<N: Normal>(_touch: &Touch<'_, S>, _slip: S::Tangent, _elapsed: f64, (): (), (): ()) -> f64 {
+        0.0
     }
     fn exchange((): ()) {}
     fn energy((): (), _stiffness: f64) -> f64 {
@@ -363,6 +376,18 @@ impl<S: Space, C: Cap, H: Carrying<S>> Tangential<S> for Coulomb<C, H> {
         };
         history.0 = H::stored(stretch, touch.normal);
         shear
+    }
+    fn rubbed<N: Normal>(
+        touch: &Touch<'_, S>,
+        slip: S::Tangent,
+        elapsed: f64,
+        before: Stretch<S, H>,
+        after: Stretch<S, H>,
+    ) -> f64 {
+        let [before, after] = [before, after].map(|history| H::carried(history.0, touch.normal));
+        let slid = before + slip * elapsed - after;
+        let [sum, slid] = [before + after, slid].map(|tangent| S::along(tangent, touch.normal));
+        0.5 * N::tangential_stiffness(touch) * S::dot(sum, slid)
     }
     fn exchange(history: Stretch<S, H>) -> Stretch<S, H> {
         Stretch(H::exchange(history.0))

@@ -15,7 +15,9 @@
 
 use super::shared::{Field, Shared};
 use super::{FrictionTable, Other};
+use crate::accounts::Tally;
 use crate::bodies::Body;
+use crate::driven::Group;
 use crate::grid::Lattice;
 use crate::options::Contact;
 use crate::walls::RigidPlane;
@@ -35,28 +37,46 @@ pub(crate) struct Rules<'a> {
     pub(crate) time_step: f64,
 }
 
-/// Velocities after contact at all shared nodes; walls feel what is taken from the bodies, as a force over the step.
+/// Who feels what is taken from the bodies, as a force over the step: walls and driven bodies, which both move as they are told.
+pub(crate) struct Felt<'a, S: Space> {
+    pub(crate) walls: &'a mut [RigidPlane<S>],
+    pub(crate) driven: &'a mut [Group<S>],
+    pub(crate) tally: &'a mut Tally,
+}
+
+/// Velocities after contact at all shared nodes.
 pub(crate) fn apply<S: Space, F: Field<S>>(
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &Shared<S>,
-    walls: &mut [RigidPlane<S>],
+    felt: &mut Felt<'_, S>,
     field: &mut F,
 ) {
+    let Felt { walls, driven, tally } = felt;
     for group in shared.groups() {
         let members = &shared.members[group.members.clone()];
-        let (mut mass, mut momentum) = (0.0, S::ORIGIN);
+        let (mut mass, mut momentum, mut before) = (0.0, S::ORIGIN, S::ORIGIN);
         for member in members {
             mass += member.mass;
             momentum += field.velocity(member.slot) * member.mass;
+            before += field.before(member.slot) * member.mass;
         }
-        let common = match group.wall {
-            Some(wall) => walls[wall].velocity(group.position),
-            None => momentum * (1.0 / mass),
+        let mover = members.iter().find_map(|member| bodies[member.body as usize].driven).map(usize::from);
+        let common = match (group.wall, mover) {
+            (Some(wall), _) => walls[wall].velocity(group.position),
+            (None, Some(mover)) => driven[mover].velocity,
+            (None, None) => momentum * (1.0 / mass),
         };
+        let moved = group.wall.is_some() || mover.is_some();
+        let common_before = if moved { common } else { before * (1.0 / mass) };
         for member in members {
+            // What is moved goes on; with one field for all, bodies are no members of their own.
+            if bodies[member.body as usize].driven.is_some() && rules.contact != Contact::NoSlip {
+                continue;
+            }
             let velocity = field.velocity(member.slot);
             let away = velocity - common;
+            let mut rub = S::ORIGIN;
             let change = if rules.contact == Contact::NoSlip {
                 away
             } else {
@@ -99,7 +119,7 @@ pub(crate) fn apply<S: Space, F: Field<S>>(
                 let kept = if along > 0.0 && size > friction * along { friction * along / size } else { 1.0 };
                 let change = normal * along + tangential * kept;
                 let wanted = if rules.contact == Contact::Traction {
-                    let others = if group.wall.is_some() { f64::INFINITY } else { mass - member.mass };
+                    let others = if moved { f64::INFINITY } else { mass - member.mass };
                     let worse = (member.mass / others).max(1.0);
                     let rate = (0..S::DIMENSION)
                         .map(|axis| worse * S::component(change, axis).abs() / rules.lattice.cell[axis])
@@ -108,11 +128,21 @@ pub(crate) fn apply<S: Space, F: Field<S>>(
                 } else {
                     1.0
                 };
+                rub = tangential * (kept * wanted);
                 change * wanted
             };
             field.set(member.slot, velocity - change);
-            if let Some(wall) = group.wall.filter(|_| F::COUNTS) {
-                walls[wall].force += change * (member.mass / rules.time_step);
+            if F::COUNTS {
+                let impulse = change * member.mass;
+                tally.friction += member.mass * S::dot(rub, field.before(member.slot) - common_before);
+                match (group.wall, mover) {
+                    (Some(wall), _) => {
+                        walls[wall].force += impulse * (1.0 / rules.time_step);
+                        tally.walls -= S::dot(impulse, common);
+                    }
+                    (None, Some(mover)) => driven[mover].force += impulse * (1.0 / rules.time_step),
+                    (None, None) => {}
+                }
             }
         }
     }
@@ -125,9 +155,10 @@ pub(crate) fn apply_pairs<S: Space, F: Field<S>>(
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &mut Shared<S>,
-    walls: &mut [RigidPlane<S>],
+    felt: &mut Felt<'_, S>,
     field: &mut F,
 ) {
+    let Felt { walls, driven, tally } = felt;
     let Shared { meetings, faces, .. } = shared;
     for node in meetings.chunk_by_mut(|a, b| a.key == b.key) {
         let single = node.len() == 1;
@@ -169,15 +200,31 @@ pub(crate) fn apply_pairs<S: Space, F: Field<S>>(
                 let change = impulse - before;
                 meeting.impulse = impulse;
                 field.set(one, field.velocity(one) - change * (1.0 / meeting.masses[0]));
-                match meeting.other {
-                    Other::Body(_) => {
-                        let two = meeting.slots[1];
-                        field.set(two, field.velocity(two) + change * inverse);
+                if let Other::Body(_) = meeting.other {
+                    let two = meeting.slots[1];
+                    field.set(two, field.velocity(two) + change * inverse);
+                }
+                if F::COUNTS {
+                    let force = change * (1.0 / rules.time_step);
+                    let slip = match meeting.other {
+                        Other::Body(_) => field.before(one) - field.before(meeting.slots[1]),
+                        Other::Wall(_) => field.before(one) - velocity,
+                    };
+                    tally.friction += S::dot(change - normal * S::dot(change, normal), slip);
+                    if let Some(mover) = body.driven {
+                        driven[usize::from(mover)].force -= force;
                     }
-                    Other::Wall(wall) if F::COUNTS => {
-                        walls[usize::from(wall)].force += change * (1.0 / rules.time_step);
+                    match meeting.other {
+                        Other::Wall(wall) => {
+                            walls[usize::from(wall)].force += force;
+                            tally.walls -= S::dot(change, velocity);
+                        }
+                        Other::Body(other) => {
+                            if let Some(mover) = bodies[other as usize].driven {
+                                driven[usize::from(mover)].force += force;
+                            }
+                        }
                     }
-                    Other::Wall(_) => {}
                 }
                 largest = largest.max(S::dot(change, change) / (effective * effective));
             }

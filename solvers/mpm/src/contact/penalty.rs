@@ -5,6 +5,7 @@
 
 use super::pairs::Pair;
 use super::{FrictionTable, Other, Touch};
+use crate::accounts::Tally;
 use crate::basis::Basis;
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Stencil};
@@ -81,6 +82,15 @@ pub(crate) fn rub<S: Space>(
         let kept = along * (limit / size);
         (kept * -stiffness, kept, true)
     }
+}
+
+/// Work of friction in a step (J) in which a spring of given stretch went to another, and slid for the rest of `slip`: the mean
+/// force of the spring times what its end slid.
+#[inline(always)]
+fn rubbed<S: Space>(stiffness: f64, before: S::Vector, slip: S::Vector, after: S::Vector, normal: S::Vector) -> f64 {
+    let slid = before + slip - after;
+    let along = slid - normal * S::dot(slid, normal);
+    0.5 * stiffness * S::dot(before + after, along)
 }
 
 /// Energy (J) in the springs of a tracer at the end of the step, when points and stresses are looked at: forces are those
@@ -178,6 +188,7 @@ pub(crate) fn at_walls<S: Space, B: Basis>(
     springs: &mut Springs<S>,
     walls: &mut [RigidPlane<S>],
     nodes: &mut [Node<S>],
+    tally: &mut Tally,
     mut touches: Option<&mut Vec<Touch<S>>>,
 ) {
     let cell = rules.lattice.shortest(S::DIMENSION);
@@ -203,10 +214,13 @@ pub(crate) fn at_walls<S: Space, B: Basis>(
                 let stretch = springs.stretch(at, other);
                 let (shear, stretched, slipping) =
                     rub::<S>(*stretch, slip, wall.normal, spring, friction * spring * depth);
+                tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, wall.normal);
+                tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
                 *stretch = stretched;
                 let force = push + shear;
                 grip.push::<B>(&body.part, force, nodes);
                 wall.force -= force;
+                tally.walls += S::dot(force, wall.velocity(position)) * rules.time_step;
                 if let Some(touches) = touches.as_mut() {
                     let energy = energy_ahead::<S>(spring, depth, stretched, slip, wall.normal, slipping);
                     let body = place as u32;
@@ -234,6 +248,7 @@ pub(crate) fn between<S: Space, B: Basis>(
     tracers: &Tracers<S>,
     springs: &mut Springs<S>,
     nodes: &mut [Node<S>],
+    tally: &mut Tally,
     mut touches: Option<&mut Vec<Touch<S>>>,
 ) {
     let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
@@ -269,6 +284,8 @@ pub(crate) fn between<S: Space, B: Basis>(
             let other = Other::Body(pair.second);
             let stretch = springs.stretch(at, other);
             let (shear, stretched, slipping) = rub::<S>(*stretch, slip, out, spring, friction * spring * depth);
+            tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, out);
+            tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
             *stretch = stretched;
             let force = push + shear;
             one.push::<B>(&first.part, force, nodes);

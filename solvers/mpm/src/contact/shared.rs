@@ -16,10 +16,12 @@ pub(crate) trait Field<S: Space> {
     /// Whether what walls take counts as their force.
     const COUNTS: bool;
     fn velocity(&self, slot: usize) -> S::Vector;
+    /// Before the step.
+    fn before(&self, slot: usize) -> S::Vector;
     fn set(&mut self, slot: usize, velocity: S::Vector);
 }
 
-/// Velocities of the step.
+/// Velocities of the step; where their change will be, nodes still hold those before it.
 pub(crate) struct Stepped<'a, S: Space>(pub(crate) &'a mut [Node<S>]);
 
 impl<S: Space> Field<S> for Stepped<'_, S> {
@@ -27,6 +29,10 @@ impl<S: Space> Field<S> for Stepped<'_, S> {
     #[inline(always)]
     fn velocity(&self, slot: usize) -> S::Vector {
         self.0[slot].velocity
+    }
+    #[inline(always)]
+    fn before(&self, slot: usize) -> S::Vector {
+        self.0[slot].change
     }
     #[inline(always)]
     fn set(&mut self, slot: usize, velocity: S::Vector) {
@@ -41,6 +47,10 @@ impl<S: Space> Field<S> for Projected<'_, S> {
     const COUNTS: bool = false;
     #[inline(always)]
     fn velocity(&self, slot: usize) -> S::Vector {
+        self.0[slot]
+    }
+    #[inline(always)]
+    fn before(&self, slot: usize) -> S::Vector {
         self.0[slot]
     }
     #[inline(always)]
@@ -285,7 +295,7 @@ impl<S: Space> Shared<S> {
     ) {
         self.meetings.clear();
         for (number, wall) in walls.iter().enumerate() {
-            for (place, body) in bodies.iter().enumerate() {
+            for (place, body) in bodies.iter().enumerate().filter(|(_, body)| body.driven.is_none()) {
                 for at in body.tracers.clone() {
                     let position = tracers.position[at];
                     if wall.height(position) <= 0.0 {
@@ -343,7 +353,12 @@ impl<S: Space> Shared<S> {
         let base = stencil.base();
         stencil.each::<S, Linear>(&window, |node| {
             let place = [0, 1, 2].map(|axis| base[axis] + node.offset(axis));
-            let mass = nodes[node.slot].mass;
+            let mass_of = |body: usize, slot: usize| {
+                let mass = nodes[slot].mass;
+                // Nothing moves a driven body.
+                if bodies[body].driven.is_some() && mass > 0.0 { f64::INFINITY } else { mass }
+            };
+            let mass = mass_of(body, node.slot);
             let (slots, masses) = match other {
                 Other::Wall(_) => ([node.slot; 2], [mass, f64::INFINITY]),
                 Other::Body(other) => {
@@ -356,7 +371,7 @@ impl<S: Space> Shared<S> {
                         return;
                     }
                     let slot = window.slot(there);
-                    ([node.slot, slot], [mass, nodes[slot].mass])
+                    ([node.slot, slot], [mass, mass_of(other as usize, slot)])
                 }
             };
             if masses[0] > 0.0 && masses[1] > 0.0 {

@@ -47,6 +47,11 @@ pub trait Law: Copy + Send + Sync + 'static {
         let stress = self.follow::<Solid>(*increment, volume_ratio, state.deformation, stress, plastic_strain);
         state.stress = Solid::embed_symmetric(stress);
     }
+    /// Stress at which it flows after a plastic strain (Pa); zero for laws that do not.
+    #[inline(always)]
+    fn flow_stress(&self, _plastic_strain: f64) -> f64 {
+        0.0
+    }
     /// Elastic energy per volume at the start (J/m³).
     fn energy(&self, state: &State) -> f64;
     /// The deformation, equal along the axes that can deform, at which a pressure (Pa) acts along them, as a stretch;

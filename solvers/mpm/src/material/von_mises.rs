@@ -40,6 +40,11 @@ impl Law for VonMises {
         S::scaled_sum(deviator, 1.0 - stiffness * flow / equivalent, S::isotropic(mean))
     }
 
+    #[inline(always)]
+    fn flow_stress(&self, plastic_strain: f64) -> f64 {
+        self.yield_stress + self.hardening_modulus * plastic_strain
+    }
+
     fn energy(&self, state: &State) -> f64 {
         self.elastic.energy(state)
     }

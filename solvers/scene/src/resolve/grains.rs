@@ -145,7 +145,8 @@ impl Resolver<'_> {
             let radius = check.positive(&key, radius, "radius (m)")?;
             radii.extend(std::iter::repeat_n(radius, count as usize));
         }
-        let centres = packing::pack(&radii, packed.seed, domain, check.dimension).ok_or_else(|| {
+        let pack = if packed.cut { packing::pack_cut } else { packing::pack };
+        let centres = pack(&radii, packed.seed, domain, check.dimension).ok_or_else(|| {
             check.error(&key, "room for all grains in the domain without overlap", &format!("{total} grains"))
         })?;
         Ok(centres.into_iter().zip(radii).collect())

@@ -14,6 +14,7 @@ use std::ops::Range;
 use std::path::Path;
 
 mod bodies;
+mod driven;
 mod grains;
 mod laws;
 mod materials;
@@ -76,7 +77,8 @@ impl Resolver<'_> {
                 check.positive(&format!("materials.{name}.density"), density, "density (kg/m³)")?;
             }
         }
-        let (grains, groups) = self.grains(grain_shape, domain.as_ref())?;
+        let (mut grains, groups) = self.grains(grain_shape, domain.as_ref())?;
+        let driven = self.driven(&mut grains, &groups, domain.as_ref())?;
         let deformable = self.deformable()?;
         let bodies = self.bodies()?;
         if grains.is_empty() && bodies.is_empty() {
@@ -85,7 +87,7 @@ impl Resolver<'_> {
         let walls: Vec<Wall> = file.walls.iter().map(|(name, wall)| self.wall(name, wall)).collect::<Result<_, _>>()?;
         let laws = self.laws(&grains, &bodies, &walls)?;
         self.refuse_deep_overlap(&grains, &walls, domain.as_ref(), &groups)?;
-        let names = Names { groups: &groups, bodies: &bodies, walls: &walls };
+        let names = Names { groups: &groups, bodies: &bodies, walls: &walls, driven: &driven };
         let mut spots = Vec::new();
         let probes = file
             .probes
@@ -114,6 +116,7 @@ impl Resolver<'_> {
             grains,
             bodies,
             walls,
+            driven,
         })
     }
 

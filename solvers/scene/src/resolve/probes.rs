@@ -4,7 +4,7 @@ use super::{Groups, Resolver};
 use crate::check::Checker;
 use crate::error::SceneError;
 use crate::file::ProbeSpec;
-use crate::scene::{Block, BodyName, Probe, ProbeTarget, Spot, Wall};
+use crate::scene::{Block, BodyName, Driven, Probe, ProbeTarget, Spot, Wall};
 
 impl Resolver<'_> {
     pub(super) fn probe(
@@ -24,6 +24,8 @@ impl Resolver<'_> {
                 ("point", spec.point.is_some()),
                 ("contact", spec.contact.is_some()),
                 ("wall", spec.wall.is_some()),
+                ("driven", spec.driven.is_some()),
+                ("budget", spec.budget == Some(true)),
                 ("stress", spec.stress == Some(true)),
                 ("system", spec.system == Some(true)),
             ],
@@ -49,6 +51,11 @@ impl Resolver<'_> {
         } else if let Some(wall) = &spec.wall {
             let known = names.walls.iter().map(|wall| &wall.name);
             ProbeTarget::Wall(check.place_of(&key("wall"), wall, "a wall of this scene", known)?)
+        } else if let Some(group) = &spec.driven {
+            let known = names.driven.iter().map(|driven| &driven.name);
+            ProbeTarget::Driven(check.place_of(&key("driven"), group, "a group of driven grains", known)?)
+        } else if spec.budget == Some(true) {
+            ProbeTarget::Budget
         } else if spec.stress == Some(true) {
             ProbeTarget::Stress
         } else {
@@ -63,6 +70,7 @@ pub(super) struct Names<'a> {
     pub(super) groups: &'a Groups,
     pub(super) bodies: &'a [Block],
     pub(super) walls: &'a [Wall],
+    pub(super) driven: &'a [Driven],
 }
 
 impl Names<'_> {

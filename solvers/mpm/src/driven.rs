@@ -1,0 +1,111 @@
+//! Grains that are moved as walls are: every node that their points reach has their velocity.
+//!
+//! Where each body has a field of its own, those are the nodes of the body; where all share one, what else is at such a node
+//! is carried along.
+
+use crate::bodies::Body;
+use crate::grid::{Lattice, Node, Stencil};
+use crate::options::Basis;
+use crate::points::Points;
+use crate::simulation::with_basis;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::space::Space;
+
+/// A group of driven bodies.
+#[derive(Clone, Debug)]
+pub(crate) struct Group<S: Space> {
+    /// Velocity now (m/s): at rest while bodies settle.
+    pub(crate) velocity: S::Vector,
+    wanted: S::Vector,
+    /// Force of the others on it in the last step (N).
+    pub(crate) force: S::Vector,
+}
+
+/// All groups, and which nodes they hold.
+#[derive(Clone, Debug)]
+pub(crate) struct Driven<S: Space> {
+    pub(crate) groups: Vec<Group<S>>,
+    /// Slots that a group holds, with the group; found anew in each step.
+    held: Vec<(usize, u16)>,
+}
+
+impl<S: Space> Driven<S> {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let groups = scene.driven.iter().map(|driven| Group {
+            velocity: S::ORIGIN,
+            wanted: S::restrict(driven.velocity),
+            force: S::ORIGIN,
+        });
+        Self { groups: groups.collect(), held: Vec::new() }
+    }
+
+    /// Begins a step, in which groups move unless bodies settle.
+    pub(crate) fn begin(&mut self, settling: bool) {
+        for group in &mut self.groups {
+            group.velocity = if settling { S::ORIGIN } else { group.wanted };
+            group.force = S::ORIGIN;
+        }
+    }
+
+    /// Finds the nodes that are held; with one field for all, those that points of driven bodies reach.
+    pub(crate) fn find_held(
+        &mut self,
+        lattice: &Lattice,
+        bodies: &[Body],
+        points: &Points<S>,
+        basis: Basis,
+        one_field: bool,
+    ) {
+        self.held.clear();
+        for body in bodies {
+            let Some(group) = body.driven else { continue };
+            let window = &body.part.window;
+            if one_field {
+                with_basis!(basis, B => for at in body.part.points.clone() {
+                    let extent = body.part.extent::<S, B>(points.deformation[at]);
+                    let stencil = Stencil::new::<S, B>(lattice, points.position[at], extent);
+                    stencil.each::<S, B>(window, |node| self.held.push((node.slot, group)));
+                });
+            } else {
+                self.held.extend((window.start..window.start + window.len()).map(|slot| (slot, group)));
+            }
+        }
+        if one_field {
+            self.held.sort_unstable();
+            self.held.dedup_by_key(|(slot, _)| *slot);
+        }
+    }
+
+    /// Sets the velocities of held nodes; groups feel what that takes, as a force over the step.
+    pub(crate) fn hold(&mut self, nodes: &mut [Node<S>], time_step: f64) {
+        for &(slot, group) in &self.held {
+            let (node, group) = (&mut nodes[slot], &mut self.groups[usize::from(group)]);
+            if node.mass > 0.0 {
+                group.force += (node.velocity - group.velocity) * (node.mass / time_step);
+                node.velocity = group.velocity;
+            }
+        }
+    }
+
+    /// The same of projected velocities.
+    pub(crate) fn hold_projected(&self, projected: &mut [S::Vector], nodes: &[Node<S>]) {
+        for &(slot, group) in &self.held {
+            if nodes[slot].mass > 0.0 {
+                projected[slot] = self.groups[usize::from(group)].velocity;
+            }
+        }
+    }
+
+    /// Points of driven bodies move as they do. Where others share their nodes, they had taken on a part of what those gave.
+    pub(crate) fn carry(&mut self, bodies: &[Body], points: &mut Points<S>, time_step: f64) {
+        for body in bodies {
+            let Some(group) = body.driven else { continue };
+            let group = &mut self.groups[usize::from(group)];
+            for at in body.part.points.clone() {
+                group.force += (points.velocity[at] - group.velocity) * (points.mass[at] / time_step);
+                points.velocity[at] = group.velocity;
+                points.affine[at] = S::NO_GRADIENT;
+            }
+        }
+    }
+}

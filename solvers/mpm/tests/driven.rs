@@ -1,0 +1,80 @@
+//! Driven grains, and where the energy goes that they bring.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use support::{collision, column, last, run, scene};
+
+/// The left disc of a collision is driven, faster than the sound of a push can let the right one escape, and yields where
+/// `yields`.
+fn pushed(friction: f64, offset: f64, yields: bool) -> String {
+    let speed = 0.01 * 18.0_f64.sqrt();
+    let mut text = collision(0.1, friction, offset);
+    if yields {
+        let law = "shear_modulus = 6.0, constitutive = 'von-mises', yield_stress = 0.05, hardening_modulus = 0.1";
+        text = text.replace("shear_modulus = 6.0", law);
+    }
+    format!("{text}budget.budget = true\nleft.driven = 'ram'\n[driven.ram]\ngrains = 'a'\nvelocity = [{speed}, 0.0]\n")
+}
+
+#[test]
+fn a_driven_grain_keeps_its_course_and_gives_what_it_says() {
+    for name in ["mpm", "mpm:penalty", "mpm:gap", "mpm:2000", "mpm:2001", "mpm:no-slip"] {
+        let record = run(name, &pushed(0.5, 0.5, true), 8.0, 2);
+        let speed = 0.01 * 18.0_f64.sqrt();
+        let way = speed * record.series.time.last().unwrap();
+        let start = column(&record, "a.x")[0];
+        assert!((last(&record, "a.x") - start - way).abs() < 1e-12, "{name}: {}", last(&record, "a.x"));
+        assert!(last(&record, "a.angle").abs() < 1e-12 && (last(&record, "a.vx") - speed).abs() < 1e-14, "{name}");
+        // What it pushed has been pushed, and moves on.
+        assert!(last(&record, "b.vx") > 0.0, "{name}: {}", last(&record, "b.vx"));
+        let scale = last(&record, "budget.impulse_x");
+        let off = last(&record, "budget.momentum_x") - column(&record, "budget.momentum_x")[0] - scale;
+        assert!(off.abs() < 1e-11 * scale.abs(), "{name}: momentum is off by {off} of {scale}");
+    }
+}
+
+#[test]
+fn the_budget_of_a_push_closes() {
+    for (name, yields, allowed) in [
+        ("mpm", false, 2e-3),
+        ("mpm", true, 2e-3),
+        ("mpm:penalty", true, 5e-3),
+        ("mpm:gap", true, 5e-3),
+        ("mpm:no-slip", true, 5e-3),
+    ] {
+        let record = run(name, &pushed(0.5, 0.5, yields), 8.0, 2);
+        let of = |entry: &str| last(&record, &format!("budget.{entry}"));
+        let open = (of("unbalanced") - column(&record, "budget.unbalanced")[0]) / of("work");
+        assert!(of("work") > 0.0 && open.abs() < allowed, "{name}: {open}");
+        assert_eq!(of("plastic") > 0.0, yields, "{name}");
+        assert_eq!(of("friction") > 0.0, name != "mpm:no-slip", "{name}");
+        // What the method itself loses or makes is small beside what is brought in.
+        let made = (of("transfer") + of("contact")) / of("work");
+        assert!(made.abs() < if name == "mpm" { 0.01 } else { 0.1 }, "{name}: {made}");
+    }
+}
+
+/// A budget that leaves out an entry does not close: friction here.
+#[test]
+fn the_budget_misses_what_is_left_out() {
+    let record = run("mpm", &pushed(0.5, 0.5, false), 8.0, 2);
+    let of = |entry: &str| last(&record, &format!("budget.{entry}"));
+    let open = of("unbalanced") - of("friction") - column(&record, "budget.unbalanced")[0];
+    assert!(open.abs() > 5e-3 * of("work"), "{open} of {}", of("work"));
+}
+
+#[test]
+fn a_grain_that_yields_says_so() {
+    let record = run("mpm", &pushed(0.5, 0.5, true), 8.0, 2);
+    let grains = &record.snapshots.last().unwrap().grains;
+    assert!(grains[0].plastic_strain == 0.0, "what is driven does not deform");
+    let points = &record.snapshots.last().unwrap().points;
+    let (mut mass, mut sum) = (0.0, 0.0);
+    for point in points.iter().filter(|point| point.owner == grainbench_scene::record::Owner::Grain(2)) {
+        mass += 1.0;
+        sum += point.plastic_strain;
+    }
+    assert!(grains[1].plastic_strain > 0.0 && sum / mass > 0.0);
+    assert_eq!(scene(&pushed(0.5, 0.5, true)).driven[0].grains, [0]);
+}

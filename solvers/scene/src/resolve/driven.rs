@@ -1,0 +1,72 @@
+//! Grains that are moved as walls are.
+
+use super::{Groups, Resolver};
+use crate::error::SceneError;
+use crate::file::{DrivenSpec, SideSpec};
+use crate::scene::{Domain, Driven, Grain};
+use nalgebra::Vector3;
+
+impl Resolver<'_> {
+    /// The groups of driven grains, whose velocity and spin from the start are those that they keep.
+    pub(super) fn driven(
+        &self,
+        grains: &mut [Grain],
+        groups: &Groups,
+        domain: Option<&Domain>,
+    ) -> Result<Vec<Driven>, SceneError> {
+        let mut taken = vec![false; grains.len()];
+        let mut all = Vec::new();
+        for (name, spec) in &self.file.driven {
+            let key = format!("driven.{name}");
+            let members = self.members(&key, spec, grains, groups, domain)?;
+            if members.is_empty() {
+                return Err(self.check.error(&key, "one grain or more", "none"));
+            }
+            let velocity = self.check.vector_or_zero(&format!("{key}.velocity"), spec.velocity.as_ref())?;
+            for &grain in &members {
+                if taken[grain] {
+                    let found = format!("grain {} in two of them", grain + 1);
+                    return Err(self.check.error(&key, "grains of one driven group", &found));
+                }
+                taken[grain] = true;
+                (grains[grain].velocity, grains[grain].spin) = (velocity, Vector3::zeros());
+            }
+            all.push(Driven { name: name.clone(), grains: members, velocity });
+        }
+        Ok(all)
+    }
+
+    fn members(
+        &self,
+        key: &str,
+        spec: &DrivenSpec,
+        grains: &[Grain],
+        groups: &Groups,
+        domain: Option<&Domain>,
+    ) -> Result<Vec<usize>, SceneError> {
+        let check = &self.check;
+        check.exactly_one(key, &[("grains", spec.grains.is_some()), ("face", spec.face.is_some())])?;
+        if let Some(group) = &spec.grains {
+            let place = check.place_of(&format!("{key}.grains"), group, "a group of grains", groups.keys())?;
+            return Ok(groups[place].clone().collect());
+        }
+        let key = format!("{key}.face");
+        let Some(domain) = domain else {
+            return Err(check.error(&key, "a `domain` that has faces", "none"));
+        };
+        let (axis, high) = match spec.face {
+            Some(SideSpec::XHigh) => (0, true),
+            Some(SideSpec::YLow) => (1, false),
+            Some(SideSpec::YHigh) => (1, true),
+            Some(SideSpec::ZLow) => (2, false),
+            Some(SideSpec::ZHigh) => (2, true),
+            Some(SideSpec::XLow) | None => (0, false),
+        };
+        if axis >= check.dimension.count() || domain.periodic[axis] {
+            return Err(check.error(&key, "a face that is not periodic", &format!("{:?}", spec.face)));
+        }
+        let place = if high { domain.high[axis] } else { domain.low[axis] };
+        let is_cut = |grain: &Grain| (grain.position[axis] - place).abs() < grain.radius;
+        Ok((0..grains.len()).filter(|&at| is_cut(&grains[at])).collect())
+    }
+}
