@@ -206,6 +206,7 @@ mod tests {
             angle: 0.3,
             force: Vector3::zeros(),
             torque: Vector3::zeros(),
+            plastic_strain: 0.0,
         };
         Snapshot {
             step: 0,

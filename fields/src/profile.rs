@@ -97,6 +97,7 @@ mod tests {
                 angle: 0.0,
                 force: Vector3::zeros(),
                 torque: Vector3::zeros(),
+                plastic_strain: 0.0,
             }
         };
         Snapshot {
