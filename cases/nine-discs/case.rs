@@ -6,6 +6,7 @@ mod figures;
 mod modal;
 
 use crate::case::{Case, Rung, fraction};
+use crate::effect::Effect;
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::{dominant_frequency, slope};
 use crate::program_rows;
@@ -16,7 +17,7 @@ use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::Resolution;
 use modal::{Inward, Modal, law};
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025)];
 /// A step at which the residual oscillation of the paper's Fig. 6, .15 F_eq, is met with 40 cycles at κ = 1.
@@ -373,8 +374,44 @@ fn damping() -> Vec<Gate> {
                 }
             }),
         });
+        gates.push(Gate {
+            quantity: "rate at which the slow mode dies away".to_owned(),
+            unit: "1/s",
+            evidence: Evidence::Analytic,
+            scope: Scope::Named,
+            source: "product of the eigenvalues of the damped cycle (derivation)",
+            allowed: 2e-3,
+            because: "geometry of second order in the overlap, δ/R = 1.5e-3",
+            runs: vec![Run::new(damped, "dem", FIGURE_STEP)],
+            measure: measure(|done| {
+                let expected = Modal::of(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
+                Ok(Measured::new(decay(&done[0])?, expected, expected))
+            }),
+            control: Control::without(Effect::ContactDamping),
+        });
     }
     gates
+}
+
+/// Rate (1/s) at which the slow mode p = a + √2 b dies away once the walls have stopped: x, its distance from where it ends, follows
+/// `x_{n+1} = A x_n − B x_{n−1}` with B = exp(−2γΔt), fitted by least squares over two periods.
+fn decay(done: &Done) -> Result<f64, Missing> {
+    let scene = &done.scene;
+    let time_step = done.record.provenance.time_step;
+    let first = (scene.walls[0].motion.phases[0].stop.seconds(time_step) / time_step).round() as usize + 1;
+    let cycles = (2.0 * TAU / (Modal::of(scene).frequencies()[0] * time_step)) as usize;
+    let slow: Vec<f64> = inward(done)?.iter().map(|inward| inward.edge + SQRT_2 * inward.corner).collect();
+    let end = *slow.last().ok_or_else(|| Missing("samples".to_owned()))?;
+    let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for window in slow[first..first + cycles].windows(3) {
+        let [before, now, after] = [0, 1, 2].map(|at: usize| window[at] - end);
+        a += now * now;
+        b -= now * before;
+        c += before * before;
+        p += now * after;
+        q -= before * after;
+    }
+    Ok(-((a * q - b * p) / (a * c - b * b)).ln() / (2.0 * time_step))
 }
 
 const DISTORTION: [&str; 4] =

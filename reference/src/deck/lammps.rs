@@ -10,8 +10,8 @@ use super::logged::logged;
 use super::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
 use super::region::region;
 use super::{
-    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs, asks_for_wall,
-    heading, thermo,
+    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs,
+    asks_for_wall, heading, thermo,
 };
 use crate::observer::Names;
 
@@ -96,7 +96,8 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
     say(printed);
     let of_walls = names.0.iter().map(|(_, column)| column.as_str()).filter(|column| column.starts_with("f_"));
     let columns = COLUMNS.into_iter().chain(of_walls).collect::<Vec<_>>().join(" ");
-    let of_pairs: Vec<&str> = names.0.iter().map(|(_, column)| column.as_str()).filter(|it| it.starts_with("c_")).collect();
+    let of_pairs: Vec<&str> =
+        names.0.iter().map(|(_, column)| column.as_str()).filter(|it| it.starts_with("c_")).collect();
     let of_pairs = of_pairs.join(" ");
     let dump = |name: &str, interval: u64, [file, contacts]: [&str; 2]| {
         let grains = format!(

@@ -18,8 +18,8 @@ use super::mesh::{Triangle, stl, triangles};
 use super::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
 use super::schedule::{Rates, changes, rates_from};
 use super::{
-    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs, asks_for_wall,
-    heading, thermo,
+    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs,
+    asks_for_wall, heading, thermo,
 };
 use crate::observer::Names;
 
@@ -212,12 +212,14 @@ fn input(
     // One format serves the whole row.
     let of_walls = names.0.iter().map(|(_, column)| column.as_str()).filter(|column| column.starts_with("f_"));
     let columns: Vec<&str> = COLUMNS.into_iter().chain(of_walls).collect();
-    let of_pairs: Vec<&str> = names.0.iter().map(|(_, column)| column.as_str()).filter(|it| it.starts_with("c_")).collect();
+    let of_pairs: Vec<&str> =
+        names.0.iter().map(|(_, column)| column.as_str()).filter(|it| it.starts_with("c_")).collect();
     let dump = |name: &str, interval: u64, [file, contacts]: [&str; 2]| {
         let format = format!("%d %d{}", " %.17g".repeat(columns.len() - 2));
         let columns = columns.join(" ");
-        let grains =
-            format!("dump {name} all custom {interval} {file} {columns}\ndump_modify {name} format \"{format}\" sort id");
+        let grains = format!(
+            "dump {name} all custom {interval} {file} {columns}\ndump_modify {name} format \"{format}\" sort id"
+        );
         if of_pairs.is_empty() {
             return grains;
         }
