@@ -24,7 +24,8 @@ const FRAMES: [(&str, &str, [f64; 3], [f64; 3]); 3] = [
 ];
 /// Frames of the film, in quarters of a transit.
 const FILM: u32 = 44;
-const PIXELS: u32 = 640;
+const PIXELS: u32 = 900;
+const FILM_PIXELS: u32 = 480;
 
 /// One transit of a disc, d/c (s).
 fn transit(scene: &Scene) -> f64 {
@@ -91,7 +92,7 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         quantity,
         &[Shot { title: String::new(), frames }],
         ("time t c/d, transits of a disc", &clock),
-        PIXELS,
+        FILM_PIXELS,
         None,
     );
     figures.push(Figure::field(

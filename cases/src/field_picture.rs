@@ -3,6 +3,7 @@
 use crate::figure::{Field, Panel, Shades};
 use grainbench_fields::paint::{Painting, View};
 use grainbench_fields::quantity::Quantity;
+use grainbench_fields::raster::{HIGH, LOW, Raster};
 use grainbench_scene::record::Snapshot;
 
 /// What one panel shows: its title, and a snapshot for every frame.
@@ -45,7 +46,7 @@ pub fn film(
     let range = range.unwrap_or_else(|| own_range(quantity, paintings.iter().flatten()));
     let panels = shots.iter().zip(&paintings).map(|(shot, paintings)| Panel {
         title: shot.title.clone(),
-        frames: paintings.iter().map(|painting| painting.raster(range)).collect(),
+        frames: paintings.iter().map(|painting| of_few_levels(painting.raster(range), times.len())).collect(),
     });
     let (label, unit) = quantity.label();
     Field {
@@ -63,6 +64,15 @@ pub fn film(
         clock: clock.to_owned(),
         times: times.to_vec(),
     }
+}
+
+/// The frames of a film have a quarter of the levels: nobody sees the difference, and a page can hold it.
+fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
+    if frames > 1 {
+        let values = raster.levels.iter_mut().filter(|level| (LOW..=HIGH).contains(level));
+        values.for_each(|level| *level = (LOW + (*level - LOW + 2) / 4 * 4).min(HIGH));
+    }
+    raster
 }
 
 /// What holds all that is to be seen.

@@ -6,7 +6,9 @@ pub mod junit;
 pub mod line;
 pub mod number;
 pub mod page;
+pub mod pictures;
 pub mod plot;
+pub mod record_figures;
 pub mod report;
 pub mod results;
 pub mod staged;
@@ -20,6 +22,7 @@ pub mod write;
 mod sample;
 
 pub use headline::Headline;
+pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use staged::StagedDir;
 pub use store::{LoadError, SaveError, write_report};

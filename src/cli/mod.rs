@@ -61,7 +61,7 @@ enum Command {
     Reference(reference::Command),
     /// Print the JSON schema of scene files.
     Schema,
-    /// Make the page and figures again from a report's directory, without any solver.
+    /// Make page and figures from what a run left, without any solver: of a report again, or pictures of a simulation.
     Report(report::Arguments),
 }
 

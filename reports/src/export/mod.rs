@@ -6,7 +6,7 @@ pub mod series_csv;
 pub mod vtk;
 
 #[cfg(test)]
-mod sample;
+pub(crate) mod sample;
 
 use grainbench_scene::record::Record;
 
@@ -20,7 +20,7 @@ use crate::write::WriteError;
 /// When the disk refuses.
 pub fn write_record(record: &Record, out: &mut StagedDir) -> Result<(), WriteError> {
     out.write_with("series.csv", |file| series_csv::write(&record.series, file))?;
-    out.write_with("record.json", |file| record_json::write(record, file))?;
+    out.write_with(record_json::RECORD_FILE, |file| record_json::write(record, file))?;
     out.write_with("snapshots.dump", |file| dump::write(&record.snapshots, file))?;
     let mut grains = Vec::new();
     let mut contacts = Vec::new();

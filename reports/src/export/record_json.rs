@@ -1,8 +1,15 @@
 //! A whole record as JSON.
 
+use std::fs;
 use std::io::{self, Write};
+use std::path::Path;
 
 use grainbench_scene::record::Record;
+
+use crate::store::{LoadError, parse};
+
+/// Name of the file.
+pub const RECORD_FILE: &str = "record.json";
 
 /// Writes the record, indented; numbers read back to the same bits.
 ///
@@ -11,6 +18,18 @@ use grainbench_scene::record::Record;
 pub fn write(record: &Record, mut out: impl Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut out, record)?;
     out.write_all(b"\n")
+}
+
+/// Reads the record that a simulation left in `dir`.
+///
+/// # Errors
+/// When the file is missing or damaged; the message names the place.
+pub fn load(dir: &Path) -> Result<Record, LoadError> {
+    let path = dir.join(RECORD_FILE);
+    match fs::read_to_string(&path) {
+        Ok(text) => parse(&path, &text),
+        Err(source) => Err(LoadError::Read { path, source }),
+    }
 }
 
 #[cfg(test)]

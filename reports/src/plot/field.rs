@@ -18,8 +18,10 @@ const TOP: f64 = 48.0;
 const HEAD: f64 = 24.0;
 const GAP: f64 = 14.0;
 /// Right of the panels, for colours.
-const COLOURS: f64 = 116.0;
+const COLOURS: f64 = 124.0;
+/// The panels together, or each of several rows.
 const TALLEST: f64 = 560.0;
+const TALLEST_ROW: f64 = 300.0;
 const FOOT: f64 = 46.0;
 /// Below a film, for its clock.
 const CLOCK: f64 = 50.0;
@@ -42,7 +44,8 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let head = if field.panels.iter().any(|panel| !panel.title.is_empty()) { HEAD } else { 0.0 };
     let room = WIDTH - 2.0 * MARGIN - COLOURS;
     let widest = (room - GAP * (across - 1) as f64) / across as f64;
-    let scale = (widest / f64::from(size.0)).min(TALLEST / rows as f64 / f64::from(size.1));
+    let scale =
+        (widest / f64::from(size.0)).min(TALLEST.max(TALLEST_ROW * rows as f64) / rows as f64 / f64::from(size.1));
     let panel = (f64::from(size.0) * scale, f64::from(size.1) * scale);
     // The seam of a film is as wide as the scale makes it.
     let gap = if is_film { SEAM as f64 * scale } else { GAP };
@@ -81,7 +84,7 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
             }
             @if is_film { (clock(field, full, foot)) }
             (scale_bar(field.pixel / scale, panel.0, height - FOOT + 24.0))
-            (colour_bar(field, MARGIN + full + 20.0, TOP + head, (panel.1 * rows as f64).clamp(120.0, 320.0)))
+            (colour_bar(field, MARGIN + full + 30.0, TOP + head, (panel.1 * rows as f64).clamp(120.0, 320.0)))
         }
     }
     .into_string())
@@ -203,7 +206,7 @@ fn colour_bar(field: &Field, x: f64, y: f64, height: f64) -> Markup {
             @for at in 0..STEPS {
                 @let level = LOW + (f64::from(HIGH - LOW) * (f64::from(at) + 0.5) / f64::from(STEPS)) as u8;
                 @let [red, green, blue] = colour(field.shades, level);
-                rect x=(px(x)) y=(px(y + height - step * f64::from(at + 1))) width="16" height=(px(step + 0.3))
+                rect x=(px(x)) y=(px(y + height - step * f64::from(at + 1))) width="16" height=(px(step + 0.8))
                     fill=(format!("#{red:02x}{green:02x}{blue:02x}")) {}
             }
             rect x=(px(x)) y=(px(y)) width="16" height=(px(height)) fill="none" stroke="#777" stroke-width=".8" {}

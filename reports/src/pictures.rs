@@ -1,0 +1,56 @@
+//! A page of pictures of records, without verdicts.
+
+use crate::page::{shell, slug, unique};
+use crate::plot;
+use crate::staged::StagedDir;
+use crate::store::SaveError;
+use grainbench_cases::figure::{Drawing, Figure};
+use grainbench_scene::record::{Provenance, Record};
+use maud::{PreEscaped, html};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Writes `index.html` and `figures/NAME.svg` into `dir`, films as `figures/NAME.png` too, all of them or none.
+///
+/// # Errors
+/// When the disk refuses or a figure cannot be drawn.
+pub fn write_pictures(dir: &Path, records: &[&Record], figures: &[Figure]) -> Result<(), SaveError> {
+    let mut out = StagedDir::new(dir)?;
+    let mut names = BTreeSet::new();
+    let mut drawn = Vec::new();
+    for figure in figures {
+        let name = unique(&slug(&figure.name), &mut names);
+        let svg = plot::draw(figure)?;
+        out.write(format!("figures/{name}.svg"), &svg)?;
+        if let Some(film) = plot::film(figure)? {
+            out.write(format!("figures/{name}.png"), film)?;
+        }
+        drawn.push((name, svg, figure));
+    }
+    let title = records.first().map_or("pictures", |record| record.provenance.scene.as_str());
+    let body = html! {
+        main {
+            header {
+                p.kicker { "grainbench" }
+                h1 { (title) }
+                @for record in records { p.lead { (words(&record.provenance)) } }
+            }
+            @for (name, svg, figure) in &drawn {
+                figure id=(name) {
+                    div class=(if matches!(figure.drawing, Drawing::Graph(_)) { "plot graph" } else { "plot" }) {
+                        (PreEscaped(svg))
+                    }
+                    figcaption { (figure.caption) }
+                }
+            }
+        }
+    };
+    out.write("index.html", shell(&format!("grainbench · {title}"), &body))?;
+    out.commit()?;
+    Ok(())
+}
+
+fn words(from: &Provenance) -> String {
+    let effects = if from.effects.is_empty() { "contact springs only".to_owned() } else { from.effects.join(", ") };
+    format!("{}, {}: {effects}", from.solver, from.resolution)
+}
