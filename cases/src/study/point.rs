@@ -30,25 +30,42 @@ pub struct Counts {
     pub pair_tests: u64,
     /// Neighbour lists built.
     pub neighbour_builds: u64,
+    /// Nodes of a grid that took a step, in all steps.
+    #[serde(default)]
+    pub node_updates: u64,
+    /// Memory that the state takes up at its largest (B), where it is counted.
+    #[serde(default)]
+    pub bytes: u64,
 }
 
 impl From<&Cost> for Counts {
     fn from(cost: &Cost) -> Self {
-        let &Cost { steps, particle_steps, contact_evaluations, pair_tests, neighbour_builds, .. } = cost;
-        Self { steps, particle_steps, contact_evaluations, pair_tests, neighbour_builds }
+        let &Cost {
+            steps,
+            particle_steps,
+            contact_evaluations,
+            pair_tests,
+            neighbour_builds,
+            node_updates,
+            bytes,
+            wall_seconds: _,
+        } = cost;
+        Self { steps, particle_steps, contact_evaluations, pair_tests, neighbour_builds, node_updates, bytes }
     }
 }
 
 impl Counts {
     /// Names and values, in one order.
     #[must_use]
-    pub const fn named(&self) -> [(&'static str, u64); 5] {
+    pub const fn named(&self) -> [(&'static str, u64); 7] {
         [
             ("steps", self.steps),
             ("particle_steps", self.particle_steps),
             ("contact_evaluations", self.contact_evaluations),
             ("pair_tests", self.pair_tests),
             ("neighbour_builds", self.neighbour_builds),
+            ("node_updates", self.node_updates),
+            ("bytes", self.bytes),
         ]
     }
 }

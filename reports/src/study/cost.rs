@@ -3,7 +3,7 @@
 use super::Study;
 use crate::number;
 use grainbench_cases::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_cases::study::point::{Diagram, Point, Standing};
+use grainbench_cases::study::point::{Counts, Diagram, Point, Standing};
 
 /// Lines of every diagram, in one order, so that a solver has the same colour in all.
 pub const LINES: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
@@ -233,7 +233,7 @@ fn scatter(study: &Study, unit: &str) -> Option<Figure> {
 /// When a line cannot be encoded, which none of this project can fail to be.
 pub fn points_csv(study: &Study) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record([
+    let mut head = vec![
         "case",
         "variant",
         "quantity",
@@ -246,12 +246,9 @@ pub fn points_csv(study: &Study) -> Result<Vec<u8>, csv::Error> {
         "wall_spread",
         "cpu_seconds",
         "start_up_seconds",
-        "steps",
-        "particle_steps",
-        "contact_evaluations",
-        "pair_tests",
-        "neighbour_builds",
-    ])?;
+    ];
+    head.extend(Counts::default().named().map(|(name, _)| name));
+    table.write_record(head)?;
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
     for point in study.diagrams.iter().flat_map(|diagram| &diagram.points) {
         let mut row: Vec<String> =

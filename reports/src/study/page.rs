@@ -177,6 +177,8 @@ fn points(diagram: &Diagram) -> Markup {
                     th.n scope="col" { "Steps" }
                     th.n scope="col" { "Particle-steps" }
                     th.n scope="col" { "Contact evaluations" }
+                    th.n scope="col" { "Node updates" }
+                    th.n scope="col" { "Bytes" }
                     th scope="col" { "What the error is made of" }
                 }
             }
@@ -205,6 +207,8 @@ fn row(point: &Point) -> Markup {
             td.n { (number::count(point.counts.steps)) }
             td.n { (number::count(point.counts.particle_steps)) }
             td.n { (number::count(point.counts.contact_evaluations)) }
+            td.n { (number::count(point.counts.node_updates)) }
+            td.n { (number::count(point.counts.bytes)) }
             td.wide { (point.floor.as_deref().or(point.detail.as_deref()).unwrap_or("")) }
         }
     }
