@@ -1,0 +1,224 @@
+//! Hertz contact of a cylinder in plane strain: half-width and peak pressure.
+
+use crate::bench::Bench;
+use crate::case::{Case, PLAIN, Rung, cells};
+use crate::figure::{Axis, Curve, Figure, Stroke};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
+use crate::verdict::Evidence;
+use grainbench_scene::body::Deformable;
+use grainbench_scene::record::{Owner, PointState, Snapshot};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::RunError;
+use nalgebra::{Matrix2, Vector2};
+use std::f64::consts::PI;
+
+const LADDER: &[Rung] =
+    &[cells("b", 1.0, POINTS), cells("b/2", 2.0, POINTS), cells("b/4", 4.0, POINTS), cells("b/8", 8.0, POINTS)];
+/// Allowed errors of half-width and peak pressure, by rung.
+const ALLOWED: [[f64; 2]; 4] = [[0.2, 0.12], [0.05, 0.05], [0.05, 0.05], [0.05, 0.05]];
+const BECAUSE: &str = "discretisation, contact springs as soft as half a cell of material, bodies that are no half-spaces and strains of 5 %";
+/// Points per cell and axis.
+const POINTS: u32 = 2;
+/// Points that keep velocities of their own, as those of the best setting do, go on trembling under a load that rests, and their
+/// stresses with them; those of APIC come to rest.
+const SOLVER: &str = "mpm+apic";
+const SOURCE: &str = "Hertz: b = √(4PR/πE*), p₀ = 2P/πb; Johnson, Contact Mechanics, §4.2 (derivation)";
+
+pub(crate) static CASE: Case = Case {
+    name: "hertz-cylinder",
+    title: "An elastic cylinder on an elastic block",
+    claim: "Pressed together, a cylinder and a block of different moduli touch over the width that Hertz gives, with his peak pressure.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "Hertz speaks of half-spaces and small strains: bodies of 8 b and strains of 5 % leave a per cent or two, and stresses of \
+               material points a cell below the surface are not the traction on it.",
+    ladder: LADDER,
+    default_rung: LADDER[1],
+    gates,
+    figures,
+};
+
+/// Half-width (m) and peak pressure (Pa) for half-spaces.
+#[derive(Clone, Copy, Debug)]
+struct Hertz {
+    half_width: f64,
+    peak: f64,
+}
+
+impl Hertz {
+    fn of(scene: &Scene) -> Self {
+        let compliance = |material: &Option<Deformable>| material.map_or(f64::NAN, |of| 1.0 / of.plane_modulus());
+        let modulus = 1.0 / scene.deformable.iter().map(compliance).sum::<f64>();
+        let load = weight(scene);
+        let half_width = (4.0 * load * scene.grains[0].radius / (PI * modulus)).sqrt();
+        Self { half_width, peak: 2.0 * load / (PI * half_width) }
+    }
+
+    /// Pressure −σ_yy (Pa) at a depth below the surface of a half-space: (p₀/b) m (1 − (z² + n²)/(m² + n²)) with
+    /// m², n² = ½(√((b² − x² + z²)² + 4x²z²) ± (b² − x² + z²)) (McEwen 1949; Johnson, eq. 4.49b).
+    fn pressure_below(&self, x: f64, depth: f64) -> f64 {
+        let side = self.half_width * self.half_width - x * x + depth * depth;
+        let root = (side * side + 4.0 * x * x * depth * depth).sqrt();
+        let [m, n] = [0.5 * (root + side), 0.5 * (root - side)];
+        self.peak / self.half_width * m.max(0.0).sqrt() * (1.0 - (depth * depth + n) / (m + n))
+    }
+}
+
+/// Line load P (N/m): the cylinder's weight.
+fn weight(scene: &Scene) -> f64 {
+    scene.grains[0].mass * scene.gravity.norm()
+}
+
+/// A material point of the block: place along and below the surface (m), and pressure −σ_yy (Pa).
+#[derive(Clone, Copy, Debug)]
+struct Pressed {
+    x: f64,
+    depth: f64,
+    pressure: f64,
+}
+
+/// Material points of the block at the end whose depth at the start was between `from` and `to` cells and which are not farther from
+/// the middle than 1.5 b.
+fn pressed(done: &Done, from: f64, to: f64) -> Result<Vec<Pressed>, Missing> {
+    let snapshots = &done.record.snapshots;
+    let block = |point: &&PointState| matches!(point.owner, Owner::Body(_));
+    let points = |at: Option<&Snapshot>| -> Vec<PointState> {
+        at.into_iter().flat_map(|snapshot| &snapshot.points).filter(block).copied().collect()
+    };
+    let undeformed = points(snapshots.first()).first().map(|point| point.volume.sqrt());
+    let cell = undeformed.ok_or_else(|| Missing("points of the block".to_owned()))? * f64::from(POINTS);
+    let reach = 1.5 * Hertz::of(&done.scene).half_width;
+    let chosen = points(snapshots.last()).into_iter().filter_map(|point| {
+        // The surface is y = 0 at the start.
+        let start = (point.displacement.y - point.position.y) / cell;
+        let seen = (from..to).contains(&start) && point.position.x.abs() < reach;
+        seen.then(|| Pressed { x: point.position.x, depth: start * cell, pressure: -point.stress[1] })
+    });
+    Ok(chosen.collect())
+}
+
+/// Half-width and peak pressure of the contact whose stress in a half-space, two layers of cells below the uppermost, is nearest to that
+/// of the material points: least squares by Gauss–Newton over both.
+fn measured(done: &Done) -> Result<Hertz, Missing> {
+    let points = pressed(done, 1.0, 3.0)?;
+    let mut found = Hertz::of(&done.scene);
+    for _ in 0..20 {
+        let (mut curvature, mut slope) = (Matrix2::zeros(), Vector2::zeros());
+        for point in &points {
+            let now = found.pressure_below(point.x, point.depth);
+            let wider = Hertz { half_width: found.half_width * (1.0 + 1e-6), ..found };
+            // By relative changes of the half-width and of the peak, in which the stress is linear.
+            let by = Vector2::new((wider.pressure_below(point.x, point.depth) - now) / 1e-6, now);
+            curvature += by * by.transpose();
+            slope += by * (point.pressure - now);
+        }
+        let inverse = curvature.try_inverse().ok_or_else(|| Missing("stressed points of the block".to_owned()))?;
+        let change = inverse * slope;
+        found.half_width *= 1.0 + change.x;
+        found.peak *= 1.0 + change.y;
+    }
+    Ok(found)
+}
+
+fn gates() -> Vec<Gate> {
+    let mut gates = Vec::new();
+    for (rung, [width, peak]) in LADDER.iter().zip(ALLOWED) {
+        let run = Run::new(PLAIN, SOLVER, rung.resolution);
+        // b/4 takes half a minute, b/8 minutes.
+        let runs = || vec![if LADDER[..2].contains(rung) { run.clone() } else { run.clone().long() }];
+        gates.push(Gate::new(
+            (format!("half-width of the contact, cells of {}", rung.name), "m"),
+            runs(),
+            (Evidence::Analytic, SOURCE),
+            (width, BECAUSE),
+            as_stiff(),
+            |done| {
+                let exact = Hertz::of(&done[0].scene).half_width;
+                Ok(Measured::new(measured(&done[0])?.half_width, exact, exact))
+            },
+        ));
+        gates.push(Gate::new(
+            (format!("peak pressure, cells of {}", rung.name), "Pa"),
+            runs(),
+            (Evidence::Analytic, SOURCE),
+            (peak, BECAUSE),
+            as_stiff(),
+            |done| {
+                let exact = Hertz::of(&done[0].scene).peak;
+                Ok(Measured::new(measured(&done[0])?.peak, exact, exact))
+            },
+        ));
+    }
+    gates.push(Gate::new(
+        ("order in the cell of the error of the half-width, 1 and 2 cells a half-width", "1"),
+        LADDER[..2].iter().map(|rung| Run::new(PLAIN, SOLVER, rung.resolution)).collect(),
+        (Evidence::Convergence, SOURCE),
+        (1.0, "at least 1: cells as wide as half the patch are too coarse for an exact order"),
+        as_stiff(),
+        |done| {
+            let error = |done: &Done| -> Result<f64, Missing> {
+                Ok((measured(done)?.half_width / Hertz::of(&done.scene).half_width - 1.0).abs())
+            };
+            Ok(Measured::new((error(&done[0])? / error(&done[1])?).log2(), 2.0, 1.0))
+        },
+    ));
+    gates.push(Gate::new(
+        ("contact force at rest", "N/m"),
+        vec![Run::new(PLAIN, SOLVER, LADDER[1].resolution)],
+        (Evidence::Invariant, "equilibrium: the cylinder's weight"),
+        (1e-3, "what is left of the settling"),
+        Control::scene("gravity a hundredth too large", |scene| scene.gravity *= 1.01),
+        |done| {
+            let last = done[0].record.snapshots.last();
+            let force = last.and_then(|snapshot| snapshot.contacts.first()).map(|contact| contact.normal_force);
+            let weight = weight(&done[0].scene);
+            Ok(Measured::new(force.ok_or_else(|| Missing("contact".to_owned()))?, weight, weight))
+        },
+    ));
+    gates
+}
+
+fn as_stiff() -> Control {
+    Control::scene("the block as stiff as the cylinder", |scene| scene.deformable[1] = scene.deformable[0])
+}
+
+fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let mut curves = Vec::new();
+    for rung in &LADDER[..2] {
+        let done = bench.run(&Run::new(PLAIN, SOLVER, rung.resolution))?;
+        let exact = Hertz::of(&done.scene);
+        let cell = done.scene.reference_length / if *rung == LADDER[0] { 1.0 } else { 2.0 };
+        let mut points = pressed(&done, 1.0, 1.5).unwrap_or_default();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let seen = points.iter().map(|point| (point.x / exact.half_width, point.pressure / exact.peak));
+        curves.push(Curve::new(format!("mpm+apic, {}", rung.name), Stroke::MarkedLine, seen.collect()));
+        let way = (-60..=60).map(|at| f64::from(at) * exact.half_width / 40.0);
+        let below = way.map(|x| (x / exact.half_width, exact.pressure_below(x, 1.25 * cell) / exact.peak));
+        curves.push(Curve::new(format!("Hertz there, {}", rung.name), Stroke::Dashed, below.collect()));
+    }
+    Ok(vec![Figure::graph(
+        "pressure",
+        "Pressure in the block under a cylinder, 1.25 cells below its surface",
+        "Stress of the material points in the second layer of cells, against that of Hertz's contact in a half-space.",
+        [Axis::linear("x / b"), Axis::linear("pressure / p₀")],
+        curves,
+    )])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The figures of the printed example, and the stress on the axis, p₀/√(1 + z²/b²).
+    #[test]
+    fn hertz_is_as_printed() {
+        let scene = CASE.variant(PLAIN).unwrap_or_else(|error| panic!("{error}"));
+        let exact = Hertz::of(&scene);
+        assert!((exact.half_width / 6.2146e-3 - 1.0).abs() < 1e-5, "{exact:?}");
+        assert!((exact.peak / 3585.4e6 - 1.0).abs() < 2e-5, "{exact:?}");
+        let on_axis = exact.pressure_below(0.0, exact.half_width);
+        assert!((on_axis / exact.peak - 0.5_f64.sqrt()).abs() < 1e-12);
+        let at_surface = exact.pressure_below(0.6 * exact.half_width, 0.0);
+        assert!((at_surface / exact.peak - 0.8).abs() < 1e-12);
+    }
+}
