@@ -7,12 +7,22 @@ mod common;
 use common::{files, grainbench};
 use grainbench::cases::registry::{CASES, by_name};
 use grainbench::reference::deck::{DeckError, Program, write_deck};
-use grainbench::scene::scene::Scene;
+use grainbench::scene::file::GrainShape;
+use grainbench::scene::motion::{Moment, Motion, Phase};
+use grainbench::scene::scene::{Scene, WallShape};
+use nalgebra::Vector3;
 
 /// The deck's files one below the other.
 fn shown(case: &str, variant: &str, program: Program) -> String {
+    shown_of(case, variant, program, |_| {})
+}
+
+/// The same of a changed scene.
+fn shown_of(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
     let case = by_name(case).unwrap();
-    let deck = write_deck(&case.variant(variant).unwrap(), &case.default_rung.resolution, program).unwrap();
+    let mut scene = case.variant(variant).unwrap();
+    change(&mut scene);
+    let deck = write_deck(&scene, &case.default_rung.resolution, program).unwrap();
     deck.files.iter().map(|(name, text)| format!("==> {name} <==\n{text}\n")).collect()
 }
 
@@ -35,6 +45,57 @@ fn moving_walls_for_liggghts_are_meshes() {
 #[test]
 fn a_dashpot_of_another_kind_for_liggghts() {
     insta::assert_snapshot!(shown("collision", "beta-zeta.1", Program::Liggghts));
+}
+
+/// Hertz contacts: with a coefficient of restitution, which LAMMPS has in `granular` and LIGGGHTS with moduli; and without.
+#[test]
+fn hertz_spheres() {
+    for program in Program::ALL {
+        for variant in ["4-aluminium-oxide", "1-glass"] {
+            insta::assert_snapshot!(format!("hertz_{variant}_{program}"), shown("chung-ooi", variant, program));
+        }
+    }
+}
+
+#[test]
+fn rolling_resistance() {
+    for program in Program::ALL {
+        insta::assert_snapshot!(format!("rolling_{program}"), shown("rolling-resistance", "disc", program));
+    }
+}
+
+/// Walls that first move and then turn: formulas in LAMMPS, and stretches in LIGGGHTS, whose grains are spheres.
+#[test]
+fn walls_that_turn() {
+    for program in Program::ALL {
+        let deck = shown_of("nine-discs", "distortion-15deg-1", program, |scene| {
+            scene.global_damping = 0.0;
+            scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.8);
+            scene.grain_shape = GrainShape::Sphere;
+        });
+        let lines = deck.lines().filter(|line| ["wall", "move", "run"].iter().any(|word| line.contains(word)));
+        insta::assert_snapshot!(format!("turning_{program}"), lines.collect::<Vec<_>>().join("\n"));
+    }
+}
+
+/// Walls of finite extent, one in two dimensions that lies askew and turns, one in three that lies askew and moves.
+#[test]
+fn walls_of_finite_extent_are_flat_blocks() {
+    let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let phase = |velocity, spin| Phase { velocity, spin, start: Moment::Seconds(0.0), stop: Moment::Never };
+    let lines = |case: &str, variant: &str, change: &dyn Fn(&mut Scene)| {
+        let deck = shown_of(case, variant, Program::Lammps, change);
+        deck.lines().filter(|line| line.contains("wall1")).collect::<Vec<_>>().join("\n")
+    };
+    let segment = lines("squash", "plain", &|scene| {
+        scene.walls[0].shape = WallShape::Segment { ends: [-x - y, -x + y * 2.0 - x] };
+        scene.walls[0].motion = Motion { centre: -x, phases: vec![phase(Vector3::zeros(), z * 0.5)] };
+    });
+    let rectangle = lines("chung-ooi", "2-aluminium-alloy", &|scene| {
+        scene.walls[0].shape = WallShape::Rectangle { corner: -x - y - z * 0.5, edges: [x * 2.0 + z, y * 2.0] };
+        scene.walls[0].motion = Motion { centre: Vector3::zeros(), phases: vec![phase(z * 0.1, Vector3::zeros())] };
+    });
+    insta::assert_snapshot!(format!("{segment}\n{rectangle}"));
 }
 
 #[test]
@@ -72,8 +133,24 @@ fn refusals_give_the_reason() {
     let lammps =
         |case: &str, variant: &str, change: &dyn Fn(&mut Scene)| refusal(case, variant, Program::Lammps, change);
     let said = [
-        lammps("chung-ooi", "plain", &|_| {}),
+        lammps("chung-ooi", "1-glass", &|scene| {
+            scene.change_laws(|law| (law.damping_ratio, law.friction) = (0.1, 0.3));
+        }),
+        lammps("chung-ooi", "3-cast-iron", &|scene| scene.change_laws(|law| law.damping_ratio = 0.6)),
+        lammps("chung-ooi", "plain", &|scene| scene.change_laws(|law| law.normal_damping = 1.0)),
+        lammps("chung-ooi", "plain", &|scene| scene.change_laws(|law| law.rolling_friction = 0.1)),
+        lammps("chung-ooi", "plain", &|scene| {
+            let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+            scene.walls[0].shape = WallShape::Rectangle { corner: -x - y, edges: [x * 2.0 + z, y * 2.0] };
+            scene.walls[0].motion.phases =
+                vec![Phase { velocity: Vector3::zeros(), spin: z, start: Moment::Seconds(0.0), stop: Moment::Never }];
+        }),
         lammps("cohesive-disc", "plain", &|_| {}),
+        lammps("rolling-resistance", "sphere-slope", &|_| {}),
+        lammps("collision", "oblique", &|scene| scene.change_laws(|law| law.rolling_friction = 0.1)),
+        refusal("chung-ooi", "3-cast-iron", Program::Liggghts, |scene| {
+            scene.change_laws(|law| law.effective_shear_modulus *= 2.0);
+        }),
         lammps("nine-discs", "static-0", &|_| {}),
         lammps("collision", "beta-zeta.1", &|scene| {
             scene.grains[0].mass *= 2.0;
@@ -82,7 +159,7 @@ fn refusals_give_the_reason() {
         lammps("collision", "oblique", &|scene| scene.grains[0].inertia *= 1.1),
         refusal("nine-discs", "kappa-1", Program::Liggghts, |_| {}),
         refusal("nine-discs", "kappa-0", Program::Liggghts, |scene| {
-            scene.walls[0].motion.phases[0].stop = grainbench::scene::motion::Moment::Seconds(0.1234);
+            scene.walls[0].motion.phases[0].stop = Moment::Seconds(0.1234);
         }),
     ];
     insta::assert_snapshot!(said.join("\n"));

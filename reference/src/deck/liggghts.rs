@@ -18,8 +18,8 @@ use super::mesh::{Triangle, stl, triangles};
 use super::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
 use super::schedule::{Rates, changes, rates_from};
 use super::{
-    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs,
-    asks_for_wall, heading, thermo,
+    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_force,
+    asks_for_pairs, asks_for_wall, heading, thermo,
 };
 use crate::observer::Names;
 
@@ -89,7 +89,7 @@ fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
 }
 
 /// The command that adds up the forces of a wall on the grains, and the components of the sum. A mesh does so by itself,
-/// and its force is that of the grains.
+/// and its force is that of the grains; at the start it has added up nothing yet, and says zero.
 fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
     if meshes.iter().any(|mesh| mesh.number == number) {
         return (String::new(), [1, 2, 3].map(|at| format!("(-f_mesh{number}[{at}])")));
@@ -190,7 +190,7 @@ fn input(
                 if asks_for_wall(scene, number) { " store_force yes" } else { "" }
             ));
         } else {
-            let style = if asks_for_wall(scene, number) { "mesh/surface/stress" } else { "mesh/surface" };
+            let style = if asks_for_force(scene, number) { "mesh/surface/stress" } else { "mesh/surface" };
             say(&format!("fix mesh{number} all {style} file wall-{number}.stl type {kind}"));
         }
     }

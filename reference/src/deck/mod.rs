@@ -171,8 +171,12 @@ pub(crate) struct Written {
 
 /// Whether a probe asks for the force on a wall, or at one of its contacts; walls are counted from 1.
 fn asks_for_wall(scene: &Scene, number: usize) -> bool {
-    asks_for_contacts_at(scene, number)
-        || scene.probes.iter().any(|probe| probe.target == ProbeTarget::Wall(number - 1))
+    asks_for_contacts_at(scene, number) || asks_for_force(scene, number)
+}
+
+/// Whether a probe asks for the force on a wall.
+fn asks_for_force(scene: &Scene, number: usize) -> bool {
+    scene.probes.iter().any(|probe| probe.target == ProbeTarget::Wall(number - 1))
 }
 
 /// Whether a probe asks for a contact of a wall.

@@ -18,11 +18,13 @@ use crate::log::read_log;
 use crate::numbers::NotFinite;
 use crate::observer::{Observed, Observer};
 use crate::pair_forces::PairForces;
-use crate::read_error::ReadError;
+use crate::read_error::{ReadError, one_line};
 use crate::snapshot::DumpSnapshot;
 
 /// How long a program may take, unless it is given another time.
 const TIME_LIMIT: Duration = Duration::from_secs(600);
+/// The variable of the environment that gives another time (s).
+const OTHER_LIMIT: &str = "GRAINBENCH_TIME_LIMIT";
 
 /// A program that is run as a solver.
 #[derive(Debug, Clone)]
@@ -33,7 +35,8 @@ pub struct Live {
 }
 
 impl Live {
-    /// The program as `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names it, or else `lmp` or `liggghts` on `PATH`.
+    /// The program as `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names it, or else `lmp` or `liggghts` on `PATH`. A run of
+    /// it may take ten minutes, or as many seconds as `GRAINBENCH_TIME_LIMIT` says.
     #[must_use]
     pub fn find(program: Program) -> Self {
         let (variable, usual) = match program {
@@ -48,7 +51,14 @@ impl Live {
                 .and_then(|path| env::split_paths(&path).map(|folder| folder.join(usual)).find(|path| path.is_file()))
                 .ok_or_else(|| format!("there is no `{usual}` on PATH, and {variable} names none")),
         };
-        Self { program, executable, time_limit: TIME_LIMIT }
+        match env::var(OTHER_LIMIT).ok().filter(|text| !text.is_empty()).map(|text| (text.parse::<u64>(), text)) {
+            None => Self { program, executable, time_limit: TIME_LIMIT },
+            Some((Ok(seconds), _)) => Self { program, executable, time_limit: Duration::from_secs(seconds) },
+            Some((Err(_), text)) => {
+                let reason = format!("{OTHER_LIMIT}: expected a whole number of seconds, found `{}`", one_line(&text));
+                Self { program, executable: Err(reason), time_limit: TIME_LIMIT }
+            }
+        }
     }
 
     /// The program at a path.
