@@ -133,6 +133,46 @@ fn a_table_is_judged_too() {
     assert_eq!((rows.len(), answer.code), (4, Some(1)));
 }
 
+/// Forces at contacts from a dump of them and from the columns of a wall, in names of a stranger's own.
+const CONTACTS: &str =
+    "id1=c_2[1],id2=c_2[2],force_x=c_1[3],force_y=c_1[4],bottom.force_x=f_wall3[2],bottom.force_y=f_wall3[3]";
+
+#[test]
+fn forces_at_contacts_are_judged_where_a_dump_tells_them() {
+    let judged = |name: &str, more: &[&str]| {
+        let contacts = data(&format!("{name}.contacts.gz"));
+        check("nine-discs/static-0", &format!("{name}.dump.gz"), &[&["--dump", &contacts], more].concat())
+    };
+    let forces = |rows: &[Value], verdict: &str| {
+        let of_forces = |row: &&Value| row["evidence"] == "analytic" && row["unit"] == "N";
+        rows.iter().filter(of_forces).filter(|row| row["verdict"] == verdict).count()
+    };
+    let (code, rows) = judged("lammps-nine-static", &["--map", CONTACTS]);
+    assert_eq!((code, forces(&rows, "pass"), count(&rows, "fail")), (0, 4, 0), "{rows:#?}");
+    let (code, rows) = judged("lammps-nine-static-stiffer", &["--map", CONTACTS]);
+    assert_eq!((code, forces(&rows, "fail")), (1, 4));
+    // Of grains alone nothing is known of forces.
+    let (_, rows) = check("nine-discs/static-0", "lammps-nine-static.dump.gz", &[]);
+    assert_eq!(forces(&rows, "no-reference"), 4, "{rows:#?}");
+}
+
+#[test]
+fn contacts_that_cannot_be_read_are_refused_with_the_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let (grains, contacts) = (data("lammps-nine-static.dump.gz"), data("lammps-nine-static.contacts.gz"));
+    let check = ["check", "nine-discs/static-0", "--dump", &grains, &contacts];
+    let without_names = refusal(directory.path(), &check);
+    assert!(without_names.contains("contacts.gz:9: expected columns `id1` and `id2` of contacts"), "{without_names}");
+    fs::write(
+        directory.path().join("early"),
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\nITEM: BOX BOUNDS ff ff ff\n-1 1\n-1 1\n-1 1\nITEM: ENTRIES a b x y\n1 2 0 0\n",
+    )
+    .unwrap();
+    let names = "id1=a,id2=b,force_x=x,force_y=y";
+    let early = refusal(directory.path(), &[&check[..4], &["early", "--map", names]].concat());
+    assert!(early.contains("expected the contacts of step 500 in a dump of contacts, found grains alone"), "{early}");
+}
+
 /// The message of a refusal, which leaves nothing behind.
 fn refusal(directory: &Path, arguments: &[&str]) -> String {
     let before = files(directory);

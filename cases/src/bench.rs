@@ -260,12 +260,7 @@ fn conclude(mut verdict: Verdict, gate: &Gate, done: Result<Vec<Done>, RunError>
                     verdict.outcome = Outcome::Known;
                     verdict.detail = Some(reason.to_owned());
                 } else {
-                    let outside = |error: f64| error.is_nan() || error.abs() > gate.allowed;
-                    verdict.detail = measured
-                        .course
-                        .iter()
-                        .find(|(_, error)| outside(*error))
-                        .map(|(time, _)| format!("first outside at t = {time:.6} s"));
+                    verdict.detail = measured.first_outside(gate.allowed);
                 }
             }
         },

@@ -206,6 +206,16 @@ impl Measured {
         Self { value: pick(values), expected: pick(expected), scale, course }
     }
 
+    /// When a comparison over time first left what is allowed, in words: what is not a number is called so.
+    #[must_use]
+    pub fn first_outside(&self, allowed: f64) -> Option<String> {
+        let first = self.course.iter().find(|(_, error)| error.is_nan() || error.abs() > allowed);
+        first.map(|(time, error)| {
+            let how = if error.is_nan() { "not a number (NaN) from" } else { "first outside at" };
+            format!("{how} t = {time:.6} s")
+        })
+    }
+
     /// Signed error, (value − expected)/scale.
     #[must_use]
     pub fn error(&self) -> f64 {

@@ -231,8 +231,6 @@ fn judge(verdict: &mut Verdict, found: &Measured, open: f64, outputs: &Outputs) 
         verdict.because.push_str(&widened);
     }
     if verdict.outcome == Outcome::Fail {
-        let outside = |error: &f64| error.is_nan() || error.abs() > verdict.allowed;
-        let first = found.course.iter().find(|(_, error)| outside(error));
-        verdict.detail = first.map(|(time, _)| format!("first outside at t = {time:.6} s"));
+        verdict.detail = found.first_outside(verdict.allowed);
     }
 }
