@@ -37,7 +37,8 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let comparison = differences(&arguments.a, &arguments.b).map_err(Fault::input)?;
     check_writable(&arguments.out)?;
     let section = section(arguments, &comparison);
-    let words = vec!["compare".to_owned(), name(&arguments.a), name(&arguments.b)];
+    let [a, b] = names(arguments);
+    let words = vec!["compare".to_owned(), a, b];
     let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
     write_report(&arguments.out, &report).map_err(Fault::input)?;
     if arguments.json {
@@ -50,12 +51,15 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     Ok(exit_code(&report))
 }
 
-fn name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+/// What the two outputs are called: as their files are, or with their folders where those are called alike.
+fn names(arguments: &Arguments) -> [String; 2] {
+    let paths: [&Path; 2] = [&arguments.a, &arguments.b];
+    let short = paths.map(|path| path.file_name().unwrap_or_default().to_string_lossy().into_owned());
+    if short[0] == short[1] { paths.map(|path| path.to_string_lossy().into_owned()) } else { short }
 }
 
 fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
-    let (a, b) = (name(&arguments.a), name(&arguments.b));
+    let [a, b] = names(arguments);
     Section {
         name: "compare".to_owned(),
         title: format!("{b} against {a}"),
