@@ -9,10 +9,10 @@ use grainbench_cases::study::point::{Counts, Diagram, Point, Standing, Timing};
 use grainbench_cases::subject::{Method, Subject};
 use grainbench_reports::WriteError;
 use grainbench_scene::record::Record;
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{RunError, Solver};
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 /// Repetitions of a point that takes less than a second.
@@ -47,6 +47,25 @@ struct Task {
     solver: Arc<dyn Solver>,
     /// Name on the shelf.
     name: String,
+    /// Processor time of a run of one step (s), of a program; what a program needs to start is no part of what steps cost.
+    start: OnceLock<f64>,
+}
+
+impl Task {
+    /// Processor time that is not that of the steps (s).
+    fn start(&self) -> f64 {
+        if !solvers::is_program(&self.turn.solver) {
+            return 0.0;
+        }
+        *self.start.get_or_init(|| {
+            let scene = Scene { duration: Duration::Cycles(1), snapshots: 0, ..(*self.scene).clone() };
+            let before = clock::cpu_seconds();
+            match self.solver.run(&scene, &self.turn.resolution, &mut ()) {
+                Ok(_) => clock::cpu_seconds() - before,
+                Err(_) => 0.0,
+            }
+        })
+    }
 }
 
 /// Measures with solvers by name.
@@ -149,7 +168,8 @@ impl<'a> Meter<'a> {
                 let name = identity::of_run(&self.program, &turn.solver, &scene, &turn.resolution, &read);
                 // Two lanes may lead to the same run.
                 if tasks.iter().all(|task: &Task| task.name != name) {
-                    tasks.push(Task { turn, method: lane.method, scene: Arc::clone(&scene), solver, name });
+                    let (scene, start) = (Arc::clone(&scene), OnceLock::new());
+                    tasks.push(Task { turn, method: lane.method, scene, solver, name, start });
                 }
             }
         }
@@ -165,6 +185,7 @@ fn timed(task: &Task, reference: f64) -> (Option<Timing>, Result<Record, RunErro
     let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
     // A run that broke left no record: all of its time is that of the loop.
     let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
+    let cpu = if record.is_ok() { (cpu - task.start()).max(0.0) } else { cpu };
     (ran.then_some(Timing { wall, cpu, start_up: (whole - wall).max(0.0), reference }), record)
 }
 
