@@ -4,6 +4,8 @@ use crate::bench::Bench;
 use crate::case::{Case, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
+use crate::program_forces::forces;
+use crate::program_rows::hertz_impact;
 use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
@@ -37,7 +39,15 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [elastic(), restitution(), oblique(), rigid()].concat()
+    let mut gates = [elastic(), restitution(), oblique(), rigid()].concat();
+    for variant in [ELASTIC[0], ELASTIC[2], DAMPED[0], OBLIQUE[0]] {
+        gates.extend(hertz_impact(variant, STEP.resolution, variant == OBLIQUE[0]));
+    }
+    for variant in [ELASTIC[0], ELASTIC[2]] {
+        let run = |solver| Run::new(variant, solver, STEP.resolution);
+        gates.extend(forces(run, &["contact.normal_force"], 1e-11, |scene, _| hertz(scene).1));
+    }
+    gates
 }
 
 /// The law of the contact that the scene is about: between spheres where there are two, else with the plane.

@@ -78,7 +78,15 @@ fn gates() -> Vec<Gate> {
         "rapier's contacts only push",
         Control::without(Effect::Cohesion),
     );
-    vec![
+    let programs = ["lammps", "liggghts"].map(|program| {
+        Gate::refused(
+            Run::new(PLAIN, program, STEP.resolution),
+            "refusal of cohesion",
+            "its cohesion attracts along the normal; shear strength that needs no load it has none",
+            Control::scene("no cohesion", |scene| scene.change_laws(|law| law.cohesion = 0.0)),
+        )
+    });
+    let ours = vec![
         rigid,
         gate(
             "growth of slip, cohesion a thousandth above the threshold",
@@ -95,7 +103,8 @@ fn gates() -> Vec<Gate> {
             0.5,
             Control::scene("cohesion × 1.002", |scene| scene.change_laws(|law| law.cohesion *= 1.002)),
         ),
-    ]
+    ];
+    ours.into_iter().chain(programs).collect()
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

@@ -5,10 +5,11 @@ use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::slope;
+use crate::program_forces::forces;
 use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
-use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::scene::{Duration, Sampling, Scene};
 use grainbench_scene::solver::{Resolution, RunError};
 use std::f64::consts::PI;
 
@@ -114,7 +115,23 @@ fn gates() -> Vec<Gate> {
         "momentum passes through rigid beads in one step: there is no wave whose force could peak",
         Control::scene("no probes", |scene| scene.probes.clear()),
     );
-    vec![exponent, coefficient, rigid]
+    // Forces over the passage of the wave; where it is no more, the beads part and touch nothing.
+    let sampled = |solver| {
+        Run { solver, ..strike(1.0) }.adjusted("until the wave has passed, every 20 cycles", |scene| {
+            scene.sampling = Sampling::Cycles(20);
+            if let Duration::Seconds(duration) = scene.duration {
+                scene.duration = Duration::Seconds(1.75 * duration);
+            }
+        })
+    };
+    let programs = forces(sampled, &["near.normal_force", "far.normal_force"], 1e-10, |scene, _| {
+        // A contact of the wave bears about this: k δ^{3/2} at the overlap of two beads that meet at the striker's speed.
+        let (law, grain) = (scene.laws.iter().flatten().next().copied().unwrap_or_default(), &scene.grains[0]);
+        let k = 4.0 / 3.0 * law.effective_modulus * (0.5 * grain.radius).sqrt();
+        let speed = scene.grains.last().map_or(0.0, |striker| striker.velocity.norm());
+        k * (5.0 * grain.mass * speed * speed / (8.0 * k)).powf(0.6)
+    });
+    [exponent, coefficient, rigid].into_iter().chain(programs).collect()
 }
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {

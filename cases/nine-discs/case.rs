@@ -9,6 +9,7 @@ use crate::case::{Case, Rung, fraction};
 use crate::effect::Effect;
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::measure::{dominant_frequency, slope};
+use crate::program_forces;
 use crate::program_rows;
 use crate::rigid_rows;
 use crate::scope::Scope;
@@ -45,7 +46,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [static_forces(), discrete(), vec![geometry()], continuous(), paper(), vec![rigid_rows::refuses_cycles("kappa-0")], program_rows::nine_discs(&MODAL, LADDER[0].resolution, travel)].concat()
+    [static_forces(), discrete(), vec![geometry()], continuous(), paper(), vec![rigid_rows::refuses_cycles("kappa-0")], program_rows::nine_discs(&MODAL, LADDER[0].resolution, travel), program_rows::turning_walls(DISTORTION[1], LADDER[0].resolution, travel), program_forces::nine_discs("kappa-1", LADDER[0].resolution)].concat()
 }
 
 /// Static forces at every named contact, damped.

@@ -7,6 +7,7 @@ use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::incline::wrong_inertia;
 use crate::one_grain::{OneGrain, course};
+use crate::program_rows;
 use crate::rigid_rows;
 use crate::scope::Scope;
 use crate::verdict::Evidence;
@@ -50,7 +51,15 @@ fn gates() -> Vec<Gate> {
         "rapier has no resistance against rolling",
         Control::without(Effect::RollingResistance),
     );
-    FLAT.into_iter().flat_map(flat).chain(SLOPE.into_iter().flat_map(threshold)).chain([rigid]).collect()
+    let lammps = Gate::refused(
+        Run::new(SLOPE[0], "lammps", STEP.resolution),
+        "refusal of a damped rolling spring",
+        "LAMMPS limits spring and dashpot together, LIGGGHTS and we the spring alone",
+        Control::scene("no dashpot", |scene| scene.change_laws(|law| law.rolling_damping = 0.0)),
+    );
+    let rolls_off = |variant| program_rows::rolling_off(move |solver| Run { solver, ..tilted(variant, 1.001) });
+    let ours = FLAT.into_iter().flat_map(flat).chain(SLOPE.into_iter().flat_map(threshold)).chain([rigid]);
+    ours.chain(FLAT.into_iter().flat_map(program_rows::rolling)).chain(SLOPE.map(rolls_off)).chain([lammps]).collect()
 }
 
 fn flat(variant: &'static str) -> Vec<Gate> {

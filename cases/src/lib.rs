@@ -18,6 +18,7 @@ pub mod manufactured;
 pub mod measure;
 pub mod one_grain;
 pub mod one_grain_cost;
+pub mod program_forces;
 pub mod program_rows;
 pub mod registry;
 pub mod rigid_rows;

@@ -17,7 +17,7 @@ const SOURCE: &str = "the program, run on the deck of the same scene";
 const STEP: Resolution = Resolution::TimeStep(1e-4);
 
 /// The worst difference in some columns, in units of `scale`.
-fn worst(done: &[Done], columns: &[&str], scale: f64) -> Result<Measured, Missing> {
+pub(crate) fn worst(done: &[Done], columns: &[&str], scale: f64) -> Result<Measured, Missing> {
     let mut worst: Option<Measured> = None;
     for column in columns {
         let theirs = done[0].column(column)?;
@@ -33,7 +33,7 @@ fn worst(done: &[Done], columns: &[&str], scale: f64) -> Result<Measured, Missin
     worst.ok_or_else(|| Missing("columns to compare".to_owned()))
 }
 
-fn row(
+pub(crate) fn row(
     quantity: &str,
     unit: &'static str,
     (allowed, because): (f64, &'static str),
@@ -114,16 +114,18 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Gat
 }
 
 /// LIGGGHTS moves walls inwards in three dimensions only: one layer of spheres, whose masses are those of the discs.
-fn layer_of_spheres(scene: &mut Scene) {
+pub(crate) fn layer_of_spheres(scene: &mut Scene) {
     scene.grain_shape = GrainShape::Sphere;
     let factor = GrainShape::Sphere.inertia_factor();
     scene.grains.iter_mut().for_each(|grain| grain.inertia = factor * grain.mass * grain.radius * grain.radius);
 }
 
+/// What positions of the nine discs are compared by.
+const NINE_DISCS: [&str; 4] = ["edge.x", "edge.y", "corner.x", "corner.y"];
+
 /// Positions of the nine discs over all cycles, in units of what `travel` says.
 #[must_use]
 pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Gate> {
-    const COLUMNS: [&str; 4] = ["edge.x", "edge.y", "corner.x", "corner.y"];
     let mut gates = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
@@ -136,10 +138,101 @@ pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(
             });
             let allowed = (1e-10, "the same cycle: rounding of positions, 3e-12 of the wall travel a step");
             let quantity = "position over all cycles, worst";
-            gates.push(row(quantity, "m", allowed, runs, control, move |done| worst(done, &COLUMNS, travel(&done[0]))));
+            gates.push(row(quantity, "m", allowed, runs, control, move |done| {
+                worst(done, &NINE_DISCS, travel(&done[0]))
+            }));
         }
     }
     gates
+}
+
+/// The same while the walls turn. Neither program has mass-proportional damping, and a damped contact of LIGGGHTS feels where
+/// one `run` ends and the next begins: the row is undamped.
+#[must_use]
+pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Gate> {
+    fn undamped(scene: &mut Scene) {
+        scene.global_damping = 0.0;
+        scene.change_laws(|law| law.stiffness_damping = 0.0);
+    }
+    let gate = |pair: [&'static str; 2]| {
+        let runs = pair.map(|solver| {
+            let run = Run::new(variant, solver, resolution);
+            if pair[0] == "liggghts" {
+                run.adjusted("undamped, one layer of spheres", |scene| {
+                    undamped(scene);
+                    layer_of_spheres(scene);
+                })
+            } else {
+                run.adjusted("undamped", undamped)
+            }
+        });
+        let control = Control::ours("walls that turn faster by 1e-6 in ours", |scene| {
+            scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases).for_each(|phase| phase.spin *= 1.0 + 1e-6);
+        });
+        let allowed = (1e-9, "the same cycle: rounding, which sliding contacts carry on; in units of the wall travel");
+        row("position while the walls turn, worst", "m", allowed, runs, control, move |done| {
+            worst(done, &NINE_DISCS, travel(&done[0]))
+        })
+    };
+    PAIRS.map(gate).to_vec()
+}
+
+/// Velocity of a Hertz sphere over an impact, and its spin where `turns` says that it gains one.
+#[must_use]
+pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) -> Vec<Gate> {
+    let mut gates = Vec::new();
+    for pair in PAIRS {
+        let allowed = (1e-12, "the same cycle: rounding; relative to the velocity before");
+        let runs = || pair.map(|solver| Run::new(variant, solver, resolution));
+        let control = Control::ours("E* × 1.00001 in ours", |scene| {
+            scene.change_laws(|law| law.effective_modulus *= 1.00001);
+        });
+        gates.push(row("velocity over the impact, worst", "m/s", allowed, runs(), control, |done| {
+            worst(done, &["a.vx", "a.vz"], done[0].scene.grains[0].velocity.norm())
+        }));
+        if turns {
+            let allowed = (1e-12, "the same cycle: rounding; relative to the velocity before over the radius");
+            let control = Control::ours("G* × 1.00001 in ours", |scene| {
+                scene.change_laws(|law| law.effective_shear_modulus *= 1.00001);
+            });
+            gates.push(row("spin over the impact, worst", "rad/s", allowed, runs(), control, |done| {
+                let grain = &done[0].scene.grains[0];
+                worst(done, &["a.omega_y"], grain.velocity.norm() / grain.radius)
+            }));
+        }
+    }
+    gates
+}
+
+/// A grain that rolls to rest on a flat plane, in units of R.
+#[must_use]
+pub fn rolling(variant: &'static str) -> Vec<Gate> {
+    let gate = |pair: [&'static str; 2]| {
+        let allowed = if pair[0] == "lammps" {
+            (1e-10, "the same cycle: rounding, which grows over 50,000 steps; in units of R")
+        } else {
+            let because = "its evaluation at the start takes a step of rolling for done, a moment k_r ωΔt: second order in Δt, \
+                           and a grain that starts at rest (the slopes) shows nothing of it; in units of R";
+            (3e-8, because)
+        };
+        let runs = pair.map(|solver| Run::new(variant, solver, Resolution::TimeStep(2e-5)));
+        let control = Control::ours("rolling resistance × 1.00001 in ours", |scene| {
+            scene.change_laws(|law| law.rolling_friction *= 1.00001);
+        });
+        row("position over 1 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
+    };
+    PAIRS.map(gate).to_vec()
+}
+
+/// A grain that starts from rest on a slope, over a damped rolling spring: `tilted` are the runs of both sides.
+#[must_use]
+pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Gate {
+    let allowed = (1e-11, "the same cycle: rounding, which grows over 20,000 steps; in units of R");
+    let runs = PAIRS[1].map(tilted);
+    let control = Control::ours("the dashpot of the rolling spring × .999 in ours", |scene| {
+        scene.change_laws(|law| law.rolling_damping *= 0.999);
+    });
+    row("position over 4 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
 }
 
 /// Motion and wall force of one grain that meets a wall, in units of what they are before the impact.

@@ -1,0 +1,66 @@
+//! Rows of the programs `lammps` and `liggghts`: the forces at contacts are ours, as their dumps of contacts and of walls have
+//! them.
+//!
+//! Both programs evaluate them anew when they are written, with the velocities of the full step: what dashpots add differs
+//! from what moved the grains, and all rows here are undamped.
+
+use crate::gate::{Control, Gate, Run};
+use crate::program_rows::{PAIRS, layer_of_spheres, row, worst};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::Resolution;
+
+const BECAUSE: &str = "the same cycle: overlaps round as positions do";
+
+fn stiffer() -> Control {
+    Control::ours("stiffness off by 1e-6 in ours", |scene| {
+        scene.change_laws(|law| {
+            law.normal_stiffness *= 1.0 + 1e-6;
+            law.effective_modulus *= 1.0 + 1e-6;
+        });
+    })
+}
+
+/// Forces at some contacts of runs of each program and of ours, in units of what `unit` says.
+#[must_use]
+pub fn forces(
+    runs: impl Fn(&'static str) -> Run,
+    columns: &'static [&'static str],
+    allowed: f64,
+    unit: impl Fn(&Scene, f64) -> f64 + Clone + Send + Sync + 'static,
+) -> Vec<Gate> {
+    let gate = |pair: [&'static str; 2]| {
+        let unit = unit.clone();
+        row("force at contacts, worst", "N", (allowed, BECAUSE), pair.map(&runs), stiffer(), move |done| {
+            worst(done, columns, unit(&done[0].scene, done[0].record.provenance.time_step))
+        })
+    };
+    PAIRS.map(gate).to_vec()
+}
+
+/// Forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves walls as meshes, whose
+/// forces it does not tell disc by disc.
+#[must_use]
+pub fn nine_discs(variant: &'static str, resolution: Resolution) -> Vec<Gate> {
+    const BETWEEN: &[&str] =
+        &["centre-edge.normal_force", "corner-edge.normal_force", "centre-edge.shear_force", "corner-edge.shear_force"];
+    const AT_WALLS: &[&str] = &["wall-edge.normal_force", "wall-corner.normal_force", "wall-corner.shear_force"];
+    let unit = |scene: &Scene, time_step: f64| {
+        let phase = &scene.walls[0].motion.phases[0];
+        let stiffness = scene.laws[0].map_or(0.0, |law| law.normal_stiffness);
+        stiffness * phase.velocity.norm() * phase.stop.seconds(time_step)
+    };
+    let gate = |pair: [&'static str; 2], quantity: &str, columns: &'static [&'static str]| {
+        let runs = pair.map(|solver| {
+            let run = Run::new(variant, solver, resolution);
+            if pair[0] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
+        });
+        row(quantity, "N", (1e-10, BECAUSE), runs, stiffer(), move |done| {
+            worst(done, columns, unit(&done[0].scene, done[0].record.provenance.time_step))
+        })
+    };
+    vec![
+        gate(PAIRS[0], "forces between discs, worst", BETWEEN),
+        gate(PAIRS[1], "forces between discs, worst", BETWEEN),
+        gate(PAIRS[0], "forces at walls, worst", AT_WALLS),
+    ]
+}
