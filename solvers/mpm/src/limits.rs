@@ -1,12 +1,11 @@
 //! What the method cannot express, each with its reason.
 
-use crate::options::{Contact, Setting};
 use grainbench_scene::file::GrainShape;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Duration, Scene, WallShape};
 
 /// Why the scene cannot be run, if it cannot.
-pub(crate) fn reason(scene: &Scene, setting: &Setting) -> Option<String> {
+pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let flat = scene.dimension.count() == 2;
     if flat && scene.grain_shape == GrainShape::Sphere && !scene.grains.is_empty() {
         return Some("a sphere kept in the plane is neither a disc in plane strain nor free".to_owned());
@@ -40,12 +39,6 @@ pub(crate) fn reason(scene: &Scene, setting: &Setting) -> Option<String> {
     let phases = scene.walls.iter().flat_map(|wall| &wall.motion.phases);
     if phases.into_iter().any(|phase| in_cycles(phase.start) || in_cycles(phase.stop)) {
         return Some("a wall starts or stops at a calculation cycle of another method; seconds can be run".to_owned());
-    }
-    let several = scene.grains.len() + scene.bodies.len() > 1;
-    if !flat && several && matches!(setting.contact, Contact::Penalty | Contact::Gap) {
-        return Some(
-            "contact between deformable bodies in space needs surfaces that only the plane has so far".to_owned(),
-        );
     }
     None
 }

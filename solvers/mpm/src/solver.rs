@@ -59,7 +59,7 @@ impl Mpm {
     /// # Errors
     /// When the scene cannot be expressed or the resolution makes no sense.
     pub fn plan(&self, scene: &Scene, resolution: &Resolution) -> Result<Plan, RunError> {
-        if let Some(reason) = limits::reason(scene, &self.setting) {
+        if let Some(reason) = limits::reason(scene) {
             return Err(RunError::Unsupported { solver: self.name(), reason });
         }
         let Resolution::Grid { cells, points, courant } = *resolution else {

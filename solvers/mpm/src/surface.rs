@@ -64,6 +64,9 @@ pub(crate) struct Near<S: Space> {
 /// Tracers in a run.
 const RUN: usize = 16;
 
+/// Reach of the mean over tracers in space, in their spacings: a dozen take part.
+const SPREAD: f64 = 2.0;
+
 /// Cosine between two surfaces' normals above which they do not face each other.
 const FACING: f64 = -0.2;
 
@@ -147,11 +150,53 @@ impl<S: Space> Tracers<S> {
         if best == usize::MAX {
             return None;
         }
-        let [before, after] = self.neighbours[best].map(|neighbour| neighbour as usize);
-        let [one, two] = [self.on_chord(before, best, position), self.on_chord(best, after, position)];
-        let near = if one.1 <= two.1 { one.0 } else { two.0 };
+        let near = if S::DIMENSION == 2 {
+            let [before, after] = self.neighbours[best].map(|neighbour| neighbour as usize);
+            let [one, two] = [self.on_chord(before, best, position), self.on_chord(best, after, position)];
+            if one.1 <= two.1 { one.0 } else { two.0 }
+        } else {
+            self.around(chunks, best, position, normal)?
+        };
         let faces = S::dot(near.normal, normal) < FACING;
         (faces && near.gap.abs() < reach).then_some(near)
+    }
+
+    /// The surface next to a position in space, where tracers have no neighbours: with weights a (1 − r²/H²)² of the tracers y that face
+    /// the given normal, a their areas and r their distance from the foot of the position on the plane of the nearest one,
+    /// n̄ = Σ w n/|Σ w n| and the gap Σ w (x − y)·(n̄ + n)/2 / Σ w. Exact on planes, and on spheres where the gap is zero: there
+    /// x − y is perpendicular to the sum of their normals. None where the foot lies beside the surface.
+    #[inline(always)]
+    fn around(&self, chunks: &Range<usize>, nearest: usize, position: S::Vector, facing: S::Vector) -> Option<Near<S>> {
+        let (middle, normal) = (self.position[nearest], self.normal(nearest));
+        let foot = position - normal * S::dot(position - middle, normal);
+        let area = S::dot(self.area[nearest], self.area[nearest]).sqrt();
+        let squared = SPREAD * SPREAD * area;
+        let beside = foot - middle;
+        if S::dot(beside, beside) > area {
+            return None;
+        }
+        let (mut total, mut mean, mut way, mut along) = (0.0, S::ORIGIN, S::ORIGIN, 0.0);
+        for chunk in &self.chunks[chunks.clone()] {
+            if chunk.away(foot) >= squared {
+                continue;
+            }
+            for at in chunk.tracers.clone() {
+                let beside = foot - self.position[at];
+                let distance = S::dot(beside, beside);
+                if distance < squared && S::dot(self.area[at], facing) < 0.0 {
+                    let fall = 1.0 - distance / squared;
+                    let share = fall * fall;
+                    let between = position - self.position[at];
+                    mean += self.area[at] * share;
+                    let weight = share * S::dot(self.area[at], self.area[at]).sqrt();
+                    total += weight;
+                    way += between * weight;
+                    along += S::dot(between, self.area[at]) * share;
+                }
+            }
+        }
+        let normal = mean * (1.0 / S::dot(mean, mean).sqrt());
+        Some(Near { gap: 0.5 * (S::dot(way, normal) + along) / total, normal })
     }
 
     /// The surface between two tracers next to a position, and the squared distance to their chord: the cubic that has
