@@ -5,6 +5,7 @@
 //! bodies meet is three nodes, one in each window.
 
 use crate::basis::{Axis, Basis};
+use crate::tile::Lanes;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
@@ -21,13 +22,6 @@ pub(crate) struct Node<S: Space> {
 
 impl<S: Space> Node<S> {
     pub(crate) const EMPTY: Self = Self { mass: 0.0, velocity: S::ORIGIN, change: S::ORIGIN };
-
-    /// Adds what another holds.
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.mass += other.mass;
-        self.velocity += other.velocity;
-        self.change += other.change;
-    }
 }
 
 /// Which nodes of the lattice a field stores, and where.
@@ -69,6 +63,21 @@ impl Window {
             let place = base[axis] - self.low[axis];
             self.whole[axis] || (place >= 0 && place + width <= self.size[axis])
         })
+    }
+
+    /// Visits the rows of nodes along x that reach a point, of which `base` is the first node: number and places, as many as the basis
+    /// reaches.
+    #[inline(always)]
+    pub(crate) fn rows<S: Space, B: Basis>(&self, base: [i32; 3], mut visit: impl FnMut(usize, [usize; 3])) {
+        let [length, rows, _] = self.size.map(|size| size as usize);
+        let x = [0, 1, 2].map(|i| self.along(0, base[0] + i));
+        for k in 0..if S::DIMENSION == 3 { B::WIDTH } else { 1 } {
+            let layer = if S::DIMENSION == 3 { self.along(2, base[2] + k as i32) * rows } else { 0 };
+            for j in 0..B::WIDTH {
+                let start = self.start + (layer + self.along(1, base[1] + j as i32)) * length;
+                visit(k * B::WIDTH + j, x.map(|x| start + x));
+            }
+        }
     }
 
     /// The node at a place within the window.
@@ -147,6 +156,19 @@ pub(crate) struct Stencil {
     cell: [f64; 3],
 }
 
+/// The functions of a row of nodes along x, but along x.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Across {
+    /// Product of the functions along y and z.
+    pub(crate) value: f64,
+    /// The same with the slope along y, and along z (1/m).
+    pub(crate) slope: [f64; 2],
+    /// The same with what makes the affine part along y, and along z (1/m).
+    pub(crate) affine: [f64; 2],
+    /// The product times the place of the row in the stencil along y, and along z.
+    pub(crate) step: [f64; 2],
+}
+
 /// A node as a point sees it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reached<S: Space> {
@@ -214,52 +236,37 @@ impl Stencil {
         }
     }
 
-    /// Visits every row of nodes along x.
-    #[inline(always)]
-    pub(crate) fn rows<S: Space, B: Basis>(&self, window: &Window, mut visit: impl FnMut(Row)) {
-        let size = [window.size[0] as usize, window.size[1] as usize];
-        let first = window.along(0, self.axes[0].base);
-        let joined = first + B::WIDTH <= size[0];
-        let [_, y, z] = &self.axes;
-        for k in 0..if S::DIMENSION == 3 { B::WIDTH } else { 1 } {
-            let (layer, value, slope) = if S::DIMENSION == 3 {
-                (window.along(2, z.base + k as i32) * size[1], z.value[k], z.slope[k] * self.inverse[2])
-            } else {
-                (0, 1.0, 0.0)
-            };
-            for j in 0..B::WIDTH {
-                let start = window.start + (layer + window.along(1, y.base + j as i32)) * size[0];
-                visit(Row {
-                    start,
-                    first,
-                    size: size[0],
-                    joined,
-                    across: [j, k],
-                    value: y.value[j] * value,
-                    slope: [y.slope[j] * self.inverse[1] * value, y.value[j] * slope],
-                });
-            }
-        }
-    }
-
     /// The functions along x: values, and slopes per length (1/m).
     #[inline(always)]
-    pub(crate) fn along_x(&self) -> ([f64; 3], [f64; 3]) {
-        let ([a, b, c], scale) = (self.axes[0].slope, self.inverse[0]);
-        (self.axes[0].value, [a * scale, b * scale, c * scale])
+    pub(crate) fn along_x(&self) -> [Lanes; 2] {
+        let ([a, b, c], [d, e, f], scale) = (self.axes[0].value, self.axes[0].slope, self.inverse[0]);
+        [[a, b, c, 0.0], [d * scale, e * scale, f * scale, 0.0]]
     }
 
-    /// What makes the affine part along an axis, node by node (1/m).
+    /// What makes the affine part along x, node by node (1/m).
     #[inline(always)]
-    pub(crate) fn affine_along(&self, axis: usize) -> [f64; 3] {
-        let ([a, b, c], scale) = (self.axes[axis].affine, self.inverse[axis]);
-        [a * scale, b * scale, c * scale]
+    pub(crate) fn affine_along_x(&self) -> Lanes {
+        let ([a, b, c], scale) = (self.axes[0].affine, self.inverse[0]);
+        [a * scale, b * scale, c * scale, 0.0]
     }
 
-    /// Value of the function of a node along an axis.
+    /// The functions across a row of nodes along x.
     #[inline(always)]
-    pub(crate) const fn value_along(&self, axis: usize, node: usize) -> f64 {
-        self.axes[axis].value[node]
+    pub(crate) fn across<S: Space, B: Basis>(&self, row: usize) -> Across {
+        let (j, k) = (row % B::WIDTH, row / B::WIDTH);
+        let [_, y, z] = &self.axes;
+        let (deep, slope, affine) = if S::DIMENSION == 3 {
+            (z.value[k], z.slope[k] * self.inverse[2], z.affine[k] * self.inverse[2])
+        } else {
+            (1.0, 0.0, 0.0)
+        };
+        let value = y.value[j] * deep;
+        Across {
+            value,
+            slope: [y.slope[j] * self.inverse[1] * deep, y.value[j] * slope],
+            affine: [y.affine[j] * self.inverse[1] * deep, y.value[j] * affine],
+            step: [value * j as f64, value * k as f64],
+        }
     }
 
     /// From the point to the first node (m).
@@ -293,58 +300,5 @@ impl Stencil {
     #[inline(always)]
     pub(crate) fn spread(&self, axis: usize) -> f64 {
         self.axes[axis].spread * self.cell[axis] * self.cell[axis]
-    }
-}
-
-/// A row of nodes along x as a point sees it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Row {
-    start: usize,
-    first: usize,
-    size: usize,
-    /// Whether its nodes follow each other: they do unless the row goes around a periodic window.
-    joined: bool,
-    /// Which of the stencil's nodes along y and z it is.
-    pub(crate) across: [usize; 2],
-    /// Product of the functions along y and z.
-    pub(crate) value: f64,
-    /// The same with the slope along y, and along z (1/m).
-    pub(crate) slope: [f64; 2],
-}
-
-impl Row {
-    /// Adds to the nodes of the row: `visit` is given as many as the basis reaches; of a row that goes around a periodic
-    /// window, nodes that hold `nothing`, which `sum` then adds to the right ones.
-    #[inline(always)]
-    pub(crate) fn add<B: Basis, T: Copy>(
-        &self,
-        all: &mut [T],
-        nothing: T,
-        sum: impl Fn(&mut T, &T),
-        visit: impl FnOnce(&mut [T]),
-    ) {
-        // One call of `visit`, so that it becomes part of the loop it is in.
-        let from = self.start + self.first;
-        let mut shares = [nothing; 3];
-        visit(if self.joined { &mut all[from..from + B::WIDTH] } else { &mut shares[..B::WIDTH] });
-        if !self.joined {
-            for (i, share) in shares[..B::WIDTH].iter().enumerate() {
-                sum(&mut all[self.start + (self.first + i) % self.size], share);
-            }
-        }
-    }
-
-    /// Looks at the nodes of the row.
-    #[inline(always)]
-    pub(crate) fn see<B: Basis, T: Copy>(&self, all: &[T], visit: impl FnOnce(&[T])) {
-        let from = self.start + self.first;
-        let copies;
-        visit(if self.joined {
-            &all[from..from + B::WIDTH]
-        } else {
-            let at = |i: usize| all[self.start + (self.first + i) % self.size];
-            copies = [at(0), at(1), at(2)];
-            &copies[..B::WIDTH]
-        });
     }
 }

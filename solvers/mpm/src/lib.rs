@@ -32,5 +32,6 @@ mod start;
 mod state;
 mod stress;
 mod surface;
+mod tile;
 mod transfer;
 mod walls;

@@ -7,7 +7,7 @@ use crate::contact::penalty::Springs;
 use crate::contact::shared::Shared;
 use crate::contact::{FrictionTable, Touch};
 use crate::driven::Driven;
-use crate::grid::{Lattice, Node, Window};
+use crate::grid::{Lattice, Node, Stencil, Window};
 use crate::held::Held;
 use crate::material::Law;
 use crate::options::{Contact, Setting, StressUpdate, Transfer};
@@ -245,14 +245,13 @@ impl<S: Space> Simulation<S> {
         if self.travelled < 0.5 * self.lattice.shortest(S::DIMENSION) {
             return;
         }
-        let lattice = self.lattice;
-        for body in &self.bodies {
-            self.points.sort(body.part.points.clone(), |position| {
-                let cell = |axis: usize| {
-                    if axis < S::DIMENSION { lattice.cells::<S>(position, axis).floor() as i64 } else { 0 }
-                };
-                [cell(2), cell(1), cell(0)]
-            });
+        let Self { lattice, bodies, points, setting, .. } = self;
+        for body in bodies.iter() {
+            // Points that reach the same nodes follow each other.
+            with_basis!(setting.basis, B => points.sort(body.part.points.clone(), |position| {
+                let [x, y, z] = Stencil::new::<S, B>(lattice, position, [body.part.half; 3]).base();
+                [z, y, x]
+            }));
         }
         self.travelled = 0.0;
     }

@@ -2,10 +2,11 @@
 //! transfer; the stages between them are chosen at run time.
 
 use crate::basis::Basis;
-use crate::grid::{Lattice, Node, Row, Stencil, Window};
+use crate::grid::{Across, Lattice, Node, Stencil, Window};
 use crate::points::Points;
+use crate::tile::{self, Lanes, Tile};
 use grainbench_scene::space::Space;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 
 /// How velocities travel between points and nodes.
@@ -14,8 +15,8 @@ pub(crate) trait Transfer: Copy + Send + 'static {
     const AFFINE: bool;
     /// Velocity of a point after the step, from that before, the velocity of the nodes around it and their change.
     fn taken<S: Space>(&self, before: S::Vector, around: S::Vector, change: S::Vector) -> S::Vector;
-    /// What of a node makes the affine part: its velocity or its change.
-    fn source<S: Space>(velocity: S::Vector, change: S::Vector) -> S::Vector;
+    /// What of nodes makes the affine part: their velocities or the changes of these.
+    fn source<'a>(velocities: &'a Lanes, changes: &'a Lanes) -> &'a Lanes;
     /// Affine part after the step, from that before and the one that the nodes make.
     fn carried<S: Space>(before: S::Matrix, made: S::Matrix, stencil: &Stencil) -> S::Matrix;
 }
@@ -36,8 +37,8 @@ impl Transfer for Flip {
         (before + change) * (1.0 - self.pic) + around * self.pic
     }
     #[inline(always)]
-    fn source<S: Space>(_velocity: S::Vector, _change: S::Vector) -> S::Vector {
-        S::ORIGIN
+    fn source<'a>(velocities: &'a Lanes, _changes: &'a Lanes) -> &'a Lanes {
+        velocities
     }
     #[inline(always)]
     fn carried<S: Space>(before: S::Matrix, _made: S::Matrix, _stencil: &Stencil) -> S::Matrix {
@@ -58,8 +59,8 @@ impl Transfer for Apic {
         around
     }
     #[inline(always)]
-    fn source<S: Space>(velocity: S::Vector, _change: S::Vector) -> S::Vector {
-        velocity
+    fn source<'a>(velocities: &'a Lanes, _changes: &'a Lanes) -> &'a Lanes {
+        velocities
     }
     #[inline(always)]
     fn carried<S: Space>(_before: S::Matrix, made: S::Matrix, _stencil: &Stencil) -> S::Matrix {
@@ -83,8 +84,8 @@ impl Transfer for Spin {
         before + change
     }
     #[inline(always)]
-    fn source<S: Space>(_velocity: S::Vector, change: S::Vector) -> S::Vector {
-        change
+    fn source<'a>(_velocities: &'a Lanes, changes: &'a Lanes) -> &'a Lanes {
+        changes
     }
     #[inline(always)]
     fn carried<S: Space>(before: S::Matrix, made: S::Matrix, stencil: &Stencil) -> S::Matrix {
@@ -131,62 +132,58 @@ impl Part {
     }
 }
 
-/// A column of a gradient.
-#[inline(always)]
-fn column<S: Space>(gradient: &nalgebra::Matrix3<f64>, axis: usize) -> S::Vector {
-    S::restrict(Vector3::new(gradient[(0, axis)], gradient[(1, axis)], gradient[(2, axis)]))
+/// The momentum that a point shows to the nodes of a stencil, m (v + A r) with r from the point to the node: by component, in a row
+/// whose function across is one, and what is added from one row to the next along y and z.
+struct Shown {
+    first: [Lanes; 3],
+    next: [[Lanes; 3]; 2],
 }
 
-/// The gradient with these columns.
-#[inline(always)]
-fn of_columns<S: Space>(columns: [S::Vector; 3]) -> S::Matrix {
-    let [x, y, z] = columns;
-    S::restrict_gradient(nalgebra::Matrix3::from_columns(&[S::embed(x), S::embed(y), S::embed(z)]))
-}
-
-/// The momentum that a point shows to the nodes of a stencil: m (v + A r), r from the point to the node.
-struct Shown<S: Space> {
-    /// At the first node.
-    first: S::Vector,
-    /// More of it from one node to the next along each axis.
-    steps: [S::Vector; 3],
-}
-
-impl<S: Space> Shown<S> {
+impl Shown {
     #[inline(always)]
-    fn new<T: Transfer>(
+    fn new<S: Space, T: Transfer>(
         lattice: &Lattice,
         stencil: &Stencil,
         mass: f64,
         velocity: S::Vector,
         affine: S::Matrix,
     ) -> Self {
-        if !T::AFFINE {
-            return Self { first: velocity * mass, steps: [S::ORIGIN; 3] };
+        let ([values, _], zero) = (stencil.along_x(), [0.0; 4]);
+        let mut shown = Self { first: [zero; 3], next: [[zero; 3]; 2] };
+        let first = if T::AFFINE { velocity + affine * stencil.arm_of_first::<S>() } else { velocity };
+        let first = S::embed(first) * mass;
+        let affine = S::embed_gradient(affine) * mass;
+        let along = [0.0, values[1], 2.0 * values[2], 0.0];
+        for component in 0..S::DIMENSION {
+            if T::AFFINE {
+                let steps = [0, 1, 2].map(|axis| affine[(component, axis)] * lattice.cell[axis]);
+                shown.first[component] = tile::sum(&values, first[component], &along, steps[0]);
+                shown.next[0][component] = values.map(|value| value * steps[1]);
+                shown.next[1][component] = values.map(|value| value * steps[2]);
+            } else {
+                shown.first[component] = values.map(|value| value * first[component]);
+            }
         }
-        let gradient = S::embed_gradient(affine);
-        let step = |axis| column::<S>(&gradient, axis) * (lattice.cell[axis] * mass);
-        Self { first: (velocity + affine * stencil.arm_of_first::<S>()) * mass, steps: [step(0), step(1), step(2)] }
+        shown
     }
 
-    /// At the first node of a row, times the functions across it; and more of it from one node to the next.
+    /// Adds a component at the nodes of a row.
     #[inline(always)]
-    fn along<T: Transfer>(&self, row: &Row) -> [S::Vector; 2] {
-        if !T::AFFINE {
-            return [self.first * row.value, S::ORIGIN];
+    fn add<S: Space, T: Transfer>(&self, to: &mut Lanes, component: usize, across: &Across) {
+        tile::add(to, &self.first[component], across.value);
+        if T::AFFINE {
+            tile::add(to, &self.next[0][component], across.step[0]);
+            if S::DIMENSION == 3 {
+                tile::add(to, &self.next[1][component], across.step[1]);
+            }
         }
-        let mut first = self.first + self.steps[1] * row.across[0] as f64;
-        if S::DIMENSION == 3 {
-            first += self.steps[2] * row.across[1] as f64;
-        }
-        [first * row.value, self.steps[0] * row.value]
     }
+}
 
-    /// At a node of a row.
-    #[inline(always)]
-    fn at<T: Transfer>([first, step]: [S::Vector; 2], node: usize, value: f64) -> S::Vector {
-        if T::AFFINE { (first + step * node as f64) * value } else { first * value }
-    }
+/// The gradient with these rows.
+#[inline(always)]
+fn of_rows<S: Space>(rows: [[f64; 3]; 3]) -> S::Matrix {
+    S::restrict_gradient(Matrix3::from_fn(|row, column| rows[row][column]))
 }
 
 /// Mass, momentum and internal force, −Vσ∇N, of a body's points to its nodes.
@@ -196,32 +193,40 @@ pub(crate) fn scatter<S: Space, B: Basis, T: Transfer>(
     points: &Points<S>,
     nodes: &mut [Node<S>],
 ) {
+    let add = |node: &mut Node<S>, [mass, px, py, pz, fx, fy, fz]: [f64; 7]| {
+        node.mass += mass;
+        node.velocity += S::restrict(Vector3::new(px, py, pz));
+        node.change += S::restrict(Vector3::new(fx, fy, fz));
+    };
+    let mut sums = Tile::<7>::new();
     for at in part.points.clone() {
         let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
+        if !sums.is_at(stencil.base()) {
+            sums.give::<S, B, _>(&part.window, nodes, add);
+            sums.empty_at::<S, B>(stencil.base());
+        }
         let mass = points.mass[at];
-        let shown = Shown::<S>::new::<T>(lattice, &stencil, mass, points.velocity[at], points.affine[at]);
-        let stress = S::embed_symmetric(points.stress[at]);
-        let volume = -points.volume[at];
-        let pull =
-            [column::<S>(&stress, 0) * volume, column::<S>(&stress, 1) * volume, column::<S>(&stress, 2) * volume];
-        let (values, slopes) = stencil.along_x();
-        stencil.rows::<S, B>(&part.window, |row| {
-            let momentum = shown.along::<T>(&row);
-            let share = mass * row.value;
-            let along = pull[0] * row.value;
-            let mut across = pull[1] * row.slope[0];
-            if S::DIMENSION == 3 {
-                across += pull[2] * row.slope[1];
-            }
-            row.add::<B, _>(nodes, Node::EMPTY, Node::add, |nodes| {
-                for (i, node) in nodes.iter_mut().enumerate() {
-                    node.mass += share * values[i];
-                    node.velocity += Shown::<S>::at::<T>(momentum, i, values[i]);
-                    node.change += along * slopes[i] + across * values[i];
+        let shown = Shown::new::<S, T>(lattice, &stencil, mass, points.velocity[at], points.affine[at]);
+        let [values, slopes] = stencil.along_x();
+        let masses = values.map(|value| value * mass);
+        let pull = S::embed_symmetric(points.stress[at]) * -points.volume[at];
+        for row in 0..Tile::<7>::count::<S, B>() {
+            let across = stencil.across::<S, B>(row);
+            let to = sums.row_mut(row);
+            tile::add(&mut to[0], &masses, across.value);
+            for component in 0..S::DIMENSION {
+                shown.add::<S, T>(&mut to[1 + component], component, &across);
+                let along = pull[(component, 0)] * across.value;
+                let mut rest = pull[(component, 1)] * across.slope[0];
+                if S::DIMENSION == 3 {
+                    rest += pull[(component, 2)] * across.slope[1];
                 }
-            });
-        });
+                tile::add(&mut to[4 + component], &slopes, along);
+                tile::add(&mut to[4 + component], &values, rest);
+            }
+        }
     }
+    sums.give::<S, B, _>(&part.window, nodes, add);
 }
 
 /// Internal force alone, after the stress has changed.
@@ -266,58 +271,64 @@ pub(crate) fn gather<S: Space, B: Basis, T: Transfer, const PROJECT: bool>(
     nodes: &[Node<S>],
     projected: &mut [S::Vector],
 ) {
+    let see = |node: &Node<S>| {
+        let (velocity, change) = (S::embed(node.velocity), S::embed(node.change));
+        [velocity.x, velocity.y, velocity.z, change.x, change.y, change.z]
+    };
+    let add = |projected: &mut S::Vector, momentum: [f64; 3]| *projected += S::restrict(Vector3::from(momentum));
+    let (mut seen, mut sums) = (Tile::<6>::new(), Tile::<3>::new());
     for at in part.points.clone() {
         let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
-        let (mut around, mut change, mut made) = (S::ORIGIN, S::ORIGIN, [S::ORIGIN; 3]);
-        let (values, _) = stencil.along_x();
-        let [x, y, z] = [stencil.affine_along(0), stencil.affine_along(1), stencil.affine_along(2)];
-        stencil.rows::<S, B>(&part.window, |row| {
-            let (mut row_around, mut row_change, mut row_made) = (S::ORIGIN, S::ORIGIN, S::ORIGIN);
-            row.see::<B, _>(nodes, |nodes| {
-                for (i, node) in nodes.iter().enumerate() {
-                    row_around += node.velocity * values[i];
-                    row_change += node.change * values[i];
-                    if T::AFFINE {
-                        row_made += T::source::<S>(node.velocity, node.change) * x[i];
+        if !seen.is_at(stencil.base()) {
+            seen.fetch::<S, B, _>(&part.window, stencil.base(), nodes, see);
+            if PROJECT {
+                sums.give::<S, B, _>(&part.window, projected, add);
+                sums.empty_at::<S, B>(stencil.base());
+            }
+        }
+        let [values, _] = stencil.along_x();
+        let affine = stencil.affine_along_x();
+        let (mut around, mut change, mut made) = ([0.0; 3], [0.0; 3], [[0.0; 3]; 3]);
+        for component in 0..S::DIMENSION {
+            let ([mut velocities, mut changes], mut across_y, mut across_z) = ([[0.0; 4]; 2], [0.0; 4], [0.0; 4]);
+            for row in 0..Tile::<6>::count::<S, B>() {
+                let across = stencil.across::<S, B>(row);
+                let (velocity, change) = (&seen.row(row)[component], &seen.row(row)[3 + component]);
+                tile::add(&mut velocities, velocity, across.value);
+                tile::add(&mut changes, change, across.value);
+                if T::AFFINE {
+                    let source = T::source(velocity, change);
+                    tile::add(&mut across_y, source, across.affine[0]);
+                    if S::DIMENSION == 3 {
+                        tile::add(&mut across_z, source, across.affine[1]);
                     }
                 }
-            });
-            around += row_around * row.value;
-            change += row_change * row.value;
-            if T::AFFINE {
-                let source = T::source::<S>(row_around, row_change);
-                let [j, k] = row.across;
-                made[0] += row_made * row.value;
-                let deep = if S::DIMENSION == 3 { stencil.value_along(2, k) } else { 1.0 };
-                made[1] += source * (y[j] * deep);
-                if S::DIMENSION == 3 {
-                    made[2] += source * (stencil.value_along(1, j) * z[k]);
-                }
             }
-        });
+            around[component] = tile::dot(&velocities, &values);
+            change[component] = tile::dot(&changes, &values);
+            if T::AFFINE {
+                let along = tile::dot(T::source(&velocities, &changes), &affine);
+                made[component] = [along, tile::dot(&across_y, &values), tile::dot(&across_z, &values)];
+            }
+        }
+        let [around, change] = [around, change].map(|vector| S::restrict(Vector3::from(vector)));
         let velocity = transfer.taken::<S>(points.velocity[at], around, change);
         points.velocity[at] = velocity;
         if T::AFFINE {
-            points.affine[at] = T::carried::<S>(points.affine[at], of_columns::<S>(made), &stencil);
+            points.affine[at] = T::carried::<S>(points.affine[at], of_rows::<S>(made), &stencil);
         }
         points.next[at] = points.position[at] + around * time_step;
         if PROJECT {
-            let shown = Shown::<S>::new::<T>(lattice, &stencil, points.mass[at], velocity, points.affine[at]);
-            stencil.rows::<S, B>(&part.window, |row| {
-                let momentum = shown.along::<T>(&row);
-                row.add::<B, _>(
-                    projected,
-                    S::ORIGIN,
-                    |to, share| *to += *share,
-                    |projected| {
-                        for (i, projected) in projected.iter_mut().enumerate() {
-                            *projected += Shown::<S>::at::<T>(momentum, i, values[i]);
-                        }
-                    },
-                );
-            });
+            let shown = Shown::new::<S, T>(lattice, &stencil, points.mass[at], velocity, points.affine[at]);
+            for row in 0..Tile::<3>::count::<S, B>() {
+                let across = stencil.across::<S, B>(row);
+                for (component, to) in sums.row_mut(row).iter_mut().enumerate().take(S::DIMENSION) {
+                    shown.add::<S, T>(to, component, &across);
+                }
+            }
         }
     }
+    sums.give::<S, B, _>(&part.window, projected, add);
 }
 
 /// Velocity gradients (1/s) at a range of a body's points.
@@ -330,25 +341,27 @@ pub(crate) fn gradients<S: Space, B: Basis, N: Copy>(
     velocity: impl Fn(&N) -> S::Vector,
     gradients: &mut [S::Matrix],
 ) {
+    let mut seen = Tile::<3>::new();
     for (at, gradient) in range.zip(gradients) {
         let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
-        let (values, slopes) = stencil.along_x();
-        let mut columns = [S::ORIGIN; 3];
-        stencil.rows::<S, B>(&part.window, |row| {
-            let (mut along, mut across) = (S::ORIGIN, S::ORIGIN);
-            row.see::<B, _>(nodes, |nodes| {
-                for (i, node) in nodes.iter().enumerate() {
-                    let velocity = velocity(node);
-                    along += velocity * slopes[i];
-                    across += velocity * values[i];
+        if !seen.is_at(stencil.base()) {
+            seen.fetch::<S, B, _>(&part.window, stencil.base(), nodes, |node| S::embed(velocity(node)).into());
+        }
+        let [values, slopes] = stencil.along_x();
+        let mut rows = [[0.0; 3]; 3];
+        for (component, gradient) in rows.iter_mut().enumerate().take(S::DIMENSION) {
+            let [mut along, mut across_y, mut across_z] = [[0.0; 4]; 3];
+            for row in 0..Tile::<3>::count::<S, B>() {
+                let across = stencil.across::<S, B>(row);
+                let velocities = &seen.row(row)[component];
+                tile::add(&mut along, velocities, across.value);
+                tile::add(&mut across_y, velocities, across.slope[0]);
+                if S::DIMENSION == 3 {
+                    tile::add(&mut across_z, velocities, across.slope[1]);
                 }
-            });
-            columns[0] += along * row.value;
-            columns[1] += across * row.slope[0];
-            if S::DIMENSION == 3 {
-                columns[2] += across * row.slope[1];
             }
-        });
-        *gradient = of_columns::<S>(columns);
+            *gradient = [tile::dot(&along, &slopes), tile::dot(&across_y, &values), tile::dot(&across_z, &values)];
+        }
+        *gradient = of_rows::<S>(rows);
     }
 }
