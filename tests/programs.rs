@@ -31,6 +31,22 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
     assert_eq!(err, "error: lammps is not available: GRAINBENCH_LAMMPS names `nowhere/lmp`, where no file is\n");
 }
 
+#[test]
+fn a_time_limit_that_is_no_time_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
+    let command = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+        .args(["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"])
+        .current_dir(directory.path())
+        .env("GRAINBENCH_TIME_LIMIT", "2s")
+        .output()
+        .unwrap();
+    assert_eq!(command.status.code(), Some(2));
+    let said = String::from_utf8(command.stderr).unwrap();
+    let reason = "GRAINBENCH_TIME_LIMIT: expected a whole number of seconds, found `2s`";
+    assert_eq!(said, format!("error: lammps is not available: {reason}\n"));
+}
+
 const SCENE: &str = r#"title = "A disc in flight"
 dimension = 2
 duration = 0.01

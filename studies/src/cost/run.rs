@@ -262,8 +262,10 @@ fn summarise(point: &mut Point) {
     };
     let walls = sorted(|timing| timing.wall);
     point.wall_seconds = median(&walls);
-    point.cpu_seconds = median(&sorted(|timing| timing.cpu));
     point.start_up_seconds = median(&sorted(|timing| timing.start_up));
+    // Of a program it is the difference of two times, which tells nothing where both are mostly start-up.
+    let told = |cpu: &f64| *cpu >= 0.1 * point.start_up_seconds.unwrap_or(0.0);
+    point.cpu_seconds = median(&sorted(|timing| timing.cpu)).filter(told);
     point.wall_spread = match (walls.first(), walls.last(), median(&walls)) {
         (Some(first), Some(last), Some(median)) if walls.len() > 1 && median > 0.0 => Some((last - first) / median),
         _ => None,
