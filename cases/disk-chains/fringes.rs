@@ -16,11 +16,41 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::RunError;
 use std::f64::consts::FRAC_PI_2;
 
-/// Frames of Figs 9, 10 and 11, simulation (experiment), in transits of a disc.
-const FRAMES: [(&str, &str, [f64; 3], [f64; 3]); 3] = [
-    ("line", "four discs in a line, Fig. 9", [2.2, 5.5, 7.7], [2.6, 6.6, 9.2]),
-    ("zig-zag", "zig-zag, μ = .5, Fig. 10", [3.0, 6.0, 9.0], [5.3, 10.5, 15.8]),
-    ("zig-zag-glued", "glued zig-zag, Fig. 11", [1.4, 3.6, 5.8], [1.6, 4.2, 6.8]),
+/// A chain of the paper.
+struct Chain {
+    variant: &'static str,
+    title: &'static str,
+    /// Times of the frames in the paper's simulation, in transits of a disc.
+    frames: [f64; 3],
+    /// The same in its experiment.
+    experiment: [f64; 3],
+    /// What the paper sees in them.
+    seen: &'static str,
+}
+
+/// Figs 9, 10 and 11.
+const CHAINS: [Chain; 3] = [
+    Chain {
+        variant: "line",
+        title: "four discs in a line, Fig. 9",
+        frames: [2.2, 5.5, 7.7],
+        experiment: [2.6, 6.6, 9.2],
+        seen: "They cross the contacts one after the other.",
+    },
+    Chain {
+        variant: "zig-zag",
+        title: "zig-zag, μ = .5, Fig. 10",
+        frames: [3.0, 6.0, 9.0],
+        experiment: [5.3, 10.5, 15.8],
+        seen: "As in the paper the load first goes from contact to wall, and on to the next disc when its contact sticks.",
+    },
+    Chain {
+        variant: "zig-zag-glued",
+        title: "glued zig-zag, Fig. 11",
+        frames: [1.4, 3.6, 5.8],
+        experiment: [1.6, 4.2, 6.8],
+        seen: "As in the paper the load first goes from contact to contact, and to the walls later.",
+    },
 ];
 /// Frames of the film, in quarters of a transit.
 const FILM: u32 = 44;
@@ -34,7 +64,7 @@ fn transit(scene: &Scene) -> f64 {
 
 /// When snapshots are wanted of a variant (s).
 pub(super) fn times(scene: &Scene, variant: &str) -> Vec<f64> {
-    let frames = FRAMES.iter().filter(|(name, ..)| *name == variant).flat_map(|(_, _, frames, _)| *frames);
+    let frames = CHAINS.iter().filter(|chain| chain.variant == variant).flat_map(|chain| chain.frames);
     let film = (1..=FILM).map(|frame| 0.25 * f64::from(frame)).filter(|_| variant == "line");
     frames.chain(film).map(|transits| transits * transit(scene)).collect()
 }
@@ -48,8 +78,7 @@ fn at(done: &Done, transits: f64) -> Option<&Snapshot> {
 
 /// The fringe constant (Pa) from the line: see above.
 fn constant(line: &Done) -> f64 {
-    let (_, _, frames, _) = FRAMES[0];
-    let time = frames[2] * transit(&line.scene);
+    let time = CHAINS[0].frames[2] * transit(&line.scene);
     let sample = line.series().time.iter().position(|&sampled| sampled >= time).unwrap_or_default();
     principal_difference(line, 4).map_or(f64::NAN, |difference| difference(sample)) / FRAC_PI_2
 }
@@ -67,13 +96,13 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         constant / impact_stress(&line)
     );
     let mut figures = Vec::new();
-    for (variant, title, frames, experiment) in FRAMES {
+    for Chain { variant, title, frames, experiment, seen } in CHAINS {
         let done = done(variant)?;
         let shots: Vec<Shot<'_>> = frames
             .iter()
             .zip(experiment)
-            .filter_map(|(&time, seen)| {
-                Some(Shot::new(format!("t c/d = {time} (in the experiment {seen})"), at(&done, time)?))
+            .filter_map(|(&time, theirs)| {
+                Some(Shot::new(format!("t c/d = {time} (in the experiment {theirs})"), at(&done, time)?))
             })
             .collect();
         figures.push(Figure::field(
@@ -81,7 +110,7 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
             &format!("Fringes: {title}"),
             &format!(
                 "cos((σ₁ − σ₂)/c) at the times of the paper's frames, {resolution} c is fitted once, so that at 7.7 the first \
-                 grey fringe stands at the centre of the fourth disc of the line, and then kept."
+                 grey fringe stands at the centre of the fourth disc of the line, and then kept. {seen}"
             ),
             pictures(quantity, &shots, PIXELS, None),
         ));

@@ -66,6 +66,15 @@ pub fn film(
     }
 }
 
+/// The fringe constant c (Pa) for which the stress that only a fiftieth of the material is above, in any of the snapshots, is so many
+/// fringes from none.
+#[must_use]
+pub fn fringe_constant<'a>(snapshots: impl IntoIterator<Item = &'a Snapshot>, fringes: f64) -> f64 {
+    let quantity = Quantity::StressDifference;
+    let high = |snapshot| Painting::new(snapshot, quantity, View::of(snapshot, 200)).quantile(0.98);
+    snapshots.into_iter().map(high).fold(0.0, f64::max) / (fringes * std::f64::consts::TAU)
+}
+
 /// The frames of a film have a quarter of the levels: nobody sees the difference, and a page can hold it.
 fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
     if frames > 1 {

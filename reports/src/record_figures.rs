@@ -2,10 +2,9 @@
 //! stand beside one another at equal times.
 
 use crate::number;
-use grainbench_cases::field_picture::{Shot, film, pictures};
+use grainbench_cases::field_picture::{Shot, film, fringe_constant, pictures};
 use grainbench_cases::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_cases::force_plot::force_plot;
-use grainbench_fields::paint::{Painting, View};
 use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
 use grainbench_scene::record::{Record, Snapshot};
@@ -107,10 +106,7 @@ fn quantities(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Quantity> {
     let stressed = ends.iter().any(|snapshot| !snapshot.points.is_empty() || !snapshot.contacts.is_empty());
     if stressed {
         quantities.push(Quantity::StressDifference);
-        let high = |snapshot: &&Snapshot| {
-            Painting::new(snapshot, Quantity::StressDifference, View::of(snapshot, 200)).quantile(0.98)
-        };
-        let own = ends.iter().map(high).fold(0.0, f64::max) / (FRINGES * std::f64::consts::TAU);
+        let own = fringe_constant(ends.iter().copied(), FRINGES);
         quantities.extend(Some(fringe.unwrap_or(own)).filter(|&constant| constant > 0.0).map(Quantity::Fringes));
     }
     if ends.iter().any(|snapshot| snapshot.points.iter().any(|point| point.plastic_strain > 0.0)) {
