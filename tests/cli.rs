@@ -265,3 +265,31 @@ fn simulate_prints_the_run_as_json() {
     assert!((energy / (0.5 * 1000.0 * std::f64::consts::PI * 0.01) - 1.0).abs() < 1e-2, "{energy}");
     assert!(directory.path().join("grainbench-out/record.json").is_file());
 }
+
+#[test]
+fn report_makes_pictures_of_simulations() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), SCENE).unwrap();
+    for (solver, out) in [("dem", "one"), ("dem:lammps", "two")] {
+        printed(path, &["simulate", "scene.toml", "--solver", solver, "--out", out]);
+    }
+    printed(path, &["report", "one", "--beside", "two", "--fringe-stress", "1e3"]);
+    let page = std::fs::read_to_string(path.join("one/index.html")).unwrap();
+    // One picture of speed: a solver beside the other.
+    let svg = std::fs::read_to_string(path.join("one/figures/speed.svg")).unwrap();
+    assert!(page.contains(&svg) && svg.matches("data:image/png;base64,").count() == 2, "{}", svg.len());
+    assert!(page.contains("Two discs collide") && svg.contains(">dem, t") && svg.contains(">dem:lammps, t"), "{svg}");
+
+    // A contact of a grain that is not there is not drawn; what is no record is refused by name and place.
+    let record = std::fs::read_to_string(path.join("one/record.json")).unwrap();
+    std::fs::write(path.join("one/record.json"), record.replace("\"grain\": 1,", "\"grain\": 900,")).unwrap();
+    printed(path, &["report", "one"]);
+    let refused = |arguments: &[&str], what: &str| {
+        let answer = grainbench(path, arguments);
+        assert!(answer.code == Some(2) && answer.err.contains(what), "{:?} {}", answer.code, answer.err);
+    };
+    refused(&["report", "one", "--beside", "nowhere"], "record.json");
+    std::fs::write(path.join("two/record.json"), record.replacen("\"step\": [", "\"step\": [true,", 1)).unwrap();
+    refused(&["report", "two"], "at `series.step[0]`: invalid type: boolean `true`");
+}

@@ -4,29 +4,29 @@ use crate::figure::{ForceBar, ForcePlot};
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::Vector3;
 
-/// Draws every contact as a bar through the contact point with the orientation of the force, as long as the radii together.
+/// Draws every contact of a grain that is there as a bar through the contact point with the orientation of the force, as long as the radii together.
 #[must_use]
 pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
     let flat = |point: Vector3<f64>| [point.x, point.y];
     let bars = snapshot
         .contacts
         .iter()
-        .map(|contact| {
-            let radius = |id: u32| snapshot.grains[id as usize - 1].radius;
+        .filter_map(|contact| {
+            let radius = |id: u32| Some(snapshot.grains.get((id as usize).checked_sub(1)?)?.radius);
             let beyond = match contact.partner {
-                Partner::Grain(other) => radius(other),
+                Partner::Grain(other) => radius(other)?,
                 Partner::Body(_) | Partner::Wall(_) => 0.0,
             };
             let force = contact.shear_force - contact.normal * contact.normal_force;
             let magnitude = force.norm();
             // Without force there is no orientation but the normal's.
             let along = if magnitude > 0.0 { -force / magnitude } else { contact.normal };
-            ForceBar {
-                from: flat(contact.point - along * radius(contact.grain)),
+            Some(ForceBar {
+                from: flat(contact.point - along * radius(contact.grain)?),
                 to: flat(contact.point + along * beyond),
                 force: magnitude,
                 slipping: contact.slipping,
-            }
+            })
         })
         .collect();
     let (low, high) = snapshot.bounds;
@@ -34,16 +34,16 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
     let walls = snapshot
         .walls
         .iter()
-        .map(|wall| {
-            let (a, b) = (wall.corners[0], wall.corners[1]);
+        .filter_map(|wall| {
+            let &[a, b, ..] = wall.corners.as_slice() else { return None };
             if !wall.infinite {
-                return (flat(a), flat(b));
+                return Some((flat(a), flat(b)));
             }
             // An infinite wall is drawn as long as the grains' box is wide there.
             let along = Vector3::new(-b.y, b.x, 0.0);
             let half = 0.5 * ((high - low).dot(&along.abs())).min(across);
             let middle = a + along * (0.5 * (low + high) - a).dot(&along);
-            (flat(middle - along * half), flat(middle + along * half))
+            Some((flat(middle - along * half), flat(middle + along * half)))
         })
         .collect();
     ForcePlot {

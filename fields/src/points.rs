@@ -10,6 +10,9 @@ const REACH: f64 = 0.85;
 /// Points within this many of their widths share in the value at a place.
 const BLUR: f64 = 1.3;
 
+/// Bins along an axis, however far a stray point has flown.
+const MOST_BINS: f64 = 1024.0;
+
 /// The material points of a plane snapshot, sorted into square bins.
 pub struct PointCloud<'a> {
     snapshot: &'a Snapshot,
@@ -40,7 +43,7 @@ impl<'a> PointCloud<'a> {
                 from = places.iter().map(|place| place[axis]).fold(f64::INFINITY, f64::min) - width;
                 to = places.iter().map(|place| place[axis]).fold(f64::NEG_INFINITY, f64::max) + width;
             }
-            count[axis] = ((to - from) / width).floor().clamp(1.0, 4096.0) as usize;
+            count[axis] = ((to - from) / width).floor().clamp(1.0, MOST_BINS) as usize;
             (low[axis], bin[axis]) = (from, (to - from) / count[axis] as f64);
         }
         let mut cloud = Self { snapshot, places, low, bin, count, bins: vec![Vec::new(); count[0] * count[1]] };

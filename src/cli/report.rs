@@ -66,12 +66,18 @@ fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     };
     let dirs = std::iter::once(&arguments.dir).chain(&arguments.beside);
     let records: Vec<Record> = dirs.map(|dir| read(dir)).collect::<Result<_, _>>()?;
-    let named = |record| Named { name: if records.len() > 1 { name(record) } else { String::new() }, record };
-    let named: Vec<Named<'_>> = records.iter().map(named).collect();
+    let named: Vec<Named<'_>> = records.iter().map(|record| Named { name: name(record, &records), record }).collect();
     let figures = record_figures::figures(&named, arguments.fringe_stress);
     write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::input)
 }
 
-fn name(record: &Record) -> String {
-    format!("{}, {}", record.provenance.solver, record.provenance.resolution)
+/// What tells a record from the others: nothing, the solver, or solver and resolution.
+fn name(record: &Record, all: &[Record]) -> String {
+    let from = &record.provenance;
+    let alike = all.iter().filter(|other| other.provenance.solver == from.solver).count();
+    match (all.len(), alike) {
+        (1, _) => String::new(),
+        (_, 1) => from.solver.clone(),
+        _ => format!("{}, {}", from.solver, from.resolution),
+    }
 }

@@ -72,7 +72,8 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
             text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (title) }
             @for (at, panel_of) in field.panels.iter().enumerate() {
                 @let (x, y) = corner(at);
-                text x=(px(x)) y=(px(y - 8.0)) font-size="15" fill="#222" { (panel_of.title) }
+                @let size = (15.0 * panel.0 / text_width(&panel_of.title, 15.0)).min(15.0);
+                text x=(px(x)) y=(px(y - 8.0)) font-size=(px(size)) fill="#222" { (panel_of.title) }
             }
             @for ((x, y), (width, height), image) in &images {
                 image x=(px(*x)) y=(px(*y)) width=(px(*width)) height=(px(*height)) preserveAspectRatio="none"
@@ -107,9 +108,11 @@ pub fn film(field: &Field) -> io::Result<Vec<u8>> {
                     levels[row * full + left..row * full + left + wide].copy_from_slice(line);
                 }
             }
+            // On black the rim is too dim to be read.
+            let ink = if field.shades == Shades::Glow { HIGH } else { RIM };
             let done = (position(&field.times, frame) * full as f64).round() as usize;
             for row in high + SEAM..high + 2 * SEAM {
-                levels[row * full..row * full + done.min(full)].fill(RIM);
+                levels[row * full..row * full + done.min(full)].fill(ink);
             }
             levels
         })
@@ -320,7 +323,7 @@ mod tests {
             assert!(reader.next_frame(&mut pixels).is_ok());
             assert_eq!((pixels[0], pixels[44], pixels[87]), (1 + frame, VOID, 101 + frame));
             // The clock stands at 0, a half and all.
-            let run = pixels[40 * 88..41 * 88].iter().filter(|&&level| level == RIM).count();
+            let run = pixels[40 * 88..41 * 88].iter().filter(|&&level| level == HIGH).count();
             assert_eq!(run, 44 * usize::from(frame));
         }
         let svg = draw("film", &field).unwrap_or_default();
