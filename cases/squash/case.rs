@@ -1,5 +1,8 @@
 //! The worked example of Cundall & Strack (1979): the calculation cycle, exactly.
 
+#[path = "elastic.rs"]
+mod elastic;
+
 use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung, fraction};
 use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
@@ -109,6 +112,7 @@ fn gates() -> Vec<Gate> {
         }),
     });
     gates.push(rigid_rows::refuses_cycles(PLAIN));
+    gates.extend(elastic::gates());
     gates
 }
 
@@ -144,5 +148,5 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
                 curve("B, exact", Stroke::Dashed, exact(&|n| 2.0 * displacement(n, q))),
             ],
         }),
-    }])
+    }, elastic::figure(bench)?])
 }

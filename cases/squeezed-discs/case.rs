@@ -2,7 +2,7 @@
 
 use crate::bench::Bench;
 use crate::case::{Case, PLAIN, Rung, cells};
-use crate::elastic::stiffen;
+use crate::elastic::{Pressed, stiffen};
 use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
 use crate::verdict::Evidence;
@@ -10,7 +10,6 @@ use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError};
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 
 const LADDER: &[Rung] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
 const WALLS: [&str; 4] = ["left.force_x", "right.force_x", "bottom.force_y", "top.force_y"];
@@ -42,22 +41,9 @@ fn squeeze(scene: &Scene) -> f64 {
     }
 }
 
-/// Contact force (N per metre) in closed form, by bisection on p = F/(E'R).
+/// Contact force (N per metre) in closed form: a row of three diameters is shortened by both walls.
 fn exact(scene: &Scene) -> f64 {
-    let Some(disc) = scene.deformable[0] else { return f64::NAN };
-    let radius = scene.grains[0].radius;
-    let (bulk, shear) = (disc.bulk_modulus, disc.shear_modulus);
-    let poisson = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
-    let shortening = |p: f64| {
-        let patch = (4.0 * p / PI).sqrt();
-        p * (2.0 / PI * (2.0 * (4.0 / patch).ln() - 1.0) - (4.0 / PI - 1.0) - poisson / (1.0 - poisson))
-    };
-    let (mut low, mut high) = (1e-12, 0.05);
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if shortening(middle) < 2.0 * squeeze(scene) / (3.0 * radius) { low = middle } else { high = middle }
-    }
-    low * disc.plane_modulus() * radius
+    Pressed::of(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
 }
 
 /// Mean contact force at the walls (N per metre), three discs on each, over the last quarter of the run: material points go on

@@ -1,7 +1,9 @@
-//! A grain as an elastic body on a plane: how it starts, and the change of stiffness that leads to the rigid answer.
+//! A grain as an elastic body on a plane: how it starts, and the change of stiffness that leads to the rigid answer; and a disc that is
+//! pressed.
 
 use grainbench_scene::body::Settle;
 use grainbench_scene::scene::{Duration, Scene};
+use std::f64::consts::PI;
 
 /// A phase of settling: how long (s), and its mass-proportional damping (1/s).
 #[derive(Clone, Copy, Debug)]
@@ -30,5 +32,56 @@ pub fn stiffen(scene: &mut Scene, factor: f64) {
     for material in scene.deformable.iter_mut().flatten() {
         material.bulk_modulus *= factor;
         material.shear_modulus *= factor;
+    }
+}
+
+/// An elastic disc in plane strain that is pressed at two opposite sides, or at four, without friction: how much its diameter shortens.
+///
+/// δ/R = p [(2/π)(2 ln(4R/a) − 1) − s], p = F/(E'R), a² = 4pR²/π (Johnson, Contact Mechanics, §5.6: a cylinder between two flats);
+/// s is zero between two flats, and with an equal pair across, which widens it, (4/π − 1) + ν/(1 − ν).
+#[derive(Clone, Copy, Debug)]
+pub struct Pressed {
+    /// E' = E/(1 − ν²) (Pa).
+    pub modulus: f64,
+    /// Poisson's ratio ν.
+    pub poisson: f64,
+    /// Radius R (m).
+    pub radius: f64,
+    /// Two sides, or four.
+    pub sides: u8,
+}
+
+impl Pressed {
+    /// The first grain of a scene; none when it does not deform.
+    #[must_use]
+    pub fn of(scene: &Scene, sides: u8) -> Option<Self> {
+        let disc = (*scene.deformable.first()?)?;
+        let (bulk, shear) = (disc.bulk_modulus, disc.shear_modulus);
+        let poisson = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
+        Some(Self { modulus: disc.plane_modulus(), poisson, radius: scene.grains[0].radius, sides })
+    }
+
+    /// Shortening over p R under p.
+    fn compliance(&self, p: f64) -> f64 {
+        let widened = if self.sides == 4 { 4.0 / PI - 1.0 + self.poisson / (1.0 - self.poisson) } else { 0.0 };
+        let patch = (4.0 * p / PI).sqrt();
+        2.0 / PI * (2.0 * (4.0 / patch).ln() - 1.0) - widened
+    }
+
+    /// Force (N per metre) that shortens each diameter by `shortening` (m), by bisection.
+    #[must_use]
+    pub fn force(&self, shortening: f64) -> f64 {
+        let (mut low, mut high) = (1e-12, 0.05);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if middle * self.compliance(middle) < shortening / self.radius { low = middle } else { high = middle }
+        }
+        low * self.modulus * self.radius
+    }
+
+    /// Stiffness of a diameter against a little more of a force (N/m per metre), dF/dδ: a ∝ √F takes 2/π off the compliance.
+    #[must_use]
+    pub fn stiffness(&self, force: f64) -> f64 {
+        self.modulus / (self.compliance(force / (self.modulus * self.radius)) - 2.0 / PI)
     }
 }
