@@ -101,11 +101,7 @@ fn gates() -> Vec<Gate> {
             (Evidence::Invariant, "equal and opposite impulses"),
             (1e-14, "impulses are equal and opposite; rounding; in units of m v₀"),
             Control::scene("one disc faster by a millionth", |scene| scene.grains[0].velocity *= 1.0 + 1e-6),
-            |done| {
-                let (x, y) = (done[0].last("all.momentum_x")?, done[0].last("all.momentum_y")?);
-                let scale = done[0].scene.grains[0].mass * speed(&done[0]);
-                Ok(Measured::new(f64::hypot(x, y), 0.0, scale))
-            },
+            |done| momentum(&done[0]),
         ));
     }
     gates.push(Gate::new(
@@ -117,6 +113,7 @@ fn gates() -> Vec<Gate> {
         |done| Ok(Measured::new(spin(&done[0])?, 0.0, 1.0)),
     ));
     gates.extend(oblique());
+    gates.extend(three());
     gates.extend(touching());
     gates.push(Gate::new(
         ("energy after over before, manufactured by the 2000 criterion", "1"),
@@ -140,6 +137,41 @@ fn gates() -> Vec<Gate> {
         Control::without_the_error("springs at the surface", "mpm", grid(8.0)),
         |done| Ok(Measured::new(energy(&done[0])?, 1.0, 1.0)),
     ));
+    gates
+}
+
+/// Momentum in the end, where none was, in units of that of one disc.
+fn momentum(done: &Done) -> Result<Measured, Missing> {
+    let (x, y) = (done.last("all.momentum_x")?, done.last("all.momentum_y")?);
+    let scale = done.scene.grains[0].mass * speed(done);
+    Ok(Measured::new(f64::hypot(x, y), 0.0, scale))
+}
+
+/// Three discs that meet at one point: contacts act in pairs, however many bodies share a node.
+fn three() -> Vec<Gate> {
+    let gate = |run: Run, control| {
+        Gate::new(
+            ("momentum in the end, three discs at one point", "kg m/s"),
+            vec![run],
+            (Evidence::Invariant, "equal and opposite impulses"),
+            (1e-12, "impulses are equal and opposite; rounding, of the start too; in units of m v₀"),
+            control,
+            |done| {
+                let at_start = |axis: &str| Ok(done[0].column(&format!("all.momentum_{axis}"))?[0]);
+                let gained = momentum(&done[0])?;
+                let before = f64::hypot(at_start("x")?, at_start("y")?);
+                Ok(Measured::new((gained.value - before).abs(), 0.0, gained.scale))
+            },
+        )
+    };
+    let faster = || {
+        Control::solver("each body against the common velocity, along its own normal (2001)", "mpm:2001")
+    };
+    let mut gates: Vec<Gate> = ["mpm", "mpm:gap"].map(|solver| gate(run("three", solver), faster())).into();
+    for solver in ["mpm:2000", "mpm:2001"] {
+        let known = run("three", solver).known("each body meets the common velocity along its own normal: impulses do not add up to nothing");
+        gates.push(gate(known, Control::without_the_error("springs at the surface", "mpm", grid(8.0))));
+    }
     gates
 }
 
