@@ -1,7 +1,7 @@
 //! The stages of a cycle at which bodies meet: springs as forces, conditions at nodes on velocities.
 
 use crate::contact::nodal::{self, Felt};
-use crate::contact::penalty::{self, Rules};
+use crate::contact::penalty::{self, Rules, Told};
 use crate::contact::shared::{Projected, Stepped};
 use crate::options::{Contact, StressUpdate};
 use crate::simulation::{Simulation, with_basis};
@@ -67,16 +67,15 @@ impl<S: Space> Simulation<S> {
             time_step: self.time_step,
         };
         let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, accounts, .. } = self;
-        let tally = &mut accounts.tally;
-        let mut touches = record.then_some(touches);
+        let mut told = Told { tally: &mut accounts.tally, touches: record.then_some(touches) };
         with_basis!(setting.basis, B => {
-            penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, tally, touches.as_deref_mut());
+            penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, &mut told);
             if !pairs.found.is_empty() {
                 tracers.find_boxes();
             }
             for pair in &pairs.found {
                 for pair in [*pair, pair.exchanged()] {
-                    penalty::between::<S, B>(&rules, bodies, &pair, tracers, springs, nodes, tally, touches.as_deref_mut());
+                    penalty::between::<S, B>(&rules, bodies, &pair, tracers, springs, nodes, &mut told);
                 }
             }
         });

@@ -10,8 +10,11 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// What a record has of a solver that does not know.
 const UNKNOWN: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
+/// A name, and what it is of a budget.
+type Entry = (&'static str, fn(&Budget) -> f64);
+
 /// The entries of an energy budget, by name.
-const ENERGIES: [(&str, fn(&Budget) -> f64); 11] = [
+const ENERGIES: [Entry; 11] = [
     ("kinetic", |budget| budget.kinetic),
     ("elastic", |budget| budget.elastic),
     ("springs", |budget| budget.springs),

@@ -180,7 +180,14 @@ pub(crate) struct Rules<'a> {
     pub(crate) time_step: f64,
 }
 
-/// Springs between bodies and walls; what touches is added to `touches` when it is asked for.
+/// What springs tell of a step.
+pub(crate) struct Told<'a, S: Space> {
+    pub(crate) tally: &'a mut Tally,
+    /// What touches, where it is asked for.
+    pub(crate) touches: Option<&'a mut Vec<Touch<S>>>,
+}
+
+/// Springs between bodies and walls.
 pub(crate) fn at_walls<S: Space, B: Basis>(
     rules: &Rules<'_>,
     bodies: &[Body],
@@ -188,8 +195,7 @@ pub(crate) fn at_walls<S: Space, B: Basis>(
     springs: &mut Springs<S>,
     walls: &mut [RigidPlane<S>],
     nodes: &mut [Node<S>],
-    tally: &mut Tally,
-    mut touches: Option<&mut Vec<Touch<S>>>,
+    told: &mut Told<'_, S>,
 ) {
     let cell = rules.lattice.shortest(S::DIMENSION);
     for (number, wall) in walls.iter_mut().enumerate() {
@@ -214,14 +220,14 @@ pub(crate) fn at_walls<S: Space, B: Basis>(
                 let stretch = springs.stretch(at, other);
                 let (shear, stretched, slipping) =
                     rub::<S>(*stretch, slip, wall.normal, spring, friction * spring * depth);
-                tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, wall.normal);
-                tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
+                told.tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, wall.normal);
+                told.tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
                 *stretch = stretched;
                 let force = push + shear;
                 grip.push::<B>(&body.part, force, nodes);
                 wall.force -= force;
-                tally.walls += S::dot(force, wall.velocity(position)) * rules.time_step;
-                if let Some(touches) = touches.as_mut() {
+                told.tally.walls += S::dot(force, wall.velocity(position)) * rules.time_step;
+                if let Some(touches) = told.touches.as_mut() {
                     let energy = energy_ahead::<S>(spring, depth, stretched, slip, wall.normal, slipping);
                     let body = place as u32;
                     touches.push(Touch { body, other, point: position, push, shear, depth, slipping, energy });
@@ -248,8 +254,7 @@ pub(crate) fn between<S: Space, B: Basis>(
     tracers: &Tracers<S>,
     springs: &mut Springs<S>,
     nodes: &mut [Node<S>],
-    tally: &mut Tally,
-    mut touches: Option<&mut Vec<Touch<S>>>,
+    told: &mut Told<'_, S>,
 ) {
     let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
     let cell = rules.lattice.shortest(S::DIMENSION);
@@ -284,13 +289,13 @@ pub(crate) fn between<S: Space, B: Basis>(
             let other = Other::Body(pair.second);
             let stretch = springs.stretch(at, other);
             let (shear, stretched, slipping) = rub::<S>(*stretch, slip, out, spring, friction * spring * depth);
-            tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, out);
-            tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
+            told.tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, out);
+            told.tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
             *stretch = stretched;
             let force = push + shear;
             one.push::<B>(&first.part, force, nodes);
             two.push::<B>(&second.part, -force, nodes);
-            if let Some(touches) = touches.as_mut() {
+            if let Some(touches) = told.touches.as_mut() {
                 let energy = energy_ahead::<S>(spring, depth, stretched, slip, out, slipping);
                 let body = pair.first;
                 touches.push(Touch { body, other, point: there, push, shear, depth, slipping, energy });
