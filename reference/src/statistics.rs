@@ -54,6 +54,15 @@ pub fn spread(values: &[f64]) -> Option<f64> {
     (half_width > 0.0).then_some(half_width)
 }
 
+/// The mean of some independent values, and half of its confidence interval: t s/√n. None where there are too few.
+#[must_use]
+pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    Some((mean, quantile(count - 1.0)? * (variance / count).sqrt()))
+}
+
 /// Student's t of the two-sided interval.
 fn quantile(degrees_of_freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
@@ -98,6 +107,9 @@ mod tests {
         // Differences 1, −1, 1, −1: s² = 4/3, t(.995, 3) = 5.8409.
         let of = difference(&[0.0; 4], &[1.0, -1.0, 1.0, -1.0], 4).unwrap();
         assert!((of.half_width - 5.840_909 * (1.0_f64 / 3.0).sqrt()).abs() < 1e-5, "{of:?}");
+        let (mean, half_width) = interval(&[1.0, -1.0, 1.0, -1.0]).unwrap();
+        assert!(mean == 0.0 && (half_width - of.half_width).abs() < 1e-12);
+        assert_eq!(interval(&[1.0]), None);
         assert_eq!(difference(&[0.0; 3], &[0.0; 3], 4), None);
         assert_eq!(difference(&[0.0; 8], &[0.0; 9], 4), None);
     }

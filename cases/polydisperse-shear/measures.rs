@@ -1,0 +1,139 @@
+//! What is measured of a sheared slab, of grains alone so that it is one measure for all methods, but for voids and yield.
+
+use crate::gate::{Done, Missing};
+use grainbench_scene::record::{GrainState, PointState, Snapshot};
+use std::collections::HashMap;
+
+/// Columns that displacements are averaged over.
+const COLUMNS: usize = 20;
+
+/// Width of the slab (m).
+pub(crate) fn width(done: &Done) -> f64 {
+    done.scene.domain.map_or(f64::NAN, |domain| domain.high.x - domain.low.x)
+}
+
+/// Height of its period (m).
+fn period(done: &Done) -> f64 {
+    done.scene.domain.map_or(f64::NAN, |domain| domain.high.y - domain.low.y)
+}
+
+/// Speed of the moving side (m/s).
+pub(crate) fn speed(done: &Done) -> f64 {
+    done.scene.driven.iter().map(|driven| driven.velocity.y).fold(0.0, f64::max)
+}
+
+/// The mean shear at a time.
+pub(crate) fn shear(done: &Done, time: f64) -> f64 {
+    speed(done) * time / width(done)
+}
+
+/// The snapshot at a mean shear.
+pub(crate) fn at(done: &Done, wanted: f64) -> Result<&Snapshot, Missing> {
+    let off = |snapshot: &Snapshot| (shear(done, snapshot.time) - wanted).abs();
+    let nearest = done.record.snapshots.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.filter(|snapshot| off(snapshot) < 5e-3).ok_or_else(|| Missing(format!("snapshot at a shear of {wanted}")))
+}
+
+/// The snapshot at the end.
+pub(crate) fn end(done: &Done) -> Result<&Snapshot, Missing> {
+    done.record.snapshots.last().ok_or_else(|| Missing("snapshot".to_owned()))
+}
+
+/// The grains that are not driven.
+pub(crate) fn free<'a>(done: &Done, snapshot: &'a Snapshot) -> Vec<&'a GrainState> {
+    let groups = done.scene.driven_group_of_grains();
+    snapshot.grains.iter().zip(groups).filter(|(_, group)| group.is_none()).map(|(grain, _)| grain).collect()
+}
+
+/// Plastic strain, mean over the mass of free grains.
+pub(crate) fn plastic_strain(done: &Done, snapshot: &Snapshot) -> f64 {
+    let grains = free(done, snapshot);
+    let mass: f64 = grains.iter().map(|grain| grain.mass).sum();
+    grains.iter().map(|grain| grain.plastic_strain * grain.mass).sum::<f64>() / mass
+}
+
+/// Area of a disc left of a line at `x` from its centre (m).
+fn left_of(x: f64, radius: f64) -> f64 {
+    let h = (x / radius).clamp(-1.0, 1.0);
+    radius * radius * (h * (1.0 - h * h).sqrt() + h.asin() + std::f64::consts::FRAC_PI_2)
+}
+
+/// Displacement of grains along the slab, averaged over columns by the area of grains in each, as a fraction of that of the
+/// moving side: (middle of the column over the width, displacement).
+pub(crate) fn profile(done: &Done, snapshot: &Snapshot) -> Vec<(f64, f64)> {
+    let (moved, period, width) = (speed(done) * snapshot.time, period(done), width(done));
+    let displacements: Vec<f64> = (snapshot.grains.iter().zip(&done.scene.grains))
+        .map(|(now, start)| {
+            // Of the images, the one whose displacement is nearest to half of the side's: grains go nowhere else.
+            let way = now.position.y - start.position.y;
+            way - period * ((way - 0.5 * moved) / period).round()
+        })
+        .collect();
+    (0..COLUMNS)
+        .map(|column| {
+            let edges = [column, column + 1].map(|edge| width * edge as f64 / COLUMNS as f64);
+            let (mut area, mut sum) = (0.0, 0.0);
+            for (grain, displacement) in snapshot.grains.iter().zip(&displacements) {
+                let [low, high] = edges.map(|edge| left_of(edge - grain.position.x, grain.radius));
+                area += high - low;
+                sum += (high - low) * displacement;
+            }
+            ((column as f64 + 0.5) / COLUMNS as f64, sum / (area * moved))
+        })
+        .collect()
+}
+
+/// Width of the band in which displacement goes from nothing to all, over that of the slab: twice the mean of the profile,
+/// which is 1 for uniform shear and b for a profile that rises linearly over the part b at the moving side.
+pub(crate) fn band(done: &Done, snapshot: &Snapshot) -> f64 {
+    let profile = profile(done, snapshot);
+    2.0 * profile.iter().map(|(_, displacement)| displacement).sum::<f64>() / profile.len() as f64
+}
+
+/// How much of the displacement has happened in the half of the slab at the moving side.
+pub(crate) fn at_the_moving_side(done: &Done, snapshot: &Snapshot) -> f64 {
+    let profile = profile(done, snapshot);
+    profile[COLUMNS - 1].1 - 0.5 * (profile[COLUMNS / 2 - 1].1 + profile[COLUMNS / 2].1)
+}
+
+/// Part of the slab that is void, by the undeformed areas of grains.
+pub(crate) fn void_fraction(done: &Done, snapshot: &Snapshot) -> f64 {
+    let width = width(done);
+    let inside = |grain: &GrainState| {
+        left_of(width - grain.position.x, grain.radius) - left_of(-grain.position.x, grain.radius)
+    };
+    1.0 - snapshot.grains.iter().map(inside).sum::<f64>() / (width * period(done))
+}
+
+/// Mean normal stress of a point (Pa), tension positive.
+pub(crate) fn mean_stress(point: &PointState) -> f64 {
+    (point.stress[0] + point.stress[1] + point.stress[2]) / 3.0
+}
+
+/// Squared norm of the deviator of the stress of a point, s:s (Pa²).
+pub(crate) fn deviator_squared(point: &PointState) -> f64 {
+    let mean = mean_stress(point);
+    let [xx, yy, zz, xy, yz, zx] = point.stress;
+    [xx, yy, zz].iter().map(|stress| (stress - mean).powi(2)).sum::<f64>() + 2.0 * (xy * xy + yz * yz + zx * zx)
+}
+
+/// Points of a snapshot with those of the start, which are found by where they were.
+pub(crate) fn with_their_start<'a>(
+    done: &'a Done,
+    snapshot: &'a Snapshot,
+) -> Result<Vec<(&'a PointState, &'a PointState)>, Missing> {
+    // Places at the start are exact to rounding, and points lie a thousand times this apart.
+    let pitch = 1e-6 * width(done);
+    let key = |point: &PointState| {
+        let start = (point.position - point.displacement) / pitch;
+        (format!("{:?}", point.owner), start.x.round() as i64, start.y.round() as i64)
+    };
+    let first = done.record.snapshots.first().ok_or_else(|| Missing("snapshot".to_owned()))?;
+    let at_start: HashMap<_, _> = first.points.iter().map(|point| (key(point), point)).collect();
+    let found: Vec<_> = snapshot.points.iter().filter_map(|point| Some((point, *at_start.get(&key(point))?))).collect();
+    // Rounding may move a few to the next key.
+    if found.len() * 100 < snapshot.points.len() * 99 || found.is_empty() {
+        return Err(Missing("material points of the start".to_owned()));
+    }
+    Ok(found)
+}
