@@ -289,7 +289,7 @@ pub(crate) fn gather<S: Space, B: Basis, T: Transfer, const PROJECT: bool>(
         let [values, _] = stencil.along_x();
         let affine = stencil.affine_along_x();
         let (mut around, mut change, mut made) = ([0.0; 3], [0.0; 3], [[0.0; 3]; 3]);
-        for component in 0..S::DIMENSION {
+        (0..S::DIMENSION).for_each(|component| {
             let ([mut velocities, mut changes], mut across_y, mut across_z) = ([[0.0; 4]; 2], [0.0; 4], [0.0; 4]);
             for row in 0..Tile::<6>::count::<S, B>() {
                 let across = stencil.across::<S, B>(row);
@@ -310,7 +310,7 @@ pub(crate) fn gather<S: Space, B: Basis, T: Transfer, const PROJECT: bool>(
                 let along = tile::dot(T::source(&velocities, &changes), &affine);
                 made[component] = [along, tile::dot(&across_y, &values), tile::dot(&across_z, &values)];
             }
-        }
+        });
         let [around, change] = [around, change].map(|vector| S::restrict(Vector3::from(vector)));
         let velocity = transfer.taken::<S>(points.velocity[at], around, change);
         points.velocity[at] = velocity;

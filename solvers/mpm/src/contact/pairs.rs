@@ -85,7 +85,7 @@ impl<S: Space> Pairs<S> {
         });
         for (number, body) in bodies.iter().enumerate() {
             let [mut low, mut high] = [[0_i64; 3]; 2];
-            for axis in 0..S::DIMENSION {
+            (0..S::DIMENSION).for_each(|axis| {
                 let per_length = periods[axis].map_or(1.0 / size, |(length, count)| count / length);
                 let cell = |at: f64| ((at - lattice.origin[axis]) * per_length).floor() as i64;
                 low[axis] = cell(body.bounds[0][axis] - 0.5 * margin);
@@ -93,7 +93,7 @@ impl<S: Space> Pairs<S> {
                 if let Some((_, count)) = periods[axis] {
                     high[axis] = high[axis].min(low[axis] + count as i64 - 1);
                 }
-            }
+            });
             let number_of = |cell: [i64; 3]| {
                 (0..3).fold(0, |number, axis| {
                     let at = periods[axis].map_or(cell[axis], |(_, count)| cell[axis].rem_euclid(count as i64));
