@@ -1,5 +1,7 @@
 //! Nine discs in a box (Cundall & Strack 1979, Figs 5-9).
 
+#[path = "elastic.rs"]
+mod elastic;
 #[path = "figures.rs"]
 mod figures;
 #[path = "modal.rs"]
@@ -46,7 +48,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn gates() -> Vec<Gate> {
-    [static_forces(), discrete(), vec![geometry()], continuous(), paper(), vec![rigid_rows::refuses_cycles("kappa-0")], program_rows::nine_discs(&MODAL, LADDER[0].resolution, travel), program_rows::turning_walls(DISTORTION[1], LADDER[0].resolution, travel), program_forces::nine_discs("kappa-1", LADDER[0].resolution)].concat()
+    [static_forces(), discrete(), vec![geometry()], continuous(), paper(), vec![rigid_rows::refuses_cycles("kappa-0")], program_rows::nine_discs(&MODAL, LADDER[0].resolution, travel), program_rows::turning_walls(DISTORTION[1], LADDER[0].resolution, travel), program_forces::nine_discs("kappa-1", LADDER[0].resolution), elastic::gates()].concat()
 }
 
 /// Static forces at every named contact, damped.
