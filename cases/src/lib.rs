@@ -24,6 +24,7 @@ pub mod registry;
 pub mod rigid_rows;
 pub mod scope;
 pub mod solvers;
+pub mod stage;
 pub mod stored;
 pub mod study;
 pub mod subject;

@@ -63,6 +63,15 @@ pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     Some((mean, quantile(count - 1.0)? * (variance / count).sqrt()))
 }
 
+/// The mean of some independent values, and half of the interval about it that one more of their kind lies in: t s √(1 + 1/n) with
+/// their standard deviation s. None where there are too few, or all are one.
+#[must_use]
+pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
+    let count = values.len() as f64;
+    let half_width = spread(values)? * (0.5 * (1.0 + 1.0 / count)).sqrt();
+    Some((values.iter().sum::<f64>() / count, half_width))
+}
+
 /// Student's t of the two-sided interval.
 fn quantile(degrees_of_freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
@@ -110,6 +119,10 @@ mod tests {
         let (mean, half_width) = interval(&[1.0, -1.0, 1.0, -1.0]).unwrap();
         assert!(mean == 0.0 && (half_width - of.half_width).abs() < 1e-12);
         assert_eq!(interval(&[1.0]), None);
+        // Values −1, 1, −1, 1: mean 0, s² = 4/3, times 1 + 1/4.
+        let (mean, half_width) = next_value(&[-1.0, 1.0, -1.0, 1.0]).unwrap();
+        assert!(mean == 0.0 && (half_width - 5.840_909 * (5.0_f64 / 3.0).sqrt()).abs() < 1e-5, "{half_width}");
+        assert_eq!(next_value(&[1.0]), None);
         assert_eq!(difference(&[0.0; 3], &[0.0; 3], 4), None);
         assert_eq!(difference(&[0.0; 8], &[0.0; 9], 4), None);
     }

@@ -1,0 +1,59 @@
+//! Force plots of both stages, and F_H/F_V on the way.
+
+use super::{PAIRS, PLAIN, RATIO, STEP, run, time_of_a, vertical_strain};
+use crate::bench::Bench;
+use crate::figure::{Axis, Curve, Drawing, Figure, Stroke};
+use crate::force_plot::force_plot;
+use crate::gate::{Done, Run};
+use grainbench_scene::solver::RunError;
+
+/// F_H/F_V against the vertical strain (%).
+fn path(done: &Done) -> Vec<(f64, f64)> {
+    let force = |name: &str| done.series().column(name).unwrap_or_default();
+    let sides = force("left.force_x").iter().zip(force("right.force_x"));
+    let ends = force("bottom.force_y").iter().zip(force("top.force_y"));
+    let ratios = sides.zip(ends).map(|((left, right), (bottom, top))| (right - left) / (top - bottom));
+    // Before they bear, discs that only touch meet the walls one by one.
+    let bearing = force("top.force_y").last().map_or(0.0, |last| 0.02 * last);
+    let times = done.series().time.iter().copied().zip(force("top.force_y"));
+    let points = times.zip(ratios).filter(|((_, top), _)| **top > bearing);
+    points.map(|((time, _), ratio)| (100.0 * vertical_strain(done, time), ratio)).collect()
+}
+
+pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+    let done = bench.run(&run(PLAIN))?;
+    let mut figures = Vec::new();
+    let stages = [("forces-a", "Contact forces at stage A"), ("forces-b", "Contact forces at stage B")];
+    for (snapshot, (name, title)) in done.record.snapshots.iter().skip(1).zip(stages) {
+        figures.push(Figure {
+            name: name.to_owned(),
+            title: title.to_owned(),
+            caption: "As in the paper's Figs 10-13: a bar for every contact, along its force and as wide as the force is large."
+                .to_owned(),
+            drawing: Drawing::Forces(force_plot(snapshot)),
+        });
+    }
+    let course = path(&done);
+    let far = course.last().map_or(0.0, |point| point.0);
+    let at_a = vertical_strain(&done, time_of_a(&done));
+    let of = |strain: f64| course.iter().copied().find(|point| point.0 >= strain).into_iter().collect::<Vec<_>>();
+    let level = |label: &str, ratio: f64| Curve::new(label, Stroke::Dashed, vec![(0.0, ratio), (far, ratio)]);
+    let stages = [of(100.0 * at_a), course.last().copied().into_iter().collect()].concat();
+    let mut curves = vec![Curve::new("dem", Stroke::Line, course.clone()), Curve::new("stages A and B", Stroke::Markers, stages)];
+    for [program, _] in PAIRS {
+        // Without the program and without its stored run there is nothing to draw.
+        if let Ok(theirs) = bench.run(&Run::new("programs", program, STEP)) {
+            let label = format!("{program}, dashpots at contacts only");
+            curves.push(Curve::new(label, Stroke::Markers, path(&theirs).into_iter().step_by(10).collect()));
+        }
+    }
+    curves.extend([level("experiment, stage A (imposed)", RATIO), level("experiment, stage B (loads imposed)", 0.33)]);
+    figures.push(Figure::graph(
+        "path",
+        "Wall forces on the way",
+        "From touching discs to stage A at one ratio of strains, then at equal and opposite strains until F_V has grown by 4.348 %.",
+        [Axis::linear("vertical strain (%)"), Axis::linear("F_H/F_V (1)")],
+        curves,
+    ));
+    Ok(figures)
+}

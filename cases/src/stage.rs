@@ -1,0 +1,50 @@
+//! A packing between walls at one moment: what the walls carry, how deep contacts are, and how near it is to equilibrium.
+
+use grainbench_scene::record::Snapshot;
+use nalgebra::Vector3;
+
+/// Sums over walls and contacts of one snapshot. Walls are planes along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stage {
+    /// F_H: half of what the walls across x carry along their normals (N; N/m for discs).
+    pub horizontal: f64,
+    /// F_V: half of what the walls across y carry along their normals (N; N/m for discs).
+    pub vertical: f64,
+    /// Mean overlap of all contacts, those at walls among them, over the mean radius.
+    pub overlap: f64,
+    /// The largest sum of forces on a grain over the largest contact force.
+    pub unbalanced: f64,
+    /// The larger component of the forces added up over all walls, friction among them, over the largest force on a wall.
+    pub residual: f64,
+}
+
+impl Stage {
+    /// Of a snapshot.
+    #[must_use]
+    pub fn of(snapshot: &Snapshot) -> Self {
+        let (grains, contacts, walls) = (&snapshot.grains, &snapshot.contacts, &snapshot.walls);
+        let largest = |forces: &mut dyn Iterator<Item = f64>| forces.fold(0.0, f64::max);
+        // The second corner of a plane is its normal, into the packing.
+        let carried = |axis: usize| -> f64 {
+            walls.iter().filter_map(|wall| Some(-0.5 * wall.force[axis] * wall.corners.get(1)?[axis])).sum()
+        };
+        let radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;
+        let overlap = contacts.iter().map(|contact| contact.overlap).sum::<f64>() / contacts.len() as f64;
+        let contact =
+            largest(&mut contacts.iter().map(|contact| contact.normal_force.hypot(contact.shear_force.norm())));
+        let sum: Vector3<f64> = walls.iter().map(|wall| wall.force).sum();
+        Self {
+            horizontal: carried(0),
+            vertical: carried(1),
+            overlap: overlap / radius,
+            unbalanced: largest(&mut grains.iter().map(|grain| grain.force.norm())) / contact,
+            residual: sum.amax() / largest(&mut walls.iter().map(|wall| wall.force.norm())),
+        }
+    }
+
+    /// F_H/F_V.
+    #[must_use]
+    pub fn ratio(&self) -> f64 {
+        self.horizontal / self.vertical
+    }
+}

@@ -1,0 +1,142 @@
+//! How the packings of the case `photoelastic-packing` are prepared and the motion of their walls is found.
+//!
+//! `cargo run --release --example photoelastic_packing FOLDER VARIANT …` prepares the packing of each variant of the case, by
+//! its name, leaves it in FOLDER as a LAMMPS data file and prints the variant for the scene file: where the walls start and how
+//! fast they go. Nothing is chosen by the answer: stage A and the growth of F_V to stage B are imposed, and F_H/F_V at stage
+//! B is what comes out.
+
+mod prepare;
+mod search;
+mod walls;
+
+use grainbench::cases::case::{PLAIN, read_grains};
+use grainbench::cases::registry;
+use grainbench::scene::scene::{Scene, WallShape};
+use grainbench::scene::source::SceneSource;
+use search::Search;
+use std::collections::HashMap;
+use std::error::Error;
+use std::path::Path;
+
+/// The seed that the name of a variant ends in; 1 where it has none.
+fn seed(variant: &str) -> &str {
+    variant.rsplit_once("seed-").map_or("1", |(_, seed)| seed)
+}
+
+/// The discs of a variant, loose.
+fn loose(variant: &str) -> Result<Scene, Box<dyn Error>> {
+    let text = include_str!("loose.toml");
+    let mut source = SceneSource::from_text("loose.toml", Path::new(""), text);
+    if variant.starts_with("fifty") {
+        source = source.variant("fifty");
+    }
+    Ok(source.set("grains.disc.packed.seed", seed(variant)).scene(&read_grains)?)
+}
+
+/// Discs and walls to the nanometre, with the lower corner of the box at zero.
+fn rounded(mut packing: Scene) -> Scene {
+    let round = |length: f64| (length * 1e9).round() / 1e9;
+    let mut corner = [0.0; 2];
+    for (number, wall) in packing.walls.iter().enumerate() {
+        if let (WallShape::Plane { point, .. }, 0 | 2) = (wall.shape, number) {
+            corner[number / 2] = point[number / 2];
+        }
+    }
+    for axis in 0..2 {
+        packing.grains.iter_mut().for_each(|grain| grain.position[axis] = round(grain.position[axis] - corner[axis]));
+        for wall in &mut packing.walls {
+            if let WallShape::Plane { point, normal } = &mut wall.shape {
+                point[axis] = if normal[axis] == 0.0 { 0.0 } else { round(point[axis] - corner[axis]) };
+            }
+        }
+    }
+    packing
+}
+
+/// The discs as a LAMMPS data file, which states the density of a sphere of the same mass.
+fn data(packing: &Scene) -> String {
+    let [width, height] = walls::size(packing);
+    let mut text = format!(
+        "Touching discs, density as that of a sphere\n\n{} atoms\n2 atom types\n\n0.0 {width:?} xlo xhi\n0.0 {height:?} ylo yhi\n\
+         -0.5 0.5 zlo zhi\n\nAtoms\n\n",
+        packing.grains.len()
+    );
+    for (id, grain) in (1..).zip(&packing.grains) {
+        let density = grain.mass / (4.0 / 3.0 * std::f64::consts::PI * grain.radius.powi(3));
+        let (diameter, place) = (2.0 * grain.radius, grain.position);
+        text.push_str(&format!("{id} 1 {diameter:?} {density:?} {:?} {:?} 0.0\n", place.x, place.y));
+    }
+    text
+}
+
+/// The scene of a variant with laws and times of the first packing with the same table, and a packing as its file has it.
+fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn Error>> {
+    let table = if variant.starts_with("table") { variant.split("-seed").next().unwrap_or(variant) } else { PLAIN };
+    let case = registry::by_name("photoelastic-packing").ok_or("the case is gone")?;
+    let source = if table == PLAIN { case.source() } else { case.source().variant(table) };
+    let mut scene =
+        source.set("grains.disc.file.path", &format!("{:?}", std::path::absolute(data)?)).scene(&read_grains)?;
+    for (wall, prepared) in scene.walls.iter_mut().zip(&packing.walls) {
+        wall.shape = prepared.shape;
+    }
+    Ok(scene)
+}
+
+/// A variant with its walls as the scene file has them.
+fn print(variant: &str, data: &str, scene: &Scene) {
+    println!("[variants.{variant}]\ngrains.disc.file.path = \"{data}\"");
+    for wall in &scene.walls {
+        let [first, second] = &wall.motion.phases[..] else { continue };
+        if let WallShape::Plane { point, .. } = wall.shape {
+            let speed = |axis: usize| [first.velocity[axis], second.velocity[axis]].map(exact);
+            let [x, y] = [speed(0), speed(1)];
+            let seconds = |moment: grainbench::scene::motion::Moment| moment.seconds(f64::NAN);
+            println!(
+                "walls.{} = {{ plane.point = [{:?}, {:?}], motion = [{{ velocity = [{}, {}], stop = {:?} }}, {{ velocity = [{}, {}], start = {:?}, stop = {:?} }}] }}",
+                wall.name,
+                point.x,
+                point.y,
+                x[0],
+                y[0],
+                seconds(first.stop),
+                x[1],
+                y[1],
+                seconds(second.start),
+                seconds(second.stop)
+            );
+        }
+    }
+    println!();
+}
+
+/// A speed in all digits: near its limit a packing goes another way for one unit in the last place.
+fn exact(speed: f64) -> String {
+    format!("{:?}", speed + 0.0)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let folder = arguments.next().ok_or("a folder, and variants of the case")?;
+    let mut prepared: HashMap<String, Scene> = HashMap::new();
+    for variant in arguments {
+        let prefix = if variant.starts_with("fifty") { "fifty" } else { "start" };
+        let name = format!("{prefix}-{}.data", seed(&variant));
+        let path = Path::new(&folder).join(&name);
+        if !prepared.contains_key(&name) {
+            let packing = rounded(prepare::prepare(loose(&variant)?)?);
+            std::fs::write(&path, data(&packing))?;
+            prepared.insert(name.clone(), packing);
+        }
+        let scene = scene(&variant, &prepared[&name], &path)?;
+        let search = Search::new(&scene)?;
+        let fraction = walls::fraction(&scene);
+        match search.impose() {
+            Ok(imposed) => {
+                eprintln!("{variant}: fraction {fraction:.4}, {imposed:?}");
+                print(&variant, &format!("{name}.gz"), &search.driven(&imposed));
+            }
+            Err(reason) => eprintln!("{variant}: fraction {fraction:.4}, {reason}"),
+        }
+    }
+    Ok(())
+}

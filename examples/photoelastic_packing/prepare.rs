@@ -1,0 +1,95 @@
+//! A dense packing of touching discs: they fly about without friction while the walls come in slowly, as an assembly that is
+//! shaken; when they are jammed they are brought to rest, and the walls open until no disc presses on another.
+
+use super::walls::{Course, drive, go_on_from, run, size, stop, watch};
+use grainbench::cases::stage::Stage;
+use grainbench::scene::nalgebra::Vector3;
+use grainbench::scene::record::Snapshot;
+use grainbench::scene::scene::Scene;
+use std::error::Error;
+
+/// Speed of a disc (m/s) while they fly; it is restored after each stretch, for the walls do work on them.
+const SPEED: f64 = 0.3;
+/// How long a stretch is (s), and how many there are at most.
+const STRETCH: f64 = 50.0;
+const STRETCHES: u32 = 500;
+/// Speed of each wall meanwhile over the width of the box (1/s).
+const RATE: f64 = 5e-6;
+/// Contacts a disc, in the mean over a stretch, at which they count as jammed.
+const JAMMED: f64 = 0.5;
+/// Speed of each wall over the width of the box when the jammed discs are pressed together at rest (1/s).
+const PRESS: f64 = 1.6e-4;
+/// Damping α (1/s) there.
+const DAMPING: f64 = 5.0;
+/// Mean overlap over mean radius that they are pressed to, and that counts as touching.
+const PRESSED: f64 = 2e-3;
+const TOUCHING: f64 = 5e-6;
+
+/// The packing of a loose scene.
+pub(crate) fn prepare(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
+    // Directions as the seeds of a sunflower have them: the first collisions make them any.
+    for (number, grain) in scene.grains.iter_mut().enumerate() {
+        let angle = number as f64 * std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+        grain.velocity = SPEED * Vector3::new(angle.cos(), angle.sin(), 0.0);
+    }
+    let level = energy(&scene);
+    for _ in 0..STRETCHES {
+        let factor = (level / energy(&scene)).sqrt();
+        scene.grains.iter_mut().for_each(|grain| grain.velocity *= factor);
+        let speed = RATE * size(&scene)[0];
+        drive(&mut scene, &[Course { sides: -speed, ends: speed, from: 0.0, to: STRETCH }]);
+        let (mut contacts, mut looks) = (0, 0);
+        let end = watch(&scene, STRETCH, 1.0, |snapshot| {
+            (contacts, looks) = (contacts + snapshot.contacts.len(), looks + snapshot.grains.len());
+            true
+        })?;
+        go_on_from(&mut scene, &end);
+        if contacts as f64 > JAMMED * looks as f64 {
+            break;
+        }
+    }
+    stop(&mut scene);
+    scene.global_damping = DAMPING;
+    let speed = PRESS * size(&scene)[0];
+    drive(&mut scene, &[Course { sides: -speed, ends: speed, from: 0.0, to: f64::MAX }]);
+    let pressed = watch(&scene, 1000.0, 0.5, |snapshot| {
+        Stage::of(snapshot).overlap < PRESSED || snapshot.contacts.len() * 4 < snapshot.grains.len() * 7
+    })?;
+    go_on_from(&mut scene, &pressed);
+    open(scene)
+}
+
+/// Opens the walls until the discs only touch. What they press with goes to zero as a straight line does.
+fn open(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
+    let (mut strain, mut before) = (0.0, None);
+    for _ in 0..20 {
+        stop(&mut scene);
+        let rest = run(&scene, 60.0)?;
+        go_on_from(&mut scene, &rest);
+        let stage = Stage::of(&rest);
+        if !pressing(&rest) || stage.overlap < TOUCHING {
+            stop(&mut scene);
+            return Ok(scene);
+        }
+        let force = stage.horizontal + stage.vertical;
+        let further = match before {
+            Some((earlier, larger)) if larger > force => 0.98 * force * (strain - earlier) / (larger - force),
+            _ => 1e-3,
+        };
+        before = Some((strain, force));
+        strain += further;
+        let speed = 0.5 * further * size(&scene)[0] / 20.0;
+        drive(&mut scene, &[Course { sides: speed, ends: -speed, from: 0.0, to: 20.0 }]);
+        let opened = run(&scene, 20.0)?;
+        go_on_from(&mut scene, &opened);
+    }
+    Err("the walls never came off the discs".into())
+}
+
+fn pressing(snapshot: &Snapshot) -> bool {
+    !snapshot.contacts.is_empty()
+}
+
+fn energy(scene: &Scene) -> f64 {
+    scene.grains.iter().map(|grain| 0.5 * grain.mass * grain.velocity.norm_squared()).sum()
+}

@@ -1,0 +1,200 @@
+//! The motion of the walls that is imposed: which strain ratio leads to stage A, and how far the strain of stage B goes.
+
+use super::walls::{Course, drive, run, size, watch};
+use grainbench::cases::stage::Stage;
+use grainbench::scene::motion::Moment;
+use grainbench::scene::scene::{Duration, Scene};
+use std::error::Error;
+
+/// F_H/F_V at stage A, and how near is near enough for the search.
+const RATIO: f64 = 0.39;
+const NEAR: f64 = 0.004;
+/// Mean overlap over mean radius at stage A, and how near is near enough.
+const OVERLAP: f64 = 1e-3;
+const CLOSE: f64 = 8e-6;
+/// F_V at stage B over that at stage A, and how near is near enough.
+const GROWTH: f64 = 1.04348;
+const SAME: f64 = 1e-4;
+/// Strain at which a path is given up.
+const FAR: f64 = 0.1;
+
+/// The times (s) of a scene: the walls stop, stage A, the walls stop again, stage B.
+#[derive(Clone, Copy)]
+struct Times {
+    stop: f64,
+    a: f64,
+    stop_again: f64,
+    b: f64,
+}
+
+/// What the walls do, as strains of the box at the start.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Imposed {
+    /// Vertical strain inwards up to stage A.
+    pub(crate) strain: f64,
+    /// Horizontal strain outwards over it.
+    pub(crate) ratio: f64,
+    /// From there to stage B: vertical strain inwards and horizontal strain outwards.
+    pub(crate) further: f64,
+}
+
+/// A packing whose walls are to be moved.
+pub(crate) struct Search<'s> {
+    scene: &'s Scene,
+    times: Times,
+}
+
+impl<'s> Search<'s> {
+    /// Of a scene with the times of its stages in the motion of its first wall.
+    pub(crate) fn new(scene: &'s Scene) -> Result<Self, Box<dyn Error>> {
+        let (Some([first, second]), Duration::Seconds(b)) =
+            (scene.walls.first().map(|wall| &wall.motion.phases[..]), scene.duration)
+        else {
+            return Err("walls that move twice, and a duration in seconds".into());
+        };
+        let seconds = |moment: Moment| moment.seconds(f64::NAN);
+        let times = Times { stop: seconds(first.stop), a: seconds(second.start), stop_again: seconds(second.stop), b };
+        Ok(Self { scene, times })
+    }
+
+    /// The scene with walls that move so.
+    pub(crate) fn driven(&self, imposed: &Imposed) -> Scene {
+        let mut scene = self.scene.clone();
+        let ([width, height], times) = (size(self.scene), self.times);
+        let ends = 0.5 * imposed.strain * height / times.stop;
+        let sides = 0.5 * imposed.strain * imposed.ratio * width / times.stop;
+        let after = 0.5 * imposed.further / (times.stop_again - times.a);
+        drive(
+            &mut scene,
+            &[
+                Course { sides, ends, from: 0.0, to: times.stop },
+                Course { sides: after * width, ends: after * height, from: times.a, to: times.stop_again },
+            ],
+        );
+        scene
+    }
+
+    /// What the walls must do.
+    pub(crate) fn impose(&self) -> Result<Imposed, Box<dyn Error>> {
+        let a = self.to_a()?;
+        self.to_b(a)
+    }
+
+    /// Stage A at a strain ratio: the strain at which the mean overlap is as it should be.
+    fn at_overlap(&self, ratio: f64, guess: f64) -> Result<Option<(Imposed, Stage)>, Box<dyn Error>> {
+        let at = |strain: f64| -> Result<(Imposed, Stage), Box<dyn Error>> {
+            let imposed = Imposed { strain, ratio, further: 0.0 };
+            Ok((imposed, Stage::of(&run(&self.driven(&imposed), self.times.a)?)))
+        };
+        let off = |(_, stage): &(Imposed, Stage)| stage.overlap - OVERLAP;
+        let (mut low, mut of_low, mut high) = (0.0, -OVERLAP, at(guess)?);
+        while off(&high) < 0.0 {
+            (low, of_low) = (high.0.strain, off(&high));
+            if low > FAR {
+                return Ok(None);
+            }
+            high = at(1.3 * low)?;
+        }
+        let mut best = high;
+        for _ in 0..8 {
+            if off(&best).abs() < CLOSE {
+                break;
+            }
+            let part = (-of_low / (off(&high) - of_low)).clamp(0.1, 0.9);
+            let middle = at(low + part * (high.0.strain - low))?;
+            if off(&middle).abs() < off(&best).abs() {
+                best = middle;
+            }
+            if off(&middle) < 0.0 { (low, of_low) = (middle.0.strain, off(&middle)) } else { high = middle }
+        }
+        Ok(Some(best))
+    }
+
+    /// Strain ratios upwards from where the sides come in half as far until F_H/F_V has fallen to what it should be, then in between.
+    fn to_a(&self) -> Result<(Imposed, Stage), Box<dyn Error>> {
+        let mut before: Option<(Imposed, Stage)> = None;
+        for fifth in -2..10 {
+            let guess = before.map_or(1e-3, |(imposed, _)| imposed.strain);
+            let Some(now) = self.at_overlap(0.2 * f64::from(fifth), guess)? else { break };
+            if let Some(before) = before.filter(|before| before.1.ratio() > RATIO && now.1.ratio() < RATIO) {
+                return self.between(before, now);
+            }
+            if (now.1.ratio() - RATIO).abs() < NEAR {
+                return Ok(now);
+            }
+            before = Some(now);
+        }
+        Err(format!("F_H/F_V never falls to {RATIO} at this overlap").into())
+    }
+
+    fn between(
+        &self,
+        mut above: (Imposed, Stage),
+        mut below: (Imposed, Stage),
+    ) -> Result<(Imposed, Stage), Box<dyn Error>> {
+        let off = |(_, stage): &(Imposed, Stage)| (stage.ratio() - RATIO).abs();
+        let mut best = if off(&above) < off(&below) { above } else { below };
+        for _ in 0..10 {
+            if off(&best) < NEAR {
+                break;
+            }
+            let (high, low) = (above.1.ratio(), below.1.ratio());
+            let part = ((high - RATIO) / (high - low)).clamp(0.15, 0.85);
+            let ratio = above.0.ratio + part * (below.0.ratio - above.0.ratio);
+            let guess = above.0.strain.min(below.0.strain);
+            let Some(middle) = self.at_overlap(ratio, guess)? else { break };
+            if off(&middle) < off(&best) {
+                best = middle;
+            }
+            if middle.1.ratio() > RATIO { above = middle } else { below = middle }
+        }
+        Ok(best)
+    }
+
+    /// The strain from stage A at which F_V has grown as it should: the first while the walls move, then at rest.
+    fn to_b(&self, (a, of_a): (Imposed, Stage)) -> Result<Imposed, Box<dyn Error>> {
+        let times = self.times;
+        let grown = |stage: &Stage| stage.vertical / of_a.vertical - GROWTH;
+        let mut guess = None;
+        for most in [0.002, 0.01, 0.05] {
+            let scene = self.driven(&Imposed { further: most, ..a });
+            let every = 2e-3 * (times.stop_again - times.a);
+            watch(&scene, times.stop_again, every, |snapshot| {
+                let part = (snapshot.time - times.a) / (times.stop_again - times.a);
+                if part > 0.0 && grown(&Stage::of(snapshot)) > 0.0 {
+                    guess = Some(part * most);
+                }
+                guess.is_none()
+            })?;
+            if guess.is_some() {
+                break;
+            }
+        }
+        let guess = guess.ok_or("F_V never grows as it should from stage A")?;
+        let at = |further: f64| -> Result<(f64, f64), Box<dyn Error>> {
+            let scene = self.driven(&Imposed { further, ..a });
+            Ok((further, grown(&Stage::of(&run(&scene, times.b)?))))
+        };
+        let (mut low, mut high) = ((0.0, 1.0 - GROWTH), at(guess)?);
+        for _ in 0..40 {
+            if high.1 >= 0.0 {
+                break;
+            }
+            low = high;
+            high = at(1.08 * low.0)?;
+        }
+        let mut best = high;
+        for _ in 0..12 {
+            if best.1.abs() < SAME {
+                break;
+            }
+            let part = (-low.1 / (high.1 - low.1)).clamp(0.1, 0.9);
+            let middle = at(low.0 + part * (high.0 - low.0))?;
+            if middle.1.abs() < best.1.abs() {
+                best = middle;
+            }
+            if middle.1 < 0.0 { low = middle } else { high = middle }
+        }
+        Ok(Imposed { further: best.0, ..a })
+    }
+}

@@ -1,0 +1,98 @@
+//! Four walls around discs: left, right, bottom and top, in this order.
+
+use grainbench::dem::convention::Convention;
+use grainbench::dem::solver::Dem;
+use grainbench::scene::motion::{Moment, Motion, Phase};
+use grainbench::scene::nalgebra::Vector3;
+use grainbench::scene::record::Snapshot;
+use grainbench::scene::scene::{Scene, WallShape};
+use grainbench::scene::solver::Resolution;
+use std::error::Error;
+
+/// The time step: the default rung of the case.
+const RUNG: Resolution = Resolution::CriticalFraction(0.2);
+
+/// Speeds between two times (s): of the sides outwards and of top and bottom inwards (m/s).
+pub(crate) struct Course {
+    pub(crate) sides: f64,
+    pub(crate) ends: f64,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+}
+
+/// Lets the walls move so.
+pub(crate) fn drive(scene: &mut Scene, courses: &[Course]) {
+    for (number, wall) in scene.walls.iter_mut().enumerate() {
+        let velocity = |course: &Course| match number {
+            0 => Vector3::new(-course.sides, 0.0, 0.0),
+            1 => Vector3::new(course.sides, 0.0, 0.0),
+            2 => Vector3::new(0.0, course.ends, 0.0),
+            _ => Vector3::new(0.0, -course.ends, 0.0),
+        };
+        let phase = |course: &Course| Phase {
+            velocity: velocity(course),
+            spin: Vector3::zeros(),
+            start: Moment::Seconds(course.from),
+            stop: Moment::Seconds(course.to),
+        };
+        wall.motion = Motion { centre: Vector3::zeros(), phases: courses.iter().map(phase).collect() };
+    }
+}
+
+/// Width and height of the box (m).
+pub(crate) fn size(scene: &Scene) -> [f64; 2] {
+    let place = |number: usize, axis: usize| match scene.walls[number].shape {
+        WallShape::Plane { point, .. } => point[axis],
+        _ => f64::NAN,
+    };
+    [place(1, 0) - place(0, 0), place(3, 1) - place(2, 1)]
+}
+
+/// Part of the box that the discs fill.
+pub(crate) fn fraction(scene: &Scene) -> f64 {
+    let [width, height] = size(scene);
+    scene.grains.iter().map(|grain| std::f64::consts::PI * grain.radius * grain.radius).sum::<f64>() / (width * height)
+}
+
+/// Runs for a time (s) and shows what stands there every so often (s), until it is told to stop; where it ended.
+pub(crate) fn watch(
+    scene: &Scene,
+    time: f64,
+    every: f64,
+    mut go_on: impl FnMut(&Snapshot) -> bool,
+) -> Result<Snapshot, Box<dyn Error>> {
+    // That of a whole run of the scene, for which steps are fitted into its duration.
+    let (time_step, _) = RUNG.steps(scene)?;
+    let mut simulation = Dem::new(Convention::CUNDALL_STRACK).start(scene, time_step)?;
+    let (steps, stride) = ((time / time_step).round() as u64, (every / time_step).round().max(1.0) as u64);
+    while simulation.step() < steps {
+        simulation.advance(stride.min(steps - simulation.step()))?;
+        if !go_on(&simulation.look().snapshot) {
+            break;
+        }
+    }
+    Ok(simulation.look().snapshot)
+}
+
+/// Runs for a time (s).
+pub(crate) fn run(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn Error>> {
+    watch(scene, time, time, |_| true)
+}
+
+/// The scene with discs and walls where a run left them; contacts have forgotten.
+pub(crate) fn go_on_from(scene: &mut Scene, snapshot: &Snapshot) {
+    for (grain, state) in scene.grains.iter_mut().zip(&snapshot.grains) {
+        (grain.position, grain.velocity, grain.spin) = (state.position, state.velocity, state.spin);
+    }
+    for (wall, state) in scene.walls.iter_mut().zip(&snapshot.walls) {
+        wall.shape = WallShape::Plane { point: state.corners[0], normal: state.corners[1] };
+        wall.motion = Motion::default();
+    }
+}
+
+/// Brings all discs to rest.
+pub(crate) fn stop(scene: &mut Scene) {
+    for grain in &mut scene.grains {
+        (grain.velocity, grain.spin) = (Vector3::zeros(), Vector3::zeros());
+    }
+}
