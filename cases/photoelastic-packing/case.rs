@@ -223,11 +223,11 @@ fn step() -> Gate {
 const PARTING: Parting = Parting { columns: &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"] };
 
 /// The predictability horizon (steps): discs that only touch meet and part many times before they bear.
-const HORIZON: u64 = 1000;
+const HORIZON: u64 = 620;
 
 /// What keeps LIGGGHTS' own arithmetic from being followed in every digit.
-const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 keeps the tangential stretch of a contact that opens for as long as the pair is on its \
-                             neighbour list, and discs that only touch part and meet again; without friction it is followed";
+const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 tells no force of a mesh at step 0, and keeps the stretch of a contact that opens while the pair is on its \
+                             neighbour list, and discs that only touch part and meet again";
 
 /// A run that both programs can do. LIGGGHTS moves walls in three dimensions only.
 fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {
@@ -261,7 +261,6 @@ fn programs() -> Vec<Gate> {
     let mut gates = vec![
         chaos::pointwise(PARTING, of("first", lammps), softer()),
         chaos::pointwise(PARTING, known, without),
-        chaos::pointwise(PARTING, of("first-smooth", liggghts), softer()),
         chaos::horizon(PARTING, HORIZON, [Run::new("first", lammps[1], STEP).slow(), twin("first", 0)]),
     ];
     for pair in PAIRS {
