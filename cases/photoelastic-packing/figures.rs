@@ -2,10 +2,16 @@
 
 use super::{PAIRS, PLAIN, RATIO, STEP, run, time_of_a, vertical_strain};
 use crate::bench::Bench;
+use crate::field_picture::{Shot, fringe_constant, pictures};
 use crate::figure::{Axis, Curve, Drawing, Figure, Stroke};
 use crate::force_plot::force_plot;
 use crate::gate::{Done, Run};
+use grainbench_fields::quantity::Quantity;
 use grainbench_scene::solver::RunError;
+
+/// Pixels along the longer side of a picture, and fringes in it.
+const PIXELS: u32 = 900;
+const FRINGES: f64 = 3.0;
 
 /// F_H/F_V against the vertical strain (%).
 fn path(done: &Done) -> Vec<(f64, f64)> {
@@ -32,6 +38,18 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
                 .to_owned(),
             drawing: Drawing::Forces(force_plot(snapshot)),
         });
+    }
+    if let [_, a, b, ..] = done.record.snapshots.as_slice() {
+        let constant = fringe_constant([a, b], FRINGES);
+        let shots = [Shot::new("stage A", a), Shot::new("stage B", b)];
+        figures.push(Figure::field(
+            "fringes",
+            "Photoelastic fringes at stages A and B",
+            &format!(
+                "What crossed polarisers would show: cos((σ₁ − σ₂)/c) from the elastic stress of every disc under its contact forces,                  bright without stress; c = {constant:.3e} Pa for both, three fringes at the stress that a fiftieth of the discs is above."
+            ),
+            pictures(Quantity::Fringes(constant), &shots, PIXELS, None),
+        ));
     }
     let course = path(&done);
     let far = course.last().map_or(0.0, |point| point.0);
