@@ -250,7 +250,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         let half_skin = 0.5 * self.neighbours.skin;
         let near_enough = half_skin * half_skin;
         let grains = &mut self.grains;
-        let mut moved = false;
+        let mut stayed = true;
         let linear = grains.place.iter_mut().zip(&mut grains.movement).zip(&mut grains.force);
         for (((place, movement), force), reference) in linear.zip(&self.neighbours.reference) {
             let mut acceleration = *force * movement.inverse_mass;
@@ -261,10 +261,10 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             movement.velocity = D::keep(movement.velocity, keep) + acceleration * gain;
             place.position += movement.velocity * time_step;
             let away = place.position - *reference;
-            // A position that is not a number counts as moved: listing anew looks at every grain.
-            moved |= !(S::dot(away, away) <= near_enough);
+            // A position that is not a number has not stayed: listing anew looks at every grain.
+            stayed &= S::dot(away, away) <= near_enough;
         }
-        self.list_holds = !moved;
+        self.list_holds = stayed;
         if T::ACTIVE {
             for (rotation, torque) in grains.rotation.iter_mut().zip(&mut grains.torque) {
                 rotation.advance(*torque, keep, gain, time_step);
