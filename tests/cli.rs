@@ -148,8 +148,15 @@ fn run_leaves_its_files_and_a_summary() {
     let settled: Vec<String> = text.lines().map(without_worst).collect();
     insta::assert_snapshot!(settled.join("\n"));
     let out = directory.path().join("deep/out");
-    let expected =
-        ["figures/squash-forces.svg", "index.html", "junit.xml", "points.csv", "report.json", "results.json"];
+    let expected = [
+        "figures/squash-elastic.svg",
+        "figures/squash-forces.svg",
+        "index.html",
+        "junit.xml",
+        "points.csv",
+        "report.json",
+        "results.json",
+    ];
     assert_eq!(files(&out), expected);
     assert_eq!(files(directory.path()).len(), expected.len());
 
