@@ -35,29 +35,11 @@ pub(crate) static CASE: Case = Case {
     figures: figures::figures,
 };
 
-/// Packings with the numbers of each table of the paper. With the friction of Table 3 half of them hardly bear .39
-/// (derivation).
+/// Packings with the numbers of each table of the paper, of ten those that come down to the ratio of stage A (derivation).
 const TABLES: [&[&str]; 3] = [
-    &[
-        "table-1",
-        "table-1-seed-2",
-        "table-1-seed-3",
-        "table-1-seed-4",
-        "table-1-seed-5",
-        "table-1-seed-6",
-        "table-1-seed-7",
-        "table-1-seed-8",
-        "table-1-seed-9",
-        "table-1-seed-10",
-    ],
-    &[PLAIN, "seed-2", "seed-3", "seed-4", "seed-5", "seed-6", "seed-7", "seed-8", "seed-9", "seed-10"],
-    &[
-        "table-3",
-        "table-3-seed-2",
-        "table-3-seed-4",
-        "table-3-seed-6",
-        "table-3-seed-9",
-    ],
+    &["table-1", "table-1-seed-2", "table-1-seed-3", "table-1-seed-4", "table-1-seed-5", "table-1-seed-6", "table-1-seed-7", "table-1-seed-8", "table-1-seed-9", "table-1-seed-11"],
+    &[PLAIN, "seed-2", "seed-3", "seed-4", "seed-5", "seed-6", "seed-7", "seed-8", "seed-9", "seed-11"],
+    &["table-3", "table-3-seed-2", "table-3-seed-3", "table-3-seed-4", "table-3-seed-8", "table-3-seed-9"],
 ];
 /// F_H/F_V that the paper prints for stage B with the numbers of Tables 1 and 2. In its Table 3 stage A stands at .46 already.
 const PRINTED: [f64; 2] = [0.40, 0.40];
@@ -68,9 +50,7 @@ const GROWTH: f64 = 0.04348;
 /// Where F_H/F_V at stage B has been seen: from the load-controlled experiment to the paper's runs, with room for a packing.
 const RANGE: [f64; 2] = [0.30, 0.47];
 const IMPOSED: &str = "imposed by the motion of the walls (derivation)";
-/// Near its limit a packing slips in jumps, and one unit in the last place decides which comes first: on another arithmetic the
-/// same walls lead a little elsewhere.
-const CHAOS: &str = "slip comes in jumps, and one unit in the last place decides which comes first";
+const FOUND: &str = "how near the search for the motion of the walls ends";
 const PAPER: &str = "Cundall & Strack 1979, Tables 1-3";
 
 fn run(variant: &'static str) -> Run {
@@ -130,7 +110,11 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Gate> {
     let balance = (Evidence::Invariant, "equilibrium: what goes into the discs at one wall comes out at the others");
     let paper = (Evidence::Paper, PAPER);
     let smooth = || Control::without(Effect::Friction);
-    let glued = || Control::scene("contacts that never slip", |scene| scene.change_laws(|law| law.friction = 1e3));
+    let more = || {
+        Control::scene("walls that go a tenth further from stage A to stage B", |scene| {
+            scene.walls.iter_mut().for_each(|wall| wall.motion.phases[1].velocity *= 1.1);
+        })
+    };
     let weight = || Control::scene("discs that have weight", |scene| scene.gravity = Vector3::new(0.0, -1.0, 0.0));
     let further = || {
         Control::scene("walls that go a tenth further", |scene| {
@@ -142,14 +126,14 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Gate> {
         gate(
             "F_H/F_V at stage A",
             (Evidence::Experiment, "De Josselin de Jong & Verruijt 1969, stage A; imposed (derivation)"),
-            (0.01, CHAOS),
+            (0.01, "as the experiment is imposed"),
             smooth(),
             RATIO,
             1.0,
             |[a, _]| a.ratio(),
         ),
-        gate("mean overlap / mean radius at stage A", imposed, (0.05, CHAOS), further(), 1e-3, 1e-3, |[a, _]| a.overlap),
-        gate("growth of F_V from stage A to stage B", imposed, (0.01, CHAOS), glued(), GROWTH, 1.0, |[a, b]| {
+        gate("mean overlap / mean radius at stage A", imposed, (0.02, FOUND), further(), 1e-3, 1e-3, |[a, _]| a.overlap),
+        gate("growth of F_V from stage A to stage B", imposed, (5e-4, FOUND), more(), GROWTH, 1.0, |[a, b]| {
             b.vertical / a.vertical - 1.0
         }),
         gate(
@@ -191,13 +175,13 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Gate> {
     ]
 }
 
-/// What the paper prints for its one packing, as one more of ten.
+/// What the paper prints for its one packing, as one more of them.
 fn as_printed(packings: Vec<Run>, words: &str, printed: f64) -> Gate {
     Gate::new(
         (format!("F_H/F_V at stage B, mean of {words}"), "1"),
         packings,
         (Evidence::Paper, PAPER),
-        (1.0, "in units of the half-width of the 99 % interval in which an eleventh packing lies"),
+        (1.0, "in units of the half-width of the 99 % interval in which one more packing lies"),
         Control::without(Effect::Friction),
         move |done| {
             let values = done.iter().map(|done| Ok(ratio_at_b(&stages(done)?))).collect::<Result<Vec<f64>, Missing>>()?;
@@ -213,7 +197,7 @@ fn step() -> Gate {
         ("F_H/F_V at stage B, against half the step", "1"),
         vec![run(PLAIN).slow(), run(PLAIN).at(LADDER[1].resolution).aside()],
         (Evidence::Convergence, "the same at half the time step"),
-        (0.01, CHAOS),
+        (0.01, "slip comes in jumps, and the step decides which comes first: by up to .005"),
         Control::without(Effect::Friction),
         |done| Ok(Measured::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0)),
     )
@@ -226,8 +210,8 @@ const PARTING: Parting = Parting { columns: &["all.kinetic_energy", "left.force_
 const HORIZON: u64 = 620;
 
 /// What keeps LIGGGHTS' own arithmetic from being followed in every digit.
-const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 tells no force of a mesh at step 0, and keeps the stretch of a contact that opens while the pair is on its \
-                             neighbour list, and discs that only touch part and meet again";
+const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 tells no force of a mesh at step 0; and it keeps the stretch of a contact that opens while the pair \
+                             is on its neighbour list (plane-shear), where discs that only touch part and meet again";
 
 /// A run that both programs can do. LIGGGHTS moves walls in three dimensions only.
 fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {
