@@ -267,9 +267,12 @@ fn programs() -> Vec<Gate> {
     gates
 }
 
-/// F_H/F_V from the series, at the end of one of so many equal parts of the run.
+/// F_H/F_V from the series, in the last sample before the end of one of so many equal parts of the run, where all rests: of a stored
+/// run not every sample is kept.
 fn ratio_in(done: &Done, parts: u64) -> Result<f64, Missing> {
-    let step = done.series().step.last().map_or(0, |last| last / parts);
+    let steps = &done.series().step;
+    let end = steps.last().map_or(0, |last| last / parts);
+    let step = steps.iter().copied().take_while(|&step| step <= end).last().unwrap_or_default();
     let [left, right, bottom, top] =
         ["left.force_x", "right.force_x", "bottom.force_y", "top.force_y"].map(|column| done.at_step(column, step));
     Ok((right? - left?) / (top? - bottom?))
