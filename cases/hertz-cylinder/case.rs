@@ -124,8 +124,13 @@ fn gates() -> Vec<Gate> {
     let mut gates = Vec::new();
     for (rung, [width, peak]) in LADDER.iter().zip(ALLOWED) {
         let run = Run::new(PLAIN, SOLVER, rung.resolution);
-        // b/4 takes half a minute, b/8 minutes.
-        let runs = || vec![if LADDER[..2].contains(rung) { run.clone() } else { run.clone().long() }];
+        // b/2 takes seconds, b/4 half a minute, b/8 minutes.
+        let run = match LADDER.iter().position(|of| of == rung) {
+            Some(0) => run,
+            Some(1) => run.slow(),
+            _ => run.long(),
+        };
+        let runs = || vec![run.clone()];
         gates.push(Gate::new(
             (format!("half-width of the contact, cells of {}", rung.name), "m"),
             runs(),
@@ -151,7 +156,7 @@ fn gates() -> Vec<Gate> {
     }
     gates.push(Gate::new(
         ("order in the cell of the error of the half-width, 1 and 2 cells a half-width", "1"),
-        LADDER[..2].iter().map(|rung| Run::new(PLAIN, SOLVER, rung.resolution)).collect(),
+        LADDER[..2].iter().map(|rung| Run::new(PLAIN, SOLVER, rung.resolution).slow()).collect(),
         (Evidence::Convergence, SOURCE),
         (1.0, "at least 1: cells as wide as half the patch are too coarse for an exact order"),
         as_stiff(),
@@ -164,7 +169,7 @@ fn gates() -> Vec<Gate> {
     ));
     gates.push(Gate::new(
         ("contact force at rest", "N/m"),
-        vec![Run::new(PLAIN, SOLVER, LADDER[1].resolution)],
+        vec![Run::new(PLAIN, SOLVER, LADDER[1].resolution).slow()],
         (Evidence::Invariant, "equilibrium: the cylinder's weight"),
         (1e-3, "what is left of the settling"),
         Control::scene("gravity a hundredth too large", |scene| scene.gravity *= 1.01),
@@ -184,7 +189,7 @@ fn as_stiff() -> Control {
 
 fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
-    for rung in &LADDER[..2] {
+    for rung in &LADDER[..if bench.is_thorough() { 2 } else { 1 }] {
         let done = bench.run(&Run::new(PLAIN, SOLVER, rung.resolution))?;
         let exact = Hertz::of(&done.scene);
         let cell = done.scene.reference_length / if *rung == LADDER[0] { 1.0 } else { 2.0 };

@@ -86,7 +86,7 @@ fn over_phases(done: &[Done]) -> Result<f64, Missing> {
 fn gates() -> Vec<Gate> {
     let mut gates = vec![Gate::new(
         ("largest deviation of the 24 contact forces from their mean", "1"),
-        vec![Run::new(PLAIN, "mpm", LADDER[1].resolution)],
+        vec![Run::new(PLAIN, "mpm", LADDER[1].resolution).slow()],
         (Evidence::Invariant, "equilibrium and symmetry: all are equal (derivation)"),
         (5e-3, "what is left of the swinging, and tracers that stand in for surfaces"),
         Control::scene("the left wall moves in twice as far", |scene| scene.walls[0].motion.phases[0].velocity *= 2.0),
