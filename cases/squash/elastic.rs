@@ -6,124 +6,40 @@
 
 use crate::bench::Bench;
 use crate::case::PLAIN;
-use crate::elastic::{Pressed, stiffen};
+use crate::elastic::Pressed;
 use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
-use crate::measure::dominant_frequency;
-use crate::verdict::Evidence;
-use grainbench_scene::body::{Constitutive, Deformable};
-use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::solver::{Resolution, RunError};
+use crate::ringing::Ringing;
+use grainbench_scene::solver::RunError;
 
-const SOURCE: &str = "Johnson, Contact Mechanics, §5.6: a cylinder between two flats (derivation)";
-/// Distance by which each wall moves in (m), and how long it takes (s).
-const SQUEEZE: f64 = 0.01;
-const RAMP: f64 = 1.2;
-/// Periods of the ringing are some 1.6 s.
-const TIME: f64 = RAMP + 16.0;
-const CELLS: f64 = 8.0;
-
-/// Discs of E' = 16 Pa, ν = 1/4, as heavy as in the example; the walls stop.
-fn elastic(scene: &mut Scene) {
-    scene.deformable[0] =
-        Some(Deformable { bulk_modulus: 10.0, shear_modulus: 6.0, constitutive: Constitutive::NeoHookean });
-    for wall in &mut scene.walls {
-        let phase = &mut wall.motion.phases[0];
-        phase.velocity *= SQUEEZE / RAMP / phase.velocity.norm();
-        phase.stop = Moment::Seconds(RAMP);
-    }
-    scene.duration = Duration::Seconds(TIME);
-    scene.sampling = Sampling::Seconds(0.02);
-}
-
-fn run(solver: &'static str) -> Run {
-    Run::new(PLAIN, solver, Resolution::grid(CELLS, 3)).adjusted("elastic discs", elastic)
-}
-
-/// Force at the walls at rest and stiffness of a diameter about it, in closed form.
-fn exact(scene: &Scene) -> Result<(f64, f64), Missing> {
-    let disc = Pressed::of(scene, 2).ok_or_else(|| Missing("moduli".to_owned()))?;
-    let force = disc.force(SQUEEZE);
-    Ok((force, disc.stiffness(force)))
-}
-
-/// The same discs as rigid ones on springs that have that force at rest.
-fn on_springs(scene: &mut Scene) {
-    elastic(scene);
-    if let Ok((force, _)) = exact(scene) {
-        scene.change_laws(|law| law.normal_stiffness = 1.5 * force / SQUEEZE);
-    }
-}
-
-/// Force at the left wall after the walls have stopped, with its times.
-fn ringing(done: &Done) -> Result<(Vec<f64>, Vec<f64>), Missing> {
-    let force = done.column("A.normal_force")?;
-    Ok(done.series().time.iter().zip(force).filter(|(time, _)| **time > RAMP).unzip())
-}
-
-fn frequency(done: &Done) -> Result<f64, Missing> {
-    let (_, stiffness) = exact(&done.scene)?;
-    let near = (4.0 * stiffness / done.scene.grains[0].mass).sqrt();
-    let (time, force) = ringing(done)?;
-    Ok(dominant_frequency(&time, &force, 0.5 * near, 1.6 * near))
-}
-
-pub(super) fn gates() -> Vec<Gate> {
-    let softer = || Control::scene("discs a quarter softer", |scene| stiffen(scene, 0.75));
-    vec![
-        Gate::new(
-            ("force at the wall of elastic discs, mean after the walls have stopped", "N/m"),
-            vec![run("mpm")],
-            (Evidence::Analytic, SOURCE),
-            (FORCE, "patches of a third of a cell, on springs as soft as half a cell of material"),
-            softer(),
-            |done| {
-                let (force, _) = exact(&done[0].scene)?;
-                let (_, found) = ringing(&done[0])?;
-                Ok(Measured::new(found.iter().sum::<f64>() / found.len() as f64, force, force))
-            },
-        ),
-        Gate::new(
-            ("frequency at which elastic discs ring", "rad/s"),
-            vec![run("mpm")],
-            (Evidence::Analytic, SOURCE),
-            (FREQUENCY, "half the error of the stiffness, and discs that do not move quite as a whole"),
-            softer(),
-            |done| {
-                let expected = (4.0 * exact(&done[0].scene)?.1 / done[0].scene.grains[0].mass).sqrt();
-                Ok(Measured::new(frequency(&done[0])?, expected, expected))
-            },
-        ),
-        Gate::new(
-            ("frequency of elastic discs over that of rigid ones on springs with their force at rest", "1"),
-            vec![
-                run("mpm"),
-                Run::new(PLAIN, "dem", Resolution::CriticalFraction(0.05)).adjusted("springs with the force of elastic discs", on_springs).aside(),
-            ],
-            (Evidence::Analytic, SOURCE),
-            (FREQUENCY, "that of the frequency"),
-            softer(),
-            |done| {
-                let (force, stiffness) = exact(&done[0].scene)?;
-                let expected = (4.0 * stiffness * SQUEEZE / (4.5 * force)).sqrt();
-                Ok(Measured::new(frequency(&done[0])? / frequency(&done[1])?, expected, expected))
-            },
-        ),
-    ]
-}
-
-const FORCE: f64 = 0.15;
-const FREQUENCY: f64 = 0.08;
+/// Discs of E' = 16 Pa, ν = 1/4, as heavy as in the example, whose ringing has periods of some 1.6 s.
+pub(super) const DISCS: Ringing = Ringing {
+    variant: PLAIN,
+    column: "A.normal_force",
+    moduli: [10.0, 6.0],
+    squeeze: 0.01,
+    ramp: 1.2,
+    time: 17.2,
+    sample: 0.02,
+    cells: 8.0,
+    exact: |scene, squeeze| {
+        let disc = Pressed::of(scene, 2)?;
+        let force = disc.force(squeeze);
+        Some((force, disc.stiffness(force)))
+    },
+    diameters: 4.0,
+    springs: 3.0,
+    share: 2.0 / 3.0,
+    source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats (derivation)",
+    allowed: [0.15, 0.08],
+    because: "patches of a third of a cell, on springs as soft as half a cell of material",
+};
 
 pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
-    let springs = Run::new(PLAIN, "dem", Resolution::CriticalFraction(0.05));
-    let springs = springs.adjusted("springs with the force of elastic discs", on_springs);
     let mut curves = Vec::new();
-    for (name, run) in [("mpm, elastic discs", run("mpm")), ("dem, k_n = 3F/2d", springs)] {
+    for (name, run) in [("mpm, elastic discs", DISCS.discs()), ("dem, k_n = 3F/2d", DISCS.rigid())] {
         let done = bench.run(&run)?;
-        let unit = exact(&done.scene).map_or(1.0, |(force, _)| force);
-        let force = done.series().column("A.normal_force").unwrap_or_default();
+        let unit = DISCS.exact(&done).map_or(1.0, |(force, _)| force);
+        let force = done.series().column(DISCS.column).unwrap_or_default();
         let points = done.series().time.iter().zip(force).map(|(&time, force)| (time, force / unit)).collect();
         curves.push(Curve::new(name, Stroke::Line, points));
     }

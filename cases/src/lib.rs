@@ -22,6 +22,7 @@ pub mod program_forces;
 pub mod program_rows;
 pub mod registry;
 pub mod rigid_rows;
+mod ringing;
 pub mod scope;
 pub mod solvers;
 pub mod stage;

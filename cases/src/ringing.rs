@@ -1,0 +1,147 @@
+//! Elastic discs between walls that move in by a little and stop: the force at rest, the frequency at which they ring, and the spring
+//! that they show; without friction, beside rigid discs on springs that have their force at rest.
+
+use crate::elastic::stiffen;
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
+use crate::measure::dominant_frequency;
+use crate::verdict::Evidence;
+use grainbench_scene::body::{Constitutive, Deformable};
+use grainbench_scene::motion::Moment;
+use grainbench_scene::scene::{Duration, Sampling, Scene};
+use grainbench_scene::solver::Resolution;
+
+/// What one arrangement of discs is, and what is exact of it.
+#[derive(Clone, Copy)]
+pub(crate) struct Ringing {
+    /// Variant of the case.
+    pub(crate) variant: &'static str,
+    /// Column of the force at a wall.
+    pub(crate) column: &'static str,
+    /// Bulk and shear modulus of the elastic discs (Pa).
+    pub(crate) moduli: [f64; 2],
+    /// Distance by which each wall moves in (m), and how long it takes (s).
+    pub(crate) squeeze: f64,
+    pub(crate) ramp: f64,
+    /// End of the run (s): some ten periods after the walls have stopped.
+    pub(crate) time: f64,
+    /// Time between two samples (s).
+    pub(crate) sample: f64,
+    /// Cells per radius.
+    pub(crate) cells: f64,
+    /// Force at a wall at rest (N/m), and dF/dδ of a diameter about it (N/m²), in closed form; none of discs that do not deform.
+    pub(crate) exact: fn(&Scene, f64) -> Option<(f64, f64)>,
+    /// n of ω² = n (dF/dδ)/m of elastic discs.
+    pub(crate) diameters: f64,
+    /// n of ω² = n k_n/m of rigid discs on springs.
+    pub(crate) springs: f64,
+    /// Force at a wall at rest over k_n times the squeeze, of discs on springs.
+    pub(crate) share: f64,
+    /// Where the closed form is from.
+    pub(crate) source: &'static str,
+    /// Allowed errors of the force and of the frequency, as fractions, and why the force is off.
+    pub(crate) allowed: [f64; 2],
+    pub(crate) because: &'static str,
+}
+
+impl Ringing {
+    /// The discs as elastic bodies; the walls stop.
+    fn elastic(self, scene: &mut Scene) {
+        let [bulk_modulus, shear_modulus] = self.moduli;
+        scene.deformable[0] = Some(Deformable { bulk_modulus, shear_modulus, constitutive: Constitutive::NeoHookean });
+        for wall in &mut scene.walls {
+            let phase = &mut wall.motion.phases[0];
+            phase.velocity *= self.squeeze / self.ramp / phase.velocity.norm();
+            phase.stop = Moment::Seconds(self.ramp);
+        }
+        scene.duration = Duration::Seconds(self.time);
+        scene.sampling = Sampling::Seconds(self.sample);
+    }
+
+    /// Rigid discs on springs that have the force of elastic ones at rest.
+    fn on_springs(self, scene: &mut Scene) {
+        self.elastic(scene);
+        if let Some((force, _)) = (self.exact)(scene, self.squeeze) {
+            scene.change_laws(|law| law.normal_stiffness = force / (self.share * self.squeeze));
+        }
+    }
+
+    /// The run of elastic discs.
+    pub(crate) fn discs(self) -> Run {
+        let run = Run::new(self.variant, "mpm", Resolution::grid(self.cells, 3));
+        run.adjusted("elastic discs", move |scene| self.elastic(scene))
+    }
+
+    /// The run of discs on springs.
+    pub(crate) fn rigid(self) -> Run {
+        let run = Run::new(self.variant, "dem", Resolution::CriticalFraction(0.05));
+        run.adjusted("springs with the force of elastic discs", move |scene| self.on_springs(scene))
+    }
+
+    /// Force at rest and stiffness of a diameter in the scene of a run.
+    pub(crate) fn exact(self, done: &Done) -> Result<(f64, f64), Missing> {
+        (self.exact)(&done.scene, self.squeeze).ok_or_else(|| Missing("moduli in its scene".to_owned()))
+    }
+
+    /// The angular frequency of elastic discs in closed form (rad/s).
+    fn expected(self, done: &Done) -> Result<f64, Missing> {
+        Ok((self.diameters * self.exact(done)?.1 / done.scene.grains[0].mass).sqrt())
+    }
+
+    /// Force at the wall after the walls have stopped, with its times.
+    fn ringing(self, done: &Done) -> Result<(Vec<f64>, Vec<f64>), Missing> {
+        let force = done.column(self.column)?;
+        Ok(done.series().time.iter().zip(force).filter(|(time, _)| **time > self.ramp).unzip())
+    }
+
+    fn frequency(self, done: &Done) -> Result<f64, Missing> {
+        let near = self.expected(done)?;
+        let (time, force) = self.ringing(done)?;
+        Ok(dominant_frequency(&time, &force, 0.5 * near, 1.6 * near))
+    }
+
+    /// The force at rest, the frequency, and the latter over that of the springs.
+    pub(crate) fn gates(self, set: impl Fn(Run) -> Run) -> Vec<Gate> {
+        let softer = || Control::scene("discs a quarter softer", |scene| stiffen(scene, 0.75));
+        let analytic = (Evidence::Analytic, self.source);
+        let [of_force, of_frequency] = self.allowed;
+        vec![
+            Gate::new(
+                ("force at the wall of elastic discs, mean after the walls have stopped", "N/m"),
+                vec![set(self.discs())],
+                analytic,
+                (of_force, self.because),
+                softer(),
+                move |done| {
+                    let (force, _) = self.exact(&done[0])?;
+                    let (_, found) = self.ringing(&done[0])?;
+                    Ok(Measured::new(found.iter().sum::<f64>() / found.len() as f64, force, force))
+                },
+            ),
+            Gate::new(
+                ("frequency at which elastic discs ring", "rad/s"),
+                vec![set(self.discs())],
+                analytic,
+                (of_frequency, "half the error of the stiffness, and discs that do not move quite as a whole"),
+                softer(),
+                move |done| {
+                    let expected = self.expected(&done[0])?;
+                    Ok(Measured::new(self.frequency(&done[0])?, expected, expected))
+                },
+            ),
+            Gate::new(
+                ("frequency of elastic discs over that of rigid ones on springs with their force at rest", "1"),
+                vec![set(self.discs()), self.rigid().aside()],
+                analytic,
+                (of_frequency, "that of the frequency"),
+                softer(),
+                move |done| {
+                    let (force, stiffness) = self.exact(&done[0])?;
+                    // m cancels; k_n is what gives the springs that force.
+                    let spring = force / (self.share * self.squeeze);
+                    let expected = (self.diameters * stiffness / (self.springs * spring)).sqrt();
+                    Ok(Measured::new(self.frequency(&done[0])? / self.frequency(&done[1])?, expected, expected))
+                },
+            ),
+        ]
+    }
+}
