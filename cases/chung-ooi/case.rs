@@ -45,7 +45,7 @@ fn gates() -> Vec<Gate> {
     }
     for variant in [ELASTIC[0], ELASTIC[2]] {
         let run = |solver| Run::new(variant, solver, STEP.resolution);
-        gates.extend(forces(run, &["contact.normal_force"], 1e-11, |scene, _| hertz(scene).1));
+        gates.extend(forces(run, &["contact.normal_force"], 1e-13, |scene, _| hertz(scene).1));
     }
     gates
 }

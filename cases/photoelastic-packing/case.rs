@@ -132,8 +132,8 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Gate> {
             1.0,
             |[a, _]| a.ratio(),
         ),
-        gate("mean overlap / mean radius at stage A", imposed, (0.02, FOUND), further(), 1e-3, 1e-3, |[a, _]| a.overlap),
-        gate("growth of F_V from stage A to stage B", imposed, (5e-4, FOUND), more(), GROWTH, 1.0, |[a, b]| {
+        gate("mean overlap / mean radius at stage A", imposed, (0.01, FOUND), further(), 1e-3, 1e-3, |[a, _]| a.overlap),
+        gate("growth of F_V from stage A to stage B", imposed, (2e-4, FOUND), more(), GROWTH, 1.0, |[a, b]| {
             b.vertical / a.vertical - 1.0
         }),
         gate(

@@ -1,6 +1,7 @@
 //! What is measured of a sheared slab, of grains alone so that it is one measure for all methods, but for voids and yield.
 
 use crate::gate::{Done, Missing};
+use grainbench_fields::overlap::disc_in_box;
 use grainbench_scene::record::{GrainState, PointState, Snapshot};
 use std::collections::HashMap;
 
@@ -52,10 +53,9 @@ pub(crate) fn plastic_strain(done: &Done, snapshot: &Snapshot) -> f64 {
     grains.iter().map(|grain| grain.plastic_strain * grain.mass).sum::<f64>() / mass
 }
 
-/// Area of a disc left of a line at `x` from its centre (m).
-fn left_of(x: f64, radius: f64) -> f64 {
-    let h = (x / radius).clamp(-1.0, 1.0);
-    radius * radius * (h * (1.0 - h * h).sqrt() + h.asin() + std::f64::consts::FRAC_PI_2)
+/// Area of a disc about `x` between two lines across the slab (m²).
+fn between(edges: [f64; 2], x: f64, radius: f64) -> f64 {
+    disc_in_box(radius, [edges[0] - x, -radius], [edges[1] - x, radius])
 }
 
 /// Displacement of grains along the slab, averaged over columns by the area of grains in each, as a fraction of that of the
@@ -74,9 +74,9 @@ pub(crate) fn profile(done: &Done, snapshot: &Snapshot) -> Vec<(f64, f64)> {
             let edges = [column, column + 1].map(|edge| width * edge as f64 / COLUMNS as f64);
             let (mut area, mut sum) = (0.0, 0.0);
             for (grain, displacement) in snapshot.grains.iter().zip(&displacements) {
-                let [low, high] = edges.map(|edge| left_of(edge - grain.position.x, grain.radius));
-                area += high - low;
-                sum += (high - low) * displacement;
+                let inside = between(edges, grain.position.x, grain.radius);
+                area += inside;
+                sum += inside * displacement;
             }
             ((column as f64 + 0.5) / COLUMNS as f64, sum / (area * moved))
         })
@@ -99,9 +99,7 @@ pub(crate) fn at_the_moving_side(done: &Done, snapshot: &Snapshot) -> f64 {
 /// Part of the slab that is void, by the undeformed areas of grains.
 pub(crate) fn void_fraction(done: &Done, snapshot: &Snapshot) -> f64 {
     let width = width(done);
-    let inside = |grain: &GrainState| {
-        left_of(width - grain.position.x, grain.radius) - left_of(-grain.position.x, grain.radius)
-    };
+    let inside = |grain: &GrainState| between([0.0, width], grain.position.x, grain.radius);
     1.0 - snapshot.grains.iter().map(inside).sum::<f64>() / (width * period(done))
 }
 

@@ -41,7 +41,7 @@ pub(super) fn gates() -> Vec<Gate> {
             ("momentum gained along the slab, 80 % shear", "N s"),
             vec![slab()],
             (Evidence::Invariant, "equal and opposite forces"),
-            (1e-9, "rounding; of the largest impulse"),
+            (1e-13, "rounding; of the largest impulse"),
             Control::scene("grains heavier by a thousandth", |scene| {
                 scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.001);
             }),
@@ -53,7 +53,7 @@ pub(super) fn gates() -> Vec<Gate> {
             (format!("kinetic energy of translation to {:.1} % shear, worst, against {}", 100.0 * beginning, pair[1]), "J"),
             pair.map(|solver| to_shear(Run::new("seed-1", solver, WITH_PROGRAMS), beginning, 0)).into(),
             (Evidence::OtherCode, "the program, run on the deck of the same scene"),
-            (1e-11, "order of sums; relative to the largest value"),
+            (1e-12, "order of sums; relative to the largest value"),
             Control::ours("friction .29 for .3 in ours", |scene| scene.change_laws(|law| law.friction = 0.29)),
             |done| {
                 let (theirs, ours) = chaos::together(&done[0], &done[1], "all.kinetic_energy")?;
