@@ -252,7 +252,8 @@ impl Cap for CapOnTotal {
         viscosity: f64,
         limit: f64,
     ) -> Shear<S> {
-        if !DAMPED {
+        // A contact without a dashpot is limited alike, to the last bit, whatever other contacts of the scene have.
+        if !DAMPED || viscosity == 0.0 {
             return CapOnSpring::limit::<S, false>(stretch, slip, stiffness, viscosity, limit);
         }
         let mut force = -(*stretch * stiffness + slip * viscosity);
