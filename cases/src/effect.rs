@@ -1,5 +1,7 @@
 //! Effects as switches: what turned each one on, a scene without it, and a scene in which it is compiled in and does nothing.
 
+use crate::subject::Method;
+use grainbench_scene::body::Constitutive;
 use grainbench_scene::motion::{Moment, Phase};
 use grainbench_scene::scene::{ContactLaw, Scene};
 use nalgebra::Vector3;
@@ -23,11 +25,13 @@ pub enum Effect {
     PeriodicAxes,
     /// Walls that move.
     MovingWalls,
+    /// Material that yields; of deformable grains alone.
+    Plasticity,
 }
 
 impl Effect {
     /// Every one.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Friction,
         Self::Cohesion,
         Self::RollingResistance,
@@ -36,6 +40,7 @@ impl Effect {
         Self::Gravity,
         Self::PeriodicAxes,
         Self::MovingWalls,
+        Self::Plasticity,
     ];
 
     /// Its name.
@@ -50,6 +55,7 @@ impl Effect {
             Self::Gravity => "gravity",
             Self::PeriodicAxes => "periodic axes",
             Self::MovingWalls => "moving walls",
+            Self::Plasticity => "plasticity",
         }
     }
 
@@ -65,6 +71,7 @@ impl Effect {
             Self::Gravity => "without gravity",
             Self::PeriodicAxes => "without periodic axes",
             Self::MovingWalls => "with walls that stand still",
+            Self::Plasticity => "without plasticity",
         }
     }
 
@@ -97,6 +104,31 @@ impl Effect {
                 let of_wall = wall.map(|wall| format!("walls.{}.motion", wall.name));
                 of_wall.or_else(|| Some(format!("driven.{}.velocity", driven()?.name)))
             }
+            Self::Plasticity => {
+                scene.deformable.iter().zip(&scene.materials).find_map(|(material, name)| {
+                    match material.as_ref()?.constitutive {
+                        Constitutive::VonMises { yield_stress, .. } => {
+                            Some(format!("materials.{name}.yield_stress = {yield_stress}"))
+                        }
+                        _ => None,
+                    }
+                })
+            }
+        }
+    }
+
+    /// Whether a solver of this kind knows it: only deformable grains yield.
+    #[must_use]
+    pub fn concerns(self, method: Method) -> bool {
+        self != Self::Plasticity || method == Method::Grid
+    }
+
+    /// The kind of solver that it is tried with where it is absent.
+    #[must_use]
+    pub const fn tried_with(self) -> Method {
+        match self {
+            Self::Plasticity => Method::Grid,
+            _ => Method::Dem,
         }
     }
 
@@ -130,6 +162,13 @@ impl Effect {
                 for driven in &mut scene.driven {
                     driven.velocity = Vector3::zeros();
                     driven.grains.iter().for_each(|&grain| scene.grains[grain].velocity = Vector3::zeros());
+                }
+            }
+            Self::Plasticity => {
+                for material in scene.deformable.iter_mut().flatten() {
+                    if matches!(material.constitutive, Constitutive::VonMises { .. }) {
+                        material.constitutive = Constitutive::Hypoelastic;
+                    }
                 }
             }
         }
@@ -169,6 +208,16 @@ impl Effect {
                 }
                 None => false,
             },
+            // A yield stress that nothing reaches.
+            Self::Plasticity => {
+                let elastic = scene
+                    .deformable
+                    .iter_mut()
+                    .flatten()
+                    .filter(|material| material.constitutive == Constitutive::Hypoelastic);
+                let never = Constitutive::VonMises { yield_stress: f64::MAX, hardening_modulus: 0.0 };
+                elastic.map(|material| material.constitutive = never).count() > 0
+            }
             // A periodic box changes where grains are, however large it is.
             Self::PeriodicAxes => false,
         }

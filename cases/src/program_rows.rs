@@ -170,7 +170,8 @@ pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&
             scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases).for_each(|phase| phase.spin *= 1.0 + 1e-6);
         });
         let rounding = if pair[0] == "lammps" { 3e-11 } else { 5e-10 };
-        let allowed = (rounding, "the same cycle: rounding, which sliding contacts carry on; in units of the wall travel");
+        let allowed =
+            (rounding, "the same cycle: rounding, which sliding contacts carry on; in units of the wall travel");
         row("position while the walls turn, worst", "m", allowed, runs, control, move |done| {
             worst(done, &NINE_DISCS, travel(&done[0]))
         })

@@ -53,7 +53,7 @@ impl Ledger {
         for run in self.gates.iter().flat_map(|gate| &gate.runs) {
             let Ok(scene) = self.bench.scene(run) else { continue };
             for effect in Effect::ALL {
-                let key = effect.key(&scene);
+                let key = effect.key(&scene).filter(|_| knows(run, effect));
                 match pieces.iter_mut().find(|piece| piece.variant == run.variant && piece.effect == effect) {
                     // A change that belongs to a claim may turn on what the scene as it stands does not call for.
                     Some(piece) => piece.key = piece.key.take().or(key),
@@ -84,14 +84,16 @@ impl Ledger {
     pub fn catches(&mut self, effect: Effect) -> Option<String> {
         let mut gates = self.gates.clone();
         gates.retain(|gate| self.calls_for(gate, effect));
+        // One that is caught by what the main job runs need not wait for more.
+        gates.sort_by_key(Gate::set);
         gates.iter().find_map(|gate| {
-            let shift = self.shift(gate, effect);
-            shift.red.then(|| format!("{} · {}", shift.solver, shift.quantity))
+            let red = is_red(gate, self.error_without(gate, effect));
+            red.then(|| format!("{} · {}", gate.runs[0].solver, gate.quantity))
         })
     }
 
     fn calls_for(&self, gate: &Gate, effect: Effect) -> bool {
-        gate.runs.iter().any(|run| self.bench.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
+        gate.runs.iter().any(|run| knows(run, effect) && self.bench.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
     }
 
     fn blank(&self, piece: &Piece) -> Entry {
@@ -140,22 +142,21 @@ impl Ledger {
 
     /// A gate with and without an effect.
     fn shift(&mut self, gate: &Gate, effect: Effect) -> Shift {
-        let with = self.bench.judge(gate).error;
-        let done: Result<Vec<Done>, RunError> = gate.runs.iter().map(|run| self.run_without(run, effect)).collect();
-        // What cannot be run or measured any more is red, as in any control.
-        let without = done
-            .ok()
-            .and_then(|done| (gate.measure)(&done).ok())
-            .map(|measured| measured.error())
-            .filter(|error| error.is_finite());
+        let without = self.error_without(gate, effect);
         Shift {
             quantity: gate.quantity.clone(),
             solver: gate.runs[0].solver.to_owned(),
-            with,
+            with: self.bench.judge(gate).error,
             without,
             allowed: gate.allowed,
-            red: without.is_none_or(|error| error.abs() > gate.allowed),
+            red: is_red(gate, without),
         }
+    }
+
+    /// The error of a gate without an effect; none when it cannot be run or measured any more.
+    fn error_without(&mut self, gate: &Gate, effect: Effect) -> Option<f64> {
+        let done: Result<Vec<Done>, RunError> = gate.runs.iter().map(|run| self.run_without(run, effect)).collect();
+        (gate.measure)(&done.ok()?).ok().map(|measured| measured.error()).filter(|error| error.is_finite())
     }
 
     /// A run of a gate whose solver is given the scene without the effect; the scene of the claim stays what it was, and so do
@@ -184,10 +185,10 @@ impl Ledger {
         Ok(Done { scene: Arc::new(scene), record: Arc::new(record) })
     }
 
-    /// The first run on springs of the variant, with the effect compiled in.
+    /// The first run of the variant by the kind of solver that knows the effect, with the effect compiled in.
     fn idle(&self, piece: &Piece) -> Option<Entry> {
-        let is_ours =
-            |run: &&Run| is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == Some(Method::Dem);
+        let method = Some(piece.effect.tried_with());
+        let is_ours = |run: &&Run| is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == method;
         let run = self.gates.iter().flat_map(|gate| &gate.runs).find(is_ours)?;
         let scene = self.bench.scene(run).ok()?;
         let idle = try_idly(run.solver, &scene, &run.resolution, piece.effect).ok()??;
@@ -196,6 +197,16 @@ impl Ledger {
         (entry.counts, entry.time) = (Some(idle.counts), Some(idle.time));
         Some(entry)
     }
+}
+
+/// Whether the solver of a run knows an effect.
+fn knows(run: &Run, effect: Effect) -> bool {
+    Method::of(run.solver).is_none_or(|method| effect.concerns(method))
+}
+
+/// Whether a gate turns red at an error: what cannot be run or measured any more is red, as in any control.
+fn is_red(gate: &Gate, error: Option<f64>) -> bool {
+    error.is_none_or(|error| error.abs() > gate.allowed)
 }
 
 /// Whether a run is one of ours that is judged, and not one that others are judged by.
