@@ -41,17 +41,18 @@ fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
     }
 }
 
-/// Our solver with springs never ends quietly wrong, and holds all that it can express at some step.
+/// None of our solvers ends quietly wrong, and springs hold all but what cannot be told at some step.
 #[test]
 fn hard_cases_hold_or_say_why_not() {
     // A thousand thousand steps are for the command line.
     for case in hard::all().iter().filter(|case| !case.name.starts_with("heap")) {
-        for solver in ["dem", "dem:no-tension"] {
+        for solver in ["dem", "dem:no-tension", "rigid", "mpm"] {
             let row = hard::judge(case, solver);
             let quiet = row.standing == Hardness::QuietlyWrong || row.detail.starts_with("quietly");
             assert!(!quiet, "{} · {solver}: {}", row.case, row.detail);
             let holds = matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
-            assert!(holds || row.case == "exactly-coincident-grains", "{} · {solver}: {}", row.case, row.detail);
+            let must = solver.starts_with("dem") && row.case != "exactly-coincident-grains";
+            assert!(holds || !must, "{} · {solver}: {}", row.case, row.detail);
         }
     }
 }

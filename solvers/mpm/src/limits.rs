@@ -2,6 +2,7 @@
 
 use grainbench_scene::file::GrainShape;
 use grainbench_scene::motion::Moment;
+use grainbench_scene::overlap;
 use grainbench_scene::scene::{Duration, Scene, WallShape};
 
 /// Why the scene cannot be run, if it cannot.
@@ -22,6 +23,13 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     }
     if let Some(wall) = scene.walls.iter().find(|wall| !matches!(wall.shape, WallShape::Plane { .. })) {
         return Some(format!("wall `{}` is no plane", wall.name));
+    }
+    let overlap = overlap::deepest(&scene.grains, &scene.walls, scene.domain.as_ref());
+    if let Some(deepest) = overlap.filter(|deepest| deepest.ratio() >= 1.0) {
+        let found = deepest.words(&scene.walls);
+        return Some(format!(
+            "found {found} at the start, expected less than 1: a surface inside another has no side to part to"
+        ));
     }
     if scene.laws.iter().flatten().any(|law| law.cohesion != 0.0) {
         return Some("its contacts only push: it has no cohesion".to_owned());

@@ -72,6 +72,16 @@ impl Mpm {
             return Err(self.resolution_error(format!("expected positive numbers, found {resolution}")));
         }
         let lattice = lattice(scene, &self.setting, scene.reference_length / cells);
+        let cell = lattice.shortest(scene.dimension.count());
+        let smallest = scene.grains.iter().enumerate().min_by(|(_, a), (_, b)| a.radius.total_cmp(&b.radius));
+        if let Some((at, grain)) = smallest.filter(|(_, grain)| grain.radius < SMALLEST * cell) {
+            return Err(self.resolution_error(format!(
+                "expected a radius of at least {SMALLEST} cells, found grain {} with {:.3}: {} cells would do for it",
+                at + 1,
+                grain.radius / cell,
+                (SMALLEST * scene.reference_length / grain.radius).ceil()
+            )));
+        }
         let speed = scene.fastest_wave();
         let critical = lattice.shortest(scene.dimension.count()) / speed;
         let Duration::Seconds(time) = scene.duration else {
@@ -164,6 +174,9 @@ impl Mpm {
 
 /// Steps after which a watcher hears of progress at the latest.
 const STEPS_BETWEEN_PROGRESS: u64 = 500;
+
+/// Cells that a radius must have: a body smaller than a cell shows the grid no gradient of its own.
+const SMALLEST: f64 = 0.5;
 
 struct Done {
     recorder: Recorder,

@@ -13,6 +13,8 @@ pub(crate) struct Stepping {
     pub(crate) iterations: usize,
     /// Length that makes rapier's tolerances absolute (m): the mean radius.
     pub(crate) length: f64,
+    /// Mass that makes rapier's thresholds relative (kg): a power of two near the mean mass, so that no digit changes.
+    pub(crate) mass: f64,
     /// The rest.
     pub(crate) settings: Settings,
 }

@@ -2,7 +2,11 @@
 
 use grainbench_scene::effects::Effects;
 use grainbench_scene::motion::Moment;
+use grainbench_scene::overlap;
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Scene};
+
+/// Overlap at the start over the smaller radius that is a contact, and not a mistake.
+const DEEPEST: f64 = 0.25;
 
 /// Why the scene cannot be run, if it cannot.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
@@ -11,6 +15,14 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     }
     if !scene.driven.is_empty() {
         return Some("grains that are moved as walls are were not written for rapier".to_owned());
+    }
+    let overlap = overlap::deepest(&scene.grains, &scene.walls, scene.domain.as_ref());
+    if let Some(deepest) = overlap.filter(|deepest| deepest.ratio() > DEEPEST) {
+        let found = deepest.words(&scene.walls);
+        return Some(format!(
+            "found {found} at the start, expected at most {DEEPEST}: rigid grains have no energy to part with, and the engine \
+             pulls them apart at a rate of its own"
+        ));
     }
     let effects = Effects::of(scene);
     if effects.periodic {

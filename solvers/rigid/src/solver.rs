@@ -70,7 +70,7 @@ impl Rigid {
             format!(
                 "pull towards zero overlap at {frequency} Hz, {wall_frequency} Hz at fixed walls, damping ratio {damping_ratio}"
             ),
-            format!("unit of length {:.6e} m, the mean radius", stepping.length),
+            format!("unit of length {:.6e} m, the mean radius; of mass {:.6e} kg", stepping.length, stepping.mass),
             "no sleeping, no continuous detection".to_owned(),
         ];
         words.push(match shared {
@@ -95,7 +95,9 @@ impl Solver for Rigid {
         let (time_step, steps, iterations) = self.steps(scene, resolution)?;
         let length = scene.grains.iter().map(|grain| grain.radius).sum::<f64>() / scene.grains.len().max(1) as f64;
         let length = if length > 0.0 { length } else { 1.0 };
-        let stepping = Stepping { time_step, iterations, length, settings: self.settings };
+        let mean_mass = scene.grains.iter().map(|grain| grain.mass).sum::<f64>() / scene.grains.len().max(1) as f64;
+        let mass = if mean_mass > 0.0 { mean_mass.log2().round().exp2() } else { 1.0 };
+        let stepping = Stepping { time_step, iterations, length, mass, settings: self.settings };
         let start = Instant::now();
         let mut simulation = Simulation::new(scene, stepping);
         let mut recorder = Recorder::new(scene, time_step, steps);

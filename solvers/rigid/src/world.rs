@@ -37,6 +37,8 @@ pub(crate) struct World {
     hooks: FromScene,
     grains: Vec<RigidBodyHandle>,
     walls: Vec<RigidBodyHandle>,
+    /// Unit of mass (kg).
+    mass: f64,
 }
 
 impl World {
@@ -65,7 +67,8 @@ impl World {
                 .translation(vector(grain.position))
                 .linvel(vector(grain.velocity))
                 .angvel(spin(grain.spin))
-                .additional_mass_properties(mass_properties(grain.mass, grain.inertia))
+                // rapier takes masses above 1e20 for infinite ones.
+                .additional_mass_properties(mass_properties(grain.mass / stepping.mass, grain.inertia / stepping.mass))
                 .linear_damping(scene.global_damping)
                 .angular_damping(scene.global_damping)
                 .can_sleep(false)
@@ -94,7 +97,7 @@ impl World {
             }
         });
         let walls = walls.collect();
-        Self { world, hooks: FromScene(pairs), grains, walls }
+        Self { world, hooks: FromScene(pairs), grains, walls, mass: stepping.mass }
     }
 }
 
@@ -152,8 +155,8 @@ impl Engine for World {
                     touches.push(Touch {
                         sides: [one, other],
                         normal: embedded(manifold.data.normal),
-                        push: point.data.impulse,
-                        shear: shear(manifold.data.normal, point.data.tangent_impulse),
+                        push: point.data.impulse * self.mass,
+                        shear: shear(manifold.data.normal, point.data.tangent_impulse) * self.mass,
                         friction: manifold.data.friction,
                     });
                 }

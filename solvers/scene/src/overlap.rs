@@ -20,6 +20,16 @@ impl Deepest {
             Self::Grains(_, _, ratio) | Self::GrainWall(_, _, ratio) => *ratio,
         }
     }
+
+    /// Who overlaps, and by how much.
+    #[must_use]
+    pub fn words(&self, walls: &[Wall]) -> String {
+        let pair = match self {
+            Self::Grains(a, b, _) => format!("grains {} and {}", a + 1, b + 1),
+            Self::GrainWall(grain, wall, _) => format!("grain {} and wall {}", grain + 1, walls[*wall].name),
+        };
+        format!("{pair} overlapping by {:.4} of the radius", self.ratio())
+    }
 }
 
 /// The deepest overlap among grains, and of grains with walls, if anything overlaps.

@@ -126,6 +126,11 @@ pub enum Cause {
         /// Its radius (m).
         radius: f64,
     },
+    /// A grain turned so far in one step that the direction of friction is lost.
+    Spun {
+        /// Angle turned in the step (rad).
+        turned: f64,
+    },
     /// A material point moved farther than a cell in one step.
     LeftCell {
         /// Distance moved in the step (m).
@@ -157,6 +162,7 @@ impl fmt::Display for Cause {
             Self::Runaway { moved, radius } => {
                 write!(formatter, "it moved {moved:.3e} m in one step, more than its radius {radius:.3e} m")
             }
+            Self::Spun { turned } => write!(formatter, "it turned by {turned:.3e} rad in one step"),
             Self::LeftCell { moved, cell } => {
                 write!(formatter, "it moved {moved:.3e} m in one step, more than a cell of {cell:.3e} m")
             }

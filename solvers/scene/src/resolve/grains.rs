@@ -235,11 +235,8 @@ impl Resolver<'_> {
         };
         let group_of =
             |grain: usize| groups.iter().find(|(_, range)| range.contains(&grain)).map_or("", |(name, _)| name);
-        let (grain, pair) = match deepest {
-            Deepest::Grains(a, b, _) => (a, format!("grains {} and {}", a + 1, b + 1)),
-            Deepest::GrainWall(grain, wall, _) => (grain, format!("grain {} and wall {}", grain + 1, walls[wall].name)),
-        };
-        let found = format!("{pair} overlapping by {:.4} of the radius", deepest.ratio());
+        let (Deepest::Grains(grain, ..) | Deepest::GrainWall(grain, ..)) = deepest;
+        let found = deepest.words(walls);
         let key = format!("grains.{}", group_of(grain));
         let expected = format!("initial overlaps of at most {bound} of the smaller radius");
         Err(self.check.source.error(&key, &expected, &found, Some("or a larger `largest_initial_overlap`".to_owned())))

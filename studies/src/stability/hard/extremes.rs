@@ -22,12 +22,14 @@ impl Impact {
         let reduced = 1.0 / (1.0 / mass(a, first) + 1.0 / mass(b, second));
         let gap = 0.02 * a.min(b) * length;
         let duration = 3.0 * (gap / speed + std::f64::consts::PI * (reduced / stiffness).sqrt());
-        // Moduli whose waves cross a grain in a hundredth of the time that it takes to fly past it.
-        let modulus = 1e4 * first.max(second) * speed * speed;
+        // Moduli whose waves cross either grain in a hundredth of the time in which the smaller one flies its radius: a grain that is away
+        // before the other has felt it as a whole leaves waves in it, and does not part as from a point.
+        let modulus = |radius: f64, density: f64| 1e4 * density * (speed * radius / a.min(b)).powi(2);
+        let (stiff_first, stiff_second) = (modulus(a, first), modulus(b, second));
         format!(
             "title = 'Head-on'\ndimension = 2\nduration = {duration:?}\n\
-             [materials.a]\ndensity = {first:?}\nyoung_modulus = {modulus:?}\npoisson_ratio = 0.3\n\
-             [materials.b]\ndensity = {second:?}\nyoung_modulus = {modulus:?}\npoisson_ratio = 0.3\n\
+             [materials.a]\ndensity = {first:?}\nyoung_modulus = {stiff_first:?}\npoisson_ratio = 0.3\n\
+             [materials.b]\ndensity = {second:?}\nyoung_modulus = {stiff_second:?}\npoisson_ratio = 0.3\n\
              [contacts.aa]\nbetween = ['a', 'a']\nnormal_stiffness = {stiffness:?}\n\
              [contacts.ab]\nbetween = ['a', 'b']\nnormal_stiffness = {stiffness:?}\n\
              [contacts.bb]\nbetween = ['b', 'b']\nnormal_stiffness = {stiffness:?}\n\

@@ -39,11 +39,13 @@ const SMALLER: [f64; 4] = [0.5, 0.25, 0.1, 0.01];
 /// The default step of springs, as a fraction of the critical one.
 const FRACTION: f64 = 0.1;
 /// Cells over a radius by default.
-const CELLS: f64 = 4.0;
+const CELLS: f64 = 8.0;
 /// Material points in a cell, along each axis.
 const POINTS: u32 = 2;
 /// Smaller steps are tried as long as a run is expected to take no more than this (s).
 const PATIENCE: f64 = 60.0;
+/// A case that is expected to take longer than this (s) at the default step is not one that a solver can express.
+const HOPELESS: f64 = 600.0;
 
 /// Every hard case.
 #[must_use]
@@ -107,6 +109,12 @@ pub fn judge(case: &HardCase, name: &str) -> Hard {
         }
         (_, None) => return row,
     };
+    let expected = nominal_seconds(scene, &resolution(name, 1.0));
+    if expected > HOPELESS {
+        row.detail =
+            format!("one uniform grid for its smallest grain would take some {:.0} h", (expected / 3600.0).ceil());
+        return row;
+    }
     match attempt(case, scene, &*solver, 1.0) {
         Ok(()) => row.standing = Hardness::Holds,
         Err(Stop::Cannot(error)) => {
