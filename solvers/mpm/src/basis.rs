@@ -2,28 +2,27 @@
 //!
 //! Lengths are in cells, so that node i stands at i.
 
-/// Values of the functions that reach a point, along one axis.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Axis {
-    /// The first node.
-    pub(crate) base: i32,
+use crate::lanes::Number;
+
+/// Values of the functions that reach a point, or four, along one axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axis<N> {
     /// Value at the point; for GIMP, mean over the point's extent.
-    pub(crate) value: [f64; 3],
+    pub(crate) value: [N; 3],
     /// Derivative (per cell), or its mean.
-    pub(crate) slope: [f64; 3],
+    pub(crate) slope: [N; 3],
     /// What a velocity field is multiplied by to get its affine part (per cell): w (i − x)/D with D = Σ w (i − x)²
     /// (Jiang, Schroeder & Teran 2017). Linear in the field, exact for affine ones.
-    pub(crate) affine: [f64; 3],
+    pub(crate) affine: [N; 3],
     /// D = Σ w (i − x)² (cells²).
-    pub(crate) spread: f64,
+    pub(crate) spread: N,
 }
 
-/// The whole number below, and what is left; without the call that rounding takes on old processors.
+/// The whole number below; without the call that rounding takes on old processors.
 #[inline(always)]
-fn floor(at: f64) -> (i32, f64) {
+fn floor(at: f64) -> i32 {
     let towards_zero = at as i32;
-    let base = towards_zero - i32::from(at < f64::from(towards_zero));
-    (base, at - f64::from(base))
+    towards_zero - i32::from(at < f64::from(towards_zero))
 }
 
 /// A family of functions.
@@ -32,8 +31,10 @@ pub(crate) trait Basis: Copy + Send + 'static {
     const WIDTH: usize;
     /// Whether the extent of a point matters.
     const EXTENDED: bool = false;
-    /// The functions at `at` for a point that reaches `half` to both sides.
-    fn axis(at: f64, half: f64) -> Axis;
+    /// The first node that reaches `at`.
+    fn first(at: f64) -> i32;
+    /// The functions at `at` beyond the first node, for a point that reaches `half` to both sides.
+    fn axis<N: Number>(at: N, half: N) -> Axis<N>;
 }
 
 /// Hat functions.
@@ -44,10 +45,15 @@ impl Basis for Linear {
     const WIDTH: usize = 2;
 
     #[inline(always)]
-    fn axis(at: f64, _half: f64) -> Axis {
-        let (base, s) = floor(at);
-        let slope = [-1.0, 1.0, 0.0];
-        Axis { base, value: [1.0 - s, s, 0.0], slope, affine: slope, spread: s * (1.0 - s) }
+    fn first(at: f64) -> i32 {
+        floor(at)
+    }
+
+    #[inline(always)]
+    fn axis<N: Number>(at: N, _half: N) -> Axis<N> {
+        let before = at.like(1.0) - at;
+        let slope = [at.like(-1.0), at.like(1.0), at.like(0.0)];
+        Axis { value: [before, at, at.like(0.0)], slope, affine: slope, spread: at * before }
     }
 }
 
@@ -59,13 +65,17 @@ impl Basis for Quadratic {
     const WIDTH: usize = 3;
 
     #[inline(always)]
-    fn axis(at: f64, _half: f64) -> Axis {
-        let (base, rest) = floor(at - 0.5);
-        let s = rest + 0.5;
-        let value = [0.5 * (1.5 - s) * (1.5 - s), 0.75 - (s - 1.0) * (s - 1.0), 0.5 * (s - 0.5) * (s - 0.5)];
+    fn first(at: f64) -> i32 {
+        floor(at - 0.5)
+    }
+
+    #[inline(always)]
+    fn axis<N: Number>(at: N, _half: N) -> Axis<N> {
+        let [before, middle, after] = [at - 1.5, at - 1.0, at - 0.5];
+        let value = [before * before * 0.5, at.like(0.75) - middle * middle, after * after * 0.5];
         // D = 1/4 wherever the point is.
-        let affine = [-4.0 * value[0] * s, 4.0 * value[1] * (1.0 - s), 4.0 * value[2] * (2.0 - s)];
-        Axis { base, value, slope: [s - 1.5, 2.0 - 2.0 * s, s - 0.5], affine, spread: 0.25 }
+        let affine = [value[0] * at * -4.0, value[1] * middle * -4.0, value[2] * (at - 2.0) * -4.0];
+        Axis { value, slope: [before, middle * -2.0, after], affine, spread: at.like(0.25) }
     }
 }
 
@@ -78,31 +88,34 @@ impl Basis for Gimp {
     const EXTENDED: bool = true;
 
     #[inline(always)]
-    fn axis(at: f64, half: f64) -> Axis {
-        let (base, rest) = floor(at - 0.5);
-        let s = rest + 0.5;
-        let mut axis = Axis { base, ..Axis::default() };
+    fn first(at: f64) -> i32 {
+        floor(at - 0.5)
+    }
+
+    #[inline(always)]
+    fn axis<N: Number>(at: N, half: N) -> Axis<N> {
+        let [zero, one] = [at.like(0.0), at.like(1.0)];
+        let [mut value, mut slope, mut affine] = [[zero; 3]; 3];
+        let mut spread = zero;
         for node in 0..3 {
-            let away = s - node as f64;
-            let (distance, sign) = (away.abs(), -away.signum());
-            let (value, slope) = if distance < half {
-                (1.0 - (distance * distance + half * half) / (2.0 * half), distance / half)
-            } else if distance < 1.0 - half {
-                (1.0 - distance, 1.0)
-            } else if distance < 1.0 + half {
-                let reach = 1.0 + half - distance;
-                (reach * reach / (4.0 * half), reach / (2.0 * half))
-            } else {
-                (0.0, 0.0)
+            let away = at - node as f64;
+            let sign = away.pick_below(zero, one, -one);
+            let distance = away * -sign;
+            let reach = half + 1.0 - distance;
+            let pick = |on: N, beside: N, rim: N| {
+                let outside = distance.pick_below(half + 1.0, rim, zero);
+                distance.pick_below(half, on, distance.pick_below(one - half, beside, outside))
             };
-            axis.value[node] = value;
-            axis.slope[node] = sign * slope;
-            axis.affine[node] = -value * away;
-            axis.spread += value * away * away;
+            value[node] = pick(
+                one - (distance * distance + half * half) / (half * 2.0),
+                one - distance,
+                reach * reach / (half * 4.0),
+            );
+            slope[node] = sign * pick(distance / half, one, reach / (half * 2.0));
+            affine[node] = value[node] * -away;
+            spread = spread + value[node] * away * away;
         }
-        let spread = axis.spread;
-        axis.affine.iter_mut().for_each(|affine| *affine /= spread);
-        axis
+        Axis { value, slope, affine: affine.map(|affine| affine / spread), spread }
     }
 }
 
@@ -114,9 +127,10 @@ mod tests {
     fn is_consistent<B: Basis>() {
         for step in 0..1000 {
             let at = -1.3 + 0.0037 * f64::from(step);
-            let axis = B::axis(at, 0.21);
+            let first = B::first(at);
+            let axis = B::axis(at - f64::from(first), 0.21);
             let sum = |weights: [f64; 3], power: i32| -> f64 {
-                (0..B::WIDTH).map(|node| weights[node] * f64::from(axis.base + node as i32).powi(power)).sum()
+                (0..B::WIDTH).map(|node| weights[node] * f64::from(first + node as i32).powi(power)).sum()
             };
             assert!((sum(axis.value, 0) - 1.0).abs() < 1e-14 && (sum(axis.value, 1) - at).abs() < 1e-14);
             assert!(sum(axis.slope, 0).abs() < 1e-14 && (sum(axis.slope, 1) - 1.0).abs() < 1e-13);

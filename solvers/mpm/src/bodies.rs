@@ -139,7 +139,13 @@ pub(crate) fn seed<S: Space>(
             blank.surfaces.iter().for_each(|surface| tracers.add(surface));
             Body {
                 owner: blank.owner,
-                part: Part { points: first.0..points.len(), window: crate::grid::Window::default(), half },
+                part: Part {
+                    points: first.0..points.len(),
+                    window: crate::grid::Window::default(),
+                    runs: 0..0,
+                    runs_in_order: 0,
+                    half,
+                },
                 tracers: first.1..tracers.len(),
                 chunks: tracers.cut(first.1..tracers.len()),
                 material: blank.material,

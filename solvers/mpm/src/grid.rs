@@ -5,12 +5,13 @@
 //! bodies meet is three nodes, one in each window.
 
 use crate::basis::{Axis, Basis};
-use crate::tile::Lanes;
+use crate::lanes::Number;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// A node of a field.
+/// A node of a field; its numbers lie in this order, so that those of a point are added to it side by side.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(crate) struct Node<S: Space> {
     /// Mass (kg).
     pub(crate) mass: f64,
@@ -44,7 +45,7 @@ impl Window {
 
     /// Place along an axis of a node, within the window.
     #[inline(always)]
-    fn along(&self, axis: usize, node: i32) -> usize {
+    pub(crate) fn along(&self, axis: usize, node: i32) -> usize {
         let place = node - self.low[axis];
         (if self.whole[axis] { place.rem_euclid(self.size[axis]) } else { place }) as usize
     }
@@ -63,21 +64,6 @@ impl Window {
             let place = base[axis] - self.low[axis];
             self.whole[axis] || (place >= 0 && place + width <= self.size[axis])
         })
-    }
-
-    /// Visits the rows of nodes along x that reach a point, of which `base` is the first node: number and places, as many as the basis
-    /// reaches.
-    #[inline(always)]
-    pub(crate) fn rows<S: Space, B: Basis>(&self, base: [i32; 3], mut visit: impl FnMut(usize, [usize; 3])) {
-        let [length, rows, _] = self.size.map(|size| size as usize);
-        let x = [0, 1, 2].map(|i| self.along(0, base[0] + i));
-        for k in 0..if S::DIMENSION == 3 { B::WIDTH } else { 1 } {
-            let layer = if S::DIMENSION == 3 { self.along(2, base[2] + k as i32) * rows } else { 0 };
-            for j in 0..B::WIDTH {
-                let start = self.start + (layer + self.along(1, base[1] + j as i32)) * length;
-                visit(k * B::WIDTH + j, x.map(|x| start + x));
-            }
-        }
     }
 
     /// The node at a place within the window.
@@ -106,6 +92,12 @@ impl Lattice {
     #[inline(always)]
     pub(crate) fn cells<S: Space>(&self, position: S::Vector, axis: usize) -> f64 {
         (S::component(position, axis) - self.origin[axis]) * self.inverse[axis]
+    }
+
+    /// The first node that reaches a position.
+    #[inline(always)]
+    pub(crate) fn first<S: Space, B: Basis>(&self, position: S::Vector) -> [i32; 3] {
+        [0, 1, 2].map(|axis| if axis < S::DIMENSION { B::first(self.cells::<S>(position, axis)) } else { 0 })
     }
 
     /// Where a node is (m).
@@ -146,27 +138,26 @@ impl Lattice {
     }
 }
 
-/// The nodes that reach a point.
+/// The nodes that reach a point, or four that reach the same.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stencil {
-    axes: [Axis; 3],
+pub(crate) struct Stencil<N> {
+    base: [i32; 3],
+    pub(crate) axes: [Axis<N>; 3],
     inverse: [f64; 3],
-    /// The point (cells).
-    at: [f64; 3],
+    /// From the first node to the point (cells).
+    at: [N; 3],
     cell: [f64; 3],
 }
 
 /// The functions of a row of nodes along x, but along x.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Across {
+pub(crate) struct Across<N> {
     /// Product of the functions along y and z.
-    pub(crate) value: f64,
+    pub(crate) value: N,
     /// The same with the slope along y, and along z (1/m).
-    pub(crate) slope: [f64; 2],
+    pub(crate) slope: [N; 2],
     /// The same with what makes the affine part along y, and along z (1/m).
-    pub(crate) affine: [f64; 2],
-    /// The product times the place of the row in the stencil along y, and along z.
-    pub(crate) step: [f64; 2],
+    pub(crate) affine: [N; 2],
 }
 
 /// A node as a point sees it.
@@ -187,22 +178,76 @@ impl<S: Space> Reached<S> {
     }
 }
 
-impl Stencil {
-    /// The nodes around a position (m) of a point that reaches `half` (cells) to both sides along each axis.
+impl<N: Number> Stencil<N> {
+    /// The nodes from `base` on around positions (m) of points that reach `half` (cells) to both sides along each axis.
     #[inline(always)]
-    pub(crate) fn new<S: Space, B: Basis>(lattice: &Lattice, position: S::Vector, half: [f64; 3]) -> Self {
-        let mut stencil =
-            Self { axes: [Axis::default(); 3], inverse: lattice.inverse, at: [0.0; 3], cell: lattice.cell };
-        for (axis, half) in half.into_iter().enumerate().take(S::DIMENSION) {
-            let at = lattice.cells::<S>(position, axis);
-            stencil.axes[axis] = B::axis(at, half);
+    pub(crate) fn around<S: Space, B: Basis>(
+        lattice: &Lattice,
+        base: [i32; 3],
+        position: [N; 3],
+        half: [N; 3],
+    ) -> Self {
+        let Lattice { inverse, cell, origin, .. } = *lattice;
+        let zero = position[0].like(0.0);
+        let none = Axis { value: [zero; 3], slope: [zero; 3], affine: [zero; 3], spread: zero };
+        let mut stencil = Self { base, axes: [none; 3], inverse, at: [zero; 3], cell };
+        for axis in 0..S::DIMENSION {
+            let at = (position[axis] - origin[axis]) * inverse[axis] - f64::from(base[axis]);
+            stencil.axes[axis] = B::axis(at, half[axis]);
             stencil.at[axis] = at;
         }
         stencil
     }
 
+    /// The functions along x: values, and slopes per length (1/m).
+    #[inline(always)]
+    pub(crate) fn along_x(&self) -> [[N; 3]; 2] {
+        [self.axes[0].value, self.axes[0].slope.map(|slope| slope * self.inverse[0])]
+    }
+
+    /// What makes the affine part along x, node by node (1/m).
+    #[inline(always)]
+    pub(crate) fn affine_along_x(&self) -> [N; 3] {
+        self.axes[0].affine.map(|affine| affine * self.inverse[0])
+    }
+
+    /// The functions across a row of nodes along x.
+    #[inline(always)]
+    pub(crate) fn across<S: Space, B: Basis>(&self, row: usize) -> Across<N> {
+        let (j, k) = (row % B::WIDTH, row / B::WIDTH);
+        let [_, y, z] = &self.axes;
+        let [slope, affine] = [y.slope[j], y.affine[j]].map(|along| along * self.inverse[1]);
+        if S::DIMENSION == 2 {
+            let zero = slope.like(0.0);
+            return Across { value: y.value[j], slope: [slope, zero], affine: [affine, zero] };
+        }
+        let [deep_slope, deep_affine] = [z.slope[k], z.affine[k]].map(|along| y.value[j] * (along * self.inverse[2]));
+        let deep = z.value[k];
+        Across { value: y.value[j] * deep, slope: [slope * deep, deep_slope], affine: [affine * deep, deep_affine] }
+    }
+
+    /// From the point to the first node along an axis (m).
+    #[inline(always)]
+    pub(crate) fn arm_of_first(&self, axis: usize) -> N {
+        self.at[axis] * -self.cell[axis]
+    }
+
+    /// Σ w r² along an axis, r from the point to the node (m²).
+    #[inline(always)]
+    pub(crate) fn spread(&self, axis: usize) -> N {
+        self.axes[axis].spread * (self.cell[axis] * self.cell[axis])
+    }
+}
+
+impl Stencil<f64> {
+    /// The nodes around a position (m) of a point that reaches `half` (cells) to both sides along each axis.
+    #[inline(always)]
+    pub(crate) fn new<S: Space, B: Basis>(lattice: &Lattice, position: S::Vector, half: [f64; 3]) -> Self {
+        Self::around::<S, B>(lattice, lattice.first::<S, B>(position), S::embed(position).into(), half)
+    }
+
     pub(crate) const fn base(&self) -> [i32; 3] {
-        [self.axes[0].base, self.axes[1].base, self.axes[2].base]
+        self.base
     }
 
     /// Visits every node.
@@ -213,16 +258,16 @@ impl Stencil {
         let layer = row * window.size[1] as usize;
         let mut x = [0; 3];
         for (i, x) in x.iter_mut().enumerate().take(B::WIDTH) {
-            *x = window.start + window.along(0, self.axes[0].base + i as i32);
+            *x = window.start + window.along(0, self.base[0] + i as i32);
         }
         for k in 0..if solid { B::WIDTH } else { 1 } {
             let (z, across) = if solid {
-                (window.along(2, self.axes[2].base + k as i32) * layer, self.axes[2].value[k])
+                (window.along(2, self.base[2] + k as i32) * layer, self.axes[2].value[k])
             } else {
                 (0, 1.0)
             };
             for j in 0..B::WIDTH {
-                let y = z + window.along(1, self.axes[1].base + j as i32) * row;
+                let y = z + window.along(1, self.base[1] + j as i32) * row;
                 let weight = across * self.axes[1].value[j];
                 for (i, x) in x.into_iter().enumerate().take(B::WIDTH) {
                     visit(Reached {
@@ -236,49 +281,9 @@ impl Stencil {
         }
     }
 
-    /// The functions along x: values, and slopes per length (1/m).
-    #[inline(always)]
-    pub(crate) fn along_x(&self) -> [Lanes; 2] {
-        let ([a, b, c], [d, e, f], scale) = (self.axes[0].value, self.axes[0].slope, self.inverse[0]);
-        [[a, b, c, 0.0], [d * scale, e * scale, f * scale, 0.0]]
-    }
-
-    /// What makes the affine part along x, node by node (1/m).
-    #[inline(always)]
-    pub(crate) fn affine_along_x(&self) -> Lanes {
-        let ([a, b, c], scale) = (self.axes[0].affine, self.inverse[0]);
-        [a * scale, b * scale, c * scale, 0.0]
-    }
-
-    /// The functions across a row of nodes along x.
-    #[inline(always)]
-    pub(crate) fn across<S: Space, B: Basis>(&self, row: usize) -> Across {
-        let (j, k) = (row % B::WIDTH, row / B::WIDTH);
-        let [_, y, z] = &self.axes;
-        let (deep, slope, affine) = if S::DIMENSION == 3 {
-            (z.value[k], z.slope[k] * self.inverse[2], z.affine[k] * self.inverse[2])
-        } else {
-            (1.0, 0.0, 0.0)
-        };
-        let value = y.value[j] * deep;
-        Across {
-            value,
-            slope: [y.slope[j] * self.inverse[1] * deep, y.value[j] * slope],
-            affine: [y.affine[j] * self.inverse[1] * deep, y.value[j] * affine],
-            step: [value * j as f64, value * k as f64],
-        }
-    }
-
-    /// From the point to the first node (m).
-    #[inline(always)]
-    pub(crate) fn arm_of_first<S: Space>(&self) -> S::Vector {
-        let along = |axis: usize| (f64::from(self.axes[axis].base) - self.at[axis]) * self.cell[axis];
-        S::restrict(Vector3::new(along(0), along(1), if S::DIMENSION == 3 { along(2) } else { 0.0 }))
-    }
-
     /// Product over the axes of the functions' values, but along each axis in turn of `other`, per length (1/m).
     #[inline(always)]
-    fn along<S: Space>(&self, node: &Reached<S>, other: impl Fn(&Axis) -> &[f64; 3]) -> S::Vector {
+    fn along<S: Space>(&self, node: &Reached<S>, other: impl Fn(&Axis<f64>) -> &[f64; 3]) -> S::Vector {
         let [i, j, k] = node.axes;
         let [a, b, c] = &self.axes;
         let (x, y) = (a.value[i], b.value[j]);
@@ -294,11 +299,5 @@ impl Stencil {
     #[inline(always)]
     pub(crate) fn gradient<S: Space>(&self, node: &Reached<S>) -> S::Vector {
         self.along(node, |axis| &axis.slope)
-    }
-
-    /// Σ w r² along an axis, r from the point to the node (m²).
-    #[inline(always)]
-    pub(crate) fn spread(&self, axis: usize) -> f64 {
-        self.axes[axis].spread * self.cell[axis] * self.cell[axis]
     }
 }

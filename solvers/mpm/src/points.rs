@@ -111,10 +111,21 @@ impl<S: Space> Points<S> {
         .all(|&length| length == count)
     }
 
-    /// Puts the points of a body in the order of `key`, of equal keys in the order they have.
-    pub(crate) fn sort<K: Ord>(&mut self, range: Range<usize>, key: impl Fn(S::Vector) -> K) {
-        let mut order: Vec<usize> = range.clone().collect();
-        order.sort_by_key(|&at| key(self.position[at]));
+    /// Puts the points of a body in the order of the places that `place` says they are at, of equal ones in the order they have.
+    pub(crate) fn sort(&mut self, range: Range<usize>, place: impl Fn(S::Vector) -> usize) {
+        let places: Vec<usize> = self.position[range.clone()].iter().map(|&position| place(position)).collect();
+        let low = places.iter().copied().min().unwrap_or(0);
+        let high = places.iter().copied().max().unwrap_or(0);
+        // How many points are at lower places, then where the next one at a place goes.
+        let mut before = vec![0; high - low + 2];
+        places.iter().for_each(|place| before[place - low + 1] += 1);
+        (1..before.len()).for_each(|place| before[place] += before[place - 1]);
+        let mut order = vec![0; places.len()];
+        for (place, at) in places.iter().zip(range.clone()) {
+            let next = &mut before[place - low];
+            order[*next] = at;
+            *next += 1;
+        }
         let start = range.start;
         reorder(&mut self.id[range.clone()], &order, start);
         reorder(&mut self.start[range.clone()], &order, start);

@@ -7,11 +7,16 @@ use crate::contact::penalty::Springs;
 use crate::contact::shared::Shared;
 use crate::contact::{FrictionTable, Touch};
 use crate::driven::Driven;
-use crate::grid::{Lattice, Node, Stencil, Window};
+use crate::gather::Gather;
+use crate::gradients::Gradients;
+use crate::grid::{Lattice, Node, Window};
 use crate::held::Held;
+use crate::lanes::Processor;
 use crate::material::Law;
 use crate::options::{Contact, Setting, StressUpdate, Transfer};
 use crate::points::Points;
+use crate::runs::{self, Ground, LONGEST, Run};
+use crate::scatter::Scatter;
 use crate::start::medium;
 use crate::stress::{self, Failure};
 use crate::surface::Tracers;
@@ -22,6 +27,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Broken, Cause};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
+use std::marker::PhantomData;
 
 /// Compiles a call for the basis that was chosen.
 macro_rules! with_basis {
@@ -48,9 +54,8 @@ pub(crate) use with_basis;
 /// Nodes beyond which a grid is taken for a mistake.
 const MOST_NODES: f64 = 5e7;
 
-/// Points whose velocity gradients are found before their stresses are: few enough to stay in the cache, enough to share
-/// the choice of basis and law.
-const AT_ONCE: usize = 256;
+/// Points are put in order when they make more runs than in order, by one in so many.
+const DISORDER: usize = 8;
 
 /// Which velocities of the nodes a stage means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +77,9 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) walls: Vec<RigidPlane<S>>,
     pub(crate) nodes: Vec<Node<S>>,
     pub(crate) projected: Vec<S::Vector>,
+    /// Runs of points in the step under way.
+    runs: Vec<Run>,
+    pub(crate) processor: Processor,
     /// Velocity gradients of the points at hand (1/s).
     gradients: Vec<S::Matrix>,
     /// Nodes in use.
@@ -93,8 +101,6 @@ pub(crate) struct Simulation<S: Space> {
     /// Mass-proportional damping α (1/s).
     pub(crate) damping: f64,
     pub(crate) settling: bool,
-    /// Way since the points were last put in order, of the fastest (m).
-    pub(crate) travelled: f64,
     /// Velocities of the points a step before those of the last look (m/s): velocities are half a step behind positions.
     pub(crate) before: Vec<S::Vector>,
     /// Step of the last look.
@@ -134,14 +140,15 @@ impl<S: Space> Simulation<S> {
             walls,
             nodes: Vec::new(),
             projected: Vec::new(),
-            gradients: vec![S::NO_GRADIENT; AT_ONCE],
+            runs: Vec::new(),
+            processor: Processor::new(),
+            gradients: vec![S::NO_GRADIENT; LONGEST],
             used: 0,
             touches: Vec::new(),
             time_step,
             critical,
             step: 0,
             settling: false,
-            travelled: f64::INFINITY,
             before: Vec::new(),
             looked: 0,
             cost: Cost::default(),
@@ -182,11 +189,11 @@ impl<S: Space> Simulation<S> {
                 wall.move_to(time, self.time_step);
             }
         }
-        self.sort();
+        self.place_windows()?;
+        self.find_runs();
         if record {
             self.before.copy_from_slice(&self.points.velocity);
         }
-        self.place_windows()?;
         self.scatter();
         self.find_driven();
         self.find_shared();
@@ -237,23 +244,8 @@ impl<S: Space> Simulation<S> {
             + self.used * of_a_node
             + self.shared.bytes()
             + self.pairs.bytes()
+            + size_of_val(&*self.runs)
             + self.bodies.len() * size_of::<Body>()
-    }
-
-    /// Puts points in the order of their cells when some may have crossed one.
-    fn sort(&mut self) {
-        if self.travelled < 0.5 * self.lattice.shortest(S::DIMENSION) {
-            return;
-        }
-        let Self { lattice, bodies, points, setting, .. } = self;
-        for body in bodies.iter() {
-            // Points that reach the same nodes follow each other.
-            with_basis!(setting.basis, B => points.sort(body.part.points.clone(), |position| {
-                let [x, y, z] = Stencil::new::<S, B>(lattice, position, [body.part.half; 3]).base();
-                [z, y, x]
-            }));
-        }
-        self.travelled = 0.0;
     }
 
     /// Gives every field its window, and empties the nodes.
@@ -303,13 +295,32 @@ impl<S: Space> Simulation<S> {
         }
     }
 
+    /// Finds the points that reach the same nodes. Where they no longer follow each other the points of the body are put in
+    /// the order of their cells.
+    fn find_runs(&mut self) {
+        let Self { lattice, bodies, points, runs, setting, .. } = self;
+        runs.clear();
+        for Body { part, .. } in bodies {
+            with_basis!(setting.basis, B => {
+                part.runs = runs::find::<S, B>(lattice, part.points.clone(), points, runs);
+                if part.runs.len() > part.runs_in_order + part.runs_in_order / DISORDER {
+                    points.sort(part.points.clone(), |position| part.window.slot(lattice.first::<S, B>(position)));
+                    runs.truncate(part.runs.start);
+                    part.runs = runs::find::<S, B>(lattice, part.points.clone(), points, runs);
+                    part.runs_in_order = part.runs.len();
+                }
+            });
+        }
+    }
+
     fn scatter(&mut self) {
-        let Self { lattice, bodies, points, nodes, setting, .. } = self;
-        for body in bodies.iter() {
+        let Self { lattice, bodies, points, nodes, runs, setting, processor, .. } = self;
+        for Body { part, .. } in bodies.iter() {
+            let ground = Ground::new(lattice, part, &runs[part.runs.clone()], points);
             with_basis!(setting.basis, B => match setting.transfer {
-                Transfer::Flip { .. } => transfer::scatter::<S, B, Flip>(lattice, &body.part, points, nodes),
-                Transfer::Apic => transfer::scatter::<S, B, Apic>(lattice, &body.part, points, nodes),
-                Transfer::Spin => transfer::scatter::<S, B, Spin>(lattice, &body.part, points, nodes),
+                Transfer::Flip { .. } => processor.run(Scatter::<S, B, Flip>::new(ground, points, nodes)),
+                Transfer::Apic => processor.run(Scatter::<S, B, Apic>::new(ground, points, nodes)),
+                Transfer::Spin => processor.run(Scatter::<S, B, Spin>::new(ground, points, nodes)),
             });
         }
     }
@@ -384,16 +395,18 @@ impl<S: Space> Simulation<S> {
 
     fn gather(&mut self) {
         let project = self.setting.stress_update == StressUpdate::ModifiedLast;
-        let Self { lattice, bodies, points, nodes, projected, setting, time_step, .. } = self;
+        let Self { lattice, bodies, points, nodes, projected, runs, setting, processor, time_step, .. } = self;
+        let time_step = *time_step;
         macro_rules! gather {
+            ($B:ty, $T:ty, $transfer:expr, $part:expr, $project:literal) => {{
+                let (transfer, part, basis) = ($transfer, $part, PhantomData::<$B>);
+                let runs = &runs[part.runs.clone()];
+                let gather: Gather<'_, S, $B, $T, $project> =
+                    Gather { lattice, part, runs, transfer, time_step, points, nodes, projected, basis };
+                processor.run(gather);
+            }};
             ($B:ty, $T:ty, $transfer:expr, $part:expr) => {
-                if project {
-                    transfer::gather::<S, $B, $T, true>(lattice, $part, $transfer, *time_step, points, nodes, projected)
-                } else {
-                    transfer::gather::<S, $B, $T, false>(
-                        lattice, $part, $transfer, *time_step, points, nodes, projected,
-                    )
-                }
+                if project { gather!($B, $T, $transfer, $part, true) } else { gather!($B, $T, $transfer, $part, false) }
             };
         }
         for body in bodies.iter() {
@@ -407,20 +420,36 @@ impl<S: Space> Simulation<S> {
 
     /// Velocity gradients, then deformation and stress of every point.
     fn update_stress(&mut self, velocities: Velocities) -> Result<(), Box<Broken>> {
-        let Self { lattice, bodies, points, nodes, projected, gradients, setting, time_step, accounting, .. } = self;
+        let Self {
+            lattice,
+            bodies,
+            points,
+            nodes,
+            projected,
+            gradients,
+            runs,
+            processor,
+            setting,
+            time_step,
+            accounting,
+            ..
+        } = self;
         let mut flow = Flow::default();
         let mut failure: Option<(usize, Failure)> = None;
         for (place, body) in bodies.iter().enumerate() {
             let part: &Part = &body.part;
-            for start in part.points.clone().step_by(AT_ONCE) {
-                let range = start..(start + AT_ONCE).min(part.points.end);
+            for runs in runs::in_groups(&runs[part.runs.clone()]) {
+                let range = runs[0].start..runs[runs.len() - 1].end;
+                let ground = Ground::new(lattice, part, runs, points);
                 with_basis!(setting.basis, B => match velocities {
-                    Velocities::Stepped => transfer::gradients::<S, B, _>(
-                        lattice, part, range.clone(), points, nodes, |node| node.velocity, gradients,
-                    ),
-                    Velocities::Projected => transfer::gradients::<S, B, _>(
-                        lattice, part, range.clone(), points, projected, |velocity| *velocity, gradients,
-                    ),
+                    Velocities::Stepped => {
+                        let velocity = |node: &Node<S>| node.velocity;
+                        processor.run(Gradients::<S, B, _, _>::new(ground, nodes, velocity, gradients));
+                    }
+                    Velocities::Projected => {
+                        let velocity = |velocity: &S::Vector| *velocity;
+                        processor.run(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
+                    }
                 });
                 macro_rules! update {
                     ($law:ident) => {
@@ -474,7 +503,6 @@ impl<S: Space> Simulation<S> {
         if lost || farthest > cell {
             return Err(self.ran_away(cell));
         }
-        self.travelled += farthest;
         self.find_bounds();
         Ok(())
     }

@@ -186,8 +186,8 @@ struct Done {
 /// Grid and steps of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    lattice: Lattice,
-    points: u32,
+    pub(crate) lattice: Lattice,
+    pub(crate) points: u32,
     /// Time step (s).
     pub time_step: f64,
     /// Number of steps.

@@ -23,7 +23,8 @@ struct State<S: Space> {
     /// Rotation of every body as last looked at (rad).
     angles: Vec<f64>,
     looked: u64,
-    travelled: f64,
+    /// How many runs the points of every body made when they were last put in order.
+    runs_in_order: Vec<usize>,
     step: u64,
     cost: Cost,
     sums: Sums,
@@ -41,7 +42,7 @@ impl<S: Space> Simulation<S> {
             springs: self.springs.clone(),
             angles: self.bodies.iter().map(|body| body.angle).collect(),
             looked: self.looked,
-            travelled: self.travelled,
+            runs_in_order: self.bodies.iter().map(|body| body.part.runs_in_order).collect(),
             step: self.step,
             cost: self.cost,
             sums: self.accounts.sums,
@@ -63,7 +64,8 @@ impl<S: Space> Simulation<S> {
             && state.points.len() == self.points.len()
             && state.tracers.len() == self.tracers.len()
             && state.springs.len() == self.tracers.len()
-            && state.angles.len() == self.bodies.len();
+            && state.angles.len() == self.bodies.len()
+            && state.runs_in_order.len() == self.bodies.len();
         if !same {
             return Err(CheckpointError::Damaged("it has another number of points, tracers or bodies".to_owned()));
         }
@@ -72,7 +74,9 @@ impl<S: Space> Simulation<S> {
         (self.tracers.position, self.tracers.area) = state.tracers.into_iter().unzip();
         self.springs = state.springs;
         self.bodies.iter_mut().zip(state.angles).for_each(|(body, angle)| body.angle = angle);
-        (self.looked, self.travelled) = (state.looked, state.travelled);
+        let parts = self.bodies.iter_mut().map(|body| &mut body.part);
+        parts.zip(state.runs_in_order).for_each(|(part, runs)| part.runs_in_order = runs);
+        self.looked = state.looked;
         (self.step, self.cost) = (state.step, state.cost);
         self.open_accounts();
         (self.accounts.sums, self.accounts.tally) = (state.sums, state.tally);

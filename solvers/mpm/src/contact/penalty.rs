@@ -20,7 +20,7 @@ const DEEPEST: f64 = 0.8;
 
 /// A body as a point on its surface sees it: the nodes around that carry mass.
 pub(crate) struct Grip<S: Space> {
-    stencil: Stencil,
+    stencil: Stencil<f64>,
     /// Sum of the functions of the nodes that carry mass.
     total: f64,
     /// Velocity there (m/s).

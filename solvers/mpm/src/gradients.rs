@@ -1,0 +1,66 @@
+//! Velocity gradients at points.
+
+use crate::basis::Basis;
+use crate::lanes::{Four, Kernel, Lanes};
+use crate::patch::{Copies, Patch};
+use crate::runs::Ground;
+use crate::scatter::weighted;
+use grainbench_scene::space::Space;
+use std::array::from_fn;
+use std::marker::PhantomData;
+
+/// Velocity gradients (1/s) at the points of some runs of a body.
+pub(crate) struct Gradients<'a, S: Space, B, N, V> {
+    ground: Ground<'a, S>,
+    nodes: &'a [N],
+    /// Velocity of a node (m/s).
+    velocity: V,
+    gradients: &'a mut [S::Matrix],
+    basis: PhantomData<B>,
+}
+
+impl<'a, S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Gradients<'a, S, B, N, V> {
+    pub(crate) const fn new(
+        ground: Ground<'a, S>,
+        nodes: &'a [N],
+        velocity: V,
+        gradients: &'a mut [S::Matrix],
+    ) -> Self {
+        Self { ground, nodes, velocity, gradients, basis: PhantomData }
+    }
+}
+
+impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Gradients<'_, S, B, N, V> {
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { ground, nodes, velocity, gradients, .. } = self;
+        let zero = Four::splat(lanes, 0.0);
+        let first = ground.runs.first().map_or(0, |run| run.start);
+        // Never read unless copied to.
+        let Some(&any) = nodes.first() else { return };
+        let mut copies: Copies<N> = [any; _];
+        for run in ground.runs {
+            let (seen, patch) = ground.part.window.seen::<S, B, _>(run.base, nodes, &mut copies);
+            for batch in run.batches() {
+                let stencil = ground.stencil::<B, L>(lanes, run, batch);
+                let [values, slopes] = stencil.along_x();
+                let mut gradient = [[zero; 3]; 3];
+                for row in 0..Patch::rows::<S, B>() {
+                    let across = stencil.across::<S, B>(row);
+                    let nodes = &seen[patch.row::<S, B>(row)];
+                    let nodes: [S::Vector; 3] = from_fn(|node| velocity(&nodes[node.min(B::WIDTH - 1)]));
+                    for (component, gradient) in gradient.iter_mut().enumerate().take(S::DIMENSION) {
+                        let velocity = nodes.map(|node| Four::splat(lanes, S::component(node, component)));
+                        let [along, velocities] = [slopes, values].map(|weights| weighted::<B, _>(velocity, weights));
+                        gradient[0] = gradient[0] + along * across.value;
+                        gradient[1] = gradient[1] + velocities * across.slope[0];
+                        if S::DIMENSION == 3 {
+                            gradient[2] = gradient[2] + velocities * across.slope[1];
+                        }
+                    }
+                }
+                batch.counted_from(first).write_matrices::<S, L>(gradient, gradients);
+            }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! From points to nodes: mass, momentum and internal force.
+
+use crate::basis::Basis;
+use crate::grid::{Node, Stencil};
+use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
+use crate::patch::{Copies, Patch};
+use crate::points::Points;
+use crate::runs::Ground;
+use crate::transfer::Transfer;
+use grainbench_scene::space::Space;
+use nalgebra::Vector3;
+use std::array::from_fn;
+use std::marker::PhantomData;
+
+/// The sum over the nodes of a row.
+#[inline(always)]
+pub(crate) fn weighted<B: Basis, N: Number>(of: [N; 3], weights: [N; 3]) -> N {
+    let sum = of[0] * weights[0] + of[1] * weights[1];
+    if B::WIDTH == 3 { sum + of[2] * weights[2] } else { sum }
+}
+
+/// The velocity that points show to the nodes of a stencil, v + A r with r from the point to the node: at the first node, and what
+/// is added from one node to the next along each axis.
+pub(crate) struct Shown<N> {
+    first: [N; 3],
+    next: [[N; 3]; 3],
+}
+
+impl<N: Number> Shown<N> {
+    #[inline(always)]
+    pub(crate) fn new<S: Space, T: Transfer>(
+        cell: &[f64; 3],
+        stencil: &Stencil<N>,
+        velocity: [N; 3],
+        affine: [[N; 3]; 3],
+    ) -> Self {
+        let zero = velocity[0].like(0.0);
+        let mut shown = Self { first: velocity, next: [[zero; 3]; 3] };
+        if T::AFFINE {
+            for (component, affine) in affine.iter().enumerate().take(S::DIMENSION) {
+                for (axis, &along) in affine.iter().enumerate().take(S::DIMENSION) {
+                    shown.first[component] = shown.first[component] + along * stencil.arm_of_first(axis);
+                    shown.next[axis][component] = along * cell[axis];
+                }
+            }
+        }
+        shown
+    }
+
+    /// A component at the nodes of a row along x.
+    #[inline(always)]
+    pub(crate) fn row<S: Space, B: Basis, T: Transfer>(&self, row: usize, component: usize) -> [N; 3] {
+        let first = self.first[component];
+        if !T::AFFINE {
+            return [first; 3];
+        }
+        let [x, y, z] = &self.next;
+        let mut start = first + y[component] * (row % B::WIDTH) as f64;
+        if S::DIMENSION == 3 {
+            start = start + z[component] * (row / B::WIDTH) as f64;
+        }
+        [start, start + x[component], start + x[component] * 2.0]
+    }
+}
+
+/// Mass, momentum and internal force, −Vσ∇N, of a body's points to its nodes.
+pub(crate) struct Scatter<'a, S: Space, B, T> {
+    ground: Ground<'a, S>,
+    points: &'a Points<S>,
+    nodes: &'a mut [Node<S>],
+    how: PhantomData<(B, T)>,
+}
+
+impl<'a, S: Space, B: Basis, T: Transfer> Scatter<'a, S, B, T> {
+    pub(crate) const fn new(ground: Ground<'a, S>, points: &'a Points<S>, nodes: &'a mut [Node<S>]) -> Self {
+        Self { ground, points, nodes, how: PhantomData }
+    }
+}
+
+impl<S: Space, B: Basis, T: Transfer> Kernel for Scatter<'_, S, B, T> {
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { ground, points, nodes, .. } = self;
+        let zero = Four::splat(lanes, 0.0);
+        let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
+        for run in ground.runs {
+            let window = &ground.part.window;
+            let (reached, patch) = window.reached::<S, B, _>(run.base, nodes, &mut copies);
+            for batch in run.batches() {
+                let stencil = ground.stencil::<B, L>(lanes, run, batch);
+                let velocity = batch.vectors::<S, L>(lanes, &points.velocity);
+                let affine = if T::AFFINE { batch.matrices::<S, L>(lanes, &points.affine) } else { [[zero; 3]; 3] };
+                let shown = Shown::new::<S, T>(&ground.lattice.cell, &stencil, velocity, affine);
+                let [values, slopes] = stencil.along_x();
+                let mass = batch.amounts(lanes, &points.mass);
+                let masses = values.map(|value| value * mass);
+                let volume = -batch.amounts(lanes, &points.volume);
+                let pull = batch.tensors::<S, L>(lanes, &points.stress).map(|row| row.map(|stress| stress * volume));
+                for row in 0..Patch::rows::<S, B>() {
+                    let across = stencil.across::<S, B>(row);
+                    let masses = masses.map(|mass| mass * across.value);
+                    let mut brought = masses.map(|mass| [mass, zero, zero, zero, zero, zero, zero, zero]);
+                    for component in 0..S::DIMENSION {
+                        let velocities = shown.row::<S, B, T>(row, component);
+                        let along = pull[component][0] * across.value;
+                        let mut rest = pull[component][1] * across.slope[0];
+                        if S::DIMENSION == 3 {
+                            rest = rest + pull[component][2] * across.slope[1];
+                        }
+                        for node in 0..B::WIDTH {
+                            brought[node][1 + component] = masses[node] * velocities[node];
+                            brought[node][1 + S::DIMENSION + component] = slopes[node] * along + values[node] * rest;
+                        }
+                    }
+                    give::<S, B, L>(brought, &mut reached[patch.row::<S, B>(row)]);
+                }
+            }
+            window.put_back::<S, B, _>(run.base, nodes, &copies);
+        }
+    }
+}
+
+/// Adds mass, momentum and force from four points to the nodes of a row.
+#[inline(always)]
+fn give<S: Space, B: Basis, L: Lanes>(brought: [[Four<L>; 2 * LANES]; 3], nodes: &mut [Node<S>]) {
+    let zero = brought[0][7];
+    let last = if S::DIMENSION == 2 {
+        // One number of each node is left.
+        Four::sums([brought[0][4], brought[1][4], brought[2][4], zero]).map(|sum| [sum, 0.0, 0.0, 0.0])
+    } else {
+        let of = |node: usize| Four::sums([brought[node][4], brought[node][5], brought[node][6], zero]);
+        [of(0), of(1), of(2), [0.0; LANES]]
+    };
+    for (node, to) in nodes.iter_mut().enumerate().take(B::WIDTH) {
+        let [mass, a, b, c] = Four::sums(from_fn(|at| brought[node][at]));
+        let [d, e, f, _] = last[node];
+        let sums = [a, b, c, d, e, f];
+        to.mass += mass;
+        to.velocity += S::restrict(Vector3::new(a, b, c));
+        to.change +=
+            S::restrict(Vector3::from_fn(|axis, _| if axis < S::DIMENSION { sums[S::DIMENSION + axis] } else { 0.0 }));
+    }
+}
