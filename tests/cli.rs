@@ -290,13 +290,13 @@ fn report_makes_pictures_of_simulations() {
 
     // A contact of a grain that is not there is not drawn; what is no record is refused by name and place.
     let record = std::fs::read_to_string(path.join("one/record.json")).unwrap();
-    std::fs::write(path.join("one/record.json"), record.replace("\"grain\": 1,", "\"grain\": 900,")).unwrap();
+    std::fs::write(path.join("one/record.json"), record.replace("\"grain\":1,", "\"grain\":900,")).unwrap();
     printed(path, &["report", "one"]);
     let refused = |arguments: &[&str], what: &str| {
         let answer = grainbench(path, arguments);
         assert!(answer.code == Some(2) && answer.err.contains(what), "{:?} {}", answer.code, answer.err);
     };
     refused(&["report", "one", "--beside", "nowhere"], "record.json");
-    std::fs::write(path.join("two/record.json"), record.replacen("\"step\": [", "\"step\": [true,", 1)).unwrap();
+    std::fs::write(path.join("two/record.json"), record.replacen("\"step\":[", "\"step\":[true,", 1)).unwrap();
     refused(&["report", "two"], "at `series.step[0]`: invalid type: boolean `true`");
 }

@@ -11,12 +11,12 @@ use crate::store::{LoadError, parse};
 /// Name of the file.
 pub const RECORD_FILE: &str = "record.json";
 
-/// Writes the record, indented; numbers read back to the same bits.
+/// Writes the record on one line, for it may hold millions of numbers; they read back to the same bits.
 ///
 /// # Errors
 /// When `out` refuses.
 pub fn write(record: &Record, mut out: impl Write) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut out, record)?;
+    serde_json::to_writer(&mut out, record)?;
     out.write_all(b"\n")
 }
 
@@ -43,5 +43,6 @@ mod tests {
         let mut out = Vec::new();
         write(&record, &mut out).unwrap();
         assert_eq!(serde_json::from_slice::<Record>(&out).unwrap(), record);
+        assert_eq!(out.iter().filter(|&&letter| letter == b'\n').count(), 1);
     }
 }
