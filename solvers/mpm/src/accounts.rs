@@ -3,17 +3,23 @@
 //! - work: impulses of driven grains and walls, times their velocities;
 //! - plastic: ∫ q dε_p V over points; friction: mean force of the spring times what its end slid, or the impulse along the
 //!   surface times the slip at nodes before the step;
-//! - contact: what contacts take from the motion, and neither store in springs nor lose to friction. They take their impulses on
-//!   nodes times the velocity that carries surfaces, the mean of those that points bring to the nodes before and after the
-//!   step. (The velocity that a force gives to a node beside a surface, which may have hardly any mass, is felt by nothing.)
-//! - transfer: what stresses (Σ V σ:Δε, on the velocities that they follow), contacts, gravity and damping do on the motion,
-//!   and points do not gain in kinetic energy: lumped masses, smoothing, and stresses that follow other velocities.
+//! - contact: what contacts take from the motion, and neither store in springs nor lose to friction. Springs take from two
+//!   surfaces their force times the way that these go against each other, contact by contact; conditions at nodes their impulses
+//!   times the velocity of the nodes. Surfaces follow the mean of the velocities that points bring to the nodes before and after
+//!   the step. (The velocity that a force gives to a node beside a surface, which may have hardly any mass, is felt by nothing.)
+//! - transfer: the kinetic energy that nodes gain in a step and points do not when they take it over; less the work that impulses do
+//!   on that part of the nodes' velocity which points do not bring back, and which neither stresses nor surfaces follow (points that
+//!   keep their own velocity and bring it back lose nothing in sum: the two are equal); and half of what stresses take from the
+//!   velocities that they follow, less what the same stresses take from the nodes once points have moved on, across cells.
 //!
-//! What is left over all is how well stress, plastic work and elastic energy go together. Energy is counted in whole steps:
-//! kinetic energy belongs to the velocities of points, half a step before their positions, and springs are those of the last
-//! forces.
+//! No entry is what the others leave. That they add up to the work of what drives grains is a test of it all: that impulses are
+//! equal and opposite, that forces on nodes take from the motion what stresses take in points, and that stress, plastic work and
+//! elastic energy go together. (Where stresses come first, what crossing cells takes is left out.) Energy is counted in whole steps: kinetic energy belongs to the
+//! velocities of points, half a step before their positions, and springs are those of the last forces.
 
-use crate::options::StressUpdate;
+use crate::contact::penalty;
+use crate::contact::penalty::Pushed;
+use crate::options::{Contact, StressUpdate};
 use crate::simulation::{Simulation, with_basis};
 use grainbench_scene::body::Hold;
 use grainbench_scene::budget::Budget;
@@ -31,13 +37,15 @@ pub(crate) struct Tally {
     pub(crate) friction: f64,
     /// Work of walls (J).
     pub(crate) walls: f64,
+    /// What springs take from the motion of surfaces, by half of their velocities before the step (J).
+    pub(crate) taken: f64,
 }
 
 /// What stresses tell of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Flow {
-    /// Σ V σ:Δε (J).
-    pub(crate) power: f64,
+    /// Σ V σ:Δε of the stresses after the step (J).
+    pub(crate) taken: f64,
     /// Work of plastic flow (J).
     pub(crate) plastic: f64,
 }
@@ -49,10 +57,21 @@ pub(crate) struct Sums {
     kinetic_at_start: f64,
     /// Work of gravity on nodes.
     gravity: f64,
-    /// Work of contacts and of what drives grains.
+    /// What springs take from the motion of surfaces.
+    taken: f64,
+    /// Work of conditions at nodes and of what drives grains, on the velocities that surfaces follow.
     contacts: f64,
+    /// Kinetic energy that nodes gain in their steps.
+    stepped: f64,
+    /// Work of what drives grains, on points that share their nodes with others.
+    carried: f64,
+    /// Work on that part of the nodes' velocity which points do not bring back.
+    stray: f64,
+    /// What stresses took in the last step (J), of which nodes are told in the next.
+    stressed: f64,
+    /// What they take less than that from nodes when points have moved on.
+    crossed: f64,
     damping: f64,
-    power: f64,
     plastic: f64,
     friction: f64,
     work: f64,
@@ -67,13 +86,24 @@ pub(crate) struct Accounts<S: Space> {
     pub(crate) tally: Tally,
     /// Internal forces on the nodes (N); then impulses of contacts and of what drives grains (N s).
     impulses: Vec<S::Vector>,
-    /// Forces with those of springs (N).
+    /// Forces with those of springs (N); then impulses with those of internal forces (N s).
     forces: Vec<S::Vector>,
+    /// Forces of springs in this step.
+    pub(crate) pushed: Vec<Pushed<S>>,
+    /// Work of what drives grains on nodes in this step (J).
+    held: f64,
 }
 
 impl<S: Space> Default for Accounts<S> {
     fn default() -> Self {
-        Self { sums: Sums::default(), tally: Tally::default(), impulses: Vec::new(), forces: Vec::new() }
+        Self {
+            sums: Sums::default(),
+            tally: Tally::default(),
+            impulses: Vec::new(),
+            forces: Vec::new(),
+            pushed: Vec::new(),
+            held: 0.0,
+        }
     }
 }
 
@@ -107,43 +137,64 @@ impl<S: Space> Simulation<S> {
         }
     }
 
+    /// Work of driven grains in this step so far (J).
+    fn work_of_driven(&self) -> f64 {
+        let work = self.driven.groups.iter().map(|group| -S::dot(group.force, group.velocity));
+        work.sum::<f64>() * self.time_step
+    }
+
+    /// Before points of driven bodies are carried along.
+    pub(crate) fn note_driven(&mut self) {
+        if self.accounting {
+            self.accounts.held = self.work_of_driven();
+        }
+    }
+
     /// After velocities have changed.
     pub(crate) fn account_for_nodes(&mut self) {
         if !self.accounting {
             return;
         }
-        let Self { nodes, accounts, gravity, time_step, damping, driven, walls, used, .. } = self;
-        let Accounts { sums, tally, impulses, forces } = accounts;
+        let driven_work = self.work_of_driven();
+        let Self { nodes, accounts, setting, gravity, time_step, damping, driven, walls, used, .. } = self;
+        let Accounts { sums, tally, impulses, forces, held, .. } = accounts;
         let half = 0.5 * *damping * *time_step;
         let (keep, gain) = ((1.0 - half) / (1.0 + half), *time_step / (1.0 + half));
-        let mut mass = 0.0;
-        for ((node, force), impulse) in nodes[..*used].iter().zip(forces.iter()).zip(impulses) {
+        let (mut mass, mut given) = (0.0, 0.0);
+        for ((node, force), impulse) in nodes[..*used].iter().zip(forces.iter_mut()).zip(impulses) {
             if node.mass <= 0.0 {
-                *impulse = S::ORIGIN;
+                (*impulse, *force) = (S::ORIGIN, S::ORIGIN);
                 continue;
             }
             mass += node.mass;
             let before = node.velocity - node.change;
             let mean = before + node.change * 0.5;
             let pull = *gravity * node.mass;
+            given += S::dot(*impulse, before) * *time_step;
             let dragged = before * (keep - 1.0) + (*force * (1.0 / node.mass) + *gravity) * (gain - *time_step);
             let drag = dragged * node.mass;
-            // All that changed the momentum, but internal forces, gravity and drag.
-            *impulse = node.change * node.mass - (*impulse + pull) * *time_step - drag;
+            // All that changed the momentum, but gravity and drag; and without internal forces.
+            *force = node.change * node.mass - pull * *time_step - drag;
+            *impulse = *force - *impulse * *time_step;
+            sums.stepped += 0.5 * node.mass * (S::dot(node.velocity, node.velocity) - S::dot(before, before));
             sums.gravity += S::dot(pull, mean) * *time_step;
             sums.damping -= S::dot(drag, mean);
         }
+        if setting.stress_update != StressUpdate::First {
+            sums.crossed += 0.5 * (sums.stressed + given);
+        }
         sums.impulse += S::embed(*gravity) * (mass * *time_step);
         for group in &driven.groups {
-            let impulse = -S::embed(group.force) * *time_step;
-            sums.impulse += impulse;
-            sums.work += impulse.dot(&S::embed(group.velocity));
+            sums.impulse -= S::embed(group.force) * *time_step;
         }
+        sums.work += driven_work;
+        sums.carried += driven_work - *held;
         for wall in walls.iter() {
             sums.impulse -= S::embed(wall.force) * *time_step;
         }
         sums.work += tally.walls;
         sums.friction += tally.friction;
+        sums.taken += tally.taken;
     }
 
     /// After points have brought their new velocities to the nodes, where they do.
@@ -152,16 +203,22 @@ impl<S: Space> Simulation<S> {
             return;
         }
         let is_projected = self.setting.stress_update == StressUpdate::ModifiedLast;
-        let Accounts { sums, impulses, .. } = &mut self.accounts;
-        for ((node, after), impulse) in self.nodes.iter().zip(&self.projected).zip(impulses.iter()) {
-            let carrying = if is_projected { *after } else { node.velocity };
-            sums.contacts += S::dot(*impulse, (node.velocity - node.change + carrying) * 0.5);
+        let Self { nodes, projected, bodies, lattice, setting, accounts, time_step, .. } = self;
+        let Accounts { sums, impulses, forces, pushed, .. } = accounts;
+        let after = |slot: usize| if is_projected { projected[slot] } else { nodes[slot].velocity };
+        for (slot, (impulse, all)) in impulses.iter().zip(forces.iter()).enumerate() {
+            let node = &nodes[slot];
+            sums.contacts += S::dot(*impulse, (node.velocity - node.change + after(slot)) * 0.5);
+            sums.stray += 0.5 * S::dot(*all, node.velocity - after(slot));
         }
+        let taken = with_basis!(setting.basis, B => penalty::taken::<S, B>(lattice, bodies, pushed, nodes, after));
+        sums.taken += taken * *time_step;
+        pushed.clear();
     }
 
     /// After stresses have changed.
     pub(crate) fn account_for_flow(&mut self, flow: Flow) {
-        self.accounts.sums.power += flow.power;
+        self.accounts.sums.stressed = flow.taken;
         self.accounts.sums.plastic += flow.plastic;
     }
 
@@ -213,8 +270,11 @@ impl<S: Space> Simulation<S> {
             plastic: sums.plastic,
             friction: sums.friction,
             damping: sums.damping,
-            transfer: sums.contacts + sums.gravity - sums.damping - sums.power - (kinetic - sums.kinetic_at_start),
-            contact: sums.work - sums.contacts - tally.springs - sums.friction,
+            transfer: sums.stepped + sums.carried - (kinetic - sums.kinetic_at_start) - sums.stray - sums.crossed,
+            contact: match self.setting.contact {
+                Contact::Penalty => sums.taken - tally.springs - sums.friction,
+                _ => sums.work - sums.carried - sums.contacts - sums.friction,
+            },
             momentum: all.map(|at| S::embed(points.velocity[at]) * points.mass[at]).sum(),
             impulse: sums.impulse,
         }

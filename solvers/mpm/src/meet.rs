@@ -1,5 +1,6 @@
 //! The stages of a cycle at which bodies meet: springs as forces, conditions at nodes on velocities.
 
+use crate::accounts::Accounts;
 use crate::contact::nodal::{self, Felt};
 use crate::contact::penalty::{self, Rules, Told};
 use crate::contact::shared::{Projected, Stepped};
@@ -60,6 +61,7 @@ impl<S: Space> Simulation<S> {
         self.touches.clear();
         self.springs.begin();
         self.pairs.find(&self.bodies, &self.lattice, 0.0);
+        let accounting = self.accounting;
         let rules = Rules {
             lattice: &self.lattice,
             friction: &self.friction,
@@ -67,7 +69,8 @@ impl<S: Space> Simulation<S> {
             time_step: self.time_step,
         };
         let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, accounts, .. } = self;
-        let mut told = Told { tally: &mut accounts.tally, touches: record.then_some(touches) };
+        let Accounts { tally, pushed, .. } = accounts;
+        let mut told = Told { tally, touches: record.then_some(touches), pushed: accounting.then_some(pushed) };
         with_basis!(setting.basis, B => {
             penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, &mut told);
             if !pairs.found.is_empty() {

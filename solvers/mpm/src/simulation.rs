@@ -209,6 +209,7 @@ impl<S: Space> Simulation<S> {
         self.note_forces();
         self.step_nodes();
         self.gather();
+        self.note_driven();
         self.driven.carry(&self.bodies, &mut self.points, self.time_step);
         self.account_for_nodes();
         if self.setting.stress_update == StressUpdate::ModifiedLast {

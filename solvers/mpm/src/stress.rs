@@ -26,8 +26,8 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
 }
 
 /// F ← (1 + Δt ∇v) F, volume and stress of every point of a range, of which `gradients` are the velocity gradients (1/s);
-/// the first point that broke, if any did. With `COUNT` adds what the stresses did to `flow`: the work of the mean stress on
-/// the mean volume, and that of plastic flow, the flow stress after the step times the plastic strain of it.
+/// the first point that broke, if any did. With `COUNT` adds to `flow` what the stresses after the step take on the strain of it,
+/// and the work of plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume.
 pub(crate) fn update<S: Space, L: Law, const COUNT: bool>(
     law: L,
     range: Range<usize>,
@@ -51,15 +51,14 @@ pub(crate) fn update<S: Space, L: Law, const COUNT: bool>(
         if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
             failure = Some(Failure { point: at, cause: cause::<S>(increment, volume_ratio) });
         }
-        let before = (*volume, *stress, *plastic_strain);
+        let before = (*volume, *plastic_strain);
         *volume = reference * volume_ratio;
         *stress = law.follow::<S>(increment, volume_ratio, *deformation, *stress, plastic_strain);
         if COUNT {
-            let mean = S::embed_symmetric(S::scaled_sum(*stress, 1.0, before.1)) * 0.5;
-            let half = 0.5 * (before.0 + *volume);
             let strain = S::embed_symmetric(S::symmetric_part(increment));
-            flow.power += half * mean.dot(&strain);
-            flow.plastic += half * law.flow_stress(*plastic_strain) * (*plastic_strain - before.2);
+            flow.taken += *volume * S::embed_symmetric(*stress).dot(&strain);
+            let mean = 0.5 * (before.0 + *volume);
+            flow.plastic += mean * law.flow_stress(*plastic_strain) * (*plastic_strain - before.1);
         }
     }
     failure

@@ -36,16 +36,29 @@ impl<S: Space> Grip<S> {
         position: S::Vector,
         nodes: &[Node<S>],
     ) -> Option<Self> {
+        Self::with::<B>(lattice, part, position, nodes, |slot, weight| {
+            nodes[slot].velocity * (weight / nodes[slot].mass)
+        })
+    }
+
+    /// The same, with `weighted` for the velocity of a node times its weight.
+    #[inline(always)]
+    fn with<B: Basis>(
+        lattice: &Lattice,
+        part: &Part,
+        position: S::Vector,
+        nodes: &[Node<S>],
+        weighted: impl Fn(usize, f64) -> S::Vector,
+    ) -> Option<Self> {
         let stencil = Stencil::new::<S, B>(lattice, position, [part.half; 3]);
         if !part.window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
             return None;
         }
         let (mut total, mut velocity) = (0.0, S::ORIGIN);
         stencil.each::<S, B>(&part.window, |node| {
-            let at = &nodes[node.slot];
-            if at.mass > 0.0 {
+            if nodes[node.slot].mass > 0.0 {
                 total += node.weight;
-                velocity += at.velocity * (node.weight / at.mass);
+                velocity += weighted(node.slot, node.weight);
             }
         });
         (total > 1e-6).then(|| Self { stencil, total, velocity: velocity * (1.0 / total) })
@@ -185,6 +198,39 @@ pub(crate) struct Told<'a, S: Space> {
     pub(crate) tally: &'a mut Tally,
     /// What touches, where it is asked for.
     pub(crate) touches: Option<&'a mut Vec<Touch<S>>>,
+    /// What pushes, where the budget is asked for.
+    pub(crate) pushed: Option<&'a mut Vec<Pushed<S>>>,
+}
+
+/// The force of a spring, and where it acts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pushed<S: Space> {
+    /// The body that is pushed, by place, and where it touches (m).
+    body: (u32, S::Vector),
+    /// The body that is pushed back; a wall has a velocity of its own (m/s).
+    back: Result<(u32, S::Vector), S::Vector>,
+    /// Force on the first (N).
+    force: S::Vector,
+}
+
+/// What springs take from the motion of surfaces, by half of their velocities `after` the step (W): −F·(v₁ − v₂)/2 of every contact.
+pub(crate) fn taken<S: Space, B: Basis>(
+    lattice: &Lattice,
+    bodies: &[Body],
+    pushed: &[Pushed<S>],
+    nodes: &[Node<S>],
+    after: impl Fn(usize) -> S::Vector,
+) -> f64 {
+    let velocity = |(body, there): (u32, S::Vector)| {
+        let part = &bodies[body as usize].part;
+        let grip = Grip::<S>::with::<B>(lattice, part, there, nodes, |slot, weight| after(slot) * weight);
+        grip.map_or(S::ORIGIN, |grip| grip.velocity)
+    };
+    let work = pushed.iter().map(|push| {
+        let back = push.back.map_or_else(|wall| wall, velocity);
+        -0.5 * S::dot(push.force, velocity(push.body) - back)
+    });
+    work.sum()
 }
 
 /// Springs between bodies and walls.
@@ -227,6 +273,10 @@ pub(crate) fn at_walls<S: Space, B: Basis>(
                 grip.push::<B>(&body.part, force, nodes);
                 wall.force -= force;
                 told.tally.walls += S::dot(force, wall.velocity(position)) * rules.time_step;
+                told.tally.taken -= 0.5 * S::dot(force, slip);
+                if let Some(pushed) = told.pushed.as_mut() {
+                    pushed.push(Pushed { body: (place as u32, position), back: Err(wall.velocity(position)), force });
+                }
                 if let Some(touches) = told.touches.as_mut() {
                     let energy = energy_ahead::<S>(spring, depth, stretched, slip, wall.normal, slipping);
                     let body = place as u32;
@@ -295,6 +345,10 @@ pub(crate) fn between<S: Space, B: Basis>(
             let force = push + shear;
             one.push::<B>(&first.part, force, nodes);
             two.push::<B>(&second.part, -force, nodes);
+            told.tally.taken -= 0.5 * S::dot(force, slip);
+            if let Some(pushed) = told.pushed.as_mut() {
+                pushed.push(Pushed { body: (pair.first, there), back: Ok((pair.second, middle)), force });
+            }
             if let Some(touches) = told.touches.as_mut() {
                 let energy = energy_ahead::<S>(spring, depth, stretched, slip, out, slipping);
                 let body = pair.first;
