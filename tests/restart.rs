@@ -125,7 +125,8 @@ fn left(directory: &Path) -> Vec<(String, String)> {
 fn a_killed_run_continues_to_the_same_files() {
     killed_and_continued(LONG, &["--solver", "dem"], "20000");
     // A grid knows no cycles of another method.
-    let timed = LONG.replace("duration_cycles = 1_000_000", "duration = 1.0").replace("every_cycles = 100_000", "every = 0.05");
+    let timed =
+        LONG.replace("duration_cycles = 1_000_000", "duration = 1.0").replace("every_cycles = 100_000", "every = 0.05");
     killed_and_continued(&timed, &["--solver", "mpm", "--cells", "2", "--points", "2"], "200");
 }
 

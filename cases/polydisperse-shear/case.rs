@@ -10,12 +10,18 @@ mod figures;
 mod measures;
 #[path = "paper.rs"]
 mod paper;
+#[path = "pictures.rs"]
+mod pictures;
+#[path = "sides.rs"]
+mod sides;
 #[path = "springs.rs"]
 mod springs;
+#[path = "yielding.rs"]
+mod yielding;
 
 use crate::case::{Case, Rung};
 use crate::gate::{Done, Gate, Measured, Missing, Run};
-use grainbench_scene::scene::Duration;
+use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::Resolution;
 
 /// Cells across the slab, two points a cell and axis, as in the paper.
@@ -51,17 +57,33 @@ fn gates() -> Vec<Gate> {
     let mut gates = coarse::gates();
     gates.extend(springs::gates());
     gates.extend(paper::gates());
+    gates.extend(yielding::gates());
     gates
 }
 
+/// Snapshots on the way to the end, every 2.5 % of shear.
+const FRAMES: u32 = 31;
+/// Mean shear at which the paper shows force chains.
+const CHAINS: [f64; 2] = [0.63, 0.71];
+
 /// The run to a mean shear, with so many snapshots on the way.
 fn to_shear(run: Run, shear: f64, snapshots: u32) -> Run {
-    run.adjusted(&format!("to {:.0} % shear", 100.0 * shear), move |scene| {
-        let speed = scene.driven.iter().map(|driven| driven.velocity.y).fold(0.0, f64::max);
-        let width = scene.domain.map_or(0.0, |domain| domain.high.x - domain.low.x);
-        scene.duration = Duration::Seconds(shear * width / speed);
-        scene.snapshots = snapshots;
-    })
+    run.adjusted(&format!("to {:.0} % shear", 100.0 * shear), move |scene| sheared(scene, shear, snapshots))
+}
+
+/// Time until a mean shear (s).
+fn time_of(scene: &Scene, shear: f64) -> f64 {
+    let speed = scene.driven.iter().map(|driven| driven.velocity.y).fold(0.0, f64::max);
+    let width = scene.domain.map_or(0.0, |domain| domain.high.x - domain.low.x);
+    shear * width / speed
+}
+
+/// Ends at a mean shear; where there are snapshots on the way, there are those of the paper's force chains too.
+fn sheared(scene: &mut Scene, shear: f64, snapshots: u32) {
+    scene.duration = Duration::Seconds(time_of(scene, shear));
+    scene.snapshots = snapshots;
+    let on_the_way = CHAINS.into_iter().filter(|&at| snapshots > 0 && at < shear);
+    scene.snapshot_times = on_the_way.map(|at| time_of(scene, at)).collect();
 }
 
 /// An entry of the energy budget at the end (J).

@@ -1,34 +1,91 @@
-//! Figures, of grains on springs: those of deformable grains take minutes a run.
+//! Graphs of grains on springs, and beside them of those that yield where minutes may be spent.
 
 use super::chains::{Chains, chains};
-use super::{measures, springs::slab};
+use super::pictures::{self, PROFILES, Slab};
+use super::measures;
 use crate::bench::Bench;
-use crate::figure::{Axis, Curve, Drawing, Figure, Stroke};
-use crate::force_plot::force_plot;
+use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::gate::Done;
 use grainbench_scene::record::Snapshot;
 use grainbench_scene::solver::RunError;
 
 pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let done = bench.run(&slab())?;
+    let slabs = pictures::slabs(bench)?;
+    let mut all = vec![displacement(&slabs)];
+    all.extend(over_shear(&slabs));
+    // Grains on springs come last and are always there.
+    if let Some((_, done)) = slabs.last() {
+        all.extend(of_springs(done));
+    }
+    all.extend(pictures::figures(&slabs));
+    Ok(all)
+}
+
+/// Profiles of displacement across the slab, a colour for every shear.
+fn displacement(slabs: &[Slab]) -> Figure {
     let mut curves = vec![Curve::new("uniform shear", Stroke::Dashed, vec![(0.0, 0.0), (1.0, 1.0)])];
-    for shear in [0.25, 0.5, 0.75] {
-        if let Ok(snapshot) = measures::at(&done, shear) {
-            let label = format!("{:.0} % shear", 100.0 * shear);
-            curves.push(Curve::new(label, Stroke::MarkedLine, measures::profile(&done, snapshot)));
+    for (words, done) in slabs {
+        for shear in PROFILES {
+            if let Ok(snapshot) = measures::at(done, shear) {
+                let label = format!("{words}, {:.0} %", 100.0 * shear);
+                curves.push(Curve::new(label, Stroke::MarkedLine, measures::profile(done, snapshot)));
+            }
         }
     }
-    let mut all = vec![Figure::graph(
+    Figure::graph(
         "displacement",
         "Displacement across the slab",
-        "Displacement of grains averaged over columns, as a fraction of that of the moving side, at the right. Grains on springs; the \
+        "Fig. 8 of the paper: displacement of grains averaged over columns, as a fraction of that of the moving side, at the right. The \
          straight line is uniform shear.",
         [Axis::linear("x over the width (1)"), Axis::linear("displacement over that of the side (1)")],
         curves,
-    )];
+    )
+}
+
+/// What grows with the shear, of every slab.
+fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
+    let graph = |name: &str, title: &str, caption: &str, label: &str, of: &dyn Fn(&Done, &Snapshot) -> f64| {
+        let curve = |(words, done): &Slab| {
+            let points = done.record.snapshots.iter().map(|at| (measures::shear(done, at.time), of(done, at))).collect();
+            Curve::new(*words, Stroke::Line, points)
+        };
+        let axes = [Axis::linear("mean shear (1)"), Axis::linear(label)];
+        Figure::graph(name, title, caption, axes, slabs.iter().map(curve).collect())
+    };
+    let mut figures = vec![
+        graph(
+            "turned",
+            "Rotation of grains",
+            "Root of the mean square over the grains that move freely.",
+            "rotation (degrees)",
+            &measures::rotation_deg,
+        ),
+        graph(
+            "voids",
+            "Large voids",
+            "Squares of 40 µm, at any place of a grid of 150², in which there is nothing.",
+            "squares (1)",
+            &|done, snapshot| measures::large_voids(done, snapshot) as f64,
+        ),
+    ];
+    if slabs.len() > 1 {
+        figures.push(graph(
+            "yielded",
+            "Plastic strain",
+            "Mean over the mass of the grains that move freely. Grains on springs have none.",
+            "plastic strain (1)",
+            &measures::plastic_strain,
+        ));
+    }
+    figures
+}
+
+/// Stress, energy and chains of grains on springs.
+fn of_springs(done: &Done) -> Vec<Figure> {
+    let mut all = Vec::new();
     let named = |name: &str| done.series().column(name).unwrap_or_default().to_vec();
-    let shears: Vec<f64> = done.series().time.iter().map(|&time| measures::shear(&done, time)).collect();
-    let area = measures::width(&done);
+    let shears: Vec<f64> = done.series().time.iter().map(|&time| measures::shear(done, time)).collect();
+    let area = measures::width(done);
     let course = |name: &str, sign: f64| -> Vec<(f64, f64)> {
         shears.iter().copied().zip(named(name).into_iter().map(|force| sign * force / area * 1e-6)).collect()
     };
@@ -62,39 +119,30 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         [Axis::linear("mean shear (1)"), Axis::linear("energy (J/m)")],
         entries.map(curve).into(),
     ));
-    all.extend(of_chains(&done));
-    if let Ok(snapshot) = measures::at(&done, 0.75) {
-        all.push(Figure {
-            name: "forces".to_owned(),
-            title: "Force chains at 75 % shear".to_owned(),
-            caption: "Bars along contact forces, as wide as these are large. Few grains carry most of the load.".to_owned(),
-            drawing: Drawing::Forces(force_plot(snapshot)),
-        });
-    }
-    Ok(all)
+    all.extend(of_chains(done));
+    all
 }
 
-/// Force chains and voids over the shear.
+/// Force chains over the shear.
 fn of_chains(done: &Done) -> [Figure; 2] {
-    let looked: Vec<(f64, &Snapshot, Chains)> = done.record.snapshots.iter().skip(1)
-        .map(|snapshot| (measures::shear(done, snapshot.time), snapshot, chains(snapshot)))
+    let looked: Vec<(f64, Chains)> = done.record.snapshots.iter().skip(1)
+        .map(|snapshot| (measures::shear(done, snapshot.time), chains(snapshot)))
         .collect();
-    let points = |of: &dyn Fn(&Snapshot, &Chains) -> f64| -> Vec<(f64, f64)> {
-        looked.iter().map(|(shear, snapshot, chains)| (*shear, of(snapshot, chains))).filter(|(_, value)| value.is_finite()).collect()
+    let points = |of: &dyn Fn(&Chains) -> f64| -> Vec<(f64, f64)> {
+        looked.iter().map(|(shear, chains)| (*shear, of(chains))).filter(|(_, value)| value.is_finite()).collect()
     };
-    let surviving = looked.windows(2).map(|pair| (pair[1].0, pair[0].2.surviving(&pair[1].2)));
+    let surviving = looked.windows(2).map(|pair| (pair[1].0, pair[0].1.surviving(&pair[1].1)));
     let mean = |lengths: &[usize]| lengths.iter().sum::<usize>() as f64 / lengths.len() as f64;
     [
         Figure::graph(
             "chains",
             "Force chains come and go",
-            "Part of the grains that carry more than the mean, part of the links of chains that outlive 5 % of shear, and void fraction \
-             within the slab. Grains on springs.",
+            "Part of the grains that carry more than the mean, and part of the links of chains that are still there at the next look, \
+             2.5 % of shear later at most. Grains on springs.",
             [Axis::linear("mean shear (1)"), Axis::linear("part (1)")],
             vec![
-                Curve::new("stressed grains", Stroke::MarkedLine, points(&|_, chains| chains.stressed)),
-                Curve::new("links that outlived 5 % of shear", Stroke::MarkedLine, surviving.filter(|(_, part)| part.is_finite()).collect()),
-                Curve::new("voids", Stroke::MarkedLine, points(&|snapshot, _| measures::void_fraction(done, snapshot))),
+                Curve::new("stressed grains", Stroke::MarkedLine, points(&|chains| chains.stressed)),
+                Curve::new("links that are still there", Stroke::MarkedLine, surviving.filter(|(_, part)| part.is_finite()).collect()),
             ],
         ),
         Figure::graph(
@@ -104,8 +152,8 @@ fn of_chains(done: &Done) -> [Figure; 2] {
              right side upwards compresses along −45°.",
             [Axis::linear("mean shear (1)"), Axis::linear("grains; degrees over ten")],
             vec![
-                Curve::new("grains of a chain", Stroke::MarkedLine, points(&|_, chains| mean(&chains.lengths))),
-                Curve::new("direction over 10°", Stroke::MarkedLine, points(&|_, chains| 0.1 * chains.direction_deg)),
+                Curve::new("grains of a chain", Stroke::MarkedLine, points(&|chains| mean(&chains.lengths))),
+                Curve::new("direction over 10°", Stroke::MarkedLine, points(&|chains| 0.1 * chains.direction_deg)),
             ],
         ),
     ]

@@ -96,11 +96,84 @@ pub(crate) fn at_the_moving_side(done: &Done, snapshot: &Snapshot) -> f64 {
     profile[COLUMNS - 1].1 - 0.5 * (profile[COLUMNS / 2 - 1].1 + profile[COLUMNS / 2].1)
 }
 
-/// Part of the slab that is void, by the undeformed areas of grains.
-pub(crate) fn void_fraction(done: &Done, snapshot: &Snapshot) -> f64 {
-    let width = width(done);
-    let inside = |grain: &GrainState| between([0.0, width], grain.position.x, grain.radius);
-    1.0 - snapshot.grains.iter().map(inside).sum::<f64>() / (width * period(done))
+/// Rotation of free grains since the start, root of the mean square (degrees).
+pub(crate) fn rotation_deg(done: &Done, snapshot: &Snapshot) -> f64 {
+    let grains = free(done, snapshot);
+    (grains.iter().map(|grain| grain.angle.powi(2)).sum::<f64>() / grains.len() as f64).sqrt().to_degrees()
+}
+
+/// Cells of the paper's grid across the slab.
+const CELLS: usize = 150;
+/// Cells across a large void.
+const VOID: usize = 5;
+
+/// Large voids: squares of five cells of the paper's grid, 40 µm, at any place of that grid within the slab, in which there is
+/// nothing; no material point lies in them, or no disc covers the centre of one of their cells. Squares may overlap.
+pub(crate) fn large_voids(done: &Done, snapshot: &Snapshot) -> usize {
+    let empty = empty_cells(done, snapshot);
+    let is_void = |column: usize, row: usize| {
+        (0..VOID).all(|i| (0..VOID).all(|j| empty[(row + j) % CELLS * CELLS + column + i]))
+    };
+    (0..CELLS).map(|row| (0..=CELLS - VOID).filter(|&column| is_void(column, row)).count()).sum()
+}
+
+/// Which cells of the paper's grid are empty, row by row along the slab.
+fn empty_cells(done: &Done, snapshot: &Snapshot) -> Vec<bool> {
+    let low = done.scene.domain.map_or([0.0; 2], |domain| [domain.low.x, domain.low.y]);
+    let cells = [width(done), period(done)].map(|length| length / CELLS as f64);
+    let mut empty = vec![true; CELLS * CELLS];
+    let mut fill = |column: i64, row: i64| {
+        if (0..CELLS as i64).contains(&column) {
+            empty[row.rem_euclid(CELLS as i64) as usize * CELLS + column as usize] = false;
+        }
+    };
+    for point in &snapshot.points {
+        let [column, row] = [0, 1].map(|axis| ((point.position[axis] - low[axis]) / cells[axis]).floor() as i64);
+        fill(column, row);
+    }
+    if !snapshot.points.is_empty() {
+        return empty;
+    }
+    for grain in &snapshot.grains {
+        // Centres of cells between two lines through the disc.
+        let between = |axis: usize, middle: f64, half: f64| {
+            let at = |place: f64| (place - low[axis]) / cells[axis] - 0.5;
+            at(middle - half).ceil() as i64..=at(middle + half).floor() as i64
+        };
+        for column in between(0, grain.position.x, grain.radius) {
+            let away = low[0] + (column as f64 + 0.5) * cells[0] - grain.position.x;
+            let half = (grain.radius.powi(2) - away.powi(2)).max(0.0).sqrt();
+            between(1, grain.position.y, half).for_each(|row| fill(column, row));
+        }
+    }
+    empty
+}
+
+/// Part of the shear for which the start is left out of means over time.
+const STARTED: f64 = 0.2;
+
+/// Standard deviation over mean of a force, such as that on the side that stands still, in blocks of 1/2 % of shear.
+pub(crate) fn fluctuation(done: &Done, force: &str) -> Result<f64, Missing> {
+    let (mut blocks, mut from) = (vec![Vec::new()], STARTED);
+    for (&time, force) in done.series().time.iter().zip(done.column(force)?) {
+        let now = shear(done, time);
+        if now < STARTED {
+            continue;
+        }
+        if now - from >= 5e-3 {
+            blocks.push(Vec::new());
+            from = now;
+        }
+        blocks.last_mut().into_iter().for_each(|block| block.push(*force));
+    }
+    let means: Vec<f64> = blocks
+        .iter()
+        .filter(|block| !block.is_empty())
+        .map(|block| block.iter().sum::<f64>() / block.len() as f64)
+        .collect();
+    let mean = means.iter().sum::<f64>() / means.len() as f64;
+    let variance = means.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / (means.len() as f64 - 1.0);
+    Ok(variance.sqrt() / mean.abs())
 }
 
 /// Mean normal stress of a point (Pa), tension positive.

@@ -13,8 +13,18 @@ const STEP: Resolution = Resolution::CriticalFraction(0.05);
 const WITH_PROGRAMS: Resolution = Resolution::CriticalFraction(0.1);
 const BEGINNINGS: [f64; 2] = [0.05, 0.025];
 
+/// A packing of grains on springs between closed sides, to a mean shear.
+pub(super) fn to(packing: &'static str, shear: f64, snapshots: u32) -> Run {
+    let name = format!("sides closed, to {:.0} % shear", 100.0 * shear);
+    Run::new(packing, "dem", STEP).adjusted(&name, move |scene| {
+        super::sheared(scene, shear, snapshots);
+        super::sides::close(scene);
+    })
+}
+
+/// The first packing to the end.
 pub(super) fn slab() -> Run {
-    Run::new("seed-1", "dem", STEP)
+    to("seed-1", 0.8, super::FRAMES)
 }
 
 /// Momentum of the grains, by the masses of the scene as the case means it, gained since the start along the slab, less the

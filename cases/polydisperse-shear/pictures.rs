@@ -1,0 +1,114 @@
+//! Grains as pictures: what yields beside springs, at equal strain.
+
+use super::measures::at;
+use super::{CHAINS, FRAMES, springs, yielding};
+use crate::bench::Bench;
+use crate::field_picture::{Shot, film, pictures};
+use crate::figure::Figure;
+use crate::force_plot::force_plot;
+use crate::gate::Done;
+use grainbench_fields::quantity::Quantity;
+use grainbench_scene::record::Snapshot;
+use grainbench_scene::solver::RunError;
+
+/// Mean shear of the paper's profiles.
+pub(super) const PROFILES: [f64; 3] = [0.25, 0.5, 0.75];
+const PIXELS: u32 = 400;
+const FILM_PIXELS: u32 = 300;
+/// Rotations beyond this have the colour of its end (rad).
+const TURNED: (f64, f64) = (-2.0, 2.0);
+
+/// A slab and what its grains are, in words.
+pub(super) type Slab = (&'static str, Done);
+
+/// Grains on springs; and those that yield, with friction and without slip, where minutes may be spent.
+pub(super) fn slabs(bench: &Bench) -> Result<Vec<Slab>, RunError> {
+    let mut slabs = Vec::new();
+    if bench.is_thorough() {
+        slabs.push(("yielding, μ = .3", bench.run(&yielding::whole("mpm"))?));
+        slabs.push(("yielding, no slip", bench.run(&yielding::whole("mpm:no-slip"))?));
+    }
+    slabs.push(("on springs, μ = .3", bench.run(&springs::slab())?));
+    Ok(slabs)
+}
+
+/// A row of panels for every slab, a panel for every mean shear.
+fn shots<'a>(slabs: &[&'a Slab], shears: &[f64]) -> Vec<Shot<'a>> {
+    let shot = |slab: &&'a Slab, shear: f64| {
+        let (words, done) = *slab;
+        Some(Shot::new(format!("{words}, {:.0} % shear", 100.0 * shear), at(done, shear).ok()?))
+    };
+    slabs.iter().flat_map(|slab| shears.iter().filter_map(move |&shear| shot(slab, shear))).collect()
+}
+
+/// Snapshots of even steps of shear.
+fn frames(done: &Done) -> Vec<(f64, &Snapshot)> {
+    let shears = (0..=FRAMES + 1).map(|frame| 0.8 * f64::from(frame) / f64::from(FRAMES + 1));
+    shears.filter_map(|shear| Some((shear, at(done, shear).ok()?))).collect()
+}
+
+pub(super) fn figures(slabs: &[Slab]) -> Vec<Figure> {
+    let with_friction: Vec<&Slab> = slabs.iter().filter(|(words, _)| !words.contains("no slip")).collect();
+    let deformable: Vec<&Slab> = slabs.iter().filter(|(_, done)| has_points(done)).collect();
+    let mut figures = vec![Figure::field(
+        "rotation",
+        "Grains roll",
+        "Rotation since the start. Grains of the two sides do not turn. In the band at the moving side neighbours turn against each \
+         other, like the wheels of a gear; without friction to roll on they could not. The same packing in every row.",
+        pictures(Quantity::Rotation, &shots(&with_friction, &PROFILES), PIXELS, Some(TURNED)),
+    )];
+    if !deformable.is_empty() {
+        figures.push(Figure::field(
+            "plastic-strain",
+            "Plastic strain, with friction and without slip",
+            "Fig. 6 of the paper: with friction grains roll and slide, and yield a little where they touch; without slip they are drawn \
+             out and leave large voids. One scale.",
+            pictures(Quantity::PlasticStrain, &shots(&deformable, &PROFILES), PIXELS, Some((0.0, 0.5))),
+        ));
+    }
+    for slab in &with_friction {
+        let name = if has_points(&slab.1) { "chains-yielding" } else { "chains-springs" };
+        figures.push(Figure::field(
+            name,
+            &format!("Force chains at 63 and 71 % shear, grains {}", slab.0),
+            "Difference of the principal stresses, as in Fig. 7 of the paper. Few grains carry the load, and 8 % of shear later it is others.",
+            pictures(Quantity::StressDifference, &shots(&[slab], &CHAINS), PIXELS, None),
+        ));
+    }
+    for slab in &with_friction {
+        for shear in CHAINS {
+            let Ok(snapshot) = at(&slab.1, shear) else { continue };
+            let method = if has_points(&slab.1) { "yielding" } else { "springs" };
+            figures.push(Figure::forces(
+                &format!("forces-{method}-{:.0}", 100.0 * shear),
+                &format!("Contact forces at {:.0} % shear, grains {}", 100.0 * shear, slab.0),
+                "Bars along contact forces, as wide as these are large.",
+                force_plot(snapshot),
+            ));
+        }
+    }
+    figures.push(moving(&with_friction));
+    figures
+}
+
+/// The film of rotations.
+fn moving(slabs: &[&Slab]) -> Figure {
+    let clock: Vec<f64> = frames(&slabs[0].1).into_iter().map(|(shear, _)| shear).collect();
+    let shots: Vec<Shot<'_>> = slabs
+        .iter()
+        .map(|(words, done)| Shot {
+            title: (*words).to_owned(),
+            frames: frames(done).into_iter().map(|(_, snapshot)| snapshot).collect(),
+        })
+        .collect();
+    Figure::field(
+        "film",
+        "The slab in shear",
+        "Grains coloured by rotation. The right side moves up; what leaves at the top comes in at the bottom.",
+        film(Quantity::Rotation, &shots, ("mean shear", &clock), FILM_PIXELS, Some(TURNED)),
+    )
+}
+
+fn has_points(done: &Done) -> bool {
+    done.record.snapshots.iter().any(|snapshot| !snapshot.points.is_empty())
+}

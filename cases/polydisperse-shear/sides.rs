@@ -1,0 +1,45 @@
+//! Sides that grains on springs do not get out through.
+//!
+//! At a side there are the grains that it cuts and pores between them, through which others are pushed out. The grid of the paper
+//! ends at the sides, and nothing passes. Here walls without friction stand there. Grains that the sides cut reach through the walls
+//! from the start: they are of a material of their own, the same but that it has no law with the walls.
+
+use grainbench_scene::motion::Motion;
+use grainbench_scene::scene::{ContactLaw, Scene, Wall, WallShape};
+use nalgebra::Vector3;
+
+/// Walls at both sides, for all grains but those that are driven.
+pub(super) fn close(scene: &mut Scene) {
+    let Some(domain) = scene.domain else { return };
+    let count = scene.materials.len() as u16;
+    // As many again for driven grains, and the walls'.
+    let side = 2 * count;
+    let of = |material: u16| material % count;
+    let law = |a: u16, b: u16| -> Option<ContactLaw> {
+        match (a == side, b == side) {
+            (false, false) => scene.law(of(a), of(b)).copied(),
+            (true, true) => None,
+            _ => {
+                let grain = a.min(b);
+                let smooth = |law: &ContactLaw| ContactLaw { friction: 0.0, cohesion: 0.0, ..*law };
+                (grain < count).then(|| scene.law(grain, grain).map(smooth)).flatten()
+            }
+        }
+    };
+    scene.laws = (0..=side).flat_map(|a| (0..=side).map(move |b| (a, b))).map(|(a, b)| law(a, b)).collect();
+    scene.deformable = [&scene.deformable[..], &scene.deformable[..], &[None]].concat();
+    let driven: Vec<String> = scene.materials.iter().map(|name| format!("{name}, driven")).collect();
+    scene.materials.extend(driven);
+    scene.materials.push("side".to_owned());
+    for &grain in scene.driven.iter().flat_map(|driven| &driven.grains) {
+        scene.grains[grain].material += count;
+    }
+    for (name, x, out) in [("left side", domain.low.x, 1.0), ("right side", domain.high.x, -1.0)] {
+        scene.walls.push(Wall {
+            name: name.to_owned(),
+            material: side,
+            shape: WallShape::Plane { point: Vector3::new(x, 0.0, 0.0), normal: Vector3::new(out, 0.0, 0.0) },
+            motion: Motion::default(),
+        });
+    }
+}

@@ -1,0 +1,224 @@
+//! Grains that yield, sheared as far as in the paper, which takes minutes: what it says of no slip and friction, what other contacts
+//! make of it, and what a finer grid changes.
+
+use super::coarse::{MAKES_ENERGY, kept, unaccounted};
+use super::measures::{at, band, end, fluctuation, large_voids, plastic_strain, rotation_deg};
+use super::paper::{FIGURE_6, FIGURE_7, SLOWER, gone};
+use super::{FRAMES, at_least, at_most, chains, grid, to_shear};
+use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
+use crate::verdict::Evidence;
+use grainbench_scene::record::Snapshot;
+use grainbench_scene::scene::{Duration, Scene};
+
+const REACHES: &str = "contact under traction acts from more than half a cell away, and grains of a few cells across that are held apart \
+                       so push through each other instead of sliding";
+
+const NO_VOIDS: &str = "in one velocity field grains are joined as soon as a cell lies between them: the slab flows as one body and its \
+                        pores stay small, while with friction it dilates";
+const OWN_NORMALS: &str = "each body meets the others along a normal of its own (2001): what one gains the other does not lose, which \
+                           makes energy, the more the coarser the grid";
+const HALF_GRID: &str = "on half of the paper's grid the smallest grains are two cells across";
+
+/// To the end on half of the paper's grid.
+pub(super) fn whole(solver: &'static str) -> Run {
+    to_shear(Run::new("seed-1", solver, grid(75.0)), 0.8, FRAMES).long()
+}
+
+/// To 40 % of shear on a grid.
+fn on_grid(cells: f64) -> Run {
+    to_shear(Run::new("seed-1", "mpm", grid(cells)), 0.4, 0).long()
+}
+
+type Of = fn(&Done, &Snapshot) -> f64;
+
+/// A quantity of one run at a mean shear, over that of another.
+fn over(done: &[Done], shear: f64, of: Of) -> Result<f64, Missing> {
+    let of = |done: &Done| Ok(of(done, at(done, shear)?));
+    Ok(of(&done[0])? / of(&done[1])?)
+}
+
+fn voids(done: &Done, snapshot: &Snapshot) -> f64 {
+    large_voids(done, snapshot) as f64
+}
+
+/// Every third grain that moves freely has a tenth of its area.
+fn shrunk(scene: &mut Scene) {
+    let groups = scene.driven_group_of_grains();
+    let free = scene.grains.iter_mut().zip(groups).filter(|(_, group)| group.is_none());
+    for (grain, _) in free.step_by(3) {
+        grain.radius *= 0.1_f64.sqrt();
+        (grain.mass, grain.inertia) = (0.1 * grain.mass, 0.01 * grain.inertia);
+    }
+}
+
+/// No slip against friction.
+fn without_slip() -> Vec<Gate> {
+    let pair = || vec![whole("mpm:no-slip"), whole("mpm")];
+    let glued = || Control::solver("contacts glued", "mpm:no-slip");
+    let paper = (Evidence::Paper, FIGURE_6);
+    let several = (0.0, "several times");
+    let mut gates: Vec<Gate> = [0.5, 0.8]
+        .into_iter()
+        .map(|shear| {
+            let quantity = format!("plastic strain without slip over that with friction, {:.0} % shear, 5 or more", 100.0 * shear);
+            let ratio = move |done: &[Done]| Ok(at_least(over(done, shear, plastic_strain)?, 5.0));
+            Gate::new((quantity, "1"), pair(), paper, several, glued(), ratio)
+        })
+        .collect();
+    gates.push(Gate::new(
+        ("large voids without slip over those with friction, or one, 80 % shear, 5 or more", "1"),
+        vec![whole("mpm:no-slip").known(NO_VOIDS), whole("mpm").aside()],
+        paper,
+        several,
+        Control::scene("every third grain a tenth as large, so that there are voids", shrunk),
+        |done| Ok(at_least(voids(&done[0], end(&done[0])?) / voids(&done[1], end(&done[1])?).max(1.0), 5.0)),
+    ));
+    gates.push(Gate::new(
+        ("rotation of grains with friction over that without slip, 80 % shear, 1.3 or more", "1"),
+        vec![whole("mpm"), whole("mpm:no-slip")],
+        (Evidence::OtherCode, "independent prototype on a grid of 150²: 67° against 39°, for grains roll"),
+        (0.0, "half of what that is above one"),
+        glued(),
+        |done| Ok(at_least(over(done, 0.8, rotation_deg)?, 1.3)),
+    ));
+    gates.push(Gate::new(
+        ("standard deviation over mean of the shear stress, 20 to 80 % shear: with friction over without slip, 3 or more", "1"),
+        vec![whole("mpm"), whole("mpm:no-slip")],
+        (Evidence::OtherCode, "independent prototype on a grid of 150²: .35 against .05, for chains of grains come and go"),
+        (0.0, "half of that"),
+        glued(),
+        |done| {
+            let of = |done: &Done| fluctuation(done, "left.force_y");
+            Ok(at_least(of(&done[0])? / of(&done[1])?, 3.0))
+        },
+    ));
+    gates
+}
+
+/// Other contacts in place of springs between surfaces.
+fn other_contacts() -> Vec<Gate> {
+    let springs = || Control::without_the_error("springs between surfaces", "mpm", grid(75.0));
+    let early = |solver| to_shear(Run::new("seed-1", solver, grid(75.0)), 0.2, 0).long();
+    let ratio = |done: &[Done], shear| Ok(at_least(1.0 / over(done, shear, plastic_strain)?, 5.0));
+    vec![
+        Gate::new(
+            ("plastic strain without slip over that with friction, 80 % shear, 5 or more", "1"),
+            vec![whole("mpm:2001").known(REACHES), whole("mpm:no-slip").aside()],
+            (Evidence::Paper, FIGURE_6),
+            (0.0, "several times"),
+            springs(),
+            move |done| ratio(done, 0.8),
+        ),
+        Gate::new(
+            ("plastic strain without slip over that with friction, 20 % shear, 5 or more", "1"),
+            vec![early("mpm:2000").known(MAKES_ENERGY), early("mpm:no-slip").aside()],
+            (Evidence::Paper, FIGURE_6),
+            (0.0, "several times"),
+            springs(),
+            move |done| ratio(done, 0.2),
+        ),
+        Gate::new(
+            ("plastic strain over that with springs between surfaces, 80 % shear, 2 or more", "1"),
+            vec![whole("mpm:2001"), whole("mpm").aside()],
+            (Evidence::OtherCode, "independent prototype on a grid of 150²: 3.0; it grows with the reach of contact, which is that of a cell"),
+            (0.0, "half of what that is above one"),
+            Control::solver("springs between surfaces", "mpm"),
+            |done| Ok(at_least(over(done, 0.8, plastic_strain)?, 2.0)),
+        ),
+    ]
+}
+
+/// Energy to the end.
+fn energy() -> Vec<Gate> {
+    let invariant = (Evidence::Invariant, "conservation of energy");
+    let makes_energy = || Control::solver("contact on approach (2000), which makes energy", "mpm:2000");
+    let mut gates = vec![Gate::new(
+        ("where the work of the walls went, 80 % shear", "J"),
+        vec![whole("mpm")],
+        invariant,
+        (0.02, "stress and elastic energy go together to second order in the step; of the work of the walls"),
+        makes_energy(),
+        |done| unaccounted(&done[0]),
+    )];
+    let springs = || Control::without_the_error("springs between surfaces", "mpm", grid(75.0));
+    let runs = [
+        (whole("mpm"), makes_energy()),
+        (whole("mpm:no-slip"), makes_energy()),
+        (whole("mpm:2001").known(OWN_NORMALS), springs()),
+    ];
+    for (run, control) in runs {
+        gates.push(Gate::new(
+            ("kinetic, elastic and plastic energy over the work of the walls, 80 % shear, not above 1", "1"),
+            vec![run],
+            invariant,
+            (0.01, "the budget closes within 2 %, and friction takes its share"),
+            control,
+            |done| Ok(at_most(kept(&done[0])?, 1.0)),
+        ));
+    }
+    gates
+}
+
+/// Where grains move, and how load is carried.
+fn motion() -> Vec<Gate> {
+    let glued = || Control::solver("contacts glued: nothing is pressed", "mpm:no-slip");
+    vec![
+        Gate::new(
+            ("width of the band at 25 m/s over that at 100 m/s, 25 % shear", "1"),
+            vec![
+                to_shear(Run::new("slow", "mpm", grid(75.0)), 0.25, 0).long(),
+                to_shear(Run::new("seed-1", "mpm", grid(75.0)), 0.25, 0).long().aside(),
+            ],
+            (Evidence::OtherCode, "independent prototype on a grid of 150²: .78 against .31, for momentum has come further in"),
+            (0.4, "packings, and whole grains that are driven, which reach into the slab; as for grains on springs"),
+            Control::scene("a quarter of the time, in which momentum comes no further", |scene| {
+                if let Duration::Seconds(time) = &mut scene.duration {
+                    *time *= 0.25;
+                }
+            }),
+            |done| Ok(Measured::new(band(&done[0], end(&done[0])?) / band(&done[1], end(&done[1])?), SLOWER, SLOWER)),
+        ),
+        Gate::new(
+            ("part of the links of force chains that are gone from 63 to 71 % shear, 0.5 or more", "1"),
+            vec![whole("mpm")],
+            (Evidence::Paper, FIGURE_7),
+            (0.0, "chains that stay would keep all their links"),
+            glued(),
+            |done| Ok(at_least(gone(&done[0])?, 0.5)),
+        ),
+        Gate::new(
+            ("part of the grains that carry more than the mean, 63 % shear, not above 0.5", "1"),
+            vec![whole("mpm")],
+            (Evidence::Paper, "Bardenhagen, Brackbill & Sulsky 2000: only a small fraction of the grains are significantly stressed"),
+            (0.0, "a load that all carry alike has a half above its mean"),
+            glued(),
+            |done| {
+                let snapshot = at(&done[0], super::CHAINS[0])?;
+                if snapshot.contacts.is_empty() {
+                    return Err(Missing("contacts that press".to_owned()));
+                }
+                Ok(at_most(chains::chains(snapshot).stressed, 0.5))
+            },
+        ),
+    ]
+}
+
+/// What a finer grid changes.
+fn refined() -> Vec<Gate> {
+    let quantities: [(&str, Of, f64); 2] = [("plastic strain", plastic_strain, 0.1), ("rotation of grains", rotation_deg, 0.15)];
+    let gate = |(words, of, allowed): (&str, Of, f64)| {
+        Gate::new(
+            (format!("{words} on a grid of 75² over that on one of 150², 40 % shear"), "1"),
+            vec![on_grid(75.0).known(HALF_GRID), on_grid(150.0).aside()],
+            (Evidence::Convergence, "the same packing on a grid twice as fine"),
+            (allowed, "the motion is chaotic: contacts a little stiffer change as much"),
+            Control::without_the_error("the paper's grid", "mpm", grid(150.0)),
+            move |done| Ok(Measured::new(over(done, 0.4, of)?, 1.0, 1.0)),
+        )
+    };
+    quantities.map(gate).into()
+}
+
+pub(super) fn gates() -> Vec<Gate> {
+    [without_slip(), other_contacts(), energy(), motion(), refined()].concat()
+}
