@@ -24,7 +24,7 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
 /// Profiles of displacement across the slab, a colour for every shear.
 fn displacement(slabs: &[Slab]) -> Figure {
     let mut curves = vec![Curve::new("uniform shear", Stroke::Dashed, vec![(0.0, 0.0), (1.0, 1.0)])];
-    for (words, done) in slabs {
+    for (words, done) in slabs.iter().filter(|slab| pictures::has_friction(slab)) {
         for shear in PROFILES {
             if let Ok(snapshot) = measures::at(done, shear) {
                 let label = format!("{words}, {:.0} %", 100.0 * shear);

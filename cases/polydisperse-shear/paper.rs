@@ -70,7 +70,7 @@ pub(super) fn gates() -> Vec<Gate> {
         over_packings(
             ("part of the links of force chains that are gone from 63 to 71 % shear, grains on springs", FIGURE_7),
             on_springs(),
-            0.5,
+            0.4,
             still.clone(),
             |done| gone(&done[0]),
         ),

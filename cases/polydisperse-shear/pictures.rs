@@ -8,8 +8,9 @@ use crate::figure::Figure;
 use crate::force_plot::force_plot;
 use crate::gate::Done;
 use grainbench_fields::quantity::Quantity;
-use grainbench_scene::record::Snapshot;
+use grainbench_scene::record::{GrainState, Owner, Record, Snapshot};
 use grainbench_scene::solver::RunError;
+use std::sync::Arc;
 
 /// Mean shear of the paper's profiles.
 pub(super) const PROFILES: [f64; 3] = [0.25, 0.5, 0.75];
@@ -47,14 +48,39 @@ fn frames(done: &Done) -> Vec<(f64, &Snapshot)> {
     shears.filter_map(|shear| Some((shear, at(done, shear).ok()?))).collect()
 }
 
-pub(super) fn figures(slabs: &[Slab]) -> Vec<Figure> {
-    let with_friction: Vec<&Slab> = slabs.iter().filter(|(words, _)| !words.contains("no slip")).collect();
+/// Whether grains of a slab can slip.
+pub(super) fn has_friction((words, _): &Slab) -> bool {
+    !words.contains("no slip")
+}
+
+/// The slab without grains that have been pushed out between those that its sides cut: they are nowhere.
+fn within((words, done): &Slab) -> Slab {
+    let mut record = Record::clone(&done.record);
+    let [low, high] = done.scene.domain.map_or([0.0; 2], |domain| [domain.low.x, domain.high.x]);
+    for snapshot in &mut record.snapshots {
+        let is_out = |grain: &GrainState| {
+            let reach = 0.5 * grain.radius;
+            grain.position.x < low - reach || grain.position.x > high + reach
+        };
+        let out: Vec<bool> = snapshot.grains.iter().map(is_out).collect();
+        for (grain, _) in snapshot.grains.iter_mut().zip(&out).filter(|(_, out)| **out) {
+            grain.position.x = f64::NAN;
+        }
+        snapshot.points.retain(|point| !matches!(point.owner, Owner::Grain(id) if out[id as usize - 1]));
+    }
+    (*words, Done { scene: Arc::clone(&done.scene), record: Arc::new(record) })
+}
+
+pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
+    let slabs: Vec<Slab> = all.iter().map(within).collect();
+    let with_friction: Vec<&Slab> = slabs.iter().filter(|slab| has_friction(slab)).collect();
     let deformable: Vec<&Slab> = slabs.iter().filter(|(_, done)| has_points(done)).collect();
     let mut figures = vec![Figure::field(
         "rotation",
         "Grains roll",
         "Rotation since the start. Grains of the two sides do not turn. In the band at the moving side neighbours turn against each \
-         other, like the wheels of a gear; without friction to roll on they could not. The same packing in every row.",
+         other, like the wheels of a gear; without friction to roll on they could not. The same packing in every row; grains pushed out \
+         through a side are not shown.",
         pictures(Quantity::Rotation, &shots(&with_friction, &PROFILES), PIXELS, Some(TURNED)),
     )];
     if !deformable.is_empty() {
@@ -75,7 +101,7 @@ pub(super) fn figures(slabs: &[Slab]) -> Vec<Figure> {
             pictures(Quantity::StressDifference, &shots(&[slab], &CHAINS), PIXELS, None),
         ));
     }
-    for slab in &with_friction {
+    for slab in all.iter().filter(|slab| has_friction(slab)) {
         for shear in CHAINS {
             let Ok(snapshot) = at(&slab.1, shear) else { continue };
             let method = if has_points(&slab.1) { "yielding" } else { "springs" };

@@ -179,12 +179,12 @@ fn motion() -> Vec<Gate> {
             |done| Ok(Measured::new(band(&done[0], end(&done[0])?) / band(&done[1], end(&done[1])?), SLOWER, SLOWER)),
         ),
         Gate::new(
-            ("part of the links of force chains that are gone from 63 to 71 % shear, 0.5 or more", "1"),
+            ("part of the links of force chains that are gone from 63 to 71 % shear, 0.4 or more", "1"),
             vec![whole("mpm")],
             (Evidence::Paper, FIGURE_7),
             (0.0, "chains that stay would keep all their links"),
             glued(),
-            |done| Ok(at_least(gone(&done[0])?, 0.5)),
+            |done| Ok(at_least(gone(&done[0])?, 0.4)),
         ),
         Gate::new(
             ("part of the grains that carry more than the mean, 63 % shear, not above 0.5", "1"),
