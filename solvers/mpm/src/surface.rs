@@ -42,10 +42,16 @@ impl<S: Space> Chunk<S> {
     /// Squared distance from a position to its box (m²).
     #[inline(always)]
     fn away(&self, position: S::Vector) -> f64 {
+        self.away_from(position, position)
+    }
+
+    /// Squared distance from another box to its box (m²).
+    #[inline(always)]
+    fn away_from(&self, low: S::Vector, high: S::Vector) -> f64 {
         let mut squared = 0.0;
         for axis in 0..S::DIMENSION {
-            let at = S::component(position, axis);
-            let beyond = (S::component(self.low, axis) - at).max(at - S::component(self.high, axis)).max(0.0);
+            let at = |vector: S::Vector| S::component(vector, axis);
+            let beyond = (at(self.low) - at(high)).max(at(low) - at(self.high)).max(0.0);
             squared += beyond * beyond;
         }
         squared
@@ -124,18 +130,36 @@ impl<S: Space> Tracers<S> {
         area * (1.0 / S::dot(area, area).sqrt())
     }
 
+    /// Finds those of some runs that any tracer of a run, moved by `shift`, can have its nearest one in.
+    #[inline(always)]
+    pub(crate) fn find_near(
+        &self,
+        of: &Chunk<S>,
+        shift: S::Vector,
+        chunks: &Range<usize>,
+        reach: f64,
+        near: &mut Vec<usize>,
+    ) {
+        let [low, high] = [of.low + shift, of.high + shift];
+        let is_near =
+            |chunk: &usize| S::DIMENSION == 3 || self.chunks[*chunk].away_from(low, high) < 2.0 * reach * reach;
+        near.clear();
+        // In space the mean over tracers reaches farther than the nearest one.
+        near.extend(chunks.clone().filter(is_near));
+    }
+
     /// The surface made of some runs, next to a position and facing the given normal; none when no tracer of it is within
     /// `reach` (m) and half a spacing.
     #[inline(always)]
     pub(crate) fn nearest(
         &self,
-        chunks: &Range<usize>,
+        chunks: impl Iterator<Item = usize> + Clone,
         position: S::Vector,
         normal: S::Vector,
         reach: f64,
     ) -> Option<Near<S>> {
         let (mut best, mut squared) = (usize::MAX, 2.0 * reach * reach);
-        for chunk in &self.chunks[chunks.clone()] {
+        for chunk in chunks.clone().map(|chunk| &self.chunks[chunk]) {
             if chunk.away(position) >= squared {
                 continue;
             }
@@ -166,7 +190,13 @@ impl<S: Space> Tracers<S> {
     /// n̄ = Σ w n/|Σ w n| and the gap Σ w (x − y)·(n̄ + n)/2 / Σ w. Exact on planes, and on spheres where the gap is zero: there
     /// x − y is perpendicular to the sum of their normals. None where the foot lies beside the surface.
     #[inline(always)]
-    fn around(&self, chunks: &Range<usize>, nearest: usize, position: S::Vector, facing: S::Vector) -> Option<Near<S>> {
+    fn around(
+        &self,
+        chunks: impl Iterator<Item = usize>,
+        nearest: usize,
+        position: S::Vector,
+        facing: S::Vector,
+    ) -> Option<Near<S>> {
         let (middle, normal) = (self.position[nearest], self.normal(nearest));
         let foot = position - normal * S::dot(position - middle, normal);
         let area = S::dot(self.area[nearest], self.area[nearest]).sqrt();
@@ -176,7 +206,7 @@ impl<S: Space> Tracers<S> {
             return None;
         }
         let (mut total, mut mean, mut way, mut along) = (0.0, S::ORIGIN, S::ORIGIN, 0.0);
-        for chunk in &self.chunks[chunks.clone()] {
+        for chunk in chunks.map(|chunk| &self.chunks[chunk]) {
             if chunk.away(foot) >= squared {
                 continue;
             }

@@ -15,6 +15,9 @@ use crate::walls::RigidPlane;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
 
+/// How far a surface can bulge beyond the box around its tracers (cells).
+const BULGE: f64 = 0.25;
+
 /// Depth at which surfaces are taken to have passed through each other, and are let go (cells).
 const DEEPEST: f64 = 0.8;
 
@@ -143,6 +146,9 @@ struct Spring<S: Space> {
 pub(crate) struct Springs<S: Space> {
     of: Vec<[Spring<S>; AT_ONCE]>,
     now: u64,
+    /// Runs of the other surface that are near the tracers at hand.
+    #[serde(skip)]
+    near: Vec<usize>,
     /// How many have touched since the evaluation began.
     pub(crate) touched: u64,
 }
@@ -153,7 +159,7 @@ impl<S: Space> Springs<S> {
 
     pub(crate) fn new(tracers: usize) -> Self {
         let none = Spring { other: Other::Wall(u16::MAX), stamp: 0, stretch: S::ORIGIN };
-        Self { of: vec![[none; AT_ONCE]; tracers], now: 1, touched: 0 }
+        Self { of: vec![[none; AT_ONCE]; tracers], now: 1, near: Vec::new(), touched: 0 }
     }
 
     /// Of how many tracers.
@@ -314,14 +320,19 @@ pub(crate) fn between<S: Space, B: Basis>(
     let friction = rules.friction.between(first.material, second.material);
     let reach = DEEPEST * cell;
     let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
+    let mut chunks = std::mem::take(&mut springs.near);
     for chunk in &tracers.chunks[first.chunks.clone()] {
         if !chunk.meets(low, high) {
             continue;
         }
+        tracers.find_near(chunk, -pair.shift, &second.chunks, reach, &mut chunks);
         for at in chunk.tracers.clone() {
+            if beyond::<S>(tracers.position[at], low, high) > BULGE * cell {
+                continue;
+            }
             let position = tracers.position[at] - pair.shift;
             let normal = tracers.normal(at);
-            let Some(near) = tracers.nearest(&second.chunks, position, normal, reach) else { continue };
+            let Some(near) = tracers.nearest(chunks.iter().copied(), position, normal, reach) else { continue };
             let depth = -near.gap;
             if depth <= 0.0 {
                 continue;
@@ -356,4 +367,15 @@ pub(crate) fn between<S: Space, B: Basis>(
             }
         }
     }
+    springs.near = chunks;
+}
+
+/// How far beyond a box a position is, along the axis along which it is farthest (m); negative inside.
+#[inline(always)]
+fn beyond<S: Space>(position: S::Vector, low: S::Vector, high: S::Vector) -> f64 {
+    let beyond = |axis: usize| {
+        let at = |vector: S::Vector| S::component(vector, axis);
+        (at(low) - at(position)).max(at(position) - at(high))
+    };
+    (0..S::DIMENSION).map(beyond).fold(f64::NEG_INFINITY, f64::max)
 }

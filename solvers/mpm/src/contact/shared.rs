@@ -315,7 +315,7 @@ impl<S: Space> Shared<S> {
                 for at in chunk.tracers.clone() {
                     let normal = tracers.normal(at);
                     let position = tracers.position[at];
-                    let near = tracers.nearest(&second.chunks, position - pair.shift, normal, reach);
+                    let near = tracers.nearest(second.chunks.clone(), position - pair.shift, normal, reach);
                     let Some(near) = near.filter(|near| near.gap <= 0.0) else { continue };
                     // The lower body comes first, so that both passes find the same pair.
                     let (out, swap) = (normal - near.normal, pair.second < pair.first);
