@@ -31,8 +31,13 @@ pub(crate) trait Basis: Copy + Send + 'static {
     const WIDTH: usize;
     /// Whether the extent of a point matters.
     const EXTENDED: bool = false;
+    /// A point is reached from its first node on as long as it is this far beyond it, and up to one more.
+    const START: f64;
     /// The first node that reaches `at`.
-    fn first(at: f64) -> i32;
+    #[inline(always)]
+    fn first(at: f64) -> i32 {
+        floor(at - Self::START)
+    }
     /// The functions at `at` beyond the first node, for a point that reaches `half` to both sides.
     fn axis<N: Number>(at: N, half: N) -> Axis<N>;
 }
@@ -43,11 +48,7 @@ pub(crate) struct Linear;
 
 impl Basis for Linear {
     const WIDTH: usize = 2;
-
-    #[inline(always)]
-    fn first(at: f64) -> i32 {
-        floor(at)
-    }
+    const START: f64 = 0.0;
 
     #[inline(always)]
     fn axis<N: Number>(at: N, _half: N) -> Axis<N> {
@@ -63,11 +64,7 @@ pub(crate) struct Quadratic;
 
 impl Basis for Quadratic {
     const WIDTH: usize = 3;
-
-    #[inline(always)]
-    fn first(at: f64) -> i32 {
-        floor(at - 0.5)
-    }
+    const START: f64 = 0.5;
 
     #[inline(always)]
     fn axis<N: Number>(at: N, _half: N) -> Axis<N> {
@@ -85,12 +82,8 @@ pub(crate) struct Gimp;
 
 impl Basis for Gimp {
     const WIDTH: usize = 3;
+    const START: f64 = 0.5;
     const EXTENDED: bool = true;
-
-    #[inline(always)]
-    fn first(at: f64) -> i32 {
-        floor(at - 0.5)
-    }
 
     #[inline(always)]
     fn axis<N: Number>(at: N, half: N) -> Axis<N> {
@@ -102,20 +95,16 @@ impl Basis for Gimp {
             let sign = away.pick_below(zero, one, -one);
             let distance = away * -sign;
             let reach = half + 1.0 - distance;
-            let pick = |on: N, beside: N, rim: N| {
-                let outside = distance.pick_below(half + 1.0, rim, zero);
-                distance.pick_below(half, on, distance.pick_below(one - half, beside, outside))
-            };
-            value[node] = pick(
-                one - (distance * distance + half * half) / (half * 2.0),
-                one - distance,
-                reach * reach / (half * 4.0),
-            );
-            slope[node] = sign * pick(distance / half, one, reach / (half * 2.0));
+            let on = one - (distance * distance + half * half) / (half * 2.0);
+            let beyond = distance.pick_below(half + 1.0, reach * reach / (half * 4.0), zero);
+            value[node] = distance.pick_below(half, on, distance.pick_below(one - half, one - distance, beyond));
+            let beyond = distance.pick_below(half + 1.0, reach / (half * 2.0), zero);
+            slope[node] =
+                sign * distance.pick_below(half, distance / half, distance.pick_below(one - half, one, beyond));
             affine[node] = value[node] * -away;
             spread = spread + value[node] * away * away;
         }
-        Axis { value, slope, affine: affine.map(|affine| affine / spread), spread }
+        Axis { value, slope, affine: [affine[0] / spread, affine[1] / spread, affine[2] / spread], spread }
     }
 }
 

@@ -10,7 +10,6 @@ use crate::scatter::{Shown, weighted};
 use crate::transfer::{Part, Transfer};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
-use std::array::from_fn;
 use std::marker::PhantomData;
 
 /// Velocity and next position of a body's points from its nodes; and, with `PROJECT`, the momentum of the points with
@@ -47,12 +46,15 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_,
                 for row in 0..Patch::rows::<S, B>() {
                     let across = stencil.across::<S, B>(row);
                     let nodes = &seen[patch.row::<S, B>(row)];
-                    let nodes: [&Node<S>; 3] = from_fn(|node| &nodes[node.min(B::WIDTH - 1)]);
+                    let nodes = [&nodes[0], &nodes[1], &nodes[B::WIDTH - 1]];
                     for component in 0..S::DIMENSION {
-                        let of = |vector| Four::splat(lanes, S::component(vector, component));
-                        let velocity = nodes.map(|node| of(node.velocity));
-                        let changed = nodes.map(|node| of(node.change));
-                        let [velocities, changes] = [velocity, changed].map(|of| weighted::<B, _>(of, values));
+                        let (mut velocity, mut changed) = ([zero; 3], [zero; 3]);
+                        for (node, at) in nodes.into_iter().enumerate() {
+                            velocity[node] = Four::splat(lanes, S::component(at.velocity, component));
+                            changed[node] = Four::splat(lanes, S::component(at.change, component));
+                        }
+                        let velocities = weighted::<B, _>(velocity, values);
+                        let changes = weighted::<B, _>(changed, values);
                         around[component] = around[component] + velocities * across.value;
                         change[component] = change[component] + changes * across.value;
                         if T::AFFINE {
@@ -68,10 +70,13 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_,
                     }
                 }
                 let before = batch.vectors::<S, L>(lanes, &points.velocity);
-                let velocity = from_fn(|axis| transfer.taken(before[axis], around[axis], change[axis]));
-                batch.write_vectors::<S, L>(velocity, &mut points.velocity);
                 let position = batch.vectors::<S, L>(lanes, &points.position);
-                let next = from_fn(|axis| position[axis] + around[axis] * time_step);
+                let (mut velocity, mut next) = (before, position);
+                for axis in 0..S::DIMENSION {
+                    velocity[axis] = transfer.taken(before[axis], around[axis], change[axis]);
+                    next[axis] = position[axis] + around[axis] * time_step;
+                }
+                batch.write_vectors::<S, L>(velocity, &mut points.velocity);
                 batch.write_vectors::<S, L>(next, &mut points.next);
                 let mut affine = [[zero; 3]; 3];
                 if T::AFFINE {
@@ -81,12 +86,17 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_,
                 if PROJECT {
                     let shown = Shown::new::<S, T>(&lattice.cell, &stencil, velocity, affine);
                     let mass = batch.amounts(lanes, &points.mass);
-                    let masses = values.map(|value| value * mass);
+                    let masses = Four::scaled(values, mass);
                     for row in 0..Patch::rows::<S, B>() {
                         let across = stencil.across::<S, B>(row);
-                        let masses = masses.map(|mass| mass * across.value);
-                        let velocities: [[_; 3]; 3] = from_fn(|axis| shown.row::<S, B, T>(row, axis));
-                        let momenta = from_fn(|node| velocities.map(|velocities| masses[node] * velocities[node]));
+                        let masses = Four::scaled(masses, across.value);
+                        let mut momenta = [[zero; 3]; 3];
+                        for (component, momenta) in momenta.iter_mut().enumerate().take(S::DIMENSION) {
+                            let velocities = shown.row::<S, B, T>(row, component);
+                            for (node, momentum) in momenta.iter_mut().enumerate().take(B::WIDTH) {
+                                *momentum = masses[node] * velocities[node];
+                            }
+                        }
                         give::<S, B, L>(momenta, &mut reached[patch.row::<S, B>(row)]);
                     }
                 }
@@ -98,22 +108,22 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_,
     }
 }
 
-/// Adds momentum from four points to the nodes of a row.
+/// Adds momentum from four points, component by component, to the nodes of a row.
 #[inline(always)]
-fn give<S: Space, B: Basis, L: Lanes>(momenta: [[Four<L>; 3]; 3], projected: &mut [S::Vector]) {
-    let zero = momenta[0][2].like(0.0);
+fn give<S: Space, B: Basis, L: Lanes>([x, y, z]: [[Four<L>; 3]; 3], projected: &mut [S::Vector]) {
     let sums = if S::DIMENSION == 2 {
-        let [[a, b, _], [c, d, _], [e, f, _]] = momenta;
-        let [a, b, c, d] = Four::sums([a, b, c, d]);
-        let [e, f, ..] = Four::sums([e, f, zero, zero]);
-        [[a, b, 0.0], [c, d, 0.0], [e, f, 0.0]]
+        let [a, b, c, d] = Four::sums([x[0], y[0], x[1], y[1]]);
+        let [e, f, ..] = Four::sums([x[2], y[2], z[0], z[0]]);
+        [[a, b, 0.0, 0.0], [c, d, 0.0, 0.0], [e, f, 0.0, 0.0]]
     } else {
-        momenta.map(|[x, y, z]| {
-            let [x, y, z, _] = Four::sums([x, y, z, zero]);
-            [x, y, z]
-        })
+        let zero = x[0].like(0.0);
+        [
+            Four::sums([x[0], y[0], z[0], zero]),
+            Four::sums([x[1], y[1], z[1], zero]),
+            Four::sums([x[2], y[2], z[2], zero]),
+        ]
     };
-    for (projected, sum) in projected.iter_mut().zip(sums).take(B::WIDTH) {
-        *projected += S::restrict(Vector3::from(sum));
+    for (projected, [x, y, z, _]) in projected.iter_mut().zip(sums).take(B::WIDTH) {
+        *projected += S::restrict(Vector3::new(x, y, z));
     }
 }

@@ -6,7 +6,6 @@ use crate::patch::{Copies, Patch};
 use crate::runs::Ground;
 use crate::scatter::weighted;
 use grainbench_scene::space::Space;
-use std::array::from_fn;
 use std::marker::PhantomData;
 
 /// Velocity gradients (1/s) at the points of some runs of a body.
@@ -48,10 +47,14 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Gradients<'
                 for row in 0..Patch::rows::<S, B>() {
                     let across = stencil.across::<S, B>(row);
                     let nodes = &seen[patch.row::<S, B>(row)];
-                    let nodes: [S::Vector; 3] = from_fn(|node| velocity(&nodes[node.min(B::WIDTH - 1)]));
+                    let nodes = [velocity(&nodes[0]), velocity(&nodes[1]), velocity(&nodes[B::WIDTH - 1])];
                     for (component, gradient) in gradient.iter_mut().enumerate().take(S::DIMENSION) {
-                        let velocity = nodes.map(|node| Four::splat(lanes, S::component(node, component)));
-                        let [along, velocities] = [slopes, values].map(|weights| weighted::<B, _>(velocity, weights));
+                        let mut velocity = [zero; 3];
+                        for (velocity, node) in velocity.iter_mut().zip(nodes) {
+                            *velocity = Four::splat(lanes, S::component(node, component));
+                        }
+                        let along = weighted::<B, _>(velocity, slopes);
+                        let velocities = weighted::<B, _>(velocity, values);
                         gradient[0] = gradient[0] + along * across.value;
                         gradient[1] = gradient[1] + velocities * across.slope[0];
                         if S::DIMENSION == 3 {

@@ -202,13 +202,15 @@ impl<N: Number> Stencil<N> {
     /// The functions along x: values, and slopes per length (1/m).
     #[inline(always)]
     pub(crate) fn along_x(&self) -> [[N; 3]; 2] {
-        [self.axes[0].value, self.axes[0].slope.map(|slope| slope * self.inverse[0])]
+        let [a, b, c] = self.axes[0].slope;
+        [self.axes[0].value, [a * self.inverse[0], b * self.inverse[0], c * self.inverse[0]]]
     }
 
     /// What makes the affine part along x, node by node (1/m).
     #[inline(always)]
     pub(crate) fn affine_along_x(&self) -> [N; 3] {
-        self.axes[0].affine.map(|affine| affine * self.inverse[0])
+        let [a, b, c] = self.axes[0].affine;
+        [a * self.inverse[0], b * self.inverse[0], c * self.inverse[0]]
     }
 
     /// The functions across a row of nodes along x.
@@ -216,13 +218,14 @@ impl<N: Number> Stencil<N> {
     pub(crate) fn across<S: Space, B: Basis>(&self, row: usize) -> Across<N> {
         let (j, k) = (row % B::WIDTH, row / B::WIDTH);
         let [_, y, z] = &self.axes;
-        let [slope, affine] = [y.slope[j], y.affine[j]].map(|along| along * self.inverse[1]);
+        let [slope, affine] = [y.slope[j] * self.inverse[1], y.affine[j] * self.inverse[1]];
         if S::DIMENSION == 2 {
             let zero = slope.like(0.0);
             return Across { value: y.value[j], slope: [slope, zero], affine: [affine, zero] };
         }
-        let [deep_slope, deep_affine] = [z.slope[k], z.affine[k]].map(|along| y.value[j] * (along * self.inverse[2]));
         let deep = z.value[k];
+        let deep_slope = y.value[j] * (z.slope[k] * self.inverse[2]);
+        let deep_affine = y.value[j] * (z.affine[k] * self.inverse[2]);
         Across { value: y.value[j] * deep, slope: [slope * deep, deep_slope], affine: [affine * deep, deep_affine] }
     }
 

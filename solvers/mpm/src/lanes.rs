@@ -3,6 +3,9 @@
 //!
 //! Every operation is that of each lane by itself, rounded once, and sums over lanes have one order: the same bits on all
 //! processors. So nothing is fused, and no loop is left to the compiler to reorder.
+//!
+//! Whatever computes with lanes is inlined into the loop that is compiled for the processor. Closures may not be, and then
+//! every operation is a call: there are none, but those that only look something up.
 
 #[cfg(target_arch = "x86_64")]
 mod avx;
@@ -88,6 +91,12 @@ impl<L: Lanes> Four<L> {
         Self { lanes, register: lanes.splat(value) }
     }
 
+    /// Three numbers, each times another.
+    #[inline(always)]
+    pub(crate) fn scaled([a, b, c]: [Self; 3], by: Self) -> [Self; 3] {
+        [a * by, b * by, c * by]
+    }
+
     /// The number in each lane.
     #[inline(always)]
     pub(crate) fn values(self) -> [f64; LANES] {
@@ -97,7 +106,8 @@ impl<L: Lanes> Four<L> {
     /// The sums over the lanes of each.
     #[inline(always)]
     pub(crate) fn sums(of: [Self; LANES]) -> [f64; LANES] {
-        of[0].lanes.sums(of.map(|four| four.register))
+        let [a, b, c, d] = of;
+        a.lanes.sums([a.register, b.register, c.register, d.register])
     }
 }
 

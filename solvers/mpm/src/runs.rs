@@ -7,7 +7,7 @@ use crate::lanes::{Four, LANES, Lanes, Number};
 use crate::points::Points;
 use crate::transfer::Part;
 use grainbench_scene::space::Space;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::array::from_fn;
 use std::ops::Range;
 
@@ -32,13 +32,17 @@ pub(crate) fn find<S: Space, B: Basis>(
 ) -> Range<usize> {
     let first = runs.len();
     let mut run = Run { start: range.start, end: range.start, base: [0; 3] };
+    // Where the points of the run at hand can be (cells); no point is within an empty run.
+    let mut start = [f64::NAN; 3];
     for (at, &position) in range.clone().zip(&points.position[range]) {
-        let base = lattice.first::<S, B>(position);
-        if base != run.base || at - run.start == LONGEST {
+        let within =
+            (0..S::DIMENSION).all(|axis| (0.0..1.0).contains(&(lattice.cells::<S>(position, axis) - start[axis])));
+        if !within || at - run.start == LONGEST {
             if run.start < at {
                 runs.push(run);
             }
-            run = Run { start: at, end: at, base };
+            run = Run { start: at, end: at, base: lattice.first::<S, B>(position) };
+            start = run.base.map(|base| f64::from(base) + B::START);
         }
         run.end = at + 1;
     }
@@ -78,13 +82,20 @@ impl<'a, S: Space> Ground<'a, S> {
     /// The nodes around a batch of a run.
     #[inline(always)]
     pub(crate) fn stencil<B: Basis, L: Lanes>(&self, lanes: L, run: &Run, batch: Batch) -> Stencil<Four<L>> {
-        let position = batch.vectors::<S, L>(lanes, self.position).map(|at| batch.spread(lanes, at));
-        let half = if B::EXTENDED {
-            let extents = batch.read(self.deformation, |four| four.map(|at| self.part.extent::<S, B>(at)));
-            from_fn(|axis| batch.spread(lanes, Four::new(lanes, extents.map(|extent| extent[axis]))))
-        } else {
-            [Four::splat(lanes, self.part.half); 3]
-        };
+        let mut position = batch.vectors::<S, L>(lanes, self.position);
+        let mut half = [Four::splat(lanes, self.part.half); 3];
+        if B::EXTENDED {
+            let mut last = None;
+            let four = batch.four(self.deformation, &mut last);
+            let extents = [0, 1, 2, 3].map(|lane: usize| self.part.extent::<S, B>(four[lane]));
+            for (axis, half) in half.iter_mut().enumerate().take(S::DIMENSION) {
+                let [a, b, c, d] = &extents;
+                *half = batch.spread(lanes, Four::new(lanes, [a[axis], b[axis], c[axis], d[axis]]));
+            }
+        }
+        for position in position.iter_mut().take(S::DIMENSION) {
+            *position = batch.spread(lanes, *position);
+        }
         Stencil::around::<S, B>(self.lattice, run.base, position, half)
     }
 }
@@ -116,18 +127,13 @@ impl Batch {
         Self { start: self.start - first, ..self }
     }
 
-    /// What is read from its points. Lanes without a point get that of another one.
+    /// What its points have. Lanes without a point get that of another one.
     #[inline(always)]
-    fn read<T: Copy, R>(self, values: &[T], read: impl Fn(&[T; LANES]) -> R) -> R {
-        let last;
-        let four = match values[self.start..].first_chunk() {
+    fn four<'a, T: Copy>(self, values: &'a [T], last: &'a mut Option<[T; LANES]>) -> &'a [T; LANES] {
+        match values[self.start..].first_chunk() {
             Some(four) => four,
-            None => {
-                last = self.last(values);
-                &last
-            }
-        };
-        read(four)
+            None => last.insert(self.last(values)),
+        }
     }
 
     /// Fewer than four are left.
@@ -146,45 +152,45 @@ impl Batch {
     /// A number of each point, such as a mass; zero in lanes without one.
     #[inline(always)]
     pub(crate) fn amounts<L: Lanes>(self, lanes: L, values: &[f64]) -> Four<L> {
-        self.read(values, |four| Four::new(lanes, *four)) * Four::new(lanes, OWN[self.count])
+        let mut last = None;
+        Four::new(lanes, *self.four(values, &mut last)) * Four::new(lanes, OWN[self.count])
     }
 
     /// A vector of each point, by component.
     #[inline(always)]
     pub(crate) fn vectors<S: Space, L: Lanes>(self, lanes: L, values: &[S::Vector]) -> [Four<L>; 3] {
-        let zero = Four::splat(lanes, 0.0);
-        self.read(values, |four| {
-            let of = |axis| Four::new(lanes, four.map(|vector| S::component(vector, axis)));
-            from_fn(|axis| if axis < S::DIMENSION { of(axis) } else { zero })
-        })
+        let mut last = None;
+        let [a, b, c, d] = *self.four(values, &mut last);
+        let mut vectors = [Four::splat(lanes, 0.0); 3];
+        for (axis, vector) in vectors.iter_mut().enumerate().take(S::DIMENSION) {
+            let four = [S::component(a, axis), S::component(b, axis), S::component(c, axis), S::component(d, axis)];
+            *vector = Four::new(lanes, four);
+        }
+        vectors
     }
 
     /// A matrix of each point, row by row.
     #[inline(always)]
     pub(crate) fn matrices<S: Space, L: Lanes>(self, lanes: L, values: &[S::Matrix]) -> [[Four<L>; 3]; 3] {
-        let zero = Four::splat(lanes, 0.0);
-        self.read(values, |four| {
-            let of = |at| Four::new(lanes, four.map(|matrix| S::embed_gradient(matrix)[at]));
-            let inside = |row, column| row < S::DIMENSION && column < S::DIMENSION;
-            from_fn(|row| from_fn(|column| if inside(row, column) { of((row, column)) } else { zero }))
-        })
+        let mut last = None;
+        let [a, b, c, d] = *self.four(values, &mut last);
+        let four = [S::embed_gradient(a), S::embed_gradient(b), S::embed_gradient(c), S::embed_gradient(d)];
+        side_by_side::<S, L>(lanes, &four)
     }
 
     /// What of a symmetric tensor of each point acts in this space, row by row.
     #[inline(always)]
     pub(crate) fn tensors<S: Space, L: Lanes>(self, lanes: L, values: &[S::Symmetric]) -> [[Four<L>; 3]; 3] {
-        let zero = Four::splat(lanes, 0.0);
-        self.read(values, |four| {
-            let of = |at| Four::new(lanes, four.map(|tensor| S::embed_symmetric(tensor)[at]));
-            let inside = |row, column| row < S::DIMENSION && column < S::DIMENSION;
-            from_fn(|row| from_fn(|column| if inside(row, column) { of((row, column)) } else { zero }))
-        })
+        let mut last = None;
+        let [a, b, c, d] = *self.four(values, &mut last);
+        let four = [S::embed_symmetric(a), S::embed_symmetric(b), S::embed_symmetric(c), S::embed_symmetric(d)];
+        side_by_side::<S, L>(lanes, &four)
     }
 
     /// Writes a vector for each point.
     #[inline(always)]
     pub(crate) fn write_vectors<S: Space, L: Lanes>(self, vectors: [Four<L>; 3], to: &mut [S::Vector]) {
-        let [x, y, z] = vectors.map(Four::values);
+        let [x, y, z] = [vectors[0].values(), vectors[1].values(), vectors[2].values()];
         for (lane, to) in to[self.start..self.start + self.count].iter_mut().enumerate() {
             *to = S::restrict(Vector3::new(x[lane], y[lane], z[lane]));
         }
@@ -193,9 +199,25 @@ impl Batch {
     /// Writes a matrix, given row by row, for each point.
     #[inline(always)]
     pub(crate) fn write_matrices<S: Space, L: Lanes>(self, rows: [[Four<L>; 3]; 3], to: &mut [S::Matrix]) {
-        let rows = rows.map(|row| row.map(Four::values));
+        let mut values = [[[0.0; LANES]; 3]; 3];
+        for (values, row) in values.iter_mut().zip(rows) {
+            *values = [row[0].values(), row[1].values(), row[2].values()];
+        }
         for (lane, to) in to[self.start..self.start + self.count].iter_mut().enumerate() {
-            *to = S::restrict_gradient(nalgebra::Matrix3::from_fn(|row, column| rows[row][column][lane]));
+            *to = S::restrict_gradient(Matrix3::from_fn(|row, column| values[row][column][lane]));
         }
     }
+}
+
+/// What of four matrices acts in this space, row by row.
+#[inline(always)]
+fn side_by_side<S: Space, L: Lanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; LANES]) -> [[Four<L>; 3]; 3] {
+    let mut rows = [[Four::splat(lanes, 0.0); 3]; 3];
+    for (row, to) in rows.iter_mut().enumerate().take(S::DIMENSION) {
+        for (column, to) in to.iter_mut().enumerate().take(S::DIMENSION) {
+            let at = (row, column);
+            *to = Four::new(lanes, [a[at], b[at], c[at], d[at]]);
+        }
+    }
+    rows
 }

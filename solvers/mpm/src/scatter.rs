@@ -9,7 +9,6 @@ use crate::runs::Ground;
 use crate::transfer::Transfer;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
-use std::array::from_fn;
 use std::marker::PhantomData;
 
 /// The sum over the nodes of a row.
@@ -93,13 +92,19 @@ impl<S: Space, B: Basis, T: Transfer> Kernel for Scatter<'_, S, B, T> {
                 let shown = Shown::new::<S, T>(&ground.lattice.cell, &stencil, velocity, affine);
                 let [values, slopes] = stencil.along_x();
                 let mass = batch.amounts(lanes, &points.mass);
-                let masses = values.map(|value| value * mass);
+                let masses = Four::scaled(values, mass);
                 let volume = -batch.amounts(lanes, &points.volume);
-                let pull = batch.tensors::<S, L>(lanes, &points.stress).map(|row| row.map(|stress| stress * volume));
+                let mut pull = batch.tensors::<S, L>(lanes, &points.stress);
+                for row in &mut pull {
+                    *row = Four::scaled(*row, volume);
+                }
                 for row in 0..Patch::rows::<S, B>() {
                     let across = stencil.across::<S, B>(row);
-                    let masses = masses.map(|mass| mass * across.value);
-                    let mut brought = masses.map(|mass| [mass, zero, zero, zero, zero, zero, zero, zero]);
+                    let masses = Four::scaled(masses, across.value);
+                    let mut brought = [[zero; 2 * LANES]; 3];
+                    for (brought, &mass) in brought.iter_mut().zip(&masses) {
+                        brought[0] = mass;
+                    }
                     for component in 0..S::DIMENSION {
                         let velocities = shown.row::<S, B, T>(row, component);
                         let along = pull[component][0] * across.value;
@@ -124,15 +129,21 @@ impl<S: Space, B: Basis, T: Transfer> Kernel for Scatter<'_, S, B, T> {
 #[inline(always)]
 fn give<S: Space, B: Basis, L: Lanes>(brought: [[Four<L>; 2 * LANES]; 3], nodes: &mut [Node<S>]) {
     let zero = brought[0][7];
+    let [x, y, z] = brought;
     let last = if S::DIMENSION == 2 {
         // One number of each node is left.
-        Four::sums([brought[0][4], brought[1][4], brought[2][4], zero]).map(|sum| [sum, 0.0, 0.0, 0.0])
+        let [x, y, z, _] = Four::sums([x[4], y[4], z[4], zero]);
+        [[x, 0.0, 0.0, 0.0], [y, 0.0, 0.0, 0.0], [z, 0.0, 0.0, 0.0]]
     } else {
-        let of = |node: usize| Four::sums([brought[node][4], brought[node][5], brought[node][6], zero]);
-        [of(0), of(1), of(2), [0.0; LANES]]
+        [
+            Four::sums([x[4], x[5], x[6], zero]),
+            Four::sums([y[4], y[5], y[6], zero]),
+            Four::sums([z[4], z[5], z[6], zero]),
+        ]
     };
     for (node, to) in nodes.iter_mut().enumerate().take(B::WIDTH) {
-        let [mass, a, b, c] = Four::sums(from_fn(|at| brought[node][at]));
+        let brought = &brought[node];
+        let [mass, a, b, c] = Four::sums([brought[0], brought[1], brought[2], brought[3]]);
         let [d, e, f, _] = last[node];
         let sums = [a, b, c, d, e, f];
         to.mass += mass;

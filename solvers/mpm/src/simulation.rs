@@ -511,17 +511,24 @@ impl<S: Space> Simulation<S> {
     /// Boxes around bodies.
     pub(crate) fn find_bounds(&mut self) {
         for body in &mut self.bodies {
-            let start = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
-            let of = |positions: &[S::Vector], start: [Vector3<f64>; 2]| {
-                positions.iter().fold(start, |[low, high], &at| {
-                    let at = S::embed(at);
-                    [low.inf(&at), high.sup(&at)]
-                })
-            };
-            let points = of(&self.points.position[body.part.points.clone()], start);
-            body.bounds = of(&self.tracers.position[body.tracers.clone()], points);
+            let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+            let points = enclose::<S>(none, &self.points.position[body.part.points.clone()]);
+            let bounds = enclose::<S>(points, &self.tracers.position[body.tracers.clone()]);
+            body.bounds = bounds.map(|[x, y, z]| S::embed(S::restrict(Vector3::new(x, y, z))));
         }
     }
+}
+
+/// The box around positions and another box.
+fn enclose<S: Space>([mut low, mut high]: [[f64; 3]; 2], positions: &[S::Vector]) -> [[f64; 3]; 2] {
+    for &position in positions {
+        for axis in 0..S::DIMENSION {
+            let at = S::component(position, axis);
+            low[axis] = if at < low[axis] { at } else { low[axis] };
+            high[axis] = if at > high[axis] { at } else { high[axis] };
+        }
+    }
+    [low, high]
 }
 
 /// Elastic energy of a body per volume at the start (J/m³).
