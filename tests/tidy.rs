@@ -199,7 +199,7 @@ fn no_hash_map_string_or_allocation_in_loops_over_points() {
         ("scatter.rs", &["run<", "give<"]),
         ("gather.rs", &["run<", "give<"]),
         ("gradients.rs", &["run<"]),
-        ("runs.rs", &["find<", "read<"]),
+        ("runs.rs", &["find<", "four<"]),
         ("stress.rs", &["update<"]),
         ("surface.rs", &["carry<", "nearest"]),
         ("contact/penalty.rs", &["at_walls<", "between<", "push<"]),
