@@ -17,7 +17,7 @@ fn a_rerun_gives_the_same_bits() {
         let variant = &case.variants().unwrap()[0];
         let mut scene = case.variant(variant).unwrap();
         // Long runs are cut: bits part at once or not at all.
-        if scene.grains.len() > 1000 {
+        if scene.grains.len() > 100 {
             scene.duration = grainbench::scene::scene::Duration::Cycles(200);
         }
         // Of the method that takes long, scenes made for it that are short.

@@ -50,8 +50,10 @@ fn begun(mut scene: Scene) -> Scene {
 #[test]
 fn every_case_continues_to_the_same_bits() {
     let mut compared = 0;
+    // Of many packings by one law, some.
     let variants = |case: &Case| -> Vec<Scene> {
-        case.variants().unwrap().iter().map(|variant| case.variant(variant).unwrap()).collect()
+        let names = case.variants().unwrap();
+        names.iter().step_by(names.len().div_ceil(12)).map(|variant| case.variant(variant).unwrap()).collect()
     };
     for (case, scene) in CASES.iter().flat_map(|case| variants(case).into_iter().map(move |scene| (case, scene))) {
         let scene = begun(scene);
