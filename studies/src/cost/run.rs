@@ -21,6 +21,8 @@ const REPETITIONS: usize = 5;
 const SHORT: f64 = 1.0;
 /// A repetition lasts this long at least (s): of what is shorter, it is several runs in a row.
 const LEAST: f64 = 2e-3;
+/// What takes this long (s) needs no run to warm the machine up: its first one counts.
+const WARM: f64 = 0.05;
 /// Most runs in a row.
 const MOST: f64 = 50.0;
 /// Points that take longer than this (s) are left to those who ask for all.
@@ -47,8 +49,9 @@ struct Task {
     solver: Arc<dyn Solver>,
     /// Name on the shelf.
     name: String,
-    /// Processor time of a run of one step (s), of a program; what a program needs to start is no part of what steps cost.
-    start: OnceLock<f64>,
+    /// Processor time of a run of one step (s), of a program; what a program needs to start is no part of what steps cost. It is that
+    /// of the scene, whatever the step.
+    start: Arc<OnceLock<f64>>,
 }
 
 impl Task {
@@ -111,16 +114,16 @@ impl<'a> Meter<'a> {
             let whole = point.repetitions.first().map_or(0.0, |timing| timing.wall + timing.start_up);
             if whole < SHORT && point.standing == Standing::Measured {
                 let runs = (LEAST / whole).ceil().clamp(1.0, MOST) as usize;
-                // The first run warms the machine up.
-                open.push((at, runs, Point { repetitions: Vec::new(), ..point }));
+                let repetitions = if whole < WARM { Vec::new() } else { point.repetitions };
+                open.push((at, runs, Point { repetitions, ..point }));
             } else {
                 self.shelf.put(&task.name, &point)?;
                 points[at] = Some(point);
                 follow.done(false);
             }
         }
-        for _ in 0..REPETITIONS {
-            for (at, runs, point) in &mut open {
+        for round in 1..=REPETITIONS {
+            for (at, runs, point) in open.iter_mut().filter(|(_, _, point)| point.repetitions.len() < round) {
                 follow.now(&format!("{} · {} again", subject.case.name, tasks[*at].turn.solver));
                 point.repetitions.extend(repeated(&tasks[*at], *runs));
             }
@@ -153,6 +156,7 @@ impl<'a> Meter<'a> {
                 change(&mut scene);
             }
             let scene = Arc::new(scene);
+            let mut starts: BTreeMap<String, Arc<OnceLock<f64>>> = BTreeMap::new();
             for turn in knobs::turns(lane) {
                 let named = &self.wanted.solvers;
                 if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || name == turn.line) {
@@ -168,7 +172,8 @@ impl<'a> Meter<'a> {
                 let name = identity::of_run(&self.program, &turn.solver, &scene, &turn.resolution, &read);
                 // Two lanes may lead to the same run.
                 if tasks.iter().all(|task: &Task| task.name != name) {
-                    let (scene, start) = (Arc::clone(&scene), OnceLock::new());
+                    let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
+                    let scene = Arc::clone(&scene);
                     tasks.push(Task { turn, method: lane.method, scene, solver, name, start });
                 }
             }
