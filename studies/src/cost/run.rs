@@ -27,6 +27,8 @@ const WARM: f64 = 0.05;
 const MOST: f64 = 50.0;
 /// Points that take longer than this (s) are left to those who ask for all.
 const LONGEST: f64 = 20.0;
+/// Time of a program over that of ours, of the step of a grain: what is expected of one before it is run.
+const PROGRAM: f64 = 3.0;
 /// A refinement that leaves this much of the error has met a floor.
 const FLOOR: f64 = 0.8;
 /// Errors below this are rounding, and no floor.
@@ -162,7 +164,8 @@ impl<'a> Meter<'a> {
                 if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || name == turn.line) {
                     continue;
                 }
-                if !self.wanted.all && knobs::nominal_seconds(&scene, &turn.resolution) > LONGEST {
+                let slower = if solvers::is_program(&turn.solver) { PROGRAM } else { 1.0 };
+                if !self.wanted.all && slower * knobs::nominal_seconds(&scene, &turn.resolution) > LONGEST {
                     continue;
                 }
                 let solver =
