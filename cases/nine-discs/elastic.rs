@@ -26,6 +26,6 @@ pub(super) const DISCS: Ringing = Ringing {
     springs: 2.0,
     share: 0.5,
     source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats, with the pair across (derivation)",
-    allowed: [0.15, 0.08],
+    allowed: [0.15, 0.05],
     because: "patches of a quarter of a cell, on springs as soft as half a cell of material",
 };
