@@ -1,24 +1,23 @@
 //! Two sessions against each other: counts exactly, times with their spread.
 //!
-//! Noise only ever adds to a time, so a point's time is the shortest of its repetitions, in units of the reference arithmetic
-//! that was timed just before ([`crate::clock::reference_seconds`]): a machine that was slower for a while cancels. Of all
-//! points of a solver in a case, xᵢ = ln(tᵢ,new/tᵢ,old); their median m has the standard error
+//! A point's time is the median of its repetitions, in units of the reference that was timed before and after each
+//! ([`crate::clock::reference_seconds`]): a machine that was slower for a while cancels. Of all points of a solver in a case,
+//! xᵢ = ln(tᵢ,new/tᵢ,old); their median m has the standard error
 //!
 //! ```text
-//! s² = (1.2533 · 1.4826 · median|xᵢ − m|)²/n + mean(σᵢ²)/n
+//! s = max(1.2533 · 1.4826 · median|xᵢ − m|, √mean(σᵢ²))/√n
 //! ```
 //!
-//! with σᵢ how far the second shortest repetition is from the shortest, of both sessions: where noise only adds, that gap is as
-//! large as what the shortest still has of it; where a processor is faster for a moment, the gap tells of that too, and a few
-//! points of which it is large make all of them doubtful, for they were measured in turn. A solver is called slower where
-//! m − 3s > ln 1.15, with at least three points: what repetitions within one session cannot see (where memory happened to lie,
-//! what else ran) has been seen to move all points of a case by a tenth.
+//! with σᵢ the standard error of both sessions' medians, from the median distance of the repetitions to it in the same way. The
+//! second is larger where some points are doubtful: then all are, for they were measured in turn. A solver is called
+//! slower where m − 3s > ln 1.1, with at least three points: what repetitions within one session cannot see (where memory
+//! happened to lie, what else ran) has been seen to move all points of a case by 6 % more than 3s in 36 pairs of sessions.
 
-use grainbench_cases::study::point::{Change, Point, Standing, Timing};
+use grainbench_cases::study::point::{Change, Point, Standing};
 use std::collections::BTreeMap;
 
 /// Change of a time that sessions differ by although nothing changed.
-const SESSIONS: f64 = 0.15;
+const SESSIONS: f64 = 0.1;
 /// Standard errors that a change must be away from it.
 const SURE: f64 = 3.0;
 /// Fewest points that anything is said of.
@@ -63,23 +62,37 @@ fn counts(old: &Point, new: &Point) -> Option<Change> {
     (!how.is_empty()).then(|| Change { what, how: how.join(", "), worse: true })
 }
 
-/// Logarithm of the ratio of times, and its spread.
+/// Logarithm of the ratio of times, and its standard error.
 fn ratio(old: &Point, new: &Point) -> Option<(f64, f64)> {
     let measured = |point: &Point| point.standing == Standing::Measured && point.wall_seconds >= Some(TOO_SHORT);
     if !(measured(old) && measured(new)) {
         return None;
     }
-    let ((was, old_spread), (is, new_spread)) = (shortest(&old.repetitions)?, shortest(&new.repetitions)?);
-    Some(((is / was).ln(), old_spread.hypot(new_spread)))
+    let (was, is) = (Middle::of_repetitions(old)?, Middle::of_repetitions(new)?);
+    Some((is.value - was.value, is.error.hypot(was.error)))
 }
 
-/// The shortest repetition in units of the reference, and by how much the next one exceeds it; of a single one, nothing is known.
-fn shortest(repetitions: &[Timing]) -> Option<(f64, f64)> {
-    let mut times: Vec<f64> = repetitions.iter().map(|timing| timing.cpu / timing.reference).collect();
-    times.retain(|time| time.is_finite() && *time > 0.0);
-    times.sort_by(f64::total_cmp);
-    let first = *times.first()?;
-    Some((first, times.get(1).map_or(0.0, |second| second / first - 1.0)))
+/// A median and its standard error, that of numbers with a normal distribution.
+struct Middle {
+    value: f64,
+    error: f64,
+}
+
+impl Middle {
+    /// Of at least one number. The error is taken from the median distance to the median, so that a few numbers far away do not
+    /// count; of a single number nothing is known, and it is zero.
+    fn of(values: &[f64]) -> Self {
+        let value = median(values.to_vec());
+        let distance = median(values.iter().map(|other| (other - value).abs()).collect());
+        Self { value, error: 1.2533 * 1.4826 * distance / (values.len() as f64).sqrt() }
+    }
+
+    /// Of the logarithms of a point's times in units of the reference.
+    fn of_repetitions(point: &Point) -> Option<Self> {
+        let times = point.repetitions.iter().map(|timing| (timing.cpu / timing.reference).ln());
+        let times: Vec<f64> = times.filter(|time| time.is_finite()).collect();
+        (!times.is_empty()).then(|| Self::of(&times))
+    }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -92,11 +105,10 @@ fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
     if ratios.len() < FEWEST {
         return None;
     }
-    let count = ratios.len() as f64;
-    let middle = median(ratios.iter().map(|(ratio, _)| *ratio).collect());
-    let scatter = 1.2533 * 1.4826 * median(ratios.iter().map(|(ratio, _)| (ratio - middle).abs()).collect());
-    let spread = (ratios.iter().map(|(_, spread)| spread * spread).sum::<f64>() / count).sqrt();
-    let error = scatter.hypot(spread) / count.sqrt();
+    let logarithms: Vec<f64> = ratios.iter().map(|(ratio, _)| *ratio).collect();
+    let Middle { value: middle, error: scatter } = Middle::of(&logarithms);
+    let doubt = ratios.iter().map(|(_, error)| error * error).sum::<f64>().sqrt() / ratios.len() as f64;
+    let error = scatter.max(doubt);
     let worse = middle > 0.0;
     if middle.abs() - SURE * error <= SESSIONS.ln_1p() {
         return None;
@@ -116,7 +128,7 @@ fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
-    use grainbench_cases::study::point::Counts;
+    use grainbench_cases::study::point::{Counts, Timing};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 

@@ -21,6 +21,10 @@ const REPETITIONS: usize = 5;
 const SHORT: f64 = 1.0;
 /// A repetition lasts this long at least (s): of what is shorter, it is several runs in a row.
 const LEAST: f64 = 2e-3;
+/// The reference is timed for this share of a run's time, before it and after it,
+const SHARE: f64 = 0.1;
+/// but no longer than this (s), and before and after a first run as long as this (s), for nothing is known of it yet.
+const LONG_ENOUGH: [f64; 2] = [0.05, 0.005];
 /// What takes this long (s) needs no run to warm the machine up: its first one counts.
 const WARM: f64 = 0.05;
 /// Most runs in a row.
@@ -106,7 +110,7 @@ impl<'a> Meter<'a> {
         let tasks = self.tasks(subject);
         let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.shelf.take(&task.name)).collect();
         points.iter().flatten().for_each(|_| follow.done(true));
-        let mut open: Vec<(usize, usize, Point)> = Vec::new();
+        let mut open: Vec<(usize, f64, Point)> = Vec::new();
         for (at, task) in tasks.iter().enumerate() {
             if points[at].is_some() {
                 continue;
@@ -115,9 +119,8 @@ impl<'a> Meter<'a> {
             let point = first(subject, task);
             let whole = point.repetitions.first().map_or(0.0, |timing| timing.wall + timing.start_up);
             if whole < SHORT && point.standing == Standing::Measured {
-                let runs = (LEAST / whole).ceil().clamp(1.0, MOST) as usize;
                 let repetitions = if whole < WARM { Vec::new() } else { point.repetitions };
-                open.push((at, runs, Point { repetitions, ..point }));
+                open.push((at, whole, Point { repetitions, ..point }));
             } else {
                 self.shelf.put(&task.name, &point)?;
                 points[at] = Some(point);
@@ -125,9 +128,9 @@ impl<'a> Meter<'a> {
             }
         }
         for round in 1..=REPETITIONS {
-            for (at, runs, point) in open.iter_mut().filter(|(_, _, point)| point.repetitions.len() < round) {
+            for (at, whole, point) in open.iter_mut().filter(|(_, _, point)| point.repetitions.len() < round) {
                 follow.now(&format!("{} · {} again", subject.case.name, tasks[*at].turn.solver));
-                point.repetitions.extend(repeated(&tasks[*at], *runs));
+                point.repetitions.extend(repeated(&tasks[*at], *whole));
             }
         }
         for (at, _, mut point) in open {
@@ -185,11 +188,14 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// Runs a task once, with its times; none of them where nothing ran.
-fn timed(task: &Task, reference: f64) -> (Option<Timing>, Result<Record, RunError>) {
+/// Runs a task once, with its times; none of them where nothing ran. The reference is timed for `lasting` seconds before and
+/// after.
+fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>) {
+    let before = clock::reference_seconds(lasting);
     let (cpu, start) = (clock::cpu_seconds(), Instant::now());
     let record = task.solver.run(&task.scene, &task.turn.resolution, &mut ());
     let (whole, cpu) = (start.elapsed().as_secs_f64(), clock::cpu_seconds() - cpu);
+    let reference = 0.5 * (before + clock::reference_seconds(lasting));
     let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
     // A run that broke left no record: all of its time is that of the loop.
     let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
@@ -197,18 +203,24 @@ fn timed(task: &Task, reference: f64) -> (Option<Timing>, Result<Record, RunErro
     (ran.then_some(Timing { wall, cpu, start_up: (whole - wall).max(0.0), reference }), record)
 }
 
-/// One repetition: the mean of some runs in a row.
-fn repeated(task: &Task, runs: usize) -> Option<Timing> {
-    let reference = clock::reference_seconds();
-    let timings: Option<Vec<Timing>> = (0..runs).map(|_| timed(task, reference).0).collect();
+/// One repetition: the mean of some runs in a row, each of which takes about `whole` seconds.
+fn repeated(task: &Task, whole: f64) -> Option<Timing> {
+    let runs = (LEAST / whole).ceil().clamp(1.0, MOST) as usize;
+    let lasting = (SHARE * whole).min(LONG_ENOUGH[0]);
+    let timings: Option<Vec<Timing>> = (0..runs).map(|_| timed(task, lasting).0).collect();
     let timings = timings?;
     let mean = |of: fn(&Timing) -> f64| timings.iter().map(of).sum::<f64>() / runs as f64;
-    Some(Timing { wall: mean(|t| t.wall), cpu: mean(|t| t.cpu), start_up: mean(|t| t.start_up), reference })
+    Some(Timing {
+        wall: mean(|t| t.wall),
+        cpu: mean(|t| t.cpu),
+        start_up: mean(|t| t.start_up),
+        reference: mean(|t| t.reference),
+    })
 }
 
 /// The first run, with the error.
 fn first(subject: &Subject, task: &Task) -> Point {
-    let (timing, record) = timed(task, clock::reference_seconds());
+    let (timing, record) = timed(task, LONG_ENOUGH[1]);
     let mut point = Point {
         case: subject.case.name.to_owned(),
         variant: subject.variant.to_owned(),
