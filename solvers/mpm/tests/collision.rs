@@ -3,8 +3,9 @@
 
 mod support;
 
+use grainbench_mpm::solver::Mpm;
 use grainbench_scene::record::Record;
-use grainbench_scene::solver::Resolution;
+use grainbench_scene::solver::{Resolution, Solver};
 use support::{collision, column, last, run, try_run};
 
 const SPEED: f64 = 0.042_426_406_871_192_85;
@@ -64,6 +65,18 @@ fn nodal_contacts_do_what_they_are_known_for() {
     assert!(energy(&kinematic) > 1.05, "{}", energy(&kinematic));
     let traction = run("mpm:2001", &collision(0.5, 0.0, 0.0), 8.0, 3);
     assert!(energy(&traction) < energy(&kinematic));
+}
+
+/// Discs of materials without a law between them go through each other, as in the other solvers; with one field they cannot.
+#[test]
+fn without_a_law_nothing_is_felt() {
+    let mut scene = support::scene(&collision(0.5, 0.0, 0.0));
+    scene.laws = vec![None];
+    for solver in ["mpm", "mpm:gap", "mpm:2000", "mpm:2001"] {
+        let solver = Mpm::named(solver).unwrap();
+        let record = solver.run(&scene, &Resolution::grid(4.0, 2), &mut ()).unwrap();
+        assert!((last(&record, "a.vx") / SPEED - 1.0).abs() < 1e-9, "{}", last(&record, "a.vx") / SPEED);
+    }
 }
 
 /// Three discs that meet at a point keep momentum, and all are thrown back alike.

@@ -34,21 +34,21 @@ pub(crate) struct Touch<S: Space> {
     pub(crate) energy: f64,
 }
 
-/// Friction between materials, and which ones.
+/// Friction between materials; pairs without a law do not feel each other.
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionTable {
-    coefficients: Vec<f64>,
+    coefficients: Vec<Option<f64>>,
     materials: usize,
 }
 
 impl FrictionTable {
     pub(crate) fn of(scene: &grainbench_scene::scene::Scene) -> Self {
-        let coefficients = scene.laws.iter().map(|law| law.map_or(0.0, |law| law.friction)).collect();
+        let coefficients = scene.laws.iter().map(|law| law.map(|law| law.friction)).collect();
         Self { coefficients, materials: scene.materials.len() }
     }
 
     #[inline(always)]
-    pub(crate) fn between(&self, a: u16, b: u16) -> f64 {
+    pub(crate) fn between(&self, a: u16, b: u16) -> Option<f64> {
         self.coefficients[usize::from(a) * self.materials + usize::from(b)]
     }
 }

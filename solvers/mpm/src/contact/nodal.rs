@@ -85,11 +85,12 @@ pub(crate) fn apply<S: Space, F: Field<S>>(
                     Some(wall) => rules.friction.between(body.material, walls[wall].material),
                     None => {
                         let other = members.iter().find(|other| other.body != member.body);
-                        other.map_or(0.0, |other| {
+                        other.map_or(Some(0.0), |other| {
                             rules.friction.between(body.material, bodies[other.body as usize].material)
                         })
                     }
                 };
+                let Some(friction) = friction else { continue };
                 let face = &shared.faces[member.slot];
                 let own = match group.wall {
                     Some(wall) => -walls[wall].normal,
@@ -168,18 +169,17 @@ pub(crate) fn apply_pairs<S: Space, F: Field<S>>(
             for meeting in node.iter_mut() {
                 let (one, normal) = (meeting.slots[0], meeting.normal);
                 let body = &bodies[meeting.body as usize];
-                let (velocity, inverse, friction, traction) = match meeting.other {
+                let (velocity, inverse, material, traction) = match meeting.other {
                     Other::Wall(wall) => {
                         let wall = &walls[usize::from(wall)];
-                        let friction = rules.friction.between(body.material, wall.material);
-                        (wall.velocity(meeting.position), 0.0, friction, S::NO_GRADIENT)
+                        (wall.velocity(meeting.position), 0.0, wall.material, S::NO_GRADIENT)
                     }
                     Other::Body(other) => {
-                        let friction = rules.friction.between(body.material, bodies[other as usize].material);
-                        let two = meeting.slots[1];
-                        (field.velocity(two), 1.0 / meeting.masses[1], friction, faces[two].stress)
+                        let (two, other) = (meeting.slots[1], &bodies[other as usize]);
+                        (field.velocity(two), 1.0 / meeting.masses[1], other.material, faces[two].stress)
                     }
                 };
+                let Some(friction) = rules.friction.between(body.material, material) else { continue };
                 let apart = field.velocity(one) - velocity;
                 let along = S::dot(apart, normal);
                 let stress = faces[one].stress + traction;

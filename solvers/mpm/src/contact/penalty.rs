@@ -256,7 +256,7 @@ pub(crate) fn at_walls<S: Space, B: Basis>(
             if lowest::<S>(body, wall) > 0.0 {
                 continue;
             }
-            let friction = rules.friction.between(body.material, wall.material);
+            let Some(friction) = rules.friction.between(body.material, wall.material) else { continue };
             let stiffness = rules.penalty * body.deformable.plane_modulus() / cell;
             for at in body.tracers.clone() {
                 let position = tracers.position[at];
@@ -317,7 +317,7 @@ pub(crate) fn between<S: Space, B: Basis>(
     let moduli = [first, second].map(|body| body.deformable.plane_modulus());
     let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
     let stiffness = 0.5 * rules.penalty * harmonic / cell;
-    let friction = rules.friction.between(first.material, second.material);
+    let Some(friction) = rules.friction.between(first.material, second.material) else { return };
     let reach = DEEPEST * cell;
     let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
     let mut chunks = std::mem::take(&mut springs.near);
