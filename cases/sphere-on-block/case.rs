@@ -1,5 +1,8 @@
 //! A sphere rolls and slips down a deformable plane: contact between deformable bodies in space.
 
+#[path = "backspin.rs"]
+mod backspin;
+
 use crate::bench::Bench;
 use crate::case::{Case, Rung, cells};
 use crate::figure::{Axis, Curve, Figure, Stroke};
@@ -15,7 +18,7 @@ const FLAT: &str = "nodal contact acts before surfaces meet and holds the sphere
 pub(crate) static CASE: Case = Case {
     name: "sphere-on-block",
     title: "A sphere rolls on a deformable plane",
-    claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane; the papers' contacts at nodes are slow \
+    claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane, with backspin too; the papers' contacts at nodes are slow \
             by what they are known for.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
@@ -94,6 +97,7 @@ fn gates() -> Vec<Gate> {
             ));
         }
     }
+    gates.extend(backspin::gates());
     gates
 }
 
