@@ -9,7 +9,7 @@ use crate::bench::Bench;
 use crate::elastic::{Rest, settle, stiffen};
 use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
-use crate::one_grain::{OneGrain, State, last};
+use crate::one_grain::{OneGrain, State, course, last};
 use crate::verdict::Evidence;
 use grainbench_scene::solver::{Resolution, RunError};
 
@@ -94,10 +94,16 @@ fn excess(done: &Done) -> Result<f64, Missing> {
     Ok(state.x / OneGrain::of(&done.scene).rigid_incline(t).x - 1.0)
 }
 
-/// ΩR/v at the end.
+/// Time at the end over which rolling is averaged (s): about one period of the disc rocking on its contact, which nothing damps and
+/// which swings ΩR/v by four hundredths.
+const ROCKS: f64 = 0.1;
+
+/// Mean ΩR over mean v at the end.
 fn rolling(done: &Done) -> Result<f64, Missing> {
-    let (_, State { v, omega, .. }) = last(done)?;
-    Ok(omega * done.scene.grains[0].radius / v)
+    let (end, _) = last(done)?;
+    let states: Vec<State> = course(done)?.into_iter().filter(|(t, _)| *t > end - ROCKS).map(|(_, state)| state).collect();
+    let sum = |of: fn(&State) -> f64| states.iter().map(of).sum::<f64>();
+    Ok(sum(|state| state.omega) * done.scene.grains[0].radius / sum(|state| state.v))
 }
 
 pub(super) fn gates() -> Vec<Gate> {
@@ -105,10 +111,8 @@ pub(super) fn gates() -> Vec<Gate> {
     for slope in SLOPES {
         gates.extend(slope.allowed.iter().map(|&(cells, allowed)| against_reference(slope, cells, allowed)));
         gates.extend(slope.kinematic.map(|(cells, expected)| reproduced(slope, cells, expected)));
-        if slope.variant != "60deg-mu.5" {
-            gates.push(stiff(slope, 10.0));
-            gates.push(stiff(slope, 100.0));
-        }
+        gates.push(stiff(slope, 10.0));
+        gates.push(stiff(slope, 100.0));
         if slope.sticks {
             gates.push(order(slope));
             gates.push(known(slope));
@@ -165,7 +169,12 @@ fn order(slope: Elastic) -> Gate {
 /// Moduli ten and a hundred times larger: nearer to the rigid answer, which needs no reference.
 fn stiff(slope: Elastic, factor: f64) -> Gate {
     let run = stiffened(slope, "mpm", 8.0, factor);
-    let (run, allowed) = if factor > 10.0 { (run.long(), 8e-3) } else { (run.slow(), 0.01) };
+    // Where it hardly slips (tan 60° against 3μ = 1.5) it sticks for long first, and 3.75 % fall by √10 to 1.2 %.
+    let (run, allowed) = match factor > 10.0 {
+        true => (run.long(), 8e-3),
+        false if slope.variant == "60deg-mu.5" => (run.slow(), 0.016),
+        false => (run.slow(), 0.01),
+    };
     Gate::new(
         (
             format!("displacement at {} s over the rigid one, less 1, moduli × {factor}, 8 cells a radius", slope.time),
@@ -215,7 +224,7 @@ fn known(slope: Elastic) -> Gate {
 /// At two cells a radius a disc in nodal contact does not roll (2001 paper, of the sphere at R/2).
 fn does_not_roll() -> Gate {
     Gate::new(
-        ("ΩR/v at the end, where a rigid disc has 1, 2 cells a radius", "1"),
+        ("mean ΩR over mean v at the end, where a rigid disc has 1, 2 cells a radius", "1"),
         vec![run(SLOPES[3], "mpm:2000", 2.0)],
         (Evidence::Paper, "Bardenhagen et al. 2001, text to Fig. 3: at the coarsest resolution it does not roll"),
         (0.05, "it turns by no more than its flat side rocks"),
@@ -243,7 +252,7 @@ fn extrapolated(slope: Elastic) -> Gate {
 /// ΩR/v at 8 cells a radius against the finest rung.
 fn turns_as_it_goes(slope: Elastic) -> Gate {
     Gate::new(
-        ("ΩR/v at the end, 8 cells a radius against 16", "1"),
+        ("mean ΩR over mean v at the end, 8 cells a radius against 16", "1"),
         vec![run(slope, "mpm", 8.0).long(), run(slope, "mpm", FINEST).long()],
         (Evidence::Convergence, "the finest rung"),
         (0.02, "discretisation"),
