@@ -105,7 +105,8 @@ fn no_friction_is_faster_than_friction_that_does_nothing() {
     let mut scene = registry::by_name("plane-shear").unwrap().variant("plain").unwrap();
     scene.change_laws(|law| (law.friction, law.tangential_damping) = (0.0, 0.0));
     scene.duration = Duration::Cycles(100);
-    let idle = try_idly("dem", &scene, &Resolution::TimeStep(1e-4), Effect::Friction).unwrap().unwrap();
+    let patience = std::time::Duration::from_secs(4);
+    let idle = try_idly("dem", &scene, &Resolution::TimeStep(1e-4), Effect::Friction, patience).unwrap().unwrap();
     assert!(idle.same && idle.counts == 1.0, "{idle:?}");
     assert!(idle.time >= 1.3, "{idle:?}");
 }

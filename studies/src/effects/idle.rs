@@ -1,18 +1,20 @@
 //! An absent effect, compiled in with a value that does nothing: the answer bit by bit, and what it costs.
 
-use crate::clock;
 use grainbench_cases::effect::Effect;
 use grainbench_cases::solvers;
 use grainbench_scene::record::Record;
-use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver};
+use grainbench_scene::scene::{self, Scene};
+use grainbench_scene::solver::{Resolution, RunError};
+use std::time::{Duration, Instant};
 
 /// Steps at most: enough for contacts to open and close.
 const STEPS: u64 = 20_000;
 /// Particle-steps at most.
 const PARTICLE_STEPS: u64 = 4_000_000;
-/// Times that both are run, in turn.
-const REPETITIONS: usize = 3;
+/// Times that both are run, in turn, at least.
+const FEWEST: usize = 3;
+/// Times that both are run, in turn, at most.
+const MOST: usize = 15;
 
 /// What was seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,11 +23,12 @@ pub struct Idle {
     pub same: bool,
     /// Particle-steps and contact evaluations with it over those without it.
     pub counts: f64,
-    /// Processor time with it over that without it, the shortest of each.
+    /// Time of the loop with it over that without it, the median of runs in turn.
     pub time: f64,
 }
 
-/// Tries an effect in a scene that does not call for it; none where there is no value that does nothing.
+/// Tries an effect in a scene that does not call for it, in so many runs in turn as there is `patience` for; none where there is no
+/// value that does nothing.
 ///
 /// # Errors
 /// When the solver cannot run the scene.
@@ -34,14 +37,15 @@ pub fn try_idly(
     scene: &Scene,
     resolution: &Resolution,
     effect: Effect,
+    patience: Duration,
 ) -> Result<Option<Idle>, RunError> {
     let mut plain = scene.clone();
     if let Ok((time_step, steps)) = resolution.steps(scene) {
         let most = STEPS.min(PARTICLE_STEPS / scene.grains.len().max(1) as u64).max(1);
         if steps > most {
             plain.duration = match scene.duration {
-                Duration::Cycles(_) => Duration::Cycles(most),
-                Duration::Seconds(_) => Duration::Seconds(time_step * most as f64),
+                scene::Duration::Cycles(_) => scene::Duration::Cycles(most),
+                scene::Duration::Seconds(_) => scene::Duration::Seconds(time_step * most as f64),
             };
         }
     }
@@ -52,28 +56,26 @@ pub fn try_idly(
         Ok((time_step, _)) => Resolution::TimeStep(time_step),
         Err(_) => *resolution,
     };
-    let mut times = [f64::INFINITY; 2];
+    let mut ratios: Vec<f64> = Vec::new();
     let mut records = [None, None];
-    for _ in 0..REPETITIONS {
+    let start = Instant::now();
+    while ratios.len() < FEWEST || (ratios.len() < MOST && start.elapsed() < patience) {
+        let mut times = [0.0; 2];
         for (at, scene) in [&plain, &idle].into_iter().enumerate() {
-            let (record, time) = timed(&*solver, scene, &resolution)?;
-            times[at] = times[at].min(time);
+            let record = solver.run(scene, &resolution, &mut ())?;
+            times[at] = record.cost.wall_seconds.max(f64::MIN_POSITIVE);
             records[at] = Some(record);
         }
+        ratios.push(times[1] / times[0]);
     }
+    ratios.sort_by(f64::total_cmp);
     let [Some(without), Some(with)] = records else { return Ok(None) };
     let work = |record: &Record| (record.cost.particle_steps + record.cost.contact_evaluations) as f64;
     Ok(Some(Idle {
         same: same(&without, &with),
         counts: work(&with) / work(&without).max(1.0),
-        time: times[1] / times[0].max(f64::MIN_POSITIVE),
+        time: ratios[ratios.len() / 2],
     }))
-}
-
-fn timed(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<(Record, f64), RunError> {
-    let start = clock::cpu_seconds();
-    let record = solver.run(scene, resolution, &mut ())?;
-    Ok((record, clock::cpu_seconds() - start))
 }
 
 /// Whether two records end in the same numbers. Equality of numbers is that of bits but for the sign of zero. A spin that

@@ -15,6 +15,10 @@ use grainbench_scene::record::Record;
 use grainbench_scene::solver::{RunError, Solver};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
+
+/// How long an absent effect is tried, beyond the fewest runs.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// One scene of a case with one effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -191,7 +195,7 @@ impl Ledger {
         let is_ours = |run: &&Run| is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == method;
         let run = self.gates.iter().flat_map(|gate| &gate.runs).find(is_ours)?;
         let scene = self.bench.scene(run).ok()?;
-        let idle = try_idly(run.solver, &scene, &run.resolution, piece.effect).ok()??;
+        let idle = try_idly(run.solver, &scene, &run.resolution, piece.effect, PATIENCE).ok()??;
         let mut entry = self.blank(piece);
         entry.worth = if idle.same { Worth::Inert } else { Worth::NotInert };
         (entry.counts, entry.time) = (Some(idle.counts), Some(idle.time));
