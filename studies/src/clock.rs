@@ -46,6 +46,28 @@ pub fn reference_seconds(lasting: f64) -> f64 {
     }
 }
 
+/// What was done, and how long it took.
+#[derive(Clone, Copy, Debug)]
+pub struct Clocked<T> {
+    /// What was done.
+    pub done: T,
+    /// Processor time (s).
+    pub cpu: f64,
+    /// Wall-clock time (s).
+    pub wall: f64,
+    /// Mean of the reference before and after (s).
+    pub reference: f64,
+}
+
+/// Times a piece of work between two timings of the reference, each of `lasting` seconds.
+pub fn clocked<T>(lasting: f64, work: impl FnOnce() -> T) -> Clocked<T> {
+    let before = reference_seconds(lasting);
+    let (cpu, start) = (cpu_seconds(), Instant::now());
+    let done = work();
+    let (wall, cpu) = (start.elapsed().as_secs_f64(), cpu_seconds() - cpu);
+    Clocked { done, cpu, wall, reference: 0.5 * (before + reference_seconds(lasting)) }
+}
+
 /// Looks keys up in a table with two thirds of its places taken and branches on what it finds, as a solver does with the
 /// contacts of its grains: about a tenth of a millisecond.
 fn searches(scale: f64) -> f64 {

@@ -1,8 +1,9 @@
 //! Measures the points: one at a time, repetitions of one subject in turn.
 
 use super::knobs::{self, Turn};
+use crate::clock::{self, Clocked};
 use crate::shelf::Shelf;
-use crate::{Follow, clock, identity};
+use crate::{Follow, identity};
 use grainbench_cases::gate::{Change, Done};
 use grainbench_cases::solvers;
 use grainbench_cases::study::point::{Counts, Diagram, Point, Standing, Timing};
@@ -13,7 +14,6 @@ use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{RunError, Solver};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
 
 /// Repetitions of a point that takes less than a second.
 const REPETITIONS: usize = 5;
@@ -22,9 +22,11 @@ const SHORT: f64 = 1.0;
 /// A repetition lasts this long at least (s): of what is shorter, it is several runs in a row.
 const LEAST: f64 = 2e-3;
 /// The reference is timed for this share of a run's time, before it and after it,
-const SHARE: f64 = 0.1;
-/// but no longer than this (s), and before and after a first run as long as this (s), for nothing is known of it yet.
-const LONG_ENOUGH: [f64; 2] = [0.05, 0.005];
+const SHARE: f64 = 0.025;
+/// but no longer than this (s),
+const LONG_ENOUGH: f64 = 0.01;
+/// and as long as this (s) around a first run, for nothing is known of it yet.
+const AT_FIRST: f64 = 0.002;
 /// What takes this long (s) needs no run to warm the machine up: its first one counts.
 const WARM: f64 = 0.05;
 /// Most runs in a row.
@@ -32,7 +34,7 @@ const MOST: f64 = 50.0;
 /// Points that take longer than this (s) are left to those who ask for all.
 const LONGEST: f64 = 20.0;
 /// Time of a program over that of ours, of the step of a grain: what is expected of one before it is run.
-const PROGRAM: f64 = 3.0;
+const PROGRAM: f64 = 4.0;
 /// A refinement that leaves this much of the error has met a floor.
 const FLOOR: f64 = 0.8;
 /// Errors below this are rounding, and no floor.
@@ -191,11 +193,8 @@ impl<'a> Meter<'a> {
 /// Runs a task once, with its times; none of them where nothing ran. The reference is timed for `lasting` seconds before and
 /// after.
 fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>) {
-    let before = clock::reference_seconds(lasting);
-    let (cpu, start) = (clock::cpu_seconds(), Instant::now());
-    let record = task.solver.run(&task.scene, &task.turn.resolution, &mut ());
-    let (whole, cpu) = (start.elapsed().as_secs_f64(), clock::cpu_seconds() - cpu);
-    let reference = 0.5 * (before + clock::reference_seconds(lasting));
+    let clocked = clock::clocked(lasting, || task.solver.run(&task.scene, &task.turn.resolution, &mut ()));
+    let Clocked { done: record, cpu, wall: whole, reference } = clocked;
     let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
     // A run that broke left no record: all of its time is that of the loop.
     let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
@@ -206,7 +205,7 @@ fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>
 /// One repetition: the mean of some runs in a row, each of which takes about `whole` seconds.
 fn repeated(task: &Task, whole: f64) -> Option<Timing> {
     let runs = (LEAST / whole).ceil().clamp(1.0, MOST) as usize;
-    let lasting = (SHARE * whole).min(LONG_ENOUGH[0]);
+    let lasting = (SHARE * whole).min(LONG_ENOUGH);
     let timings: Option<Vec<Timing>> = (0..runs).map(|_| timed(task, lasting).0).collect();
     let timings = timings?;
     let mean = |of: fn(&Timing) -> f64| timings.iter().map(of).sum::<f64>() / runs as f64;
@@ -220,7 +219,7 @@ fn repeated(task: &Task, whole: f64) -> Option<Timing> {
 
 /// The first run, with the error.
 fn first(subject: &Subject, task: &Task) -> Point {
-    let (timing, record) = timed(task, LONG_ENOUGH[1]);
+    let (timing, record) = timed(task, AT_FIRST);
     let mut point = Point {
         case: subject.case.name.to_owned(),
         variant: subject.variant.to_owned(),
