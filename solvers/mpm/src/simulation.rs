@@ -435,7 +435,6 @@ impl<S: Space> Simulation<S> {
             accounting,
             ..
         } = self;
-        let spins = setting.transfer == Transfer::Spin;
         let mut flow = Flow::default();
         let mut failure: Option<(usize, Failure)> = None;
         for (place, body) in bodies.iter().enumerate() {
@@ -456,9 +455,9 @@ impl<S: Space> Simulation<S> {
                 macro_rules! update {
                     ($law:ident) => {
                         if *accounting {
-                            stress::update::<S, _, true>($law, range, gradients, *time_step, spins, points, &mut flow)
+                            stress::update::<S, _, true>($law, range, gradients, *time_step, points, &mut flow)
                         } else {
-                            stress::update::<S, _, false>($law, range, gradients, *time_step, spins, points, &mut flow)
+                            stress::update::<S, _, false>($law, range, gradients, *time_step, points, &mut flow)
                         }
                     };
                 }
