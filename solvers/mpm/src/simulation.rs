@@ -435,6 +435,7 @@ impl<S: Space> Simulation<S> {
             accounting,
             ..
         } = self;
+        let spins = setting.transfer == Transfer::Spin;
         let mut flow = Flow::default();
         let mut failure: Option<(usize, Failure)> = None;
         for (place, body) in bodies.iter().enumerate() {
@@ -455,9 +456,9 @@ impl<S: Space> Simulation<S> {
                 macro_rules! update {
                     ($law:ident) => {
                         if *accounting {
-                            stress::update::<S, _, true>($law, range, gradients, *time_step, points, &mut flow)
+                            stress::update::<S, _, true>($law, range, gradients, *time_step, spins, points, &mut flow)
                         } else {
-                            stress::update::<S, _, false>($law, range, gradients, *time_step, points, &mut flow)
+                            stress::update::<S, _, false>($law, range, gradients, *time_step, spins, points, &mut flow)
                         }
                     };
                 }

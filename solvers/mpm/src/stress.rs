@@ -28,15 +28,20 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
 /// F ← (1 + Δt ∇v) F, volume and stress of every point of a range, of which `gradients` are the velocity gradients (1/s);
 /// the first point that broke, if any did. With `COUNT` adds to `flow` what the stresses after the step take on the strain of it,
 /// and the work of plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume.
+///
+/// Where points carry `spins` of their own, one that flows takes on that of the velocities around it: what it shared its spin with has
+/// moved on, and spins that nothing answers to grow until a grain of a few cells flies apart.
 pub(crate) fn update<S: Space, L: Law, const COUNT: bool>(
     law: L,
     range: Range<usize>,
     gradients: &[S::Matrix],
     time_step: f64,
+    spins: bool,
     points: &mut Points<S>,
     flow: &mut Flow,
 ) -> Option<Failure> {
     let mut failure = None;
+    let affines = &mut points.affine;
     let deformations = &mut points.deformation[range.clone()];
     let stresses = &mut points.stress[range.clone()];
     let plastic_strains = &mut points.plastic_strain[range.clone()];
@@ -54,6 +59,10 @@ pub(crate) fn update<S: Space, L: Law, const COUNT: bool>(
         let before = (*volume, *plastic_strain);
         *volume = reference * volume_ratio;
         *stress = law.follow::<S>(increment, volume_ratio, *deformation, *stress, plastic_strain);
+        if spins && *plastic_strain > before.1 {
+            let strain_rate = S::embed_symmetric(S::symmetric_part(*gradient));
+            affines[at] = S::restrict_gradient(S::embed_gradient(*gradient) - strain_rate);
+        }
         if COUNT {
             let strain = S::embed_symmetric(S::symmetric_part(increment));
             flow.taken += *volume * S::embed_symmetric(*stress).dot(&strain);

@@ -70,7 +70,8 @@ impl Transfer for Apic {
 /// which points of finite extent have, and, unlike APIC, damps nothing.
 ///
 /// The change of the spin is that of the rigid rotation with the angular momentum that the nodes' change has about the
-/// point: Δω = Σ w r × Δv / Σ w |r|² about each axis, r from the point to the node and its lengths across that axis.
+/// point: Δω = Σ w r × Δv / Σ w |r|² about each axis, r from the point to the node and its lengths across that axis. A point that
+/// flows takes on the spin around it ([`crate::stress::update`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Spin;
 

@@ -36,12 +36,13 @@ fn a_driven_grain_keeps_its_course_and_gives_what_it_says() {
 
 #[test]
 fn the_budget_of_a_push_closes() {
-    for (name, yields, allowed) in [
-        ("mpm", false, 2e-3),
-        ("mpm", true, 2e-3),
-        ("mpm:penalty", true, 5e-3),
-        ("mpm:gap", true, 5e-3),
-        ("mpm:no-slip", true, 5e-3),
+    // Points that flow take on the spin around them, which loses what their own held.
+    for (name, yields, allowed, lost) in [
+        ("mpm", false, 2e-3, 0.005),
+        ("mpm", true, 2e-3, 0.02),
+        ("mpm:penalty", true, 5e-3, 0.005),
+        ("mpm:gap", true, 5e-3, 0.05),
+        ("mpm:no-slip", true, 5e-3, 0.05),
     ] {
         let record = run(name, &pushed(0.5, 0.5, yields), 8.0, 2);
         let of = |entry: &str| last(&record, &format!("budget.{entry}"));
@@ -51,7 +52,7 @@ fn the_budget_of_a_push_closes() {
         assert_eq!(of("friction") > 0.0, name != "mpm:no-slip", "{name}");
         // What the method itself loses or makes is small beside what is brought in.
         let made = (of("transfer") + of("contact")) / of("work");
-        assert!(made.abs() < if name == "mpm" { 0.01 } else { 0.1 }, "{name}: {made}");
+        assert!(made.abs() < lost, "{name}: {made}");
     }
 }
 
