@@ -18,8 +18,8 @@ const FLAT: &str = "nodal contact acts before surfaces meet and holds the sphere
 pub(crate) static CASE: Case = Case {
     name: "sphere-on-block",
     title: "A sphere rolls on a deformable plane",
-    claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane, with backspin too; the papers' contacts at nodes are slow \
-            by what they are known for.",
+    claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane, with backspin too; the papers' \
+            contacts at nodes are slow by what they are known for.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The elastic answer comes from a prototype of the same family of methods, on a rigid plane, not in closed form.",
