@@ -27,5 +27,5 @@ pub(super) const DISCS: Ringing = Ringing {
     share: 0.5,
     source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats, with the pair across (derivation)",
     allowed: [0.15, 0.05],
-    because: "patches of a quarter of a cell, on springs as soft as half a cell of material",
+    because: "patches of a quarter of a cell, on springs as soft as .4 cells of material",
 };

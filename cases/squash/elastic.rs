@@ -31,7 +31,7 @@ pub(super) const DISCS: Ringing = Ringing {
     share: 2.0 / 3.0,
     source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats (derivation)",
     allowed: [0.15, 0.05],
-    because: "patches of a third of a cell, on springs as soft as half a cell of material",
+    because: "patches of a third of a cell, on springs as soft as .4 cells of material",
 };
 
 pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
