@@ -3,6 +3,7 @@
 use super::measures::at;
 use super::{CHAINS, FRAMES, springs, yielding};
 use crate::bench::Bench;
+use crate::coarse_picture::{self, Mean};
 use crate::field_picture::{Shot, film, pictures};
 use crate::figure::Figure;
 use crate::force_plot::force_plot;
@@ -18,6 +19,11 @@ const PIXELS: u32 = 400;
 const FILM_PIXELS: u32 = 300;
 /// Rotations beyond this have the colour of its end (rad).
 const TURNED: (f64, f64) = (-2.0, 2.0);
+
+/// Cells of means (m), and the values that their colours span: pressures (Pa) and rates of shear (1/s).
+const CELL: f64 = 1e-4;
+const PRESSURES: (f64, f64) = (0.0, 3e8);
+const SHEAR_RATES: (f64, f64) = (0.0, 3e5);
 
 /// A slab and what its grains are, in words.
 pub(super) type Slab = (&'static str, Done);
@@ -113,8 +119,27 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
             ));
         }
     }
+    figures.extend(coarse(all));
     figures.push(moving(&with_friction));
     figures
+}
+
+/// Means over cells, the same for points and for grains, at half of the way.
+fn coarse(slabs: &[Slab]) -> Vec<Figure> {
+    const SHEAR: f64 = 0.5;
+    let shots: Vec<coarse_picture::Shot<'_>> = slabs
+        .iter()
+        .filter_map(|(words, done)| Some(((*words).to_owned(), at(done, SHEAR).ok()?, done.scene.as_ref())))
+        .collect();
+    let figure = |name: &str, title: &str, caption: &str, mean: Mean, range: (f64, f64)| {
+        let caption = format!("{caption} Means over squares of 100 µm at 50 % shear, of material points or of grains and their contacts.");
+        Figure::field(name, title, &caption, coarse_picture::pictures(mean, &shots, CELL, range))
+    };
+    vec![
+        figure("coarse-pressure", "Pressure", "Chains cross the slab from side to side.", Mean::Pressure, PRESSURES),
+        figure("coarse-shear", "Rate of shear", "Where the slab flows.", Mean::ShearRate, SHEAR_RATES),
+        figure("coarse-packing", "Packing fraction", "Where the slab has opened.", Mean::PackingFraction, (0.6, 1.0)),
+    ]
 }
 
 /// The film of rotations.

@@ -6,6 +6,7 @@
 pub mod bench;
 pub mod case;
 pub mod chaos;
+pub mod coarse_picture;
 pub mod conformance;
 pub mod effect;
 pub mod elastic;
