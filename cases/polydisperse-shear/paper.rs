@@ -17,7 +17,7 @@ const CONFINING: &str = "Bardenhagen, Brackbill & Sulsky 2000: the confining for
 const LOWER: &str = "the bound is held by the lower end of the interval (99 %, Student's t) over the packings";
 
 /// Width of the band at a quarter of the speed over that at the paper's, of the prototype.
-pub(super) const SLOWER: f64 = 0.78 / 0.31;
+const SLOWER: f64 = 0.78 / 0.31;
 /// The other side moves instead.
 fn other_side(scene: &mut Scene) {
     let velocity = scene.driven[1].velocity;

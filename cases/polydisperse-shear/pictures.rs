@@ -21,9 +21,9 @@ const FILM_PIXELS: u32 = 300;
 const TURNED: (f64, f64) = (-2.0, 2.0);
 
 /// Cells of means (m), and the values that their colours span: pressures (Pa) and rates of shear (1/s).
-const CELL: f64 = 1e-4;
-const PRESSURES: (f64, f64) = (0.0, 3e8);
-const SHEAR_RATES: (f64, f64) = (0.0, 3e5);
+const CELL: f64 = 2e-4;
+const PRESSURES: (f64, f64) = (0.0, 1e8);
+const SHEAR_RATES: (f64, f64) = (0.0, 2e5);
 
 /// A slab and what its grains are, in words.
 pub(super) type Slab = (&'static str, Done);
@@ -132,13 +132,13 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
         .filter_map(|(words, done)| Some(((*words).to_owned(), at(done, SHEAR).ok()?, done.scene.as_ref())))
         .collect();
     let figure = |name: &str, title: &str, caption: &str, mean: Mean, range: (f64, f64)| {
-        let caption = format!("{caption} Means over squares of 100 µm at 50 % shear, of material points or of grains and their contacts.");
+        let caption = format!("{caption} Means over squares of 200 µm at 50 % shear, of material points or of grains and their contacts.");
         Figure::field(name, title, &caption, coarse_picture::pictures(mean, &shots, CELL, range))
     };
     vec![
-        figure("coarse-pressure", "Pressure", "Chains cross the slab from side to side.", Mean::Pressure, PRESSURES),
+        figure("coarse-pressure", "Pressure", "Chains of force carry it from side to side.", Mean::Pressure, PRESSURES),
         figure("coarse-shear", "Rate of shear", "Where the slab flows.", Mean::ShearRate, SHEAR_RATES),
-        figure("coarse-packing", "Packing fraction", "Where the slab has opened.", Mean::PackingFraction, (0.6, 1.0)),
+        figure("coarse-packing", "Packing fraction", "Where the slab has opened.", Mean::PackingFraction, (0.7, 0.95)),
     ]
 }
 
