@@ -43,7 +43,7 @@ struct Slope {
 }
 
 const SLOPES: [Slope; 2] = [
-    Slope { variant: "45deg-mu.495", excess: -0.002, uncertainty: 0.003, allowed: [0.03, 0.01], papers: [-0.26, -0.32] },
+    Slope { variant: "45deg-mu.495", excess: -0.002, uncertainty: 0.003, allowed: [0.035, 0.01], papers: [-0.26, -0.32] },
     Slope { variant: "60deg-mu2_7", excess: 0.014, uncertainty: 0.0, allowed: [0.01, 0.005], papers: [-0.22, -0.27] },
 ];
 

@@ -91,10 +91,10 @@ impl Setting {
         phase: [0.0; 3],
     };
 
-    /// What the papers used, with another contact.
+    /// What the papers used, with another contact. More tracers would mark more nodes as met.
     #[must_use]
     pub const fn classic(contact: Contact) -> Self {
-        Self { basis: Basis::Linear, transfer: Transfer::Flip { pic: 0.0 }, contact, ..Self::BEST }
+        Self { basis: Basis::Linear, transfer: Transfer::Flip { pic: 0.0 }, contact, tracers: 4.0, ..Self::BEST }
     }
 
     /// The setting in words.
