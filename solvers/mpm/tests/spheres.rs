@@ -10,16 +10,24 @@ const SPEED: f64 = 0.042_426_406_871_192_85;
 
 /// Two equal spheres of radius 1 that approach at .01 c each from a gap (m), off centre by `offset` each.
 fn collision(gap: f64, friction: f64, offset: f64) -> String {
+    impact(gap, friction, offset, SPEED, 5.0)
+}
+
+/// The same at a speed (m/s), for a time after they touch (s).
+fn impact(gap: f64, friction: f64, offset: f64, speed: f64, rest: f64) -> String {
     let half = 0.5 * ((2.0 + gap).powi(2) - (2.0 * offset).powi(2)).sqrt();
-    let duration = 0.5 * gap / SPEED + 5.0;
+    let duration = 0.5 * gap / speed + rest;
     format!(
         "dimension = 3\nduration = {duration}\n\
          materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
          contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = {friction} }}\n\
-         [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [{}, {}, 0.1]\nvelocity = [{SPEED}, 0.0, 0.0]\n\
+         [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [{}, {}, 0.1]\nvelocity = [{speed}, 0.0, 0.0]\n\
          [grains.b]\nmaterial = 'm'\nradius = 1.0\nposition = [{half}, {offset}, 0.1]\nvelocity = [{}, 0.0, 0.0]\n\
-         [output]\nevery = 0.02\n[probes]\na.grain = 'a'\nb.grain = 'b'\nall.system = true\nc.contact = ['a', 'b']\n",
-        -half, -offset, -SPEED
+         [output]\nevery = {}\n[probes]\na.grain = 'a'\nb.grain = 'b'\nall.system = true\nc.contact = ['a', 'b']\n",
+        -half,
+        -offset,
+        -speed,
+        rest / 250.0
     )
 }
 
@@ -68,4 +76,30 @@ fn friction_turns_spheres() {
     let spins = [last(&rough, "a.omega_z"), last(&rough, "b.omega_z")].map(|spin| spin / SPEED);
     assert!((spins[0] - spins[1]).abs() < 1e-9 && (0.5..0.62).contains(&spins[0]), "{spins:?}");
     assert!(momentum_drift(&rough) < 1e-12 && energy(&rough) < energy(&smooth));
+}
+
+/// Slow enough for waves to have passed many times, spheres part after Hertz' time, 2.94 δ/v, δ = (15 m v²/(16 E* √R))^(2/5) with m and R
+/// half of one's and E* = E/(2 (1 − ν²)) (Johnson, Contact Mechanics, §11.4): E = 15, ν = 1/4, v the speed of approach.
+#[test]
+fn slow_spheres_touch_for_hertz_time() {
+    let touch = |softer: f64| {
+        let speed = SPEED / 4.0;
+        let approach = 2.0 * speed;
+        let (mass, radius, modulus) = (2.0 * std::f64::consts::PI / 3.0, 0.5_f64, 8.0);
+        let approached = (15.0 * mass * approach.powi(2) / (16.0 * modulus * radius.sqrt())).powf(0.4);
+        let time = 2.94 * approached / approach;
+        let moduli = format!("bulk_modulus = {}, shear_modulus = {}", 10.0 * softer, 6.0 * softer);
+        let text = impact(0.02 * approached, 0.0, 0.0, speed, 1.4 * time)
+            .replace("bulk_modulus = 10.0, shear_modulus = 6.0", &moduli);
+        let record = run("mpm", &text, 8.0, 2);
+        let force = column(&record, "c.normal_force");
+        let mut touching =
+            record.series.time.iter().zip(force).filter(|(_, force)| **force > 0.0).map(|(time, _)| *time);
+        let first = touching.next().unwrap();
+        (touching.next_back().unwrap() - first) / time
+    };
+    let slow = touch(1.0);
+    assert!((slow - 1.0).abs() < 0.02, "{slow}");
+    let soft = touch(0.8);
+    assert!(soft > 1.06, "a fifth softer: {soft}");
 }
