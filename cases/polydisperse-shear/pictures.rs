@@ -132,7 +132,7 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
         .filter_map(|(words, done)| Some(((*words).to_owned(), at(done, SHEAR).ok()?, done.scene.as_ref())))
         .collect();
     let figure = |name: &str, title: &str, caption: &str, mean: Mean, range: (f64, f64)| {
-        let caption = format!("{caption} Means over squares of 200 µm at 50 % shear, of material points or of grains and their contacts.");
+        let caption = format!("{caption} Means over squares of 200 µm at 50 % shear, of material points or of grains and their contacts; white where there are too few.");
         Figure::field(name, title, &caption, coarse_picture::pictures(mean, &shots, CELL, range))
     };
     vec![

@@ -78,9 +78,9 @@ pub struct Setting {
 
 impl Setting {
     /// One setting for all scenes: the best known. With hat functions, which cost half, rolling and impacts are as good, but
-    /// points with a spin become unstable on them after some thousand steps. Softer springs show
-    /// contacts of a quarter of a cell more than a tenth too soft; stiffer ones, or fewer tracers, slow discs and spheres that
-    /// roll at two to four cells a radius.
+    /// points with a spin become unstable on them after some thousand steps. Softer springs show contacts of a quarter of a
+    /// cell more than a tenth too soft; stiffer ones, or fewer tracers, slow discs and spheres that roll at two to four
+    /// cells a radius.
     pub const BEST: Self = Self {
         basis: Basis::Quadratic,
         transfer: Transfer::Spin,
