@@ -2,11 +2,12 @@
 
 use crate::accounts::Accounts;
 use crate::contact::nodal::{self, Felt};
-use crate::contact::penalty::{self, Rules, Told};
+use crate::contact::penalty::{Push, Rules, Told};
 use crate::contact::shared::{Projected, Stepped};
 use crate::options::{Contact, StressUpdate};
 use crate::simulation::{Simulation, with_basis};
 use grainbench_scene::space::Space;
+use std::marker::PhantomData;
 
 impl<S: Space> Simulation<S> {
     /// Whether there is anything to touch.
@@ -68,19 +69,13 @@ impl<S: Space> Simulation<S> {
             penalty: self.setting.penalty,
             time_step: self.time_step,
         };
-        let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, accounts, .. } = self;
+        let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, accounts, processor, .. } =
+            self;
         let Accounts { tally, pushed, .. } = accounts;
-        let mut told = Told { tally, touches: record.then_some(touches), pushed: accounting.then_some(pushed) };
+        let told = Told { tally, touches: record.then_some(touches), pushed: accounting.then_some(pushed) };
         with_basis!(setting.basis, B => {
-            penalty::at_walls::<S, B>(&rules, bodies, tracers, springs, walls, nodes, &mut told);
-            if !pairs.found.is_empty() {
-                tracers.find_boxes();
-            }
-            for pair in &pairs.found {
-                for pair in [*pair, pair.exchanged()] {
-                    penalty::between::<S, B>(&rules, bodies, &pair, tracers, springs, nodes, &mut told);
-                }
-            }
+            let basis = PhantomData::<B>;
+            processor.run(Push { rules, bodies, pairs: &pairs.found, tracers, springs, walls, nodes, told, basis });
         });
         cost.pair_tests += pairs.tests;
         cost.contact_evaluations += springs.touched;

@@ -19,8 +19,8 @@ use crate::runs::{self, Ground, LONGEST, Run};
 use crate::scatter::Scatter;
 use crate::start::medium;
 use crate::stress::{self, Failure};
-use crate::surface::Tracers;
-use crate::transfer::{self, Apic, Flip, Part, Spin};
+use crate::surface::{Carry, Tracers};
+use crate::transfer::{self, Apic, Flip, Spin};
 use crate::walls::RigidPlane;
 use grainbench_scene::record::Cost;
 use grainbench_scene::scene::Scene;
@@ -190,16 +190,19 @@ impl<S: Space> Simulation<S> {
             }
         }
         self.place_windows()?;
-        self.find_runs();
+        self.scatter();
         if record {
             self.before.copy_from_slice(&self.points.velocity);
         }
-        self.scatter();
         self.find_driven();
         self.find_shared();
         if self.setting.stress_update == StressUpdate::First {
             self.project_momentum();
-            self.update_stress(Velocities::Projected)?;
+            let mut flow = Flow::default();
+            for place in 0..self.bodies.len() {
+                self.update_stress(place, Velocities::Projected, &mut flow)?;
+            }
+            self.account_for_flow(flow);
             self.scatter_force_again();
         }
         self.body_force(time);
@@ -212,22 +215,12 @@ impl<S: Space> Simulation<S> {
         self.note_driven();
         self.driven.carry(&self.bodies, &mut self.points, self.time_step);
         self.account_for_nodes();
-        if self.setting.stress_update == StressUpdate::ModifiedLast {
+        let is_projected = self.setting.stress_update == StressUpdate::ModifiedLast;
+        if is_projected {
             self.finish_projection();
         }
         self.account_for_contacts();
-        match self.setting.stress_update {
-            StressUpdate::First => self.move_tracers(Velocities::Stepped),
-            StressUpdate::Last => {
-                self.update_stress(Velocities::Stepped)?;
-                self.move_tracers(Velocities::Stepped);
-            }
-            StressUpdate::ModifiedLast => {
-                self.update_stress(Velocities::Projected)?;
-                self.move_tracers(Velocities::Projected);
-            }
-        }
-        self.move_points()?;
+        self.move_on(if is_projected { Velocities::Projected } else { Velocities::Stepped })?;
         self.step += 1;
         self.cost.steps += 1;
         self.cost.particle_steps += self.points.len() as u64;
@@ -296,27 +289,30 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Finds the points that reach the same nodes. Where they no longer follow each other the points of the body are put in
-    /// the order of their cells.
-    fn find_runs(&mut self) {
+    /// Finds the points of a body that reach the same nodes. Where they no longer follow each other they are put in the order of
+    /// their cells.
+    fn find_runs(&mut self, place: usize) {
         let Self { lattice, bodies, points, runs, setting, .. } = self;
-        runs.clear();
-        for Body { part, .. } in bodies {
-            with_basis!(setting.basis, B => {
+        let part = &mut bodies[place].part;
+        with_basis!(setting.basis, B => {
+            part.runs = runs::find::<S, B>(lattice, part.points.clone(), points, runs);
+            if part.runs.len() > part.runs_in_order + part.runs_in_order / DISORDER {
+                points.sort(part.points.clone(), |position| part.window.slot(lattice.first::<S, B>(position)));
+                runs.truncate(part.runs.start);
                 part.runs = runs::find::<S, B>(lattice, part.points.clone(), points, runs);
-                if part.runs.len() > part.runs_in_order + part.runs_in_order / DISORDER {
-                    points.sort(part.points.clone(), |position| part.window.slot(lattice.first::<S, B>(position)));
-                    runs.truncate(part.runs.start);
-                    part.runs = runs::find::<S, B>(lattice, part.points.clone(), points, runs);
-                    part.runs_in_order = part.runs.len();
-                }
-            });
-        }
+                part.runs_in_order = part.runs.len();
+            }
+        });
     }
 
+    /// Points bring mass, momentum and internal force to the nodes, body by body: what a body has is in the cache only while it is
+    /// worked on.
     fn scatter(&mut self) {
-        let Self { lattice, bodies, points, nodes, runs, setting, processor, .. } = self;
-        for Body { part, .. } in bodies.iter() {
+        self.runs.clear();
+        for place in 0..self.bodies.len() {
+            self.find_runs(place);
+            let Self { lattice, bodies, points, nodes, runs, setting, processor, .. } = self;
+            let part = &bodies[place].part;
             let ground = Ground::new(lattice, part, &runs[part.runs.clone()], points);
             with_basis!(setting.basis, B => match setting.transfer {
                 Transfer::Flip { .. } => processor.run(Scatter::<S, B, Flip>::new(ground, points, nodes)),
@@ -419,8 +415,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Velocity gradients, then deformation and stress of every point.
-    fn update_stress(&mut self, velocities: Velocities) -> Result<(), Box<Broken>> {
+    /// Velocity gradients, then deformation and stress of the points of a body.
+    fn update_stress(&mut self, place: usize, velocities: Velocities, flow: &mut Flow) -> Result<(), Box<Broken>> {
         let Self {
             lattice,
             bodies,
@@ -436,87 +432,105 @@ impl<S: Space> Simulation<S> {
             ..
         } = self;
         let spins = setting.transfer == Transfer::Spin;
-        let mut flow = Flow::default();
-        let mut failure: Option<(usize, Failure)> = None;
-        for (place, body) in bodies.iter().enumerate() {
-            let part: &Part = &body.part;
-            for runs in runs::in_groups(&runs[part.runs.clone()]) {
-                let range = runs[0].start..runs[runs.len() - 1].end;
-                let ground = Ground::new(lattice, part, runs, points);
-                with_basis!(setting.basis, B => match velocities {
-                    Velocities::Stepped => {
-                        let velocity = |node: &Node<S>| node.velocity;
-                        processor.run(Gradients::<S, B, _, _>::new(ground, nodes, velocity, gradients));
-                    }
-                    Velocities::Projected => {
-                        let velocity = |velocity: &S::Vector| *velocity;
-                        processor.run(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
-                    }
-                });
-                macro_rules! update {
-                    ($law:ident) => {
-                        if *accounting {
-                            stress::update::<S, _, true>($law, range, gradients, *time_step, spins, points, &mut flow)
-                        } else {
-                            stress::update::<S, _, false>($law, range, gradients, *time_step, spins, points, &mut flow)
-                        }
-                    };
-                }
-                let found = match body.law {
-                    Material::NeoHookean(law) => update!(law),
-                    Material::Hypoelastic(law) => update!(law),
-                    Material::VonMises(law) => update!(law),
-                };
-                failure = failure.or(found.map(|failure| (place, failure)));
-            }
-        }
-        self.account_for_flow(flow);
-        match failure {
-            None => Ok(()),
-            Some((place, Failure { point, cause })) => Err(self.broken(place, point, cause)),
-        }
-    }
-
-    /// Carries tracers with the bodies they are on.
-    fn move_tracers(&mut self, velocities: Velocities) {
-        let Self { lattice, bodies, tracers, nodes, projected, setting, time_step, .. } = self;
-        for body in bodies.iter() {
+        let Body { part, law, .. } = &bodies[place];
+        let mut failure = None;
+        for runs in runs::in_groups(&runs[part.runs.clone()]) {
+            let range = runs[0].start..runs[runs.len() - 1].end;
+            let ground = Ground::new(lattice, part, runs, points);
             with_basis!(setting.basis, B => match velocities {
                 Velocities::Stepped => {
-                    tracers.carry::<B>(lattice, body, nodes, |slot| nodes[slot].velocity, *time_step);
+                    let velocity = |node: &Node<S>| node.velocity;
+                    processor.run(Gradients::<S, B, _, _>::new(ground, nodes, velocity, gradients));
                 }
-                Velocities::Projected => tracers.carry::<B>(lattice, body, nodes, |slot| projected[slot], *time_step),
+                Velocities::Projected => {
+                    let velocity = |velocity: &S::Vector| *velocity;
+                    processor.run(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
+                }
             });
+            macro_rules! update {
+                ($law:ident) => {
+                    if *accounting {
+                        stress::update::<S, _, true>($law, range, gradients, *time_step, spins, points, flow)
+                    } else {
+                        stress::update::<S, _, false>($law, range, gradients, *time_step, spins, points, flow)
+                    }
+                };
+            }
+            let found = match *law {
+                Material::NeoHookean(law) => update!(law),
+                Material::Hypoelastic(law) => update!(law),
+                Material::VonMises(law) => update!(law),
+            };
+            failure = failure.or(found);
+        }
+        match failure {
+            None => Ok(()),
+            Some(Failure { point, cause }) => Err(self.broken(place, point, cause)),
         }
     }
 
-    /// Points go where they are next, unless that is too far.
-    fn move_points(&mut self) -> Result<(), Box<Broken>> {
+    /// Stresses follow, if they do not come first; tracers and points go where they are next, unless that is too far.
+    fn move_on(&mut self, velocities: Velocities) -> Result<(), Box<Broken>> {
         let cell = self.lattice.shortest(S::DIMENSION);
+        let mut flow = Flow::default();
         let (mut farthest, mut lost) = (0.0_f64, false);
-        for (position, next) in self.points.position.iter_mut().zip(&self.points.next) {
-            let way = *next - *position;
-            let squared = S::dot(way, way);
-            lost |= squared.is_nan();
-            farthest = farthest.max(squared);
-            *position = *next;
+        for place in 0..self.bodies.len() {
+            if self.setting.stress_update != StressUpdate::First {
+                self.update_stress(place, velocities, &mut flow)?;
+            }
+            self.move_tracers(place, velocities);
+            let Self { bodies, points, .. } = self;
+            let range = bodies[place].part.points.clone();
+            for (position, next) in points.position[range.clone()].iter_mut().zip(&points.next[range]) {
+                let way = *next - *position;
+                let squared = S::dot(way, way);
+                lost |= squared.is_nan();
+                farthest = farthest.max(squared);
+                *position = *next;
+            }
+            self.find_bounds(place);
         }
-        let farthest = farthest.sqrt();
-        if lost || farthest > cell {
+        if lost || farthest.sqrt() > cell {
             return Err(self.ran_away(cell));
         }
-        self.find_bounds();
+        if self.setting.stress_update != StressUpdate::First {
+            self.account_for_flow(flow);
+        }
         Ok(())
     }
 
-    /// Boxes around bodies.
-    pub(crate) fn find_bounds(&mut self) {
-        for body in &mut self.bodies {
-            let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-            let points = enclose::<S>(none, &self.points.position[body.part.points.clone()]);
-            let bounds = enclose::<S>(points, &self.tracers.position[body.tracers.clone()]);
-            body.bounds = bounds.map(|[x, y, z]| S::embed(S::restrict(Vector3::new(x, y, z))));
-        }
+    /// Carries the tracers of a body with it.
+    fn move_tracers(&mut self, place: usize, velocities: Velocities) {
+        let Self { lattice, bodies, tracers, nodes, projected, setting, time_step, processor, .. } = self;
+        let (body, elapsed) = (&bodies[place], *time_step);
+        with_basis!(setting.basis, B => {
+            let basis = PhantomData::<B>;
+            match velocities {
+                Velocities::Stepped => {
+                    let velocity = |slot: usize| nodes[slot].velocity;
+                    processor.run(Carry { lattice, body, tracers, nodes, velocity, elapsed, basis });
+                }
+                Velocities::Projected => {
+                    let velocity = |slot: usize| projected[slot];
+                    processor.run(Carry { lattice, body, tracers, nodes, velocity, elapsed, basis });
+                }
+            }
+        });
+    }
+
+    /// The box around a body.
+    fn find_bounds(&mut self, place: usize) {
+        let Self { bodies, points, tracers, .. } = self;
+        let body = &mut bodies[place];
+        let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        let around = enclose::<S>(none, &points.position[body.part.points.clone()]);
+        let bounds = enclose::<S>(around, &tracers.position[body.tracers.clone()]);
+        body.bounds = bounds.map(|[x, y, z]| S::embed(S::restrict(Vector3::new(x, y, z))));
+    }
+
+    /// The boxes around all bodies.
+    pub(crate) fn find_all_bounds(&mut self) {
+        (0..self.bodies.len()).for_each(|place| self.find_bounds(place));
     }
 }
 

@@ -20,7 +20,7 @@ impl<S: Space> Simulation<S> {
             press(&self.bodies, &mut self.points, &self.tracers, gravity);
         }
         self.drop_idle_surfaces();
-        self.find_bounds();
+        self.find_all_bounds();
         if let Some(settle) = start.settle {
             (self.gravity, self.damping, self.settling) = (S::restrict(gravity), settle.damping, true);
             for _ in 0..(settle.duration / self.time_step).ceil() as u64 {

@@ -80,7 +80,7 @@ impl<S: Space> Simulation<S> {
         (self.step, self.cost) = (state.step, state.cost);
         self.open_accounts();
         (self.accounts.sums, self.accounts.tally) = (state.sums, state.tally);
-        self.find_bounds();
+        self.find_all_bounds();
         Ok(state.recorder)
     }
 }

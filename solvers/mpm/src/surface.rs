@@ -3,9 +3,12 @@
 use crate::basis::Basis;
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Stencil};
+use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
+use crate::runs::Batch;
 use crate::seed::Patch;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Tracers of all bodies, structure of arrays.
@@ -148,41 +151,45 @@ impl<S: Space> Tracers<S> {
         near.extend(chunks.clone().filter(is_near));
     }
 
-    /// The surface made of some runs, next to a position and facing the given normal; none when no tracer of it is within
-    /// `reach` (m) and half a spacing.
+    /// The surface made of some runs where a position with a unit normal of its own, which faces it, has gone through it; none when it has
+    /// not, or is farther than `reach` (m) from it.
     #[inline(always)]
-    pub(crate) fn nearest(
+    pub(crate) fn gone_through<L: Lanes>(
         &self,
+        lanes: L,
         chunks: impl Iterator<Item = usize> + Clone,
         position: S::Vector,
         normal: S::Vector,
         reach: f64,
     ) -> Option<Near<S>> {
-        let (mut best, mut squared) = (usize::MAX, 2.0 * reach * reach);
+        let mut closest = Closest::new(lanes, 2.0 * reach * reach);
         for chunk in chunks.clone().map(|chunk| &self.chunks[chunk]) {
-            if chunk.away(position) >= squared {
-                continue;
-            }
-            for at in chunk.tracers.clone() {
-                let between = position - self.position[at];
-                let distance = S::dot(between, between);
-                if distance < squared && S::dot(self.area[at], normal) < 0.0 {
-                    (best, squared) = (at, distance);
-                }
+            if chunk.away(position) < closest.bound {
+                closest.look::<S>(self, chunk.tracers.clone(), position, normal);
             }
         }
-        if best == usize::MAX {
+        let closest = closest.tracer()?;
+        if self.is_above(closest, position) {
             return None;
         }
         let near = if S::DIMENSION == 2 {
-            let [before, after] = self.neighbours[best].map(|neighbour| neighbour as usize);
-            let [one, two] = [self.on_chord(before, best, position), self.on_chord(best, after, position)];
-            if one.1 <= two.1 { one.0 } else { two.0 }
+            let [before, after] = self.neighbours[closest].map(|neighbour| neighbour as usize);
+            let [one, two] = [self.chord(before, closest, position), self.chord(closest, after, position)];
+            if one.away() <= two.away() { self.on(&one) } else { self.on(&two) }
         } else {
-            self.around(chunks, best, position, normal)?
+            self.around(chunks, closest, position, normal)?
         };
         let faces = S::dot(near.normal, normal) < FACING;
-        (faces && near.gap.abs() < reach).then_some(near)
+        (faces && near.gap <= 0.0 && -near.gap < reach).then_some(near)
+    }
+
+    /// Whether a position is above the surface for sure: higher over the tracer closest to it than the next one is away.
+    #[inline(always)]
+    fn is_above(&self, closest: usize, position: S::Vector) -> bool {
+        let area = self.area[closest];
+        let squared = S::dot(area, area);
+        let spacing = if S::DIMENSION == 2 { 1.0 } else { 1.0 / squared.sqrt().sqrt() };
+        S::dot(position - self.position[closest], area) > squared * spacing
     }
 
     /// The surface next to a position in space, where tracers have no neighbours: with weights a (1 − r²/H²)² of the tracers y that face
@@ -229,37 +236,66 @@ impl<S: Space> Tracers<S> {
         Some(Near { gap: 0.5 * (S::dot(way, normal) + along) / total, normal })
     }
 
-    /// The surface between two tracers next to a position, and the squared distance to their chord: the cubic that has
-    /// the tracers' normals at its ends.
+    /// The chord between two tracers, seen from a position.
     #[inline(always)]
-    fn on_chord(&self, from: usize, to: usize, position: S::Vector) -> (Near<S>, f64) {
+    fn chord(&self, from: usize, to: usize, position: S::Vector) -> Chord<S> {
         let chord = self.position[to] - self.position[from];
-        let squared = S::dot(chord, chord);
         let way = position - self.position[from];
-        let part = (S::dot(way, chord) / squared).clamp(0.0, 1.0);
+        let part = (S::dot(way, chord) / S::dot(chord, chord)).clamp(0.0, 1.0);
+        Chord { ends: [from, to], chord, part, off: way - chord * part }
+    }
+
+    /// The surface over a chord: the cubic that has the tracers' normals at its ends.
+    #[inline(always)]
+    fn on(&self, &Chord { ends: [from, to], chord, part, off }: &Chord<S>) -> Near<S> {
         let [first, last] = [self.normal(from), self.normal(to)];
         let mean = first * (1.0 - part) + last * part;
         let normal = mean * (1.0 / S::dot(mean, mean).sqrt());
         // Slopes of the surface against the chord, times its length, at both ends.
         let slope = |end: S::Vector| -S::dot(end, chord) / S::dot(end, normal);
         let bump = slope(first) * part * (1.0 - part) * (1.0 - part) - slope(last) * part * part * (1.0 - part);
-        let off = way - chord * part;
-        (Near { gap: S::dot(off, normal) - bump, normal }, S::dot(off, off))
+        Near { gap: S::dot(off, normal) - bump, normal }
     }
+}
 
-    /// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that
-    /// carry mass.
-    pub(crate) fn carry<B: Basis>(
-        &mut self,
-        lattice: &Lattice,
-        body: &Body,
-        nodes: &[Node<S>],
-        velocity: impl Fn(usize) -> S::Vector,
-        elapsed: f64,
-    ) {
+/// The chord between two tracers, seen from a position.
+struct Chord<S: Space> {
+    ends: [usize; 2],
+    /// From one to the other (m).
+    chord: S::Vector,
+    /// Where on it the position is closest, as a part of it.
+    part: f64,
+    /// From there to the position (m).
+    off: S::Vector,
+}
+
+impl<S: Space> Chord<S> {
+    /// Squared distance (m²).
+    #[inline(always)]
+    fn away(&self) -> f64 {
+        S::dot(self.off, self.off)
+    }
+}
+
+/// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that carry mass.
+pub(crate) struct Carry<'a, S: Space, B, V> {
+    pub(crate) lattice: &'a Lattice,
+    pub(crate) body: &'a Body,
+    pub(crate) tracers: &'a mut Tracers<S>,
+    pub(crate) nodes: &'a [Node<S>],
+    pub(crate) velocity: V,
+    pub(crate) elapsed: f64,
+    pub(crate) basis: PhantomData<B>,
+}
+
+impl<S: Space, B: Basis, V: Fn(usize) -> S::Vector> Kernel for Carry<'_, S, B, V> {
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        let Self { lattice, body, tracers, nodes, velocity, elapsed, .. } = self;
+        let Tracers { position, area, neighbours, .. } = tracers;
         let window = &body.part.window;
         for at in body.tracers.clone() {
-            let stencil = Stencil::new::<S, B>(lattice, self.position[at], [body.part.half; 3]);
+            let stencil = Stencil::new::<S, B>(lattice, position[at], [body.part.half; 3]);
             if !window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
                 continue;
             }
@@ -281,20 +317,73 @@ impl<S: Space> Tracers<S> {
                 continue;
             }
             let velocity = way * (1.0 / total);
-            self.position[at] += velocity * elapsed;
+            position[at] += velocity * elapsed;
             if S::DIMENSION == 3 {
                 // Gradient of the interpolation over the nodes with mass: (Σ v ∇N − v̄ Σ ∇N)/Σ N.
                 let gradient = (gradient - S::outer(velocity, slope)) * (1.0 / total);
-                self.area[at] = transported::<S>(self.area[at], gradient, elapsed);
+                area[at] = transported::<S>(area[at], gradient, elapsed);
             }
         }
         if S::DIMENSION == 2 {
             for at in body.tracers.clone() {
-                let [before, after] = self.neighbours[at].map(|neighbour| self.position[neighbour as usize]);
+                let [before, after] = neighbours[at].map(|neighbour| position[neighbour as usize]);
                 let half = S::embed(after - before) * 0.5;
-                self.area[at] = S::restrict(Vector3::new(half.y, -half.x, 0.0));
+                area[at] = S::restrict(Vector3::new(half.y, -half.x, 0.0));
             }
         }
+    }
+}
+
+/// The tracer that is closest to a position and faces a direction, of those looked at.
+struct Closest<L: Lanes> {
+    lanes: L,
+    /// In each lane the tracer, or −1, and the squared distance to it (m²).
+    tracer: Four<L>,
+    squared: Four<L>,
+    /// The least of these distances.
+    bound: f64,
+}
+
+impl<L: Lanes> Closest<L> {
+    /// None closer than the root of `bound` (m²) so far.
+    #[inline(always)]
+    fn new(lanes: L, bound: f64) -> Self {
+        Self { lanes, tracer: Four::splat(lanes, -1.0), squared: Four::splat(lanes, bound), bound }
+    }
+
+    /// Looks at some more, four by four.
+    #[inline(always)]
+    fn look<S: Space>(&mut self, tracers: &Tracers<S>, range: Range<usize>, position: S::Vector, facing: S::Vector) {
+        let zero = Four::splat(self.lanes, 0.0);
+        for batch in Batch::each_of(range) {
+            let places = batch.vectors::<S, L>(self.lanes, &tracers.position);
+            let areas = batch.vectors::<S, L>(self.lanes, &tracers.area);
+            let (mut distance, mut along) = (zero, zero);
+            for axis in 0..S::DIMENSION {
+                let between = places[axis] * -1.0 + S::component(position, axis);
+                distance = distance + between * between;
+                along = along + areas[axis] * S::component(facing, axis);
+            }
+            let faces = along.pick_below(zero, distance, zero.like(f64::INFINITY));
+            let distance = batch.or_else(self.lanes, faces, f64::INFINITY);
+            self.tracer = distance.pick_below(self.squared, batch.numbers(self.lanes), self.tracer);
+            self.squared = distance.pick_below(self.squared, distance, self.squared);
+        }
+        let [a, b, c, d] = self.squared.values();
+        self.bound = a.min(b).min(c.min(d));
+    }
+
+    /// Which it is: the first of equally close ones.
+    #[inline(always)]
+    fn tracer(&self) -> Option<usize> {
+        let (squared, tracer) = (self.squared.values(), self.tracer.values());
+        let mut first = f64::INFINITY;
+        for lane in 0..LANES {
+            if squared[lane] == self.bound && tracer[lane] >= 0.0 {
+                first = first.min(tracer[lane]);
+            }
+        }
+        first.is_finite().then_some(first as usize)
     }
 }
 

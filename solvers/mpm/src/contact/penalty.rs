@@ -9,11 +9,13 @@ use crate::accounts::Tally;
 use crate::basis::Basis;
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Stencil};
+use crate::lanes::{Kernel, Lanes};
 use crate::surface::Tracers;
 use crate::transfer::Part;
 use crate::walls::RigidPlane;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
+use std::marker::PhantomData;
 
 /// How far a surface can bulge beyond the box around its tracers (cells).
 const BULGE: f64 = 0.25;
@@ -239,57 +241,150 @@ pub(crate) fn taken<S: Space, B: Basis>(
     work.sum()
 }
 
-/// Springs between bodies and walls.
-pub(crate) fn at_walls<S: Space, B: Basis>(
-    rules: &Rules<'_>,
-    bodies: &[Body],
-    tracers: &Tracers<S>,
-    springs: &mut Springs<S>,
-    walls: &mut [RigidPlane<S>],
-    nodes: &mut [Node<S>],
-    told: &mut Told<'_, S>,
-) {
-    let cell = rules.lattice.shortest(S::DIMENSION);
-    for (number, wall) in walls.iter_mut().enumerate() {
-        let other = Other::Wall(number as u16);
-        for (place, body) in bodies.iter().enumerate() {
-            if lowest::<S>(body, wall) > 0.0 {
-                continue;
+/// Springs of all bodies, with walls and with each other, in one step.
+pub(crate) struct Push<'a, S: Space, B> {
+    pub(crate) rules: Rules<'a>,
+    pub(crate) bodies: &'a [Body],
+    pub(crate) pairs: &'a [Pair<S>],
+    pub(crate) tracers: &'a mut Tracers<S>,
+    pub(crate) springs: &'a mut Springs<S>,
+    pub(crate) walls: &'a mut [RigidPlane<S>],
+    pub(crate) nodes: &'a mut [Node<S>],
+    pub(crate) told: Told<'a, S>,
+    pub(crate) basis: PhantomData<B>,
+}
+
+impl<S: Space, B: Basis> Kernel for Push<'_, S, B> {
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) {
+        self.at_walls();
+        if !self.pairs.is_empty() {
+            self.tracers.find_boxes();
+        }
+        for pair in self.pairs {
+            for pair in [*pair, pair.exchanged()] {
+                self.between(lanes, &pair);
             }
-            let Some(friction) = rules.friction.between(body.material, wall.material) else { continue };
-            let stiffness = rules.penalty * body.deformable.plane_modulus() / cell;
-            for at in body.tracers.clone() {
-                let position = tracers.position[at];
-                let depth = -wall.height(position);
-                if depth <= 0.0 {
+        }
+    }
+}
+
+impl<S: Space, B: Basis> Push<'_, S, B> {
+    /// Springs between bodies and walls.
+    #[inline(always)]
+    fn at_walls(&mut self) {
+        let Self { rules, bodies, tracers, springs, walls, nodes, told, .. } = self;
+        let cell = rules.lattice.shortest(S::DIMENSION);
+        for (number, wall) in walls.iter_mut().enumerate() {
+            let other = Other::Wall(number as u16);
+            for (place, body) in bodies.iter().enumerate() {
+                if lowest::<S>(body, wall) > 0.0 {
                     continue;
                 }
-                let Some(grip) = Grip::<S>::new::<B>(rules.lattice, &body.part, position, nodes) else { continue };
-                let area = S::dot(tracers.area[at], tracers.area[at]).sqrt();
-                let spring = stiffness * area;
-                let push = wall.normal * (spring * depth);
-                let slip = (grip.velocity - wall.velocity(position)) * rules.time_step;
-                let stretch = springs.stretch(at, other);
-                let (shear, stretched, slipping) =
-                    rub::<S>(*stretch, slip, wall.normal, spring, friction * spring * depth);
-                told.tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, wall.normal);
-                told.tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
-                *stretch = stretched;
-                let force = push + shear;
-                grip.push::<B>(&body.part, force, nodes);
-                wall.force -= force;
-                told.tally.walls += S::dot(force, wall.velocity(position)) * rules.time_step;
-                told.tally.taken -= 0.5 * S::dot(force, slip);
-                if let Some(pushed) = told.pushed.as_mut() {
-                    pushed.push(Pushed { body: (place as u32, position), back: Err(wall.velocity(position)), force });
-                }
-                if let Some(touches) = told.touches.as_mut() {
-                    let energy = energy_ahead::<S>(spring, depth, stretched, slip, wall.normal, slipping);
-                    let body = place as u32;
-                    touches.push(Touch { body, other, point: position, push, shear, depth, slipping, energy });
+                let Some(friction) = rules.friction.between(body.material, wall.material) else { continue };
+                let stiffness = rules.penalty * body.deformable.plane_modulus() / cell;
+                for at in body.tracers.clone() {
+                    let position = tracers.position[at];
+                    let depth = -wall.height(position);
+                    if depth <= 0.0 {
+                        continue;
+                    }
+                    let Some(grip) = Grip::<S>::new::<B>(rules.lattice, &body.part, position, nodes) else { continue };
+                    let area = S::dot(tracers.area[at], tracers.area[at]).sqrt();
+                    let spring = stiffness * area;
+                    let push = wall.normal * (spring * depth);
+                    let slip = (grip.velocity - wall.velocity(position)) * rules.time_step;
+                    let stretch = springs.stretch(at, other);
+                    let (shear, stretched, slipping) =
+                        rub::<S>(*stretch, slip, wall.normal, spring, friction * spring * depth);
+                    told.tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, wall.normal);
+                    told.tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
+                    *stretch = stretched;
+                    let force = push + shear;
+                    grip.push::<B>(&body.part, force, nodes);
+                    wall.force -= force;
+                    told.tally.walls += S::dot(force, wall.velocity(position)) * rules.time_step;
+                    told.tally.taken -= 0.5 * S::dot(force, slip);
+                    if let Some(pushed) = told.pushed.as_mut() {
+                        pushed.push(Pushed {
+                            body: (place as u32, position),
+                            back: Err(wall.velocity(position)),
+                            force,
+                        });
+                    }
+                    if let Some(touches) = told.touches.as_mut() {
+                        let energy = energy_ahead::<S>(spring, depth, stretched, slip, wall.normal, slipping);
+                        let body = place as u32;
+                        touches.push(Touch { body, other, point: position, push, shear, depth, slipping, energy });
+                    }
                 }
             }
         }
+    }
+
+    /// Springs between two bodies, from the tracers of `first` that have gone through the surface of `second`: half of the
+    /// stiffness, since the tracers of the second do the same.
+    #[inline(always)]
+    fn between<L: Lanes>(&mut self, lanes: L, pair: &Pair<S>) {
+        let Self { rules, bodies, tracers, springs, nodes, told, .. } = self;
+        let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
+        let cell = rules.lattice.shortest(S::DIMENSION);
+        let moduli = [first, second].map(|body| body.deformable.plane_modulus());
+        let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
+        let stiffness = 0.5 * rules.penalty * harmonic / cell;
+        let Some(friction) = rules.friction.between(first.material, second.material) else { return };
+        let reach = DEEPEST * cell;
+        let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
+        let mut chunks = std::mem::take(&mut springs.near);
+        for chunk in &tracers.chunks[first.chunks.clone()] {
+            if !chunk.meets(low, high) {
+                continue;
+            }
+            tracers.find_near(chunk, -pair.shift, &second.chunks, reach, &mut chunks);
+            if chunks.is_empty() {
+                continue;
+            }
+            for at in chunk.tracers.clone() {
+                if beyond::<S>(tracers.position[at], low, high) > BULGE * cell {
+                    continue;
+                }
+                let position = tracers.position[at] - pair.shift;
+                let normal = tracers.normal(at);
+                let near = tracers.gone_through(lanes, chunks.iter().copied(), position, normal, reach);
+                let Some(near) = near.filter(|near| near.gap < 0.0) else { continue };
+                let depth = -near.gap;
+                // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
+                let out = near.normal - normal;
+                let out = out * (1.0 / S::dot(out, out).sqrt());
+                let middle = position + near.normal * (0.5 * depth);
+                let there = middle + pair.shift;
+                let Some(one) = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes) else { continue };
+                let Some(two) = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes) else { continue };
+                let area = S::dot(tracers.area[at], tracers.area[at]).sqrt();
+                let spring = stiffness * area;
+                let push = out * (spring * depth);
+                let slip = (one.velocity - two.velocity) * rules.time_step;
+                let other = Other::Body(pair.second);
+                let stretch = springs.stretch(at, other);
+                let (shear, stretched, slipping) = rub::<S>(*stretch, slip, out, spring, friction * spring * depth);
+                told.tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, out);
+                told.tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
+                *stretch = stretched;
+                let force = push + shear;
+                one.push::<B>(&first.part, force, nodes);
+                two.push::<B>(&second.part, -force, nodes);
+                told.tally.taken -= 0.5 * S::dot(force, slip);
+                if let Some(pushed) = told.pushed.as_mut() {
+                    pushed.push(Pushed { body: (pair.first, there), back: Ok((pair.second, middle)), force });
+                }
+                if let Some(touches) = told.touches.as_mut() {
+                    let energy = energy_ahead::<S>(spring, depth, stretched, slip, out, slipping);
+                    let body = pair.first;
+                    touches.push(Touch { body, other, point: there, push, shear, depth, slipping, energy });
+                }
+            }
+        }
+        springs.near = chunks;
     }
 }
 
@@ -299,75 +394,6 @@ fn lowest<S: Space>(body: &Body, wall: &RigidPlane<S>) -> f64 {
     let [low, high] = &body.bounds;
     let corner = normal.zip_zip_map(low, high, |n, low, high| if n > 0.0 { low } else { high });
     (corner - S::embed(wall.point)).dot(&normal)
-}
-
-/// Springs between two bodies, from the tracers of `first` that have gone through the surface of `second`: half of the
-/// stiffness, since the tracers of the second do the same.
-pub(crate) fn between<S: Space, B: Basis>(
-    rules: &Rules<'_>,
-    bodies: &[Body],
-    pair: &Pair<S>,
-    tracers: &Tracers<S>,
-    springs: &mut Springs<S>,
-    nodes: &mut [Node<S>],
-    told: &mut Told<'_, S>,
-) {
-    let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
-    let cell = rules.lattice.shortest(S::DIMENSION);
-    let moduli = [first, second].map(|body| body.deformable.plane_modulus());
-    let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
-    let stiffness = 0.5 * rules.penalty * harmonic / cell;
-    let Some(friction) = rules.friction.between(first.material, second.material) else { return };
-    let reach = DEEPEST * cell;
-    let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
-    let mut chunks = std::mem::take(&mut springs.near);
-    for chunk in &tracers.chunks[first.chunks.clone()] {
-        if !chunk.meets(low, high) {
-            continue;
-        }
-        tracers.find_near(chunk, -pair.shift, &second.chunks, reach, &mut chunks);
-        for at in chunk.tracers.clone() {
-            if beyond::<S>(tracers.position[at], low, high) > BULGE * cell {
-                continue;
-            }
-            let position = tracers.position[at] - pair.shift;
-            let normal = tracers.normal(at);
-            let Some(near) = tracers.nearest(chunks.iter().copied(), position, normal, reach) else { continue };
-            let depth = -near.gap;
-            if depth <= 0.0 {
-                continue;
-            }
-            // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
-            let out = near.normal - normal;
-            let out = out * (1.0 / S::dot(out, out).sqrt());
-            let middle = position + near.normal * (0.5 * depth);
-            let there = middle + pair.shift;
-            let Some(one) = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes) else { continue };
-            let Some(two) = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes) else { continue };
-            let spring = stiffness * S::dot(tracers.area[at], tracers.area[at]).sqrt();
-            let push = out * (spring * depth);
-            let slip = (one.velocity - two.velocity) * rules.time_step;
-            let other = Other::Body(pair.second);
-            let stretch = springs.stretch(at, other);
-            let (shear, stretched, slipping) = rub::<S>(*stretch, slip, out, spring, friction * spring * depth);
-            told.tally.friction += rubbed::<S>(spring, *stretch, slip, stretched, out);
-            told.tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
-            *stretch = stretched;
-            let force = push + shear;
-            one.push::<B>(&first.part, force, nodes);
-            two.push::<B>(&second.part, -force, nodes);
-            told.tally.taken -= 0.5 * S::dot(force, slip);
-            if let Some(pushed) = told.pushed.as_mut() {
-                pushed.push(Pushed { body: (pair.first, there), back: Ok((pair.second, middle)), force });
-            }
-            if let Some(touches) = told.touches.as_mut() {
-                let energy = energy_ahead::<S>(spring, depth, stretched, slip, out, slipping);
-                let body = pair.first;
-                touches.push(Touch { body, other, point: there, push, shear, depth, slipping, energy });
-            }
-        }
-    }
-    springs.near = chunks;
 }
 
 /// How far beyond a box a position is, along the axis along which it is farthest (m); negative inside.

@@ -5,6 +5,7 @@ use super::pairs::Pair;
 use crate::basis::{Basis, Linear, Quadratic};
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Stencil, Window};
+use crate::lanes::Portable;
 use crate::points::Points;
 use crate::surface::Tracers;
 use crate::walls::RigidPlane;
@@ -315,8 +316,8 @@ impl<S: Space> Shared<S> {
                 for at in chunk.tracers.clone() {
                     let normal = tracers.normal(at);
                     let position = tracers.position[at];
-                    let near = tracers.nearest(second.chunks.clone(), position - pair.shift, normal, reach);
-                    let Some(near) = near.filter(|near| near.gap <= 0.0) else { continue };
+                    let (chunks, seen) = (second.chunks.clone(), position - pair.shift);
+                    let Some(near) = tracers.gone_through(Portable, chunks, seen, normal, reach) else { continue };
                     // The lower body comes first, so that both passes find the same pair.
                     let (out, swap) = (normal - near.normal, pair.second < pair.first);
                     let (body, other) = if swap { (pair.second, pair.first) } else { (pair.first, pair.second) };
