@@ -145,6 +145,7 @@ pub(crate) fn seed<S: Space>(
                     runs: 0..0,
                     runs_in_order: 0,
                     half,
+                    cell_mass: blank.density * lattice.cell[..S::DIMENSION].iter().product::<f64>(),
                 },
                 tracers: first.1..tracers.len(),
                 chunks: tracers.cut(first.1..tracers.len()),

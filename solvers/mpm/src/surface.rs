@@ -2,6 +2,7 @@
 
 use crate::basis::Basis;
 use crate::bodies::Body;
+use crate::contact::grip::borne;
 use crate::grid::{Lattice, Node, Stencil};
 use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
 use crate::runs::Batch;
@@ -302,11 +303,14 @@ impl<S: Space, B: Basis, V: Fn(usize) -> S::Vector> Kernel for Carry<'_, S, B, V
             let (mut total, mut way, mut gradient) = (0.0, S::ORIGIN, S::NO_GRADIENT);
             let mut slope = S::ORIGIN;
             stencil.each::<S, B>(window, |node| {
-                if nodes[node.slot].mass > 0.0 {
+                let mass = nodes[node.slot].mass;
+                if mass > 0.0 {
                     let velocity = velocity(node.slot);
-                    total += node.weight;
-                    way += velocity * node.weight;
-                    if S::DIMENSION == 3 {
+                    let weight = borne(node.weight, mass, body.part.cell_mass);
+                    total += weight;
+                    way += velocity * weight;
+                    // A node that counts for less does so all around.
+                    if S::DIMENSION == 3 && weight == node.weight {
                         let along = stencil.gradient(&node);
                         gradient += S::outer(velocity, along);
                         slope += along;

@@ -118,6 +118,8 @@ pub(crate) struct Part {
     pub(crate) runs_in_order: usize,
     /// Half the extent of a point (cells), for GIMP.
     pub(crate) half: f64,
+    /// Mass of a full cell at the start (kg).
+    pub(crate) cell_mass: f64,
 }
 
 impl Part {

@@ -1,5 +1,6 @@
 //! How bodies touch: springs between surfaces, or conditions at nodes.
 
+pub(crate) mod grip;
 pub(crate) mod nodal;
 pub(crate) mod pairs;
 pub(crate) mod penalty;

@@ -3,15 +3,15 @@
 //! the slip and limited by Coulomb friction (Cundall & Strack 1979). Forces act where the surfaces meet, at the same point
 //! on both, so linear momentum is kept to rounding and torques are right.
 
+use super::grip::Grip;
 use super::pairs::Pair;
 use super::{FrictionTable, Other, Touch};
 use crate::accounts::Tally;
 use crate::basis::Basis;
 use crate::bodies::Body;
-use crate::grid::{Lattice, Node, Stencil};
+use crate::grid::{Lattice, Node};
 use crate::lanes::{Kernel, Lanes};
 use crate::surface::Tracers;
-use crate::transfer::Part;
 use crate::walls::RigidPlane;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
@@ -22,65 +22,6 @@ const BULGE: f64 = 0.25;
 
 /// Depth at which surfaces are taken to have passed through each other, and are let go (cells).
 const DEEPEST: f64 = 0.8;
-
-/// A body as a point on its surface sees it: the nodes around that carry mass.
-pub(crate) struct Grip<S: Space> {
-    stencil: Stencil<f64>,
-    /// Sum of the functions of the nodes that carry mass.
-    total: f64,
-    /// Velocity there (m/s).
-    pub(crate) velocity: S::Vector,
-}
-
-impl<S: Space> Grip<S> {
-    /// The body at `position`; none where it has no mass around. Nodes hold momenta.
-    #[inline(always)]
-    pub(crate) fn new<B: Basis>(
-        lattice: &Lattice,
-        part: &Part,
-        position: S::Vector,
-        nodes: &[Node<S>],
-    ) -> Option<Self> {
-        Self::with::<B>(lattice, part, position, nodes, |slot, weight| {
-            nodes[slot].velocity * (weight / nodes[slot].mass)
-        })
-    }
-
-    /// The same, with `weighted` for the velocity of a node times its weight.
-    #[inline(always)]
-    fn with<B: Basis>(
-        lattice: &Lattice,
-        part: &Part,
-        position: S::Vector,
-        nodes: &[Node<S>],
-        weighted: impl Fn(usize, f64) -> S::Vector,
-    ) -> Option<Self> {
-        let stencil = Stencil::new::<S, B>(lattice, position, [part.half; 3]);
-        if !part.window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
-            return None;
-        }
-        let (mut total, mut velocity) = (0.0, S::ORIGIN);
-        stencil.each::<S, B>(&part.window, |node| {
-            if nodes[node.slot].mass > 0.0 {
-                total += node.weight;
-                velocity += weighted(node.slot, node.weight);
-            }
-        });
-        (total > 1e-6).then(|| Self { stencil, total, velocity: velocity * (1.0 / total) })
-    }
-
-    /// A force (N) on the body there.
-    #[inline(always)]
-    pub(crate) fn push<B: Basis>(&self, part: &Part, force: S::Vector, nodes: &mut [Node<S>]) {
-        let share = force * (1.0 / self.total);
-        self.stencil.each::<S, B>(&part.window, |node| {
-            let at = &mut nodes[node.slot];
-            if at.mass > 0.0 {
-                at.change += share * node.weight;
-            }
-        });
-    }
-}
 
 /// Force along the surface after `slip` (m) more, and the spring's new stretch: −k s, at most μ times the push.
 #[inline(always)]
