@@ -25,9 +25,9 @@ pub(super) fn whole(solver: &'static str) -> Run {
     to_shear(Run::new("seed-1", solver, grid(75.0)), 0.8, FRAMES).long()
 }
 
-/// To a mean shear on a grid.
-fn on_grid(cells: f64, shear: f64) -> Run {
-    to_shear(Run::new("seed-1", "mpm", grid(cells)), shear, 0).long()
+/// To the end on the paper's own grid, with a snapshot every 5 %.
+fn on_the_papers_grid() -> Run {
+    to_shear(Run::new("seed-1", "mpm", grid(150.0)), 0.8, 15).long()
 }
 
 type Of = fn(&Done, &Snapshot) -> f64;
@@ -142,6 +142,14 @@ fn energy() -> Vec<Gate> {
         makes_energy(),
         |done| unaccounted(&done[0]),
     )];
+    gates.push(Gate::new(
+        ("where the work of the walls went on the paper's grid, 80 % shear", "J"),
+        vec![on_the_papers_grid()],
+        invariant,
+        (0.02, "as on half of that grid"),
+        Control { name: "contact on approach (2000), which makes energy", wrong: Wrong::OtherRun("mpm:2000", grid(75.0)) },
+        |done| unaccounted(&done[0]),
+    ));
     let springs = || Control::without_the_error("springs between surfaces", "mpm", grid(75.0));
     let runs = [
         (whole("mpm"), makes_energy()),
@@ -210,8 +218,8 @@ fn refined() -> Vec<Gate> {
     type Quantity = (&'static str, Of, f64, Option<&'static str>);
     let quantities: [Quantity; 2] =
         [("plastic strain", plastic_strain, 0.1, Some(PATCHES)), ("rotation of grains", rotation_deg, 0.15, None)];
-    let gate = |(words, of, allowed, known): Quantity, coarse: f64, shear: f64| {
-        let (fine, run) = (2.0 * coarse, on_grid(coarse, shear));
+    let gate = |(words, of, allowed, known): Quantity, coarse: f64, runs: [Run; 2], shear: f64| {
+        let ([run, finer], fine) = (runs, 2.0 * coarse);
         let glued = Wrong::OtherRun("mpm:no-slip", grid(coarse));
         let (run, control) = match known {
             Some(reason) => (run.known(reason), Control::without_the_error("the finer grid", "mpm", grid(fine))),
@@ -219,15 +227,17 @@ fn refined() -> Vec<Gate> {
         };
         Gate::new(
             (format!("{words} on a grid of {coarse}² over that on one of {fine}², {:.0} % shear", 100.0 * shear), "1"),
-            vec![run, on_grid(fine, shear).aside()],
+            vec![run, finer.aside()],
             (Evidence::Convergence, "the same packing on a grid twice as fine"),
             (allowed, "the motion is chaotic: contacts a little stiffer change as much"),
             control,
             move |done| Ok(Measured::new(over(done, shear, of)?, 1.0, 1.0)),
         )
     };
-    let pairs = [(75.0, 0.4), (150.0, 0.15)];
-    pairs.into_iter().flat_map(|(coarse, shear)| quantities.map(|quantity| gate(quantity, coarse, shear))).collect()
+    let early = |cells| to_shear(Run::new("seed-1", "mpm", grid(cells)), 0.15, 0).long();
+    let coarser = quantities.map(|quantity| gate(quantity, 75.0, [whole("mpm"), on_the_papers_grid()], 0.4));
+    let finer = quantities.map(|quantity| gate(quantity, 150.0, [early(150.0), early(300.0)], 0.15));
+    [coarser, finer].into_iter().flatten().collect()
 }
 
 pub(super) fn gates() -> Vec<Gate> {

@@ -1,8 +1,8 @@
 //! Points of a second: `cargo bench -p grainbench-mpm`.
 //!
 //! `points` counts material points times steps: an elastic block of 60,000 points that vibrates, in hat functions with FLIP and in
-//! the best setting, and 36 discs with friction that are squeezed, in the best setting. `grains` does so for ten, a hundred and a thousand
-//! discs of the same resolution. The set-up is not counted.
+//! the best setting, and 36 discs with friction that are squeezed, in the best setting. `grains` does so for 12, 120 and 1200 discs of
+//! the same resolution, each of which touches four others. The set-up is not counted.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use grainbench_mpm::options::{Contact, Setting};
@@ -29,14 +29,17 @@ fn block() -> Scene {
     )
 }
 
-/// Discs in a square lattice that overlap a little and push each other away, ten to a thousand of them.
-fn grains(count: [u32; 2]) -> Scene {
+/// Discs in a square lattice that overlap a little, periodic along both axes: each touches four others, however many there are.
+fn grains([columns, rows]: [u32; 2]) -> Scene {
+    let end = |count: u32| f64::from(2 * count) - 1.0;
     scene(&format!(
-        "duration = 0.5\noutput.every = 1.0\n\
+        "duration = 2.0\nreference_length = 1.0\noutput.every = 2.0\n\
+         domain = {{ low = [-1.0, -1.0], high = [{:?}, {:?}], periodic = [true, true] }}\n\
          materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
          contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.5 }}\n\
-         grains.d = {{ material = 'm', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.99, 1.99], count = [{}, {}] }} }}\n",
-        count[0], count[1]
+         grains.d = {{ material = 'm', radius = 1.005, lattice = {{ origin = [0.0, 0.0], spacing = [2.0, 2.0], count = [{columns}, {rows}] }} }}\n",
+        end(columns),
+        end(rows)
     ))
 }
 
@@ -73,10 +76,10 @@ fn points(criterion: &mut Criterion) {
     time(criterion, "points", &cases);
 }
 
-/// Time of a point in a step as grains become more: the same for ten and for a thousand.
+/// Time of a point in a step as grains become more: the same for a dozen and for a thousand, as far as caches allow.
 fn number_of_grains(criterion: &mut Criterion) {
     let at = Resolution::grid(4.0, 2);
-    let cases = [("10", [2, 5]), ("100", [10, 10]), ("1000", [25, 40])]
+    let cases = [("12", [3, 4]), ("120", [10, 12]), ("1200", [30, 40])]
         .map(|(name, count)| (name, Mpm::BEST, grains(count), at));
     time(criterion, "grains", &cases);
 }
