@@ -81,3 +81,25 @@ impl<S: Space> Grip<S> {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST, borne};
+
+    #[test]
+    fn a_node_counts_by_its_function_until_it_has_hardly_any_mass() {
+        let cell_mass = 3.0;
+        // A plane half way between two nodes, and on a node: what is outside has a sixth of a cell's mass, and a fiftieth.
+        for (weight, mass) in [(0.5, cell_mass / 6.0), (0.75, 0.5 * cell_mass), (0.125, cell_mass / 48.0)] {
+            assert!((borne(weight, mass, cell_mass) - weight).abs() < f64::EPSILON);
+        }
+        // Then it fades out, without a jump, so that w²/m stays what it is at most.
+        let limit = 0.25 * cell_mass / MOST;
+        assert!((borne(0.5, limit * (1.0 - 1e-12), cell_mass) - 0.5).abs() < 1e-12);
+        for mass in [0.1 * limit, 1e-6 * limit] {
+            let weight = borne(0.5, mass, cell_mass);
+            assert!((weight * weight / mass * cell_mass / MOST - 1.0).abs() < 1e-12);
+        }
+        assert!(borne(0.5, 0.0, cell_mass).abs() < f64::EPSILON);
+    }
+}
