@@ -201,10 +201,11 @@ fn no_hash_map_string_or_allocation_in_loops_over_points() {
         ("gradients.rs", &["run<"]),
         ("runs.rs", &["find<", "four<"]),
         ("stress.rs", &["update<"]),
-        ("surface.rs", &["carry<", "nearest"]),
-        ("contact/penalty.rs", &["at_walls<", "between<", "push<"]),
+        ("surface.rs", &["run<", "look<", "gone_through<"]),
+        ("contact/penalty.rs", &["at_walls", "between<", "run<"]),
+        ("contact/grip.rs", &["with<", "push<"]),
         ("contact/nodal.rs", &["apply<", "apply_pairs<"]),
-        ("simulation.rs", &["step_nodes", "gather", "move_points"]),
+        ("simulation.rs", &["step_nodes", "gather", "move_on"]),
     ];
     for (file, functions) in loops {
         let code = code(&fs::read_to_string(source.join(file)).unwrap());
