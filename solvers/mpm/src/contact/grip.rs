@@ -11,7 +11,8 @@ use crate::transfer::Part;
 use grainbench_scene::space::Space;
 
 /// What w² of a node is at most, in its mass over that of a full cell. An impulse on a surface changes the velocity there by
-/// Σ w²/m; well sampled surfaces have 1 to 2 (per mass of a cell) in sum and are not changed.
+/// Σ w²/m, which is 1 to 2 (per mass of a cell) in sum where a surface is well sampled. There only nodes that points hardly reach are
+/// above it, which count for little anyway: rolling, impacts and presses differ in the fourth digit.
 const MOST: f64 = 4.0;
 
 /// Weight of a node of a given mass (kg) at a point where its function is `weight`: w = N, at most √(4 m/m_cell), so that it fades out with
