@@ -19,6 +19,8 @@
 
 use crate::contact::penalty;
 use crate::contact::penalty::Pushed;
+use crate::damping::Damping;
+use crate::grid::Node;
 use crate::options::{Contact, StressUpdate};
 use crate::simulation::{Simulation, with_basis};
 use grainbench_scene::body::Hold;
@@ -72,6 +74,8 @@ pub(crate) struct Sums {
     /// What they take less than that from nodes when points have moved on.
     crossed: f64,
     damping: f64,
+    /// Of it, what damping takes from motion that nodes do not show.
+    unseen: f64,
     plastic: f64,
     friction: f64,
     work: f64,
@@ -92,6 +96,8 @@ pub(crate) struct Accounts<S: Space> {
     pub(crate) pushed: Vec<Pushed<S>>,
     /// Work of what drives grains on nodes in this step (J).
     held: f64,
+    /// Kinetic energy of points before the step, where motion is damped (J).
+    brought: f64,
 }
 
 impl<S: Space> Default for Accounts<S> {
@@ -103,8 +109,14 @@ impl<S: Space> Default for Accounts<S> {
             forces: Vec::new(),
             pushed: Vec::new(),
             held: 0.0,
+            brought: 0.0,
         }
     }
+}
+
+/// Velocity of a node before the step.
+fn before<S: Space>(node: &Node<S>, keep: f64) -> S::Vector {
+    (node.velocity - node.change) * (1.0 / keep)
 }
 
 /// Why the budget of a scene cannot be told, if it cannot.
@@ -134,6 +146,9 @@ impl<S: Space> Simulation<S> {
         if self.accounting {
             self.accounts.forces.clear();
             self.accounts.forces.extend(self.nodes[..self.used].iter().map(|node| node.change));
+            if self.damping > 0.0 {
+                self.accounts.brought = self.kinetic_energy();
+            }
         }
     }
 
@@ -157,31 +172,34 @@ impl<S: Space> Simulation<S> {
         }
         let driven_work = self.work_of_driven();
         let Self { nodes, accounts, setting, gravity, time_step, damping, driven, walls, used, .. } = self;
-        let Accounts { sums, tally, impulses, forces, held, .. } = accounts;
-        let half = 0.5 * *damping * *time_step;
-        let (keep, gain) = ((1.0 - half) / (1.0 + half), *time_step / (1.0 + half));
-        let (mut mass, mut given) = (0.0, 0.0);
+        let Accounts { sums, tally, impulses, forces, held, brought, .. } = accounts;
+        let Damping { keep, gain } = Damping::over(*damping, *time_step);
+        let (mut mass, mut given, mut seen) = (0.0, 0.0, 0.0);
         for ((node, force), impulse) in nodes[..*used].iter().zip(forces.iter_mut()).zip(impulses) {
             if node.mass <= 0.0 {
                 (*impulse, *force) = (S::ORIGIN, S::ORIGIN);
                 continue;
             }
             mass += node.mass;
-            let before = node.velocity - node.change;
-            let mean = before + node.change * 0.5;
+            let before = before(node, keep);
+            let mean = (before + node.velocity) * 0.5;
             let pull = *gravity * node.mass;
             given += S::dot(*impulse, before) * *time_step;
             let dragged = before * (keep - 1.0) + (*force * (1.0 / node.mass) + *gravity) * (gain - *time_step);
             let drag = dragged * node.mass;
             // All that changed the momentum, but gravity and drag; and without internal forces.
-            *force = node.change * node.mass - pull * *time_step - drag;
+            *force = (node.velocity - before) * node.mass - pull * *time_step - drag;
             *impulse = *force - *impulse * *time_step;
+            seen += 0.5 * node.mass * S::dot(before, before);
             sums.stepped += 0.5 * node.mass * (S::dot(node.velocity, node.velocity) - S::dot(before, before));
             sums.gravity += S::dot(pull, mean) * *time_step;
             sums.damping -= S::dot(drag, mean);
         }
         if setting.stress_update != StressUpdate::First {
             sums.crossed += 0.5 * (sums.stressed + given);
+        }
+        if *damping > 0.0 {
+            sums.unseen += (1.0 - keep * keep) * (*brought - seen);
         }
         sums.impulse += S::embed(*gravity) * (mass * *time_step);
         for group in &driven.groups {
@@ -203,12 +221,13 @@ impl<S: Space> Simulation<S> {
             return;
         }
         let is_projected = self.setting.stress_update == StressUpdate::ModifiedLast;
-        let Self { nodes, projected, bodies, lattice, setting, accounts, time_step, .. } = self;
+        let Self { nodes, projected, bodies, lattice, setting, accounts, time_step, damping, .. } = self;
         let Accounts { sums, impulses, forces, pushed, .. } = accounts;
+        let Damping { keep, .. } = Damping::over(*damping, *time_step);
         let after = |slot: usize| if is_projected { projected[slot] } else { nodes[slot].velocity };
         for (slot, (impulse, all)) in impulses.iter().zip(forces.iter()).enumerate() {
             let node = &nodes[slot];
-            sums.contacts += S::dot(*impulse, (node.velocity - node.change + after(slot)) * 0.5);
+            sums.contacts += S::dot(*impulse, (before(node, keep) + after(slot)) * 0.5);
             sums.stray += 0.5 * S::dot(*all, node.velocity - after(slot));
         }
         let taken = with_basis!(setting.basis, B => penalty::taken::<S, B>(lattice, bodies, pushed, nodes, after));
@@ -269,8 +288,12 @@ impl<S: Space> Simulation<S> {
             work: sums.work,
             plastic: sums.plastic,
             friction: sums.friction,
-            damping: sums.damping,
-            transfer: sums.stepped + sums.carried - (kinetic - sums.kinetic_at_start) - sums.stray - sums.crossed,
+            damping: sums.damping + sums.unseen,
+            transfer: sums.stepped + sums.carried
+                - (kinetic - sums.kinetic_at_start)
+                - sums.unseen
+                - sums.stray
+                - sums.crossed,
             contact: match self.setting.contact {
                 Contact::Penalty => sums.taken - tally.springs - sums.friction,
                 _ => sums.work - sums.carried - sums.contacts - sums.friction,

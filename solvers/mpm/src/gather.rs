@@ -20,6 +20,8 @@ pub(crate) struct Gather<'a, S: Space, B, T, const PROJECT: bool> {
     pub(crate) runs: &'a [Run],
     pub(crate) transfer: T,
     pub(crate) time_step: f64,
+    /// What damping leaves of a velocity in a step.
+    pub(crate) keep: f64,
     pub(crate) points: &'a mut Points<S>,
     pub(crate) nodes: &'a [Node<S>],
     pub(crate) projected: &'a mut [S::Vector],
@@ -29,7 +31,7 @@ pub(crate) struct Gather<'a, S: Space, B, T, const PROJECT: bool> {
 impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_, S, B, T, PROJECT> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { lattice, part, runs, transfer, time_step, points, nodes, projected, .. } = self;
+        let Self { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, .. } = self;
         let zero = Four::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         let mut projected_copies: Copies<S::Vector> = [S::ORIGIN; _];
@@ -73,14 +75,20 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_,
                 let position = batch.vectors::<S, L>(lanes, &points.position);
                 let (mut velocity, mut next) = (before, position);
                 for axis in 0..S::DIMENSION {
-                    velocity[axis] = transfer.taken(before[axis], around[axis], change[axis]);
+                    velocity[axis] = transfer.taken(before[axis] * keep, around[axis], change[axis]);
                     next[axis] = position[axis] + around[axis] * time_step;
                 }
                 batch.write_vectors::<S, L>(velocity, &mut points.velocity);
                 batch.write_vectors::<S, L>(next, &mut points.next);
                 let mut affine = [[zero; 3]; 3];
                 if T::AFFINE {
-                    affine = T::carried::<S, _>(batch.matrices::<S, L>(lanes, &points.affine), made, &stencil);
+                    let mut before = batch.matrices::<S, L>(lanes, &points.affine);
+                    for row in before.iter_mut().take(S::DIMENSION) {
+                        for part in row.iter_mut().take(S::DIMENSION) {
+                            *part = *part * keep;
+                        }
+                    }
+                    affine = T::carried::<S, _>(before, made, &stencil);
                     batch.write_matrices::<S, L>(affine, &mut points.affine);
                 }
                 if PROJECT {

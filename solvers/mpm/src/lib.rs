@@ -15,6 +15,7 @@ mod accounts;
 mod basis;
 mod bodies;
 mod contact;
+mod damping;
 mod driven;
 mod failure;
 mod gather;

@@ -6,6 +6,7 @@ use crate::contact::pairs::Pairs;
 use crate::contact::penalty::Springs;
 use crate::contact::shared::Shared;
 use crate::contact::{FrictionTable, Touch};
+use crate::damping::Damping;
 use crate::driven::Driven;
 use crate::gather::Gather;
 use crate::gradients::Gradients;
@@ -366,8 +367,7 @@ impl<S: Space> Simulation<S> {
 
     /// Momenta and forces of the nodes become velocities after the step and their change.
     fn step_nodes(&mut self) {
-        let half = 0.5 * self.damping * self.time_step;
-        let (keep, gain) = ((1.0 - half) / (1.0 + half), self.time_step / (1.0 + half));
+        let Damping { keep, gain } = Damping::over(self.damping, self.time_step);
         let gravity = self.gravity;
         let mut stepped = 0;
         for node in &mut self.nodes[..self.used] {
@@ -386,12 +386,13 @@ impl<S: Space> Simulation<S> {
         self.driven.hold(&mut self.nodes, self.time_step);
         self.meet_stepped();
         for node in &mut self.nodes[..self.used] {
-            node.change = node.velocity - node.change;
+            node.change = node.velocity - node.change * keep;
         }
     }
 
     fn gather(&mut self) {
         let project = self.setting.stress_update == StressUpdate::ModifiedLast;
+        let Damping { keep, .. } = Damping::over(self.damping, self.time_step);
         let Self { lattice, bodies, points, nodes, projected, runs, setting, processor, time_step, .. } = self;
         let time_step = *time_step;
         macro_rules! gather {
@@ -399,7 +400,7 @@ impl<S: Space> Simulation<S> {
                 let (transfer, part, basis) = ($transfer, $part, PhantomData::<$B>);
                 let runs = &runs[part.runs.clone()];
                 let gather: Gather<'_, S, $B, $T, $project> =
-                    Gather { lattice, part, runs, transfer, time_step, points, nodes, projected, basis };
+                    Gather { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, basis };
                 processor.run(gather);
             }};
             ($B:ty, $T:ty, $transfer:expr, $part:expr) => {

@@ -89,6 +89,10 @@ impl Mpm {
         };
         // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
         let steps = (time / (courant * critical) * (1.0 - 1e-12)).ceil().max(1.0);
+        let damped = scene.global_damping * time / steps;
+        if damped >= 2.0 {
+            return Err(self.resolution_error(format!("expected damping times step below 2, found {damped}")));
+        }
         if steps >= 1e15 || steps.is_nan() {
             return Err(self.resolution_error(format!("expected a number of steps below 1e15, found {steps:e}")));
         }

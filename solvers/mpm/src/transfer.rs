@@ -11,7 +11,8 @@ use std::ops::Range;
 pub(crate) trait Transfer: Copy + Send + 'static {
     /// Whether points carry the affine part of the velocity, or its spin.
     const AFFINE: bool;
-    /// A component of a point's velocity after the step, from that before, the velocity of the nodes around it and their change.
+    /// A component of a point's velocity after the step, from what damping leaves of that before, the velocity of the nodes
+    /// around it and their change but for damping.
     fn taken<N: Number>(&self, before: N, around: N, change: N) -> N;
     /// What of nodes makes the affine part: their velocities or the changes of these.
     fn source<N>(velocity: N, change: N) -> N;

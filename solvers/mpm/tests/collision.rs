@@ -45,6 +45,21 @@ fn the_sum_of_energies_hardly_rings() {
     assert!(low > 0.99 * energy[0] && high < 1.002 * energy[0], "{} {}", low / energy[0], high / energy[0]);
 }
 
+/// Damping takes what points ring with against each other, which nodes do not show: energy falls as e^(−αt) or faster, where 2e-3 of it
+/// stayed when nodes alone were damped. And it says what it took.
+#[test]
+fn damping_reaches_what_nodes_do_not_show() {
+    let text = collision(0.02, 0.5, 0.5) + "budget.budget = true\n";
+    let text = format!("global_damping = 1.0\n{}", text.replace("duration = ", "duration = 3.0\n#"));
+    let early = last(&run("mpm", &text, 8.0, 3), "budget.kinetic");
+    let record = run("mpm", &text.replace("duration = 3.0", "duration = 12.0"), 8.0, 3);
+    let of = |entry: &str| last(&record, &format!("budget.{entry}"));
+    let start = column(&record, "budget.kinetic")[0];
+    assert!(early < 0.1 * start && of("kinetic") < 1e-5 * start, "{early} {} of {start}", of("kinetic"));
+    assert!(of("damping") > 0.95 * start, "{} of {start}", of("damping"));
+    assert!((of("unbalanced") / start - 1.0).abs() < 1e-3, "{} of {start}", of("unbalanced"));
+}
+
 /// Off centre with strong friction: ωR/v₀ = .40 at eight cells.
 #[test]
 fn friction_turns_discs() {
