@@ -221,7 +221,7 @@ impl<S: Space> Simulation<S> {
             return;
         }
         let is_projected = self.setting.stress_update == StressUpdate::ModifiedLast;
-        let Self { nodes, projected, bodies, lattice, setting, accounts, time_step, damping, .. } = self;
+        let Self { nodes, projected, most, bodies, lattice, setting, accounts, time_step, damping, .. } = self;
         let Accounts { sums, impulses, forces, pushed, .. } = accounts;
         let Damping { keep, .. } = Damping::over(*damping, *time_step);
         let after = |slot: usize| if is_projected { projected[slot] } else { nodes[slot].velocity };
@@ -230,7 +230,7 @@ impl<S: Space> Simulation<S> {
             sums.contacts += S::dot(*impulse, (before(node, keep) + after(slot)) * 0.5);
             sums.stray += 0.5 * S::dot(*all, node.velocity - after(slot));
         }
-        let taken = with_basis!(setting.basis, B => penalty::taken::<S, B>(lattice, bodies, pushed, nodes, after));
+        let taken = with_basis!(setting.basis, B => penalty::taken::<S, B>(lattice, bodies, pushed, most, after));
         sums.taken += taken * *time_step;
         pushed.clear();
     }

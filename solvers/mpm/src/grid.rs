@@ -8,6 +8,7 @@ use crate::basis::{Axis, Basis};
 use crate::lanes::Number;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// A node of a field; its numbers lie in this order, so that those of a point are added to it side by side.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,11 @@ pub(crate) struct Window {
 impl Window {
     pub(crate) const fn len(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize * self.size[2] as usize
+    }
+
+    /// Where its nodes are stored.
+    pub(crate) const fn slots(&self) -> Range<usize> {
+        self.start..self.start + self.len()
     }
 
     /// Place along an axis of a node, within the window.

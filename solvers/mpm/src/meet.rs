@@ -69,13 +69,26 @@ impl<S: Space> Simulation<S> {
             penalty: self.setting.penalty,
             time_step: self.time_step,
         };
-        let Self { bodies, tracers, springs, walls, nodes, touches, pairs, setting, cost, accounts, processor, .. } =
-            self;
+        let Self {
+            bodies,
+            tracers,
+            springs,
+            walls,
+            nodes,
+            most,
+            touches,
+            pairs,
+            setting,
+            cost,
+            accounts,
+            processor,
+            ..
+        } = self;
         let Accounts { tally, pushed, .. } = accounts;
         let told = Told { tally, touches: record.then_some(touches), pushed: accounting.then_some(pushed) };
         with_basis!(setting.basis, B => {
             let basis = PhantomData::<B>;
-            processor.run(Push { rules, bodies, pairs: &pairs.found, tracers, springs, walls, nodes, told, basis });
+            processor.run(Push { rules, bodies, pairs: &pairs.found, tracers, springs, walls, nodes, most, told, basis });
         });
         cost.pair_tests += pairs.tests;
         cost.contact_evaluations += springs.touched;

@@ -100,7 +100,7 @@ impl<'a, S: Space> Ground<'a, S> {
     }
 }
 
-/// Up to four points of a run, or tracers.
+/// Up to four points of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Batch {
     start: usize,
@@ -115,17 +115,12 @@ impl Run {
     /// Its points, four by four.
     #[inline(always)]
     pub(crate) fn batches(&self) -> impl Iterator<Item = Batch> + use<> {
-        Batch::each_of(self.start..self.end)
+        let Self { start, end, .. } = *self;
+        (start..end).step_by(LANES).map(move |at| Batch { start: at, count: (end - at).min(LANES) })
     }
 }
 
 impl Batch {
-    /// Those of a range, four by four.
-    #[inline(always)]
-    pub(crate) fn each_of(Range { start, end }: Range<usize>) -> impl Iterator<Item = Self> + use<> {
-        (start..end).step_by(LANES).map(move |at| Self { start: at, count: (end - at).min(LANES) })
-    }
-
     /// The same points in a list that starts at another point.
     #[inline(always)]
     pub(crate) const fn counted_from(self, first: usize) -> Self {
@@ -151,19 +146,7 @@ impl Batch {
     #[inline(always)]
     fn spread<L: Lanes>(self, lanes: L, of: Four<L>) -> Four<L> {
         let [first, ..] = of.values();
-        self.or_else(lanes, of, first)
-    }
-
-    /// Lanes without a point get this number.
-    #[inline(always)]
-    pub(crate) fn or_else<L: Lanes>(self, lanes: L, of: Four<L>, other: f64) -> Four<L> {
-        of.like(0.0).pick_below(Four::new(lanes, OWN[self.count]), of, of.like(other))
-    }
-
-    /// Which point it is in each lane.
-    #[inline(always)]
-    pub(crate) fn numbers<L: Lanes>(self, lanes: L) -> Four<L> {
-        Four::new(lanes, from_fn(|lane| (self.start + lane) as f64))
+        of.like(0.0).pick_below(Four::new(lanes, OWN[self.count]), of, of.like(first))
     }
 
     /// A number of each point, such as a mass; zero in lanes without one.

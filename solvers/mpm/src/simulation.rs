@@ -5,7 +5,7 @@ use crate::bodies::{Body, Material, seed};
 use crate::contact::pairs::Pairs;
 use crate::contact::penalty::Springs;
 use crate::contact::shared::Shared;
-use crate::contact::{FrictionTable, Touch};
+use crate::contact::{FrictionTable, Touch, grip};
 use crate::damping::Damping;
 use crate::driven::Driven;
 use crate::gather::Gather;
@@ -19,7 +19,7 @@ use crate::points::Points;
 use crate::runs::{self, Ground, LONGEST, Run};
 use crate::scatter::Scatter;
 use crate::start::medium;
-use crate::stress::{self, Failure};
+use crate::stress::{Failure, Update};
 use crate::surface::{Carry, Tracers};
 use crate::transfer::{self, Apic, Flip, Spin};
 use crate::walls::RigidPlane;
@@ -78,6 +78,8 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) walls: Vec<RigidPlane<S>>,
     pub(crate) nodes: Vec<Node<S>>,
     pub(crate) projected: Vec<S::Vector>,
+    /// What each node counts for at most at a surface.
+    pub(crate) most: Vec<f64>,
     /// Runs of points in the step under way.
     runs: Vec<Run>,
     pub(crate) processor: Processor,
@@ -141,6 +143,7 @@ impl<S: Space> Simulation<S> {
             walls,
             nodes: Vec::new(),
             projected: Vec::new(),
+            most: Vec::new(),
             runs: Vec::new(),
             processor: Processor::new(),
             gradients: vec![S::NO_GRADIENT; LONGEST],
@@ -232,7 +235,7 @@ impl<S: Space> Simulation<S> {
     /// Memory that points, tracers, nodes and contacts take up (B), by their numbers.
     fn bytes(&self) -> usize {
         let of_a_tracer = Tracers::<S>::BYTES + Springs::<S>::BYTES;
-        let of_a_node = size_of::<Node<S>>() + size_of::<S::Vector>();
+        let of_a_node = size_of::<Node<S>>() + size_of::<S::Vector>() + size_of::<f64>();
         // The velocity at the last look is a point's too.
         self.points.len() * (Points::<S>::BYTES + size_of::<S::Vector>())
             + self.tracers.len() * of_a_tracer
@@ -273,6 +276,7 @@ impl<S: Space> Simulation<S> {
         if self.nodes.len() < start {
             self.nodes.resize(start + start / 4, Node::EMPTY);
             self.projected.resize(start + start / 4, S::ORIGIN);
+            self.most.resize(start + start / 4, 0.0);
         }
         self.nodes[..start].fill(Node::EMPTY);
         self.projected[..start].fill(S::ORIGIN);
@@ -312,7 +316,7 @@ impl<S: Space> Simulation<S> {
         self.runs.clear();
         for place in 0..self.bodies.len() {
             self.find_runs(place);
-            let Self { lattice, bodies, points, nodes, runs, setting, processor, .. } = self;
+            let Self { lattice, bodies, points, nodes, most, runs, setting, processor, .. } = self;
             let part = &bodies[place].part;
             let ground = Ground::new(lattice, part, &runs[part.runs.clone()], points);
             with_basis!(setting.basis, B => match setting.transfer {
@@ -320,6 +324,8 @@ impl<S: Space> Simulation<S> {
                 Transfer::Apic => processor.run(Scatter::<S, B, Apic>::new(ground, points, nodes)),
                 Transfer::Spin => processor.run(Scatter::<S, B, Spin>::new(ground, points, nodes)),
             });
+            let window = part.window.slots();
+            grip::bear(&nodes[window.clone()], part.cell_mass, &mut most[window]);
         }
     }
 
@@ -449,20 +455,21 @@ impl<S: Space> Simulation<S> {
                 }
             });
             macro_rules! update {
+                ($law:ident, $count:literal) => {{
+                    let (law, failure, time_step) = ($law, &mut failure, *time_step);
+                    let update: Update<'_, S, _, $count> =
+                        Update { law, range, gradients, time_step, spins, points, flow, failure };
+                    processor.run(update);
+                }};
                 ($law:ident) => {
-                    if *accounting {
-                        stress::update::<S, _, true>($law, range, gradients, *time_step, spins, points, flow)
-                    } else {
-                        stress::update::<S, _, false>($law, range, gradients, *time_step, spins, points, flow)
-                    }
+                    if *accounting { update!($law, true) } else { update!($law, false) }
                 };
             }
-            let found = match *law {
+            match *law {
                 Material::NeoHookean(law) => update!(law),
                 Material::Hypoelastic(law) => update!(law),
                 Material::VonMises(law) => update!(law),
-            };
-            failure = failure.or(found);
+            }
         }
         match failure {
             None => Ok(()),
@@ -502,18 +509,18 @@ impl<S: Space> Simulation<S> {
 
     /// Carries the tracers of a body with it.
     fn move_tracers(&mut self, place: usize, velocities: Velocities) {
-        let Self { lattice, bodies, tracers, nodes, projected, setting, time_step, processor, .. } = self;
+        let Self { lattice, bodies, tracers, nodes, projected, most, setting, time_step, processor, .. } = self;
         let (body, elapsed) = (&bodies[place], *time_step);
         with_basis!(setting.basis, B => {
             let basis = PhantomData::<B>;
             match velocities {
                 Velocities::Stepped => {
                     let velocity = |slot: usize| nodes[slot].velocity;
-                    processor.run(Carry { lattice, body, tracers, nodes, velocity, elapsed, basis });
+                    processor.run(Carry { lattice, body, tracers, most, velocity, elapsed, basis });
                 }
                 Velocities::Projected => {
                     let velocity = |slot: usize| projected[slot];
-                    processor.run(Carry { lattice, body, tracers, nodes, velocity, elapsed, basis });
+                    processor.run(Carry { lattice, body, tracers, most, velocity, elapsed, basis });
                 }
             }
         });

@@ -2,10 +2,8 @@
 
 use crate::basis::Basis;
 use crate::bodies::Body;
-use crate::contact::grip::borne;
-use crate::grid::{Lattice, Node, Stencil};
-use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
-use crate::runs::Batch;
+use crate::grid::{Lattice, Stencil};
+use crate::lanes::{Kernel, Lanes};
 use crate::seed::Patch;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
@@ -155,21 +153,27 @@ impl<S: Space> Tracers<S> {
     /// The surface made of some runs where a position with a unit normal of its own, which faces it, has gone through it; none when it has
     /// not, or is farther than `reach` (m) from it.
     #[inline(always)]
-    pub(crate) fn gone_through<L: Lanes>(
+    pub(crate) fn gone_through(
         &self,
-        lanes: L,
         chunks: impl Iterator<Item = usize> + Clone,
         position: S::Vector,
         normal: S::Vector,
         reach: f64,
     ) -> Option<Near<S>> {
-        let mut closest = Closest::new(lanes, 2.0 * reach * reach);
+        let (mut closest, mut squared) = (None, 2.0 * reach * reach);
         for chunk in chunks.clone().map(|chunk| &self.chunks[chunk]) {
-            if chunk.away(position) < closest.bound {
-                closest.look::<S>(self, chunk.tracers.clone(), position, normal);
+            if chunk.away(position) >= squared {
+                continue;
+            }
+            for at in chunk.tracers.clone() {
+                let between = position - self.position[at];
+                let distance = S::dot(between, between);
+                if distance < squared && S::dot(self.area[at], normal) < 0.0 {
+                    (closest, squared) = (Some(at), distance);
+                }
             }
         }
-        let closest = closest.tracer()?;
+        let closest = closest?;
         if self.is_above(closest, position) {
             return None;
         }
@@ -283,7 +287,8 @@ pub(crate) struct Carry<'a, S: Space, B, V> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) body: &'a Body,
     pub(crate) tracers: &'a mut Tracers<S>,
-    pub(crate) nodes: &'a [Node<S>],
+    /// What each node counts for at most.
+    pub(crate) most: &'a [f64],
     pub(crate) velocity: V,
     pub(crate) elapsed: f64,
     pub(crate) basis: PhantomData<B>,
@@ -292,7 +297,7 @@ pub(crate) struct Carry<'a, S: Space, B, V> {
 impl<S: Space, B: Basis, V: Fn(usize) -> S::Vector> Kernel for Carry<'_, S, B, V> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        let Self { lattice, body, tracers, nodes, velocity, elapsed, .. } = self;
+        let Self { lattice, body, tracers, most, velocity, elapsed, .. } = self;
         let Tracers { position, area, neighbours, .. } = tracers;
         let window = &body.part.window;
         for at in body.tracers.clone() {
@@ -303,18 +308,16 @@ impl<S: Space, B: Basis, V: Fn(usize) -> S::Vector> Kernel for Carry<'_, S, B, V
             let (mut total, mut way, mut gradient) = (0.0, S::ORIGIN, S::NO_GRADIENT);
             let mut slope = S::ORIGIN;
             stencil.each::<S, B>(window, |node| {
-                let mass = nodes[node.slot].mass;
-                if mass > 0.0 {
-                    let velocity = velocity(node.slot);
-                    let weight = borne(node.weight, mass, body.part.cell_mass);
-                    total += weight;
-                    way += velocity * weight;
-                    // A node that counts for less does so all around.
-                    if S::DIMENSION == 3 && weight == node.weight {
-                        let along = stencil.gradient(&node);
-                        gradient += S::outer(velocity, along);
-                        slope += along;
-                    }
+                let velocity = velocity(node.slot);
+                let most = most[node.slot];
+                let weight = node.weight.min(most);
+                total += weight;
+                way += velocity * weight;
+                // A node that counts for less does so all around.
+                if S::DIMENSION == 3 && weight == node.weight && most > 0.0 {
+                    let along = stencil.gradient(&node);
+                    gradient += S::outer(velocity, along);
+                    slope += along;
                 }
             });
             if total <= 1e-6 {
@@ -335,59 +338,6 @@ impl<S: Space, B: Basis, V: Fn(usize) -> S::Vector> Kernel for Carry<'_, S, B, V
                 area[at] = S::restrict(Vector3::new(half.y, -half.x, 0.0));
             }
         }
-    }
-}
-
-/// The tracer that is closest to a position and faces a direction, of those looked at.
-struct Closest<L: Lanes> {
-    lanes: L,
-    /// In each lane the tracer, or −1, and the squared distance to it (m²).
-    tracer: Four<L>,
-    squared: Four<L>,
-    /// The least of these distances.
-    bound: f64,
-}
-
-impl<L: Lanes> Closest<L> {
-    /// None closer than the root of `bound` (m²) so far.
-    #[inline(always)]
-    fn new(lanes: L, bound: f64) -> Self {
-        Self { lanes, tracer: Four::splat(lanes, -1.0), squared: Four::splat(lanes, bound), bound }
-    }
-
-    /// Looks at some more, four by four.
-    #[inline(always)]
-    fn look<S: Space>(&mut self, tracers: &Tracers<S>, range: Range<usize>, position: S::Vector, facing: S::Vector) {
-        let zero = Four::splat(self.lanes, 0.0);
-        for batch in Batch::each_of(range) {
-            let places = batch.vectors::<S, L>(self.lanes, &tracers.position);
-            let areas = batch.vectors::<S, L>(self.lanes, &tracers.area);
-            let (mut distance, mut along) = (zero, zero);
-            for axis in 0..S::DIMENSION {
-                let between = places[axis] * -1.0 + S::component(position, axis);
-                distance = distance + between * between;
-                along = along + areas[axis] * S::component(facing, axis);
-            }
-            let faces = along.pick_below(zero, distance, zero.like(f64::INFINITY));
-            let distance = batch.or_else(self.lanes, faces, f64::INFINITY);
-            self.tracer = distance.pick_below(self.squared, batch.numbers(self.lanes), self.tracer);
-            self.squared = distance.pick_below(self.squared, distance, self.squared);
-        }
-        let [a, b, c, d] = self.squared.values();
-        self.bound = a.min(b).min(c.min(d));
-    }
-
-    /// Which it is: the first of equally close ones.
-    #[inline(always)]
-    fn tracer(&self) -> Option<usize> {
-        let (squared, tracer) = (self.squared.values(), self.tracer.values());
-        let mut first = f64::INFINITY;
-        for lane in 0..LANES {
-            if squared[lane] == self.bound && tracer[lane] >= 0.0 {
-                first = first.min(tracer[lane]);
-            }
-        }
-        first.is_finite().then_some(first as usize)
     }
 }
 

@@ -72,7 +72,7 @@ impl Transfer for Apic {
 ///
 /// The change of the spin is that of the rigid rotation with the angular momentum that the nodes' change has about the
 /// point: Δω = Σ w r × Δv / Σ w |r|² about each axis, r from the point to the node and its lengths across that axis. A point that
-/// flows takes on the spin around it ([`crate::stress::update`]).
+/// flows takes on the spin around it ([`crate::stress::Update`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Spin;
 

@@ -136,6 +136,8 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn trace(tensor: Self::Symmetric) -> f64;
     /// `σ : σ` in three dimensions.
     fn norm_squared(tensor: Self::Symmetric) -> f64;
+    /// `σ : ε` in three dimensions.
+    fn double_dot(one: Self::Symmetric, other: Self::Symmetric) -> f64;
     /// A symmetric tensor times a vector of this space.
     fn apply(tensor: Self::Symmetric, vector: Self::Vector) -> Self::Vector;
     /// A component of a vector.
@@ -275,6 +277,10 @@ impl Space for Plane {
         xx * xx + yy * yy + zz * zz + 2.0 * xy * xy
     }
     #[inline(always)]
+    fn double_dot(a: [f64; 4], b: [f64; 4]) -> f64 {
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3]
+    }
+    #[inline(always)]
     fn apply([xx, yy, _, xy]: [f64; 4], v: Vector2<f64>) -> Vector2<f64> {
         Vector2::new(xx * v.x + xy * v.y, xy * v.x + yy * v.y)
     }
@@ -407,6 +413,10 @@ impl Space for Solid {
     #[inline(always)]
     fn norm_squared([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> f64 {
         xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx)
+    }
+    #[inline(always)]
+    fn double_dot(a: [f64; 6], b: [f64; 6]) -> f64 {
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
     }
     #[inline(always)]
     fn apply([xx, yy, zz, xy, yz, zx]: [f64; 6], v: Vector3<f64>) -> Vector3<f64> {

@@ -15,11 +15,13 @@ use grainbench_scene::space::Space;
 /// above it, which count for little anyway: rolling, impacts and presses differ in the fourth digit.
 const MOST: f64 = 4.0;
 
-/// Weight of a node of a given mass (kg) at a point where its function is `weight`: w = N, at most √(4 m/m_cell), so that it fades out with
-/// its mass.
-#[inline(always)]
-pub(crate) fn borne(weight: f64, mass: f64, cell_mass: f64) -> f64 {
-    if weight * weight * cell_mass > MOST * mass { (MOST * mass / cell_mass).sqrt() } else { weight }
+/// What every node of a body's window, of given masses (kg), counts for at most at its surface: √(4 m/m_cell), so that a node fades out
+/// with its mass.
+pub(crate) fn bear<S: Space>(nodes: &[Node<S>], cell_mass: f64, most: &mut [f64]) {
+    let factor = MOST / cell_mass;
+    for (most, node) in most.iter_mut().zip(nodes) {
+        *most = (factor * node.mass).sqrt();
+    }
 }
 
 /// A body held at a point on its surface.
@@ -39,19 +41,20 @@ impl<S: Space> Grip<S> {
         part: &Part,
         position: S::Vector,
         nodes: &[Node<S>],
+        most: &[f64],
     ) -> Option<Self> {
-        Self::with::<B>(lattice, part, position, nodes, |slot, weight| {
+        Self::with::<B>(lattice, part, position, most, |slot, weight| {
             nodes[slot].velocity * (weight / nodes[slot].mass)
         })
     }
 
-    /// The same, with `weighted` for the velocity of a node times its weight.
+    /// The same, with `weighted` for the velocity of a node that counts for something times its weight.
     #[inline(always)]
     pub(crate) fn with<B: Basis>(
         lattice: &Lattice,
         part: &Part,
         position: S::Vector,
-        nodes: &[Node<S>],
+        most: &[f64],
         weighted: impl Fn(usize, f64) -> S::Vector,
     ) -> Option<Self> {
         let stencil = Stencil::new::<S, B>(lattice, position, [part.half; 3]);
@@ -60,9 +63,8 @@ impl<S: Space> Grip<S> {
         }
         let (mut total, mut velocity) = (0.0, S::ORIGIN);
         stencil.each::<S, B>(&part.window, |node| {
-            let mass = nodes[node.slot].mass;
-            if mass > 0.0 {
-                let weight = borne(node.weight, mass, part.cell_mass);
+            let weight = node.weight.min(most[node.slot]);
+            if weight > 0.0 {
                 total += weight;
                 velocity += weighted(node.slot, weight);
             }
@@ -72,35 +74,39 @@ impl<S: Space> Grip<S> {
 
     /// A force (N) on the body there.
     #[inline(always)]
-    pub(crate) fn push<B: Basis>(&self, part: &Part, force: S::Vector, nodes: &mut [Node<S>]) {
+    pub(crate) fn push<B: Basis>(&self, part: &Part, force: S::Vector, nodes: &mut [Node<S>], most: &[f64]) {
         let share = force * (1.0 / self.total);
         self.stencil.each::<S, B>(&part.window, |node| {
-            let at = &mut nodes[node.slot];
-            if at.mass > 0.0 {
-                at.change += share * borne(node.weight, at.mass, part.cell_mass);
-            }
+            nodes[node.slot].change += share * node.weight.min(most[node.slot]);
         });
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST, borne};
+    use super::{MOST, bear};
+    use crate::grid::Node;
+    use grainbench_scene::space::Plane;
+
+    /// What a node of a mass counts for at most, in a body with 3 kg a cell.
+    fn most(mass: f64) -> f64 {
+        let mut most = [f64::NAN];
+        bear::<Plane>(&[Node { mass, ..Node::EMPTY }], CELL, &mut most);
+        most[0]
+    }
+
+    const CELL: f64 = 3.0;
 
     #[test]
     fn a_node_counts_by_its_function_until_it_has_hardly_any_mass() {
-        let cell_mass = 3.0;
         // A plane half way between two nodes, and on a node: what is outside has a sixth of a cell's mass, and a fiftieth.
-        for (weight, mass) in [(0.5, cell_mass / 6.0), (0.75, 0.5 * cell_mass), (0.125, cell_mass / 48.0)] {
-            assert!((borne(weight, mass, cell_mass) - weight).abs() < f64::EPSILON);
+        for (weight, mass) in [(0.5, CELL / 6.0), (0.75, 0.5 * CELL), (0.125, CELL / 48.0)] {
+            assert!(weight < most(mass));
         }
-        // Then it fades out, without a jump, so that w²/m stays what it is at most.
-        let limit = 0.25 * cell_mass / MOST;
-        assert!((borne(0.5, limit * (1.0 - 1e-12), cell_mass) - 0.5).abs() < 1e-12);
-        for mass in [0.1 * limit, 1e-6 * limit] {
-            let weight = borne(0.5, mass, cell_mass);
-            assert!((weight * weight / mass * cell_mass / MOST - 1.0).abs() < 1e-12);
+        // Then it fades out, so that w²/m stays what it is at most.
+        for mass in [0.1, 1e-6] {
+            assert!((most(mass) * most(mass) / mass * CELL / MOST - 1.0).abs() < 1e-12);
         }
-        assert!(borne(0.5, 0.0, cell_mass).abs() < f64::EPSILON);
+        assert!(most(0.0).abs() < f64::EPSILON);
     }
 }

@@ -167,12 +167,12 @@ pub(crate) fn taken<S: Space, B: Basis>(
     lattice: &Lattice,
     bodies: &[Body],
     pushed: &[Pushed<S>],
-    nodes: &[Node<S>],
+    most: &[f64],
     after: impl Fn(usize) -> S::Vector,
 ) -> f64 {
     let velocity = |(body, there): (u32, S::Vector)| {
         let part = &bodies[body as usize].part;
-        let grip = Grip::<S>::with::<B>(lattice, part, there, nodes, |slot, weight| after(slot) * weight);
+        let grip = Grip::<S>::with::<B>(lattice, part, there, most, |slot, weight| after(slot) * weight);
         grip.map_or(S::ORIGIN, |grip| grip.velocity)
     };
     let work = pushed.iter().map(|push| {
@@ -191,20 +191,22 @@ pub(crate) struct Push<'a, S: Space, B> {
     pub(crate) springs: &'a mut Springs<S>,
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) nodes: &'a mut [Node<S>],
+    /// What each node counts for at most at a surface.
+    pub(crate) most: &'a [f64],
     pub(crate) told: Told<'a, S>,
     pub(crate) basis: PhantomData<B>,
 }
 
 impl<S: Space, B: Basis> Kernel for Push<'_, S, B> {
     #[inline(always)]
-    fn run<L: Lanes>(mut self, lanes: L) {
+    fn run<L: Lanes>(mut self, _: L) {
         self.at_walls();
         if !self.pairs.is_empty() {
             self.tracers.find_boxes();
         }
         for pair in self.pairs {
             for pair in [*pair, pair.exchanged()] {
-                self.between(lanes, &pair);
+                self.between(&pair);
             }
         }
     }
@@ -214,7 +216,7 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
     /// Springs between bodies and walls.
     #[inline(always)]
     fn at_walls(&mut self) {
-        let Self { rules, bodies, tracers, springs, walls, nodes, told, .. } = self;
+        let Self { rules, bodies, tracers, springs, walls, nodes, most, told, .. } = self;
         let cell = rules.lattice.shortest(S::DIMENSION);
         for (number, wall) in walls.iter_mut().enumerate() {
             let other = Other::Wall(number as u16);
@@ -230,7 +232,9 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                     if depth <= 0.0 {
                         continue;
                     }
-                    let Some(grip) = Grip::<S>::new::<B>(rules.lattice, &body.part, position, nodes) else { continue };
+                    let Some(grip) = Grip::<S>::new::<B>(rules.lattice, &body.part, position, nodes, most) else {
+                        continue;
+                    };
                     let area = S::dot(tracers.area[at], tracers.area[at]).sqrt();
                     let spring = stiffness * area;
                     let push = wall.normal * (spring * depth);
@@ -242,7 +246,7 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                     told.tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
                     *stretch = stretched;
                     let force = push + shear;
-                    grip.push::<B>(&body.part, force, nodes);
+                    grip.push::<B>(&body.part, force, nodes, most);
                     wall.force -= force;
                     told.tally.walls += S::dot(force, wall.velocity(position)) * rules.time_step;
                     told.tally.taken -= 0.5 * S::dot(force, slip);
@@ -266,8 +270,8 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
     /// Springs between two bodies, from the tracers of `first` that have gone through the surface of `second`: half of the
     /// stiffness, since the tracers of the second do the same.
     #[inline(always)]
-    fn between<L: Lanes>(&mut self, lanes: L, pair: &Pair<S>) {
-        let Self { rules, bodies, tracers, springs, nodes, told, .. } = self;
+    fn between(&mut self, pair: &Pair<S>) {
+        let Self { rules, bodies, tracers, springs, nodes, most, told, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
         let cell = rules.lattice.shortest(S::DIMENSION);
         let moduli = [first, second].map(|body| body.deformable.plane_modulus());
@@ -291,7 +295,7 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                 }
                 let position = tracers.position[at] - pair.shift;
                 let normal = tracers.normal(at);
-                let near = tracers.gone_through(lanes, chunks.iter().copied(), position, normal, reach);
+                let near = tracers.gone_through(chunks.iter().copied(), position, normal, reach);
                 let Some(near) = near.filter(|near| near.gap < 0.0) else { continue };
                 let depth = -near.gap;
                 // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
@@ -299,8 +303,8 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                 let out = out * (1.0 / S::dot(out, out).sqrt());
                 let middle = position + near.normal * (0.5 * depth);
                 let there = middle + pair.shift;
-                let Some(one) = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes) else { continue };
-                let Some(two) = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes) else { continue };
+                let Some(one) = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most) else { continue };
+                let Some(two) = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most) else { continue };
                 let area = S::dot(tracers.area[at], tracers.area[at]).sqrt();
                 let spring = stiffness * area;
                 let push = out * (spring * depth);
@@ -312,8 +316,8 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                 told.tally.springs += 0.5 * spring * (depth * depth + S::dot(stretched, stretched));
                 *stretch = stretched;
                 let force = push + shear;
-                one.push::<B>(&first.part, force, nodes);
-                two.push::<B>(&second.part, -force, nodes);
+                one.push::<B>(&first.part, force, nodes, most);
+                two.push::<B>(&second.part, -force, nodes, most);
                 told.tally.taken -= 0.5 * S::dot(force, slip);
                 if let Some(pushed) = told.pushed.as_mut() {
                     pushed.push(Pushed { body: (pair.first, there), back: Ok((pair.second, middle)), force });

@@ -5,7 +5,6 @@ use super::pairs::Pair;
 use crate::basis::{Basis, Linear, Quadratic};
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Stencil, Window};
-use crate::lanes::Portable;
 use crate::points::Points;
 use crate::surface::Tracers;
 use crate::walls::RigidPlane;
@@ -317,7 +316,7 @@ impl<S: Space> Shared<S> {
                     let normal = tracers.normal(at);
                     let position = tracers.position[at];
                     let (chunks, seen) = (second.chunks.clone(), position - pair.shift);
-                    let Some(near) = tracers.gone_through(Portable, chunks, seen, normal, reach) else { continue };
+                    let Some(near) = tracers.gone_through(chunks, seen, normal, reach) else { continue };
                     // The lower body comes first, so that both passes find the same pair.
                     let (out, swap) = (normal - near.normal, pair.second < pair.first);
                     let (body, other) = if swap { (pair.second, pair.first) } else { (pair.first, pair.second) };

@@ -29,11 +29,14 @@ impl Law for VonMises {
         let stress = self.elastic.follow::<S>(increment, volume_ratio, deformation, stress, plastic_strain);
         let mean = S::trace(stress) / 3.0;
         let deviator = S::scaled_sum(stress, 1.0, S::isotropic(-mean));
-        let equivalent = (1.5 * S::norm_squared(deviator)).sqrt();
-        let excess = equivalent - self.yield_stress - self.hardening_modulus * *plastic_strain;
-        if excess <= 0.0 {
+        let squared = 1.5 * S::norm_squared(deviator);
+        let limit = self.flow_stress(*plastic_strain);
+        // A root only where it is needed: most of the time nothing flows.
+        if squared <= limit * limit {
             return stress;
         }
+        let equivalent = squared.sqrt();
+        let excess = equivalent - limit;
         let stiffness = 3.0 * self.elastic.shear_modulus;
         let flow = excess / (stiffness + self.hardening_modulus);
         *plastic_strain += flow;
