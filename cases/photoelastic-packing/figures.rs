@@ -1,6 +1,6 @@
 //! Force plots of both stages, and F_H/F_V on the way.
 
-use super::{PAIRS, PLAIN, RATIO, STEP, run, time_of_a, vertical_strain};
+use super::{PAIRS, PLAIN, RATIO, STEP, elastic, run, time_of_a, vertical_strain};
 use crate::bench::Bench;
 use crate::field_picture::{Shot, fringe_constant, pictures};
 use crate::figure::{Axis, Curve, Drawing, Figure, Stroke};
@@ -24,6 +24,25 @@ fn path(done: &Done) -> Vec<(f64, f64)> {
     let times = done.series().time.iter().copied().zip(force("top.force_y"));
     let points = times.zip(ratios).filter(|((_, top), _)| **top > bearing);
     points.map(|((time, _), ratio)| (100.0 * vertical_strain(done, time), ratio)).collect()
+}
+
+/// Fringes of discs on springs and of elastic discs, at both stages.
+fn side_by_side(springs: &Done, elastic: &Done) -> Figure {
+    let mut shots = Vec::new();
+    for (words, done) in [("on springs", springs), ("elastic", elastic)] {
+        for (stage, snapshot) in ["A", "B"].into_iter().zip(done.record.snapshots.iter().skip(1)) {
+            shots.push(Shot::new(format!("{words}, stage {stage}"), snapshot));
+        }
+    }
+    let constant = fringe_constant(shots.iter().flat_map(|shot| shot.frames.iter().copied()), FRINGES);
+    Figure::field(
+        "fringes-elastic",
+        "Fringes of fifty discs, on springs and elastic",
+        &format!(
+            "The same start, led to the same stages: stress from contact forces on springs, and as material points have it; c = {constant:.3e} Pa."
+        ),
+        pictures(Quantity::Fringes(constant), &shots, PIXELS / 2, None),
+    )
 }
 
 pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
@@ -50,6 +69,9 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
             ),
             pictures(Quantity::Fringes(constant), &shots, PIXELS, None),
         ));
+    }
+    if bench.is_thorough() {
+        figures.push(side_by_side(&bench.run(&run("fifty"))?, &bench.run(&elastic::discs())?));
     }
     let course = path(&done);
     let far = course.last().map_or(0.0, |point| point.0);

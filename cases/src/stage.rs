@@ -1,6 +1,6 @@
 //! A packing between walls at one moment: what the walls carry, how deep contacts are, and how near it is to equilibrium.
 
-use grainbench_scene::record::Snapshot;
+use grainbench_scene::record::{ContactState, Partner, Snapshot};
 use nalgebra::Vector3;
 
 /// Sums over walls and contacts of one snapshot. Walls are planes along the axes.
@@ -10,7 +10,8 @@ pub struct Stage {
     pub horizontal: f64,
     /// F_V: half of what the walls across y carry along their normals (N; N/m for discs).
     pub vertical: f64,
-    /// Mean overlap of all contacts, those at walls among them, over the mean radius.
+    /// Mean over all contacts, those at walls among them, of how much nearer centres are than where undeformed grains touch, over the
+    /// mean radius: the overlap of rigid grains on springs, and what flattens grains that deform.
     pub overlap: f64,
     /// The largest sum of forces on a grain over the largest contact force.
     pub unbalanced: f64,
@@ -29,7 +30,7 @@ impl Stage {
             walls.iter().filter_map(|wall| Some(-0.5 * wall.force[axis] * wall.corners.get(1)?[axis])).sum()
         };
         let radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;
-        let overlap = contacts.iter().map(|contact| contact.overlap).sum::<f64>() / contacts.len() as f64;
+        let overlap = contacts.iter().map(|contact| approach(snapshot, contact)).sum::<f64>() / contacts.len() as f64;
         let contact =
             largest(&mut contacts.iter().map(|contact| contact.normal_force.hypot(contact.shear_force.norm())));
         let sum: Vector3<f64> = walls.iter().map(|wall| wall.force).sum();
@@ -46,5 +47,21 @@ impl Stage {
     #[must_use]
     pub fn ratio(&self) -> f64 {
         self.horizontal / self.vertical
+    }
+}
+
+/// How much nearer the centre of a grain is to that of its partner, or to a plane, than where they touch undeformed (m).
+fn approach(snapshot: &Snapshot, contact: &ContactState) -> f64 {
+    let grain = &snapshot.grains[contact.grain as usize - 1];
+    match contact.partner {
+        Partner::Grain(other) => {
+            let other = &snapshot.grains[other as usize - 1];
+            grain.radius + other.radius - (grain.position - other.position).norm()
+        }
+        Partner::Wall(wall) => match snapshot.walls[wall as usize].corners[..] {
+            [point, normal] => grain.radius - normal.dot(&(grain.position - point)),
+            _ => contact.overlap,
+        },
+        Partner::Body(_) => contact.overlap,
     }
 }

@@ -71,7 +71,8 @@ fn data(packing: &Scene) -> String {
 
 /// The scene of a variant with laws and times of the first packing with the same table, and a packing as its file has it.
 fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn Error>> {
-    let table = if variant.starts_with("table") { variant.split("-seed").next().unwrap_or(variant) } else { PLAIN };
+    let named = ["table", "fifty-elastic"].iter().any(|name| variant.starts_with(name));
+    let table = if named { variant.split("-seed").next().unwrap_or(variant) } else { PLAIN };
     let case = registry::by_name("photoelastic-packing").ok_or("the case is gone")?;
     let source = if table == PLAIN { case.source() } else { case.source().variant(table) };
     let mut scene =

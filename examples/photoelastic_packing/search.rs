@@ -1,8 +1,9 @@
 //! The motion of the walls that is imposed: which strain ratio leads to stage A, and how far the strain of stage B goes.
 
-use super::walls::{Course, drive, run, size, watch};
+use super::walls::{Course, drive, run, run_elastic, size, watch};
 use grainbench::cases::stage::Stage;
 use grainbench::scene::motion::Moment;
+use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::{Duration, Scene};
 use std::error::Error;
 
@@ -38,10 +39,31 @@ pub(crate) struct Imposed {
     pub(crate) further: f64,
 }
 
+/// Runs a scene for a time (s); what stands there.
+type Run = fn(&Scene, f64) -> Result<Snapshot, Box<dyn Error>>;
+
+/// How a packing is run and where looking begins. Runs of elastic discs take a thousand times as long, and their walls go too fast for
+/// forces on the way to mean much.
+struct Manner {
+    run: Run,
+    /// The first strain ratio of stage A, in fifths.
+    first: i32,
+    /// The first strain after stage A; none where it is read off while the walls move.
+    further: Option<f64>,
+    /// By how much a strain after stage A that was too small is made larger.
+    widen: f64,
+    /// Whether forces fall while all is at rest, so that F_V grows against that of a packing that is left alone as long.
+    relaxes: bool,
+}
+
+const SPRINGS: Manner = Manner { run, first: -2, further: None, widen: 1.08, relaxes: false };
+const ELASTIC: Manner = Manner { run: run_elastic, first: 3, further: Some(1e-4), widen: 1.5, relaxes: true };
+
 /// A packing whose walls are to be moved.
 pub(crate) struct Search<'s> {
     scene: &'s Scene,
     times: Times,
+    manner: Manner,
 }
 
 impl<'s> Search<'s> {
@@ -54,7 +76,8 @@ impl<'s> Search<'s> {
         };
         let seconds = |moment: Moment| moment.seconds(f64::NAN);
         let times = Times { stop: seconds(first.stop), a: seconds(second.start), stop_again: seconds(second.stop), b };
-        Ok(Self { scene, times })
+        let manner = if scene.deformable.iter().any(Option::is_some) { ELASTIC } else { SPRINGS };
+        Ok(Self { scene, times, manner })
     }
 
     /// The scene with walls that move so.
@@ -84,7 +107,7 @@ impl<'s> Search<'s> {
     fn at_overlap(&self, ratio: f64, guess: f64) -> Result<Option<(Imposed, Stage)>, Box<dyn Error>> {
         let at = |strain: f64| -> Result<(Imposed, Stage), Box<dyn Error>> {
             let imposed = Imposed { strain, ratio, further: 0.0 };
-            Ok((imposed, Stage::of(&run(&self.driven(&imposed), self.times.a)?)))
+            Ok((imposed, Stage::of(&(self.manner.run)(&self.driven(&imposed), self.times.a)?)))
         };
         let off = |(_, stage): &(Imposed, Stage)| stage.overlap - OVERLAP;
         let (mut low, mut of_low, mut high) = (0.0, -OVERLAP, at(guess)?);
@@ -113,7 +136,7 @@ impl<'s> Search<'s> {
     /// Strain ratios upwards from where the sides come in half as far until F_H/F_V has fallen to what it should be, then in between.
     fn to_a(&self) -> Result<(Imposed, Stage), Box<dyn Error>> {
         let mut before: Option<(Imposed, Stage)> = None;
-        for fifth in -2..10 {
+        for fifth in self.manner.first..10 {
             let guess = before.map_or(1e-3, |(imposed, _)| imposed.strain);
             let Some(now) = self.at_overlap(0.2 * f64::from(fifth), guess)? else { break };
             if let Some(before) = before.filter(|before| before.1.ratio() > RATIO && now.1.ratio() < RATIO) {
@@ -153,27 +176,16 @@ impl<'s> Search<'s> {
 
     /// The strain from stage A at which F_V has grown as it should: the first while the walls move, then at rest.
     fn to_b(&self, (a, of_a): (Imposed, Stage)) -> Result<Imposed, Box<dyn Error>> {
-        let times = self.times;
-        let grown = |stage: &Stage| stage.vertical / of_a.vertical - GROWTH;
-        let mut guess = None;
-        for most in [0.002, 0.01, 0.05] {
-            let scene = self.driven(&Imposed { further: most, ..a });
-            let every = 2e-3 * (times.stop_again - times.a);
-            watch(&scene, times.stop_again, every, |snapshot| {
-                let part = (snapshot.time - times.a) / (times.stop_again - times.a);
-                if part > 0.0 && grown(&Stage::of(snapshot)) > 0.0 {
-                    guess = Some(part * most);
-                }
-                guess.is_none()
-            })?;
-            if guess.is_some() {
-                break;
-            }
-        }
-        let guess = guess.ok_or("F_V never grows as it should from stage A")?;
+        let alone =
+            if self.manner.relaxes { Stage::of(&(self.manner.run)(&self.driven(&a), self.times.b)?) } else { of_a };
+        let grown = |stage: &Stage| stage.vertical / alone.vertical - GROWTH;
+        let guess = match self.manner.further {
+            Some(guess) => guess,
+            None => self.on_the_way(&a, &grown)?,
+        };
         let at = |further: f64| -> Result<(f64, f64), Box<dyn Error>> {
             let scene = self.driven(&Imposed { further, ..a });
-            Ok((further, grown(&Stage::of(&run(&scene, times.b)?))))
+            Ok((further, grown(&Stage::of(&(self.manner.run)(&scene, self.times.b)?))))
         };
         let (mut low, mut high) = ((0.0, 1.0 - GROWTH), at(guess)?);
         for _ in 0..40 {
@@ -181,7 +193,7 @@ impl<'s> Search<'s> {
                 break;
             }
             low = high;
-            high = at(1.08 * low.0)?;
+            high = at(self.manner.widen * low.0)?;
         }
         let mut best = high;
         for _ in 0..12 {
@@ -196,5 +208,26 @@ impl<'s> Search<'s> {
             if middle.1 < 0.0 { low = middle } else { high = middle }
         }
         Ok(Imposed { further: best.0, ..a })
+    }
+
+    /// The strain from stage A at which F_V has grown as it should while the walls move.
+    fn on_the_way(&self, a: &Imposed, grown: &dyn Fn(&Stage) -> f64) -> Result<f64, Box<dyn Error>> {
+        let times = self.times;
+        let mut found = None;
+        for most in [0.002, 0.01, 0.05] {
+            let scene = self.driven(&Imposed { further: most, ..*a });
+            let every = 2e-3 * (times.stop_again - times.a);
+            watch(&scene, times.stop_again, every, |snapshot| {
+                let part = (snapshot.time - times.a) / (times.stop_again - times.a);
+                if part > 0.0 && grown(&Stage::of(snapshot)) > 0.0 {
+                    found = Some(part * most);
+                }
+                found.is_none()
+            })?;
+            if found.is_some() {
+                break;
+            }
+        }
+        found.ok_or_else(|| "F_V never grows as it should from stage A".into())
     }
 }

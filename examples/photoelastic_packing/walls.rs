@@ -1,16 +1,20 @@
 //! Four walls around discs: left, right, bottom and top, in this order.
 
+use grainbench::cases::stage::Stage;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
+use grainbench::mpm::solver::Mpm;
 use grainbench::scene::motion::{Moment, Motion, Phase};
 use grainbench::scene::nalgebra::Vector3;
 use grainbench::scene::record::Snapshot;
-use grainbench::scene::scene::{Scene, WallShape};
-use grainbench::scene::solver::Resolution;
+use grainbench::scene::scene::{Duration, Scene, WallShape};
+use grainbench::scene::solver::{Resolution, Solver};
 use std::error::Error;
 
-/// The time step: the default rung of the case.
+/// The time step of discs on springs: the default rung of the case.
 const RUNG: Resolution = Resolution::CriticalFraction(0.2);
+/// The grid of elastic discs: the rung of the case.
+const GRID: Resolution = Resolution::grid(2.0, 3);
 
 /// Speeds between two times (s): of the sides outwards and of top and bottom inwards (m/s).
 pub(crate) struct Course {
@@ -77,6 +81,17 @@ pub(crate) fn watch(
 /// Runs for a time (s).
 pub(crate) fn run(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn Error>> {
     watch(scene, time, time, |_| true)
+}
+
+/// Runs elastic discs for a time (s). Steps are the same for all times that a whole number of them fits into.
+pub(crate) fn run_elastic(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn Error>> {
+    let mut scene = scene.clone();
+    scene.duration = Duration::Seconds(time);
+    scene.snapshots = 1;
+    let mut record = Mpm::BEST.run(&scene, &GRID, &mut ())?;
+    let last = record.snapshots.pop().ok_or("a run without a last snapshot")?;
+    eprintln!("after {time} s {:?}", Stage::of(&last));
+    Ok(last)
 }
 
 /// The scene with discs and walls where a run left them; contacts have forgotten.
