@@ -2,6 +2,7 @@
 //! as minutes go.
 
 use super::chains::chains;
+use super::coarse::MAKES_ENERGY;
 use super::measures::{at, at_the_moving_side, band, end, fluctuation, plastic_strain};
 use super::{CHAINS, FRAMES, at_least, grid, springs, to_shear};
 use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
@@ -58,6 +59,9 @@ pub(super) fn gates() -> Vec<Gate> {
     let on_springs = || PACKINGS.map(|packing| springs::to(packing, 0.8, FRAMES).slow()).to_vec();
     let yielding = |packing, solver| to_shear(Run::new(packing, solver, grid(75.0)), 0.2, 0).long();
     let pairs = PACKINGS.iter().flat_map(|packing| [yielding(packing, "mpm:no-slip"), yielding(packing, "mpm")]);
+    let on_approach = PACKINGS.iter().flat_map(|packing| {
+        [yielding(packing, "mpm:2000").known(MAKES_ENERGY), yielding(packing, "mpm:no-slip").aside()]
+    });
     let still = Control::scene("grains stand still", |scene| crate::effect::Effect::MovingWalls.switch_off(scene));
     vec![
         over_packings(
@@ -101,6 +105,16 @@ pub(super) fn gates() -> Vec<Gate> {
             |done| {
                 let of = |done: &Done| Ok(plastic_strain(done, end(done)?));
                 Ok(of(&done[0])? / of(&done[1])?)
+            },
+        ),
+        over_packings(
+            ("plastic strain without slip over that with friction as contact on approach has it, 20 % shear", FIGURE_6),
+            on_approach.collect(),
+            3.0,
+            Control::without_the_error("springs between surfaces", "mpm", grid(75.0)),
+            |done| {
+                let of = |done: &Done| Ok(plastic_strain(done, end(done)?));
+                Ok(of(&done[1])? / of(&done[0])?)
             },
         ),
         over_packings(
