@@ -199,7 +199,11 @@ fn reproduced(slope: Elastic, cells: f64, expected: f64) -> Gate {
         (excess_words(slope, cells), "1"),
         vec![run(slope, "mpm:2000", cells)],
         (Evidence::OtherCode, "independent prototype of the 2000 criterion, touching and settled"),
-        (0.02, "two implementations of one method at the same resolution, with other material points"),
+        (
+            0.025,
+            "two implementations of one method at the same resolution, with other material points; while discs settle ours damps points, \
+             not nodes, which is worth up to .004",
+        ),
         control,
         move |done| Ok(Measured::new(excess(&done[0])?, expected, 1.0)),
     )
