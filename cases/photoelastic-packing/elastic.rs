@@ -46,7 +46,7 @@ pub(super) fn gates() -> Vec<Gate> {
             "forces fade at rest, the slower the longer it lasts and the more points a cell has (derivation)",
         )],
         (Evidence::Invariant, "elastic discs at rest go on bearing what they bear"),
-        (2e-3, "what discs on springs lose"),
+        (1e-4, "discs on springs lose 1e-5"),
         Control::without_the_error("discs on springs", "dem", LADDER[0].resolution),
         |done| {
             let [a, b] = vertical(&done[0])?;
