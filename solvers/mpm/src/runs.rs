@@ -82,7 +82,7 @@ impl<'a, S: Space> Ground<'a, S> {
     /// The nodes around a batch of a run.
     #[inline(always)]
     pub(crate) fn stencil<B: Basis, L: Lanes>(&self, lanes: L, run: &Run, batch: Batch) -> Stencil<Four<L>> {
-        let mut position = batch.vectors::<S, L>(lanes, self.position);
+        let position = batch.spread_vectors::<S, L>(lanes, self.position);
         let mut half = [Four::splat(lanes, self.part.half); 3];
         if B::EXTENDED {
             let mut last = None;
@@ -93,9 +93,6 @@ impl<'a, S: Space> Ground<'a, S> {
                 *half = batch.spread(lanes, Four::new(lanes, [a[axis], b[axis], c[axis], d[axis]]));
             }
         }
-        for position in position.iter_mut().take(S::DIMENSION) {
-            *position = batch.spread(lanes, *position);
-        }
         Stencil::around::<S, B>(self.lattice, run.base, position, half)
     }
 }
@@ -103,8 +100,25 @@ impl<'a, S: Space> Ground<'a, S> {
 /// Up to four points of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Batch {
-    start: usize,
-    count: usize,
+    pub(crate) start: usize,
+    pub(crate) count: usize,
+}
+
+/// The first of some positions with those after it, up to four in all, that reach the same nodes; and the first of these nodes.
+#[inline(always)]
+pub(crate) fn first_batch<S: Space, B: Basis>(
+    lattice: &Lattice,
+    range: Range<usize>,
+    positions: &[S::Vector],
+) -> (Batch, [i32; 3]) {
+    let base = lattice.first::<S, B>(positions[range.start]);
+    let mut same = true;
+    let mut count = 1;
+    for &position in positions[range.clone()].iter().take(LANES).skip(1) {
+        same &= lattice.first::<S, B>(position) == base;
+        count += usize::from(same);
+    }
+    (Batch { start: range.start, count }, base)
 }
 
 /// One for each lane that has a point, zero for the others.
@@ -140,6 +154,16 @@ impl Batch {
     #[cold]
     fn last<T: Copy>(self, values: &[T]) -> [T; LANES] {
         from_fn(|lane| values[(self.start + lane).min(values.len() - 1)])
+    }
+
+    /// The positions of its points (m), by component, for a stencil: all of them are among the same nodes.
+    #[inline(always)]
+    pub(crate) fn spread_vectors<S: Space, L: Lanes>(self, lanes: L, values: &[S::Vector]) -> [Four<L>; 3] {
+        let mut vectors = self.vectors::<S, L>(lanes, values);
+        for vector in vectors.iter_mut().take(S::DIMENSION) {
+            *vector = self.spread(lanes, *vector);
+        }
+        vectors
     }
 
     /// Lanes without a point get what the first one has, so that all are among the nodes of the run.

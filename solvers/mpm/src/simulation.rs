@@ -515,12 +515,12 @@ impl<S: Space> Simulation<S> {
             let basis = PhantomData::<B>;
             match velocities {
                 Velocities::Stepped => {
-                    let velocity = |slot: usize| nodes[slot].velocity;
-                    processor.run(Carry { lattice, body, tracers, most, velocity, elapsed, basis });
+                    let velocity = |node: &Node<S>| node.velocity;
+                    processor.run(Carry { lattice, body, tracers, nodes, most, velocity, elapsed, basis });
                 }
                 Velocities::Projected => {
-                    let velocity = |slot: usize| projected[slot];
-                    processor.run(Carry { lattice, body, tracers, most, velocity, elapsed, basis });
+                    let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
+                    processor.run(Carry { lattice, body, tracers, nodes, most, velocity, elapsed, basis });
                 }
             }
         });

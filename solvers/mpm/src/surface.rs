@@ -3,8 +3,10 @@
 use crate::basis::Basis;
 use crate::bodies::Body;
 use crate::grid::{Lattice, Stencil};
-use crate::lanes::{Kernel, Lanes};
-use crate::seed::Patch;
+use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
+use crate::patch::{Copies, Patch};
+use crate::runs;
+use crate::seed;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -92,7 +94,7 @@ impl<S: Space> Tracers<S> {
     }
 
     /// Adds a closed surface; in the plane its patches follow each other with the body on their left.
-    pub(crate) fn add(&mut self, patches: &[Patch]) {
+    pub(crate) fn add(&mut self, patches: &[seed::Patch]) {
         let (start, count) = (self.len() as u32, patches.len() as u32);
         for (number, patch) in (0..count).zip(patches) {
             self.position.push(S::restrict(patch.position));
@@ -128,8 +130,7 @@ impl<S: Space> Tracers<S> {
     /// Outward unit normal at a tracer.
     #[inline(always)]
     pub(crate) fn normal(&self, at: usize) -> S::Vector {
-        let area = self.area[at];
-        area * (1.0 / S::dot(area, area).sqrt())
+        unit::<S>(self.area[at])
     }
 
     /// Finds those of some runs that any tracer of a run, moved by `shift`, can have its nearest one in.
@@ -150,14 +151,14 @@ impl<S: Space> Tracers<S> {
         near.extend(chunks.clone().filter(is_near));
     }
 
-    /// The surface made of some runs where a position with a unit normal of its own, which faces it, has gone through it; none when it has
-    /// not, or is farther than `reach` (m) from it.
+    /// The surface made of some runs where a position on another, of which `facing` points out (of any length), has gone through it; none
+    /// when it has not, does not face it, or is farther than `reach` (m) from it.
     #[inline(always)]
     pub(crate) fn gone_through(
         &self,
         chunks: impl Iterator<Item = usize> + Clone,
         position: S::Vector,
-        normal: S::Vector,
+        facing: S::Vector,
         reach: f64,
     ) -> Option<Near<S>> {
         let (mut closest, mut squared) = (None, 2.0 * reach * reach);
@@ -168,7 +169,7 @@ impl<S: Space> Tracers<S> {
             for at in chunk.tracers.clone() {
                 let between = position - self.position[at];
                 let distance = S::dot(between, between);
-                if distance < squared && S::dot(self.area[at], normal) < 0.0 {
+                if distance < squared && S::dot(self.area[at], facing) < 0.0 {
                     (closest, squared) = (Some(at), distance);
                 }
             }
@@ -182,9 +183,9 @@ impl<S: Space> Tracers<S> {
             let [one, two] = [self.chord(before, closest, position), self.chord(closest, after, position)];
             if one.away() <= two.away() { self.on(&one) } else { self.on(&two) }
         } else {
-            self.around(chunks, closest, position, normal)?
+            self.around(chunks, closest, position, facing)?
         };
-        let faces = S::dot(near.normal, normal) < FACING;
+        let faces = S::dot(near.normal, unit::<S>(facing)) < FACING;
         (faces && near.gap <= 0.0 && -near.gap < reach).then_some(near)
     }
 
@@ -263,6 +264,12 @@ impl<S: Space> Tracers<S> {
     }
 }
 
+/// A vector as long as one.
+#[inline(always)]
+fn unit<S: Space>(vector: S::Vector) -> S::Vector {
+    vector * (1.0 / S::dot(vector, vector).sqrt())
+}
+
 /// The chord between two tracers, seen from a position.
 struct Chord<S: Space> {
     ends: [usize; 2],
@@ -283,10 +290,11 @@ impl<S: Space> Chord<S> {
 }
 
 /// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that carry mass.
-pub(crate) struct Carry<'a, S: Space, B, V> {
+pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) body: &'a Body,
     pub(crate) tracers: &'a mut Tracers<S>,
+    pub(crate) nodes: &'a [N],
     /// What each node counts for at most.
     pub(crate) most: &'a [f64],
     pub(crate) velocity: V,
@@ -294,41 +302,77 @@ pub(crate) struct Carry<'a, S: Space, B, V> {
     pub(crate) basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, V: Fn(usize) -> S::Vector> Kernel for Carry<'_, S, B, V> {
+impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Carry<'_, S, B, N, V> {
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) {
-        let Self { lattice, body, tracers, most, velocity, elapsed, .. } = self;
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { lattice, body, tracers, nodes, most, velocity, elapsed, .. } = self;
         let Tracers { position, area, neighbours, .. } = tracers;
-        let window = &body.part.window;
-        for at in body.tracers.clone() {
-            let stencil = Stencil::new::<S, B>(lattice, position[at], [body.part.half; 3]);
-            if !window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
+        let part = &body.part;
+        let zero = Four::splat(lanes, 0.0);
+        // Never read unless copied to.
+        let Some(&any) = nodes.first() else { return };
+        let (mut copies, mut most_copies): (Copies<N>, Copies<f64>) = ([any; _], [0.0; _]);
+        let mut range = body.tracers.clone();
+        while !range.is_empty() {
+            let (batch, base) = runs::first_batch::<S, B>(lattice, range.clone(), position);
+            range.start += batch.count;
+            if !part.window.holds(S::DIMENSION, base, B::WIDTH as i32) {
                 continue;
             }
-            let (mut total, mut way, mut gradient) = (0.0, S::ORIGIN, S::NO_GRADIENT);
-            let mut slope = S::ORIGIN;
-            stencil.each::<S, B>(window, |node| {
-                let velocity = velocity(node.slot);
-                let most = most[node.slot];
-                let weight = node.weight.min(most);
-                total += weight;
-                way += velocity * weight;
-                // A node that counts for less does so all around.
-                if S::DIMENSION == 3 && weight == node.weight && most > 0.0 {
-                    let along = stencil.gradient(&node);
-                    gradient += S::outer(velocity, along);
-                    slope += along;
+            let (seen, patch) = part.window.seen::<S, B, _>(base, nodes, &mut copies);
+            let (bounds, _) = part.window.seen::<S, B, _>(base, most, &mut most_copies);
+            let at = batch.spread_vectors::<S, L>(lanes, position);
+            let stencil = Stencil::around::<S, B>(lattice, base, at, [Four::splat(lanes, part.half); 3]);
+            let [values, slopes] = stencil.along_x();
+            let (mut total, mut way) = (zero, [zero; 3]);
+            let (mut gradient, mut slope) = ([[zero; 3]; 3], [zero; 3]);
+            for row in 0..Patch::rows::<S, B>() {
+                let across = stencil.across::<S, B>(row);
+                let places = patch.row::<S, B>(row);
+                for (node, place) in places.enumerate() {
+                    let bound = Four::splat(lanes, bounds[place]);
+                    let value = across.value * values[node];
+                    let weight = value.pick_below(bound, value, bound);
+                    total = total + weight;
+                    let velocity = velocity(&seen[place]);
+                    for (component, way) in way.iter_mut().enumerate().take(S::DIMENSION) {
+                        *way = *way + weight * S::component(velocity, component);
+                    }
+                    // A node that counts for less does so all around.
+                    if S::DIMENSION == 3 && bounds[place] > 0.0 {
+                        let whole = bound.pick_below(value, zero, zero.like(1.0));
+                        let [y, z] = across.slope;
+                        let along =
+                            [across.value * slopes[node] * whole, y * values[node] * whole, z * values[node] * whole];
+                        for (axis, &along) in along.iter().enumerate() {
+                            slope[axis] = slope[axis] + along;
+                            for (component, row) in gradient.iter_mut().enumerate() {
+                                row[axis] = row[axis] + along * S::component(velocity, component);
+                            }
+                        }
+                    }
                 }
-            });
-            if total <= 1e-6 {
-                continue;
             }
-            let velocity = way * (1.0 / total);
-            position[at] += velocity * elapsed;
+            // Where hardly anything carries mass nothing is carried.
+            let (least, inverse) = (zero.like(1e-6), zero.like(1.0) / total);
+            let mut next = at;
+            for axis in 0..S::DIMENSION {
+                way[axis] = way[axis] * inverse;
+                next[axis] = least.pick_below(total, at[axis] + way[axis] * elapsed, at[axis]);
+            }
+            batch.write_vectors::<S, L>(next, position);
             if S::DIMENSION == 3 {
                 // Gradient of the interpolation over the nodes with mass: (Σ v ∇N − v̄ Σ ∇N)/Σ N.
-                let gradient = (gradient - S::outer(velocity, slope)) * (1.0 / total);
-                area[at] = transported::<S>(area[at], gradient, elapsed);
+                for (row, way) in gradient.iter_mut().zip(way) {
+                    for (gradient, slope) in row.iter_mut().zip(slope) {
+                        *gradient = least.pick_below(total, (*gradient - way * slope) * inverse, zero);
+                    }
+                }
+                let mut gradients = [S::NO_GRADIENT; LANES];
+                batch.counted_from(batch.start).write_matrices::<S, L>(gradient, &mut gradients);
+                for (area, gradient) in area[batch.start..].iter_mut().zip(gradients).take(batch.count) {
+                    *area = transported::<S>(*area, gradient, elapsed);
+                }
             }
         }
         if S::DIMENSION == 2 {

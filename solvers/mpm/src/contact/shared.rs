@@ -313,10 +313,10 @@ impl<S: Space> Shared<S> {
             let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
             for chunk in tracers.chunks[first.chunks.clone()].iter().filter(|chunk| chunk.meets(low, high)) {
                 for at in chunk.tracers.clone() {
-                    let normal = tracers.normal(at);
                     let position = tracers.position[at];
                     let (chunks, seen) = (second.chunks.clone(), position - pair.shift);
-                    let Some(near) = tracers.gone_through(chunks, seen, normal, reach) else { continue };
+                    let Some(near) = tracers.gone_through(chunks, seen, tracers.area[at], reach) else { continue };
+                    let normal = tracers.normal(at);
                     // The lower body comes first, so that both passes find the same pair.
                     let (out, swap) = (normal - near.normal, pair.second < pair.first);
                     let (body, other) = if swap { (pair.second, pair.first) } else { (pair.first, pair.second) };
