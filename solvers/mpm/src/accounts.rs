@@ -4,8 +4,9 @@
 //! - plastic: ∫ q dε_p V over points; friction: mean force of the spring times what its end slid, or the impulse along the
 //!   surface times the slip at nodes before the step;
 //! - contact: what contacts take from the motion, and neither store in springs nor lose to friction. Springs take from two
-//!   surfaces their force times the way that these go against each other, contact by contact; conditions at nodes their impulses
-//!   times the velocity of the nodes. Surfaces follow the mean of the velocities that points bring to the nodes before and after
+//!   surfaces their force times the way that these go against each other, contact by contact for the velocities before the step; for
+//!   those after it by their forces on the nodes, which is the same: a surface follows its nodes with the weights by which a force on
+//!   it reaches them. Conditions at nodes take their impulses times the velocity of the nodes. Surfaces follow the mean of the velocities that points bring to the nodes before and after
 //!   the step. (The velocity that a force gives to a node beside a surface, which may have hardly any mass, is felt by nothing.)
 //! - transfer: the kinetic energy that nodes gain in a step and points do not when they take it over; less the work that impulses do
 //!   on that part of the nodes' velocity which points do not bring back, and which neither stresses nor surfaces follow (points that
@@ -17,8 +18,6 @@
 //! elastic energy go together. (Where stresses come first, what crossing cells takes is left out.) Energy is counted in whole steps: kinetic energy belongs to the
 //! velocities of points, half a step before their positions, and springs are those of the last forces.
 
-use crate::contact::penalty;
-use crate::contact::penalty::Pushed;
 use crate::damping::Damping;
 use crate::grid::Node;
 use crate::options::{Contact, StressUpdate};
@@ -39,7 +38,7 @@ pub(crate) struct Tally {
     pub(crate) friction: f64,
     /// Work of walls (J).
     pub(crate) walls: f64,
-    /// What springs take from the motion of surfaces, by half of their velocities before the step (J).
+    /// What springs take from the motion of surfaces, by half of their velocities before the step and all of the walls' (J).
     pub(crate) taken: f64,
 }
 
@@ -92,8 +91,8 @@ pub(crate) struct Accounts<S: Space> {
     impulses: Vec<S::Vector>,
     /// Forces with those of springs (N); then impulses with those of internal forces (N s).
     forces: Vec<S::Vector>,
-    /// Forces of springs in this step.
-    pub(crate) pushed: Vec<Pushed<S>>,
+    /// Forces of springs on the nodes (N).
+    springs: Vec<S::Vector>,
     /// Work of what drives grains on nodes in this step (J).
     held: f64,
     /// Kinetic energy of points before the step, where motion is damped (J).
@@ -107,7 +106,7 @@ impl<S: Space> Default for Accounts<S> {
             tally: Tally::default(),
             impulses: Vec::new(),
             forces: Vec::new(),
-            pushed: Vec::new(),
+            springs: Vec::new(),
             held: 0.0,
             brought: 0.0,
         }
@@ -144,8 +143,12 @@ impl<S: Space> Simulation<S> {
     /// Before velocities change.
     pub(crate) fn note_forces(&mut self) {
         if self.accounting {
-            self.accounts.forces.clear();
-            self.accounts.forces.extend(self.nodes[..self.used].iter().map(|node| node.change));
+            let Accounts { forces, springs, impulses, .. } = &mut self.accounts;
+            let nodes = &self.nodes[..self.used];
+            forces.clear();
+            forces.extend(nodes.iter().map(|node| node.change));
+            springs.clear();
+            springs.extend(nodes.iter().zip(impulses).map(|(node, internal)| node.change - *internal));
             if self.damping > 0.0 {
                 self.accounts.brought = self.kinetic_energy();
             }
@@ -221,18 +224,16 @@ impl<S: Space> Simulation<S> {
             return;
         }
         let is_projected = self.setting.stress_update == StressUpdate::ModifiedLast;
-        let Self { nodes, projected, most, bodies, lattice, setting, accounts, time_step, damping, .. } = self;
-        let Accounts { sums, impulses, forces, pushed, .. } = accounts;
+        let Self { nodes, projected, accounts, time_step, damping, .. } = self;
+        let Accounts { sums, impulses, forces, springs, .. } = accounts;
         let Damping { keep, .. } = Damping::over(*damping, *time_step);
         let after = |slot: usize| if is_projected { projected[slot] } else { nodes[slot].velocity };
-        for (slot, (impulse, all)) in impulses.iter().zip(forces.iter()).enumerate() {
-            let node = &nodes[slot];
-            sums.contacts += S::dot(*impulse, (before(node, keep) + after(slot)) * 0.5);
-            sums.stray += 0.5 * S::dot(*all, node.velocity - after(slot));
+        for (slot, ((impulse, all), spring)) in impulses.iter().zip(forces.iter()).zip(springs.iter()).enumerate() {
+            let (node, after) = (&nodes[slot], after(slot));
+            sums.contacts += S::dot(*impulse, (before(node, keep) + after) * 0.5);
+            sums.stray += 0.5 * S::dot(*all, node.velocity - after);
+            sums.taken -= 0.5 * S::dot(*spring, after) * *time_step;
         }
-        let taken = with_basis!(setting.basis, B => penalty::taken::<S, B>(lattice, bodies, pushed, most, after));
-        sums.taken += taken * *time_step;
-        pushed.clear();
     }
 
     /// After stresses have changed.

@@ -1,6 +1,5 @@
 //! The stages of a cycle at which bodies meet: springs as forces, conditions at nodes on velocities.
 
-use crate::accounts::Accounts;
 use crate::contact::nodal::{self, Felt};
 use crate::contact::penalty::{Push, Rules, Told};
 use crate::contact::shared::{Projected, Stepped};
@@ -62,7 +61,6 @@ impl<S: Space> Simulation<S> {
         self.touches.clear();
         self.springs.begin();
         self.pairs.find(&self.bodies, &self.lattice, 0.0);
-        let accounting = self.accounting;
         let rules = Rules {
             lattice: &self.lattice,
             friction: &self.friction,
@@ -84,8 +82,7 @@ impl<S: Space> Simulation<S> {
             processor,
             ..
         } = self;
-        let Accounts { tally, pushed, .. } = accounts;
-        let told = Told { tally, touches: record.then_some(touches), pushed: accounting.then_some(pushed) };
+        let told = Told { tally: &mut accounts.tally, touches: record.then_some(touches) };
         with_basis!(setting.basis, B => {
             let basis = PhantomData::<B>;
             processor.run(Push { rules, bodies, pairs: &pairs.found, tracers, springs, walls, nodes, most, told, basis });

@@ -43,20 +43,6 @@ impl<S: Space> Grip<S> {
         nodes: &[Node<S>],
         most: &[f64],
     ) -> Option<Self> {
-        Self::with::<B>(lattice, part, position, most, |slot, weight| {
-            nodes[slot].velocity * (weight / nodes[slot].mass)
-        })
-    }
-
-    /// The same, with `weighted` for the velocity of a node that counts for something times its weight.
-    #[inline(always)]
-    pub(crate) fn with<B: Basis>(
-        lattice: &Lattice,
-        part: &Part,
-        position: S::Vector,
-        most: &[f64],
-        weighted: impl Fn(usize, f64) -> S::Vector,
-    ) -> Option<Self> {
         let stencil = Stencil::new::<S, B>(lattice, position, [part.half; 3]);
         if !part.window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
             return None;
@@ -66,7 +52,8 @@ impl<S: Space> Grip<S> {
             let weight = node.weight.min(most[node.slot]);
             if weight > 0.0 {
                 total += weight;
-                velocity += weighted(node.slot, weight);
+                let Node { mass, velocity: momentum, .. } = nodes[node.slot];
+                velocity += momentum * (weight / mass);
             }
         });
         (total > 1e-6).then(|| Self { stencil, total, velocity: velocity * (1.0 / total) })

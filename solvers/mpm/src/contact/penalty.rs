@@ -147,39 +147,6 @@ pub(crate) struct Told<'a, S: Space> {
     pub(crate) tally: &'a mut Tally,
     /// What touches, where it is asked for.
     pub(crate) touches: Option<&'a mut Vec<Touch<S>>>,
-    /// What pushes, where the budget is asked for.
-    pub(crate) pushed: Option<&'a mut Vec<Pushed<S>>>,
-}
-
-/// The force of a spring, and where it acts.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pushed<S: Space> {
-    /// The body that is pushed, by place, and where it touches (m).
-    body: (u32, S::Vector),
-    /// The body that is pushed back; a wall has a velocity of its own (m/s).
-    back: Result<(u32, S::Vector), S::Vector>,
-    /// Force on the first (N).
-    force: S::Vector,
-}
-
-/// What springs take from the motion of surfaces, by half of their velocities `after` the step (W): −F·(v₁ − v₂)/2 of every contact.
-pub(crate) fn taken<S: Space, B: Basis>(
-    lattice: &Lattice,
-    bodies: &[Body],
-    pushed: &[Pushed<S>],
-    most: &[f64],
-    after: impl Fn(usize) -> S::Vector,
-) -> f64 {
-    let velocity = |(body, there): (u32, S::Vector)| {
-        let part = &bodies[body as usize].part;
-        let grip = Grip::<S>::with::<B>(lattice, part, there, most, |slot, weight| after(slot) * weight);
-        grip.map_or(S::ORIGIN, |grip| grip.velocity)
-    };
-    let work = pushed.iter().map(|push| {
-        let back = push.back.map_or_else(|wall| wall, velocity);
-        -0.5 * S::dot(push.force, velocity(push.body) - back)
-    });
-    work.sum()
 }
 
 /// Springs of all bodies, with walls and with each other, in one step.
@@ -248,15 +215,10 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                     let force = push + shear;
                     grip.push::<B>(&body.part, force, nodes, most);
                     wall.force -= force;
-                    told.tally.walls += S::dot(force, wall.velocity(position)) * rules.time_step;
-                    told.tally.taken -= 0.5 * S::dot(force, slip);
-                    if let Some(pushed) = told.pushed.as_mut() {
-                        pushed.push(Pushed {
-                            body: (place as u32, position),
-                            back: Err(wall.velocity(position)),
-                            force,
-                        });
-                    }
+                    let worked = S::dot(force, wall.velocity(position)) * rules.time_step;
+                    told.tally.walls += worked;
+                    // The other half of a wall's part is known now, too.
+                    told.tally.taken += 0.5 * (worked - S::dot(force, slip));
                     if let Some(touches) = told.touches.as_mut() {
                         let energy = energy_ahead::<S>(spring, depth, stretched, slip, wall.normal, slipping);
                         let body = place as u32;
@@ -294,9 +256,9 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                     continue;
                 }
                 let position = tracers.position[at] - pair.shift;
-                let normal = tracers.normal(at);
-                let near = tracers.gone_through(chunks.iter().copied(), position, normal, reach);
+                let near = tracers.gone_through(chunks.iter().copied(), position, tracers.area[at], reach);
                 let Some(near) = near.filter(|near| near.gap < 0.0) else { continue };
+                let normal = tracers.normal(at);
                 let depth = -near.gap;
                 // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
                 let out = near.normal - normal;
@@ -319,9 +281,6 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                 one.push::<B>(&first.part, force, nodes, most);
                 two.push::<B>(&second.part, -force, nodes, most);
                 told.tally.taken -= 0.5 * S::dot(force, slip);
-                if let Some(pushed) = told.pushed.as_mut() {
-                    pushed.push(Pushed { body: (pair.first, there), back: Ok((pair.second, middle)), force });
-                }
                 if let Some(touches) = told.touches.as_mut() {
                     let energy = energy_ahead::<S>(spring, depth, stretched, slip, out, slipping);
                     let body = pair.first;
