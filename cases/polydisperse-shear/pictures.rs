@@ -32,8 +32,8 @@ pub(super) type Slab = (&'static str, Done);
 pub(super) fn slabs(bench: &Bench) -> Result<Vec<Slab>, RunError> {
     let mut slabs = Vec::new();
     if bench.is_thorough() {
-        slabs.push(("yielding, μ = .3", bench.run(&yielding::whole("mpm"))?));
-        slabs.push(("yielding, no slip", bench.run(&yielding::whole("mpm:no-slip"))?));
+        slabs.push(("yielding, μ = .3", bench.run(&yielding::whole("seed-1", "mpm"))?));
+        slabs.push(("yielding, no slip", bench.run(&yielding::whole("seed-1", "mpm:no-slip"))?));
     }
     slabs.push(("on springs, μ = .3", bench.run(&springs::slab())?));
     Ok(slabs)
