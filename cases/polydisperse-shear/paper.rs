@@ -90,11 +90,11 @@ fn gone_in_the_mean(done: &Done) -> Result<f64, Missing> {
 /// What is held against the bound, of the values of all packings, and why.
 type Held = (fn(&[f64]) -> Result<f64, Missing>, &'static str);
 const VALUES: Held = (lower, "the bound is held by the lower end of the interval (99 %, Student's t) over the packings");
-const EACH: Held = (least, "each packing holds the bound: the paper shows one");
+const EACH: Held = (least, "each packing holds the bound, for the paper shows one; chains that stay would lose none");
 const RATIOS: Held =
     (lower_of_ratios, "the bound is held by the lower end of the interval (99 %, Student's t, of logarithms) over the packings");
 
-/// A value of each packing, and a bound on the lower end of their interval.
+/// A value of each packing, and a bound on what is held against it.
 fn over_packings(
     (quantity, source): (&str, (Evidence, &'static str)),
     runs: Vec<Run>,

@@ -4,10 +4,11 @@
 //! - plastic: ∫ q dε_p V over points; friction: mean force of the spring times what its end slid, or the impulse along the
 //!   surface times the slip at nodes before the step;
 //! - contact: what contacts take from the motion, and neither store in springs nor lose to friction. Springs take from two
-//!   surfaces their force times the way that these go against each other, contact by contact for the velocities before the step; for
-//!   those after it by their forces on the nodes, which is the same: a surface follows its nodes with the weights by which a force on
-//!   it reaches them. Conditions at nodes take their impulses times the velocity of the nodes. Surfaces follow the mean of the velocities that points bring to the nodes before and after
-//!   the step. (The velocity that a force gives to a node beside a surface, which may have hardly any mass, is felt by nothing.)
+//!   surfaces their force times the way that these go against each other, contact by contact for the velocities before the step;
+//!   for those after it by their forces on the nodes, which is the same: a surface follows its nodes with the weights by which a
+//!   force on it reaches them. Conditions at nodes take their impulses times the velocity of the nodes. Surfaces follow the mean of
+//!   the velocities that points bring to the nodes before and after the step. (The velocity that a force gives to a node beside a
+//!   surface, which may have hardly any mass, is felt by nothing.)
 //! - transfer: the kinetic energy that nodes gain in a step and points do not when they take it over; less the work that impulses do
 //!   on that part of the nodes' velocity which points do not bring back, and which neither stresses nor surfaces follow (points that
 //!   keep their own velocity and bring it back lose nothing in sum: the two are equal); and half of what stresses take from the
