@@ -10,7 +10,8 @@ fn main() {
     println!("cargo::rustc-env=GRAINBENCH_RUSTC={}", words(&rustc, &["--version"]).unwrap_or_else(unknown));
     println!("cargo::rustc-env=GRAINBENCH_COMMIT={}", commit(&root).unwrap_or_else(unknown));
     // Whatever can make the tree differ from its commit, and the commit itself.
-    for part in ["build.rs", "Cargo.toml", "Cargo.lock", "src", "solvers", "reference", "cases", "reports"] {
+    let manifest = fs::read_to_string(Path::new(&root).join("Cargo.toml")).unwrap_or_default();
+    for part in ["build.rs", "Cargo.toml", "Cargo.lock", "src"].into_iter().chain(members(&manifest)) {
         println!("cargo::rerun-if-changed={part}");
     }
     if let Some(git) = words("git", &["-C", &root, "rev-parse", "--absolute-git-dir"]) {
@@ -18,6 +19,12 @@ fn main() {
             println!("cargo::rerun-if-changed={}", part.display());
         }
     }
+}
+
+/// The folders of the workspace's crates but this one, from the line that lists them.
+fn members(manifest: &str) -> impl Iterator<Item = &str> {
+    let line = manifest.lines().find(|line| line.starts_with("members = ")).unwrap_or_default();
+    line.split('"').skip(1).step_by(2).filter(|member| *member != ".")
 }
 
 /// The commit, marked when the tree has changes; nothing when the sources are no repository of their own.

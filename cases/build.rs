@@ -1,49 +1,119 @@
-//! Lists the case folders, so that adding a case touches one folder and nothing else.
+//! Lists the case folders, so that adding a case touches one folder and nothing else; and the works that expected values come
+//! from, so that there is a handle of a work where there is a folder with its provenance and nowhere else.
 
 use std::fmt::Write as _;
-use std::{env, fs, path::Path};
+use std::path::{Path, PathBuf};
+use std::{env, fs};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let root = env::var("CARGO_MANIFEST_DIR")?;
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failure> {
+    let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
+    let out = PathBuf::from(env::var("OUT_DIR")?);
+    fs::write(out.join("registry.rs"), registry(&root)?)?;
+    let references = root.join("../reference");
+    fs::write(out.join("sources.rs"), sources(&references)?)?;
+    println!("cargo::rerun-if-changed={}", root.display());
+    for kind in KINDS {
+        println!("cargo::rerun-if-changed={}", references.join(kind).display());
+    }
+    Ok(())
+}
+
+/// Names of the folders in a folder that have a file, in their order.
+fn folders_with(folder: &Path, file: &str) -> Result<Vec<String>, Failure> {
     let mut names = Vec::new();
-    for entry in fs::read_dir(&root)? {
+    for entry in fs::read_dir(folder)? {
         let path = entry?.path();
-        if path.join("scene.toml").is_file()
+        if path.join(file).is_file()
             && let Some(name) = path.file_name().and_then(|name| name.to_str())
         {
             names.push(name.to_owned());
         }
     }
     names.sort();
+    Ok(names)
+}
+
+/// The modules of the cases, and the list of them.
+fn registry(root: &Path) -> Result<String, Failure> {
+    let names = folders_with(root, "scene.toml")?;
     let mut code = String::new();
     for name in &names {
         let module = name.replace('-', "_");
-        let file = Path::new(&root).join(name).join("case.rs");
+        let file = root.join(name).join("case.rs");
         writeln!(code, "#[path = {file:?}]\nmod {module};")?;
     }
-    writeln!(code, "/// Every case, in the order of their names.\npub static CASES: &[&crate::case::Case] = &[")?;
+    writeln!(code, "/// Every case, in the order of their names.\npub static CASES: &[&crate::Case] = &[")?;
     for name in &names {
         writeln!(code, "    &{}::CASE,", name.replace('-', "_"))?;
     }
     writeln!(code, "];")?;
-    with_costs(&root, &names, &mut code)?;
-    fs::write(Path::new(&env::var("OUT_DIR")?).join("registry.rs"), code)?;
-    println!("cargo::rerun-if-changed={root}");
-    Ok(())
+    with_costs(root, &names, &mut code)?;
+    Ok(code)
 }
 
 /// Cases that say themselves what accuracy is measured by have a `cost.rs`.
-fn with_costs(root: &str, names: &[String], code: &mut String) -> std::fmt::Result {
-    let has_one = |name: &&String| Path::new(root).join(name).join("cost.rs").is_file();
-    let own: Vec<&String> = names.iter().filter(has_one).collect();
+fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Result {
+    let own: Vec<&String> = names.iter().filter(|name| root.join(name).join("cost.rs").is_file()).collect();
     for name in &own {
-        let file = Path::new(root).join(name).join("cost.rs");
+        let file = root.join(name).join("cost.rs");
         writeln!(code, "#[path = {file:?}]\nmod {}_cost;", name.replace('-', "_"))?;
     }
     writeln!(code, "/// What accuracy is measured by, of cases that say it themselves.")?;
-    writeln!(code, "pub(crate) static COSTS: &[crate::subject::Own] = &[")?;
+    writeln!(code, "pub(crate) static COSTS: &[Own] = &[")?;
     for name in &own {
         writeln!(code, "    ({name:?}, {}_cost::subjects),", name.replace('-', "_"))?;
     }
     writeln!(code, "];")
+}
+
+/// Folders of works among the references.
+const KINDS: [&str; 2] = ["literature", "prototype"];
+
+/// A module for each kind, in it one for each work, in it the work and the numbers that it gives.
+fn sources(references: &Path) -> Result<String, Failure> {
+    let mut code = String::new();
+    for kind in KINDS {
+        writeln!(code, "/// Works of this kind.\npub mod {kind} {{")?;
+        for name in folders_with(&references.join(kind), "provenance.toml")? {
+            let path = references.join(kind).join(&name).join("provenance.toml");
+            let table: toml::Table =
+                fs::read_to_string(&path)?.parse().map_err(|error| format!("{}: {error}", path.display()))?;
+            work(&mut code, kind, &name, &table).map_err(|error| format!("{}: {error}", path.display()))?;
+        }
+        writeln!(code, "}}")?;
+    }
+    Ok(code)
+}
+
+/// The module of one work.
+fn work(code: &mut String, kind: &str, name: &str, table: &toml::Table) -> Result<(), Failure> {
+    let text = |table: &toml::Table, key: &str| -> Result<String, Failure> {
+        let value = table.get(key).and_then(toml::Value::as_str).filter(|text| !text.trim().is_empty());
+        Ok(value.ok_or(format!("expected a text `{key}`"))?.to_owned())
+    };
+    let number = |table: &toml::Table, key: &str| {
+        table.get(key).and_then(|value| value.as_float().or(value.as_integer().map(|whole| whole as f64)))
+    };
+    let cited = text(table, "cited")?;
+    let variant = match (kind, table.get("experiment").and_then(toml::Value::as_bool)) {
+        ("literature", Some(true)) => "Experiment",
+        ("literature", _) => "Literature",
+        _ => "Prototype",
+    };
+    writeln!(code, "/// {cited}\npub mod {} {{", name.replace('-', "_"))?;
+    let source = "grainbench_harness::source";
+    writeln!(code, "/// The work.\npub static WORK: {source}::Work =")?;
+    writeln!(code, "{source}::Work {{ kind: {source}::Kind::{variant}, id: \"{kind}/{name}\", cited: {cited:?} }};")?;
+    for value in table.get("value").and_then(toml::Value::as_array).into_iter().flatten() {
+        let value = value.as_table().ok_or("expected tables `[[value]]`")?;
+        let (key, what) = (text(value, "key")?, text(value, "what")?);
+        let uncertainty = number(value, "uncertainty").unwrap_or(0.0);
+        let value = number(value, "value").ok_or(format!("expected a number `value` of {key}"))?;
+        writeln!(code, "/// {what}\npub const {}: {source}::Cited = {source}::Cited", key.to_uppercase())?;
+        writeln!(code, "{{ work: &WORK, what: {what:?}, value: {value:?}, uncertainty: {uncertainty:?} }};")?;
+    }
+    writeln!(code, "}}")?;
+    Ok(())
 }

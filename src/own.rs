@@ -8,12 +8,12 @@
 //! # }
 //! ```
 
-use grainbench_cases::bench::Bench;
-use grainbench_cases::conformance::{self, Terms};
+use grainbench_harness::conformance;
 use grainbench_cases::registry;
-use grainbench_cases::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::{Control, Outcome, Verdict};
 use grainbench_reports::line;
 use grainbench_scene::solver::Solver;
+use grainbench_scene::terms::Terms;
 use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
@@ -73,16 +73,16 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
     let mut judgement = Judgement::default();
     for &name in cases {
         let case = registry::by_name(name).ok_or_else(|| NotJudged::NoSuchCase(name.to_owned()))?;
-        let bench = Bench::with_solver(case, Arc::clone(&solver));
-        let gates = bench.gates();
-        if gates.is_empty() {
+        let runner = registry::runner(case).with_solver(Arc::clone(&solver));
+        let claims = runner.claims();
+        if claims.is_empty() {
             return Err(NotJudged::NothingFair(name.to_owned()));
         }
-        for gate in &gates {
-            let verdict = bench.judge(gate);
+        for claim in &claims {
+            let verdict = runner.judge(claim);
             // What the solver cannot express it cannot express wrongly either.
             if verdict.outcome != Outcome::Unsupported {
-                judgement.controls.push(bench.control(gate));
+                judgement.controls.push(runner.control(claim));
             }
             judgement.verdicts.push(verdict);
         }
@@ -93,7 +93,8 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
 /// The properties that any solver owes: conservation, symmetries, free flight, order, determinism.
 #[must_use]
 pub fn conform(solver: &dyn Solver, terms: &Terms) -> Judgement {
-    Judgement { verdicts: conformance::check(solver, terms), controls: conformance::controls(solver, terms) }
+    let (verdicts, controls) = conformance::judge(solver, terms);
+    Judgement { verdicts, controls }
 }
 
 impl Judgement {

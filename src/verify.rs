@@ -1,9 +1,12 @@
 //! Whether a program that is installed still gives a stored run.
 
 use grainbench_cases::stored::Reference;
-use grainbench_cases::verdict::{Evidence, Outcome, Verdict};
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::expect::Measured;
+use grainbench_harness::tolerance::Made;
+use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::live::Live;
-use grainbench_reference::statistics::{BLOCKS, Estimate, difference};
+use grainbench_harness::statistics::{BLOCKS, Estimate, difference};
 use grainbench_reference::stored::{Drift, StoredRun, drift, folder, unusable};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::Series;
@@ -20,36 +23,24 @@ pub const ALLOWED: f64 = 1e-6;
 pub fn verify(of: &Reference) -> Result<Vec<Verdict>, SceneError> {
     let scene = of.scene()?;
     let row = Verdict {
-        case: of.case.name.to_owned(),
         variant: of.id.clone(),
         solver: of.program.name().to_owned(),
         resolution: of.run.resolution.to_string(),
-        quantity: "the stored run, run again".to_owned(),
-        unit: "1".to_owned(),
-        value: None,
-        expected: None,
-        scale: None,
-        error: None,
         allowed: ALLOWED,
-        because: String::new(),
+        tolerance: Made::Computed,
         evidence: Evidence::OtherCode,
-        source: String::new(),
-        outcome: Outcome::NoReference,
-        detail: None,
+        ..Verdict::open(of.case.name, "the stored run, run again", "1")
     };
     let directory = folder(of.program, &of.id);
     if !directory.is_dir() {
-        return Ok(vec![Verdict { detail: Some("nothing is stored of that name".to_owned()), ..row }]);
+        return Ok(vec![row.left(Outcome::NoReference, "nothing is stored of that name")]);
     }
-    let ended = |error: &RunError| {
-        vec![Verdict { outcome: Outcome::from(error), detail: Some(error.to_string()), ..row.clone() }]
-    };
+    let ended = |error: &RunError| vec![row.clone().ended(error)];
     let stored = match StoredRun::load(&directory) {
         Ok(stored) => stored,
         // A damaged file is a failure of ours, not of the program.
         Err(error) => {
-            let verdicts = ended(&unusable(of.program, &error));
-            return Ok(verdicts.into_iter().map(|row| Verdict { outcome: Outcome::Fail, ..row }).collect());
+            return Ok(vec![row.left(Outcome::Fail, unusable(of.program, &error).to_string())]);
         }
     };
     if let Err(error) = stored.record(&scene, &of.run.resolution, of.program) {
@@ -86,22 +77,19 @@ fn weight(drift: &Drift) -> f64 {
 }
 
 fn pointwise(row: &Verdict, worst: &Drift, last: u64) -> Verdict {
-    let error = worst.error();
     let until = if last == u64::MAX { String::new() } else { format!(" to step {last}") };
-    let passes = error.abs() <= ALLOWED;
-    Verdict {
+    let found = Measured {
+        course: vec![(worst.time, worst.error())],
+        ..Measured::new(worst.rerun, worst.stored, worst.scale)
+    };
+    let row = Verdict {
         quantity: format!("the stored run, run again{until}: worst in {}", worst.name),
         unit: worst.unit.clone(),
-        value: Some(worst.rerun).filter(|value| value.is_finite()),
-        expected: Some(worst.stored),
-        scale: Some(worst.scale),
-        error: Some(error).filter(|error| error.is_finite()),
         because: "a thousand times what one unit in the last place of one position grows to; in units of what moves"
             .to_owned(),
-        outcome: if passes { Outcome::Pass } else { Outcome::Fail },
-        detail: (!passes).then(|| format!("at t = {:.6} s", worst.time)),
         ..row.clone()
-    }
+    };
+    row.judged(&found)
 }
 
 /// Means over what cannot be predicted: of sums over all grains, for single grains have none.
@@ -117,19 +105,15 @@ fn statistics(row: &Verdict, before: &Series, rerun: &Series, last: u64) -> Vec<
         let new: Vec<f64> = places.iter().map(|&at| again(at).unwrap_or(f64::NAN)).collect();
         let Some(Estimate { first, second, half_width }) = difference(&old, &new, BLOCKS) else { continue };
         let scale = if half_width > 0.0 { half_width } else { first.abs().max(f64::MIN_POSITIVE) };
-        let error = (second - first) / scale;
-        verdicts.push(Verdict {
+        let row = Verdict {
             quantity: format!("mean of {} after step {last}", column.name),
             unit: column.unit.clone(),
-            value: Some(second).filter(|value| value.is_finite()),
-            expected: Some(first),
-            scale: Some(scale),
-            error: Some(error).filter(|error| error.is_finite()),
             allowed: 1.0,
+            tolerance: Made::Interval,
             because: format!("99 % confidence interval of the difference, from {BLOCKS} blocks"),
-            outcome: if error.abs() <= 1.0 { Outcome::Pass } else { Outcome::Fail },
             ..row.clone()
-        });
+        };
+        verdicts.push(row.judged(&Measured::new(second, first, scale)));
     }
     verdicts
 }

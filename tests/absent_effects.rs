@@ -7,7 +7,7 @@
 #[path = "../benches/minimal/mod.rs"]
 mod minimal;
 
-use grainbench::cases::effect::Effect;
+use grainbench::scene::effect::Effect;
 use grainbench::cases::registry;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;

@@ -1,9 +1,9 @@
 //! Gates for solvers that the cases do not name: fair, felt, and red where the physics is wrong.
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 
-use grainbench::cases::gate::Wrong;
+use grainbench::harness::control::Wrong;
 use grainbench::cases::registry::CASES;
-use grainbench::cases::scope::Scope;
+use grainbench::harness::scope::Scope;
 use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
@@ -19,7 +19,7 @@ use std::process::{Command, Output};
 fn every_convention_passes_what_is_fair_to_any_solver() {
     let has_fair_gates = |name: &&str| {
         let case = CASES.iter().find(|case| case.name == *name).unwrap();
-        (case.gates)().iter().any(|gate| gate.scope == Scope::AnySolver)
+        (case.claims)().iter().any(|claim| claim.scope == Scope::AnySolver)
     };
     let cases: Vec<&str> = CASES.iter().map(|case| case.name).filter(has_fair_gates).collect();
     for convention in Convention::ALL {
@@ -31,10 +31,10 @@ fn every_convention_passes_what_is_fair_to_any_solver() {
 #[test]
 fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
     for case in CASES {
-        for gate in (case.gates)().iter().filter(|gate| gate.scope == Scope::AnySolver) {
-            assert!(matches!(gate.control.wrong, Wrong::Scene(_)), "{}: {}", case.name, gate.quantity);
-            let solvers: BTreeSet<&str> = gate.runs.iter().map(|run| run.solver).collect();
-            assert_eq!(solvers.len(), 1, "{}: {} compares solvers", case.name, gate.quantity);
+        for claim in (case.claims)().iter().filter(|claim| claim.scope == Scope::AnySolver) {
+            assert!(matches!(claim.control.wrong, Wrong::Scene(_)), "{}: {}", case.name, claim.quantity);
+            let solvers: BTreeSet<&str> = claim.runs.iter().map(|run| run.solver).collect();
+            assert_eq!(solvers.len(), 1, "{}: {} compares solvers", case.name, claim.quantity);
         }
     }
 }

@@ -4,9 +4,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench::cases::bench::Bench;
-use grainbench::cases::case::{PLAIN, read_grains};
-use grainbench::cases::registry::{self, CASES};
+use grainbench::harness::case::PLAIN;
+use grainbench::cases::registry::{self, CASES, read_grains};
+use grainbench::cases::runner;
 use grainbench::dem::convention::Convention;
 use grainbench::mpm::solver::Mpm;
 use grainbench::reports::plot;
@@ -50,12 +50,12 @@ fn with_generated(readme: &str, mark: &str, table: &str) -> String {
 fn cases_table() -> String {
     let mut table = "| case | what it is | gates | evidence | solvers |\n|---|---|---|---|---|\n".to_owned();
     for case in CASES {
-        let gates = (case.gates)();
+        let claims = (case.claims)();
         let list = |words: BTreeSet<String>| words.into_iter().collect::<Vec<_>>().join(", ");
-        let evidence = list(gates.iter().map(|gate| gate.evidence.word().to_owned()).collect());
+        let evidence = list(claims.iter().map(|claim| claim.evidence().word().to_owned()).collect());
         let solvers =
-            list(gates.iter().flat_map(|gate| gate.runs.iter().map(|run| format!("`{}`", run.solver))).collect());
-        writeln!(table, "| `{}` | {} | {} | {evidence} | {solvers} |", case.name, case.title, gates.len()).unwrap();
+            list(claims.iter().flat_map(|claim| claim.runs.iter().map(|run| format!("`{}`", run.solver))).collect());
+        writeln!(table, "| `{}` | {} | {} | {evidence} | {solvers} |", case.name, case.title, claims.len()).unwrap();
     }
     table
 }
@@ -82,7 +82,7 @@ fn pictures_are_drawn() {
         [("nine-discs", "forces-distortion"), ("incline-disc", "compliance"), ("incline-disc", "elastic")]
     {
         let case = registry::by_name(case).unwrap();
-        let figures = (case.figures)(&Bench::new(case)).unwrap();
+        let figures = (case.figures)(&runner(case)).unwrap();
         let figure = figures.iter().find(|candidate| candidate.name == figure).unwrap();
         let path = format!("reports/readme/{}-{}.svg", case.name, figure.name);
         expect_file(&path, &plot::draw(figure).unwrap());

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{files, grainbench};
-use grainbench::cases::case::Case;
+use grainbench::harness::case::Case;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};

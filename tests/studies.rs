@@ -5,9 +5,10 @@
 mod common;
 
 use common::grainbench;
-use grainbench::cases::effect::Effect;
+use grainbench::scene::effect::Effect;
 use grainbench::cases::registry::CASES;
-use grainbench::cases::study::stability::Hardness;
+use grainbench::cases::solvers::Registry;
+use grainbench::harness::study::stability::Hardness;
 use grainbench::studies::effects::ledger::Ledger;
 use grainbench::studies::shelf::Shelf;
 use grainbench::studies::stability::assembly;
@@ -17,12 +18,13 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 use std::time::Duration;
 
 #[test]
 fn exact_limits_are_found_to_half_a_hundredth() {
     for assembly in assembly::all().unwrap() {
-        let (limit, _) = of_assembly("", &assembly, "dem", &Shelf::none()).unwrap();
+        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &Shelf::none()).unwrap();
         let error = limit.error.unwrap_or_else(|| panic!("{}: {}", limit.scene, limit.detail));
         assert!(error.abs() < 0.005, "{} {:?}: {:?}, exact {}", limit.scene, limit.at, limit.found, assembly.exact);
     }
@@ -36,7 +38,7 @@ fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
             law.normal_stiffness *= 1.05;
             law.tangential_stiffness *= 1.05;
         });
-        let (limit, _) = of_assembly("", &assembly, "dem", &Shelf::none()).unwrap();
+        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &Shelf::none()).unwrap();
         assert!(limit.error.is_none_or(|error| error < -0.012), "{} {:?}: {:?}", limit.scene, limit.at, limit.error);
     }
 }
@@ -47,7 +49,7 @@ fn hard_cases_hold_or_say_why_not() {
     // A thousand thousand steps are for the command line.
     for case in hard::all().iter().filter(|case| !case.name.starts_with("heap")) {
         for solver in ["dem", "dem:no-tension", "rigid", "mpm"] {
-            let row = hard::judge(case, solver);
+            let row = hard::judge(case, &Registry, solver);
             let quiet = row.standing == Hardness::QuietlyWrong || row.detail.starts_with("quietly");
             assert!(!quiet, "{} · {solver}: {}", row.case, row.detail);
             let holds = matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
@@ -66,7 +68,7 @@ const NOT_FELT: &[(&str, Effect)] =
 fn an_effect_that_is_needed_is_caught_when_it_is_off() {
     let mut wrong = Vec::new();
     for case in CASES {
-        let mut ledger = Ledger::new(case);
+        let mut ledger = Ledger::new(case, Arc::new(Registry));
         let mut effects: Vec<Effect> =
             ledger.pieces().iter().filter(|piece| piece.key.is_some()).map(|piece| piece.effect).collect();
         effects.sort_unstable();

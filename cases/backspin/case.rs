@@ -3,17 +3,11 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::bench::Bench;
-use crate::case::{Case, Rung, fraction};
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, measure};
-use crate::incline::{DAMPING, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
+use crate::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
 use crate::one_grain::{OneGrain, State, course, last};
 use crate::program_rows;
 use crate::rigid_rows::{self, Row};
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::solver::RunError;
+use grainbench_harness::prelude::*;
 
 const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const VARIANTS: [&str; 2] = ["disc", "sphere"];
@@ -25,110 +19,87 @@ const RIGID: &[Row] = &[
 pub(crate) static CASE: Case = Case {
     name: "backspin",
     title: "Backspin",
-    claim: "A spinning grain set down on a flat plane slides, is driven forwards by friction, and rolls on at f RΩ₀, with \
-            f = 1/3 for a disc and 2/7 for a sphere.",
+    claim: "A spinning grain set down on a flat plane slides, is driven forwards by friction, and rolls on at f RΩ₀, \
+            with f = 1/3 for a disc and 2/7 for a sphere.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The final velocity does not depend on μ, on stiffness or on damping: alone it would pass a solver with a \
-               wrong friction law. Displacement does depend on μ. One contact, constant load.",
+    weakness: "The final velocity does not depend on μ, on stiffness or on damping: alone it would pass a solver with \
+               a wrong friction law. Displacement does depend on μ. One contact, constant load.",
     ladder: LADDER,
     default_rung: LADDER[2],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
-fn gates() -> Vec<Gate> {
-    let dem = VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant), near_rigid(variant)].concat());
-    dem.chain(rigid_rows::backspins(RIGID)).chain(program_rows::one_grain(&VARIANTS)).chain(elastic::gates()).collect()
+const SOURCE: Source =
+    Source::Derived("a rigid grain slides, then rolls (derivation; 2001 paper, section on backspin)");
+
+fn claims() -> Vec<Claim> {
+    let dem =
+        VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant), near_rigid(variant)].concat());
+    dem.chain(rigid_rows::backspins(RIGID)).chain(program_rows::one_grain(&VARIANTS)).chain(elastic::claims()).collect()
 }
 
-fn rigid(variant: &'static str) -> Vec<Gate> {
-    let gate = |quantity: &str, unit, allowed, because, control, pick: fn(State) -> f64| Gate {
-        quantity: quantity.to_owned(),
-        unit,
-        evidence: Evidence::Analytic,
-        scope: Scope::Named,
-        source: "2001 paper, section on backspin; derivation",
-        allowed,
-        because,
-        runs: vec![at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP)],
-        measure: measure(move |done| {
-            let (t, state) = last(&done[0])?;
-            let exact = pick(OneGrain::of(&done[0].scene).rigid_backspin(t));
-            Ok(Measured::new(pick(state), exact, exact))
-        }),
-        control,
-    };
+fn friction() -> Control {
+    Control::scene("friction ×1.05", more_friction)
+}
+
+fn inertia() -> Control {
+    Control::scene("the inertia of the other shape", wrong_inertia)
+}
+
+/// The last state against the rigid answer, in units of it.
+fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
+    let (t, state) = last(done)?;
+    let exact = pick(OneGrain::of(&done.scene).rigid_backspin(t));
+    Ok(Measured::new(pick(state), exact, exact))
+}
+
+fn rigid(variant: &'static str) -> Vec<Claim> {
+    let of = |quantity: &str, unit| claim(quantity, unit).of(at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP));
     vec![
-        gate(
-            "displacement at 1 s",
-            "m",
-            3e-3,
-            "the spring must be stretched before it slides and relaxes when it rolls: ∝ √(overlap/R), here 1e-3",
-            Control::scene("friction ×1.05", more_friction),
-            |state| state.x,
-        ),
-        gate(
-            "spin at 1 s",
-            "rad/s",
-            1e-9,
-            "momentum about the contact fixes it once the spring has come to rest",
-            Control::scene("the inertia of the other shape", wrong_inertia),
-            |state| state.omega,
-        ),
-        Gate {
-            quantity: "velocity halfway through the slide".to_owned(),
-            unit: "m/s",
-            evidence: Evidence::Analytic,
-            scope: Scope::Named,
-            source: "v = μ g t up to t_s",
-            allowed: 1e-3,
-            because: "in LAMMPS' convention it slides from the start, but without friction for the first half step",
-            runs: vec![at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP)],
-            measure: measure(|done| velocity_halfway(&done[0])),
-            control: Control::scene("friction ×1.05", more_friction),
-        },
+        of("displacement at 1 s", "m")
+            .equals(SOURCE, |done| end(&done[0], |state| state.x))
+            .within(judged(
+                3e-3,
+                "the spring must be stretched before it slides and relaxes when it rolls: ∝ √(overlap/R), here 1e-3",
+            ))
+            .refuses(friction()),
+        of("spin at 1 s", "rad/s")
+            .equals(SOURCE, |done| end(&done[0], |state| state.omega))
+            .within(judged(1e-9, "momentum about the contact fixes it once the spring has come to rest"))
+            .refuses(inertia()),
+        of("velocity halfway through the slide", "m/s")
+            .equals(Source::Derived("v = μ g t up to t_s"), |done| velocity_halfway(&done[0]))
+            .within(judged(
+                1e-3,
+                "in LAMMPS' convention it slides from the start, but without friction for the first half step",
+            ))
+            .refuses(friction()),
     ]
 }
 
 /// Against the rigid answer where the contact is so stiff that conventions hardly differ: fair to any solver.
-fn near_rigid(variant: &'static str) -> Vec<Gate> {
+fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type Pick = fn(&Done) -> Result<Measured, Missing>;
-    let gate = |quantity: &str, unit, allowed, tangential_dashpot, control, pick: Pick| Gate {
-        quantity: format!("{quantity}, nearly rigid contact"),
-        unit,
-        evidence: Evidence::Analytic,
-        scope: Scope::AnySolver,
-        source: "2001 paper, section on backspin; derivation",
-        allowed,
-        because: if tangential_dashpot {
-            "a torque arm between R and R − overlap/2, at overlap/R = 1e-5"
-        } else {
-            "the contact is elastic before it slides and rings when it rolls: ∝ √(overlap/R), here 1e-5"
-        },
-        runs: vec![nearly_rigid(variant, tangential_dashpot)],
-        measure: measure(move |done| pick(&done[0])),
-        control,
+    let of = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
+        claim(format!("{quantity}, nearly rigid contact"), unit)
+            .of(nearly_rigid(variant, tangential_dashpot))
+            .equals(SOURCE, move |done| pick(&done[0]))
+            .within(tolerance)
+            .refuses(control)
+            .fair_to_any()
     };
-    let friction = || Control::scene("friction ×1.05", more_friction);
-    let inertia = || Control::scene("the inertia of the other shape", wrong_inertia);
+    let slides = |allowed| {
+        judged(allowed, "the contact is elastic before it slides and rings when it rolls: ∝ √(overlap/R), here 1e-5")
+    };
+    let arm = || computed(NEARLY_RIGID, "a torque arm between R and R − overlap/2, at overlap/R = 1e-5");
     vec![
-        gate("displacement at 1 s", "m", 5e-5, false, friction(), |done| {
-            let (t, state) = last(done)?;
-            let exact = OneGrain::of(&done.scene).rigid_backspin(t).x;
-            Ok(Measured::new(state.x, exact, exact))
-        }),
-        gate("velocity halfway through the slide", "m/s", 2e-4, false, friction(), velocity_halfway),
-        gate("velocity at 1 s", "m/s", 1e-5, true, inertia(), |done| {
-            let (t, state) = last(done)?;
-            let exact = OneGrain::of(&done.scene).rigid_backspin(t).v;
-            Ok(Measured::new(state.v, exact, exact))
-        }),
-        gate("spin at 1 s", "rad/s", 1e-5, true, inertia(), |done| {
-            let (t, state) = last(done)?;
-            let exact = OneGrain::of(&done.scene).rigid_backspin(t).omega;
-            Ok(Measured::new(state.omega, exact, exact))
-        }),
+        of("displacement at 1 s", "m", slides(5e-5), false, friction(), |done| end(done, |state| state.x)),
+        of("velocity halfway through the slide", "m/s", slides(2e-4), false, friction(), velocity_halfway),
+        of("velocity at 1 s", "m/s", arm(), true, inertia(), |done| end(done, |state| state.v)),
+        of("spin at 1 s", "rad/s", arm(), true, inertia(), |done| end(done, |state| state.omega)),
     ]
 }
 
@@ -142,62 +113,50 @@ fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
     Ok(Measured::new(state.v, exact, exact))
 }
 
-fn final_motion(variant: &'static str) -> Vec<Gate> {
-    let gate = |solver: &'static str, quantity: &str, other: Control| {
+fn final_motion(variant: &'static str) -> Vec<Claim> {
+    let of = |solver: &'static str, quantity: &str, other| {
         let at_contact = solver == "dem:liggghts";
-        Gate {
-            quantity: quantity.to_owned(),
-            unit: "m/s",
-            evidence: Evidence::Analytic,
-            scope: Scope::Named,
-            source: "v = iR²Ω₀a/(a² + iR²) with arm a (derivation)",
-            allowed: 1e-9,
-            because: "momentum about the contact fixes it once the spring has come to rest",
-            runs: vec![at_overlap(variant, solver, 1e-3, DAMPING, STEP)],
-            measure: measure(move |done| {
+        claim(quantity, "m/s")
+            .of(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
+            .equals(Source::Derived("v = iR²Ω₀a/(a² + iR²) with arm a (derivation)"), move |done| {
                 let (_, state) = last(&done[0])?;
                 let grain = OneGrain::of(&done[0].scene);
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = grain.backspin_velocity(arm);
                 Ok(Measured::new(state.v, exact, exact))
-            }),
-            control: other,
-        }
+            })
+            .within(judged(1e-9, "momentum about the contact fixes it once the spring has come to rest"))
+            .refuses(other)
     };
     vec![
-        gate("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
-        gate("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
+        of("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
+        of("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
     ]
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for variant in VARIANTS {
-        let done = bench.run(&at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
+        let done = runner.run(&at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
         let grain = OneGrain::of(&done.scene);
         let states = course(&done).unwrap_or_default();
         let surface = |state: &State| state.omega * grain.radius;
         let thin = |of: &dyn Fn(&State) -> f64| states.iter().step_by(4).map(|(t, state)| (*t, of(state))).collect();
-        let curve = |label: String, stroke, points| Curve { label, stroke, points };
-        curves.push(curve(format!("{variant}: v"), Stroke::Markers, thin(&|state| state.v)));
-        curves.push(curve(format!("{variant}: ΩR"), Stroke::Markers, thin(&surface)));
+        curves.push(Curve::new(format!("{variant}: v"), Stroke::Markers, thin(&|state| state.v)));
+        curves.push(Curve::new(format!("{variant}: ΩR"), Stroke::Markers, thin(&surface)));
         let exact = |of: &dyn Fn(State) -> f64| {
             (0..=200).map(|k| f64::from(k) / 200.0).map(|t| (t, of(grain.rigid_backspin(t)))).collect()
         };
-        curves.push(curve(format!("{variant}: v, rigid"), Stroke::Dashed, exact(&|state| state.v)));
-        curves.push(curve(format!("{variant}: ΩR, rigid"), Stroke::Dashed, exact(&|state| surface(&state))));
+        curves.push(Curve::new(format!("{variant}: v, rigid"), Stroke::Dashed, exact(&|state| state.v)));
+        curves.push(Curve::new(format!("{variant}: ΩR, rigid"), Stroke::Dashed, exact(&|state| surface(&state))));
     }
-    let velocity = Figure {
-        name: "velocity".to_owned(),
-        title: "From sliding to rolling".to_owned(),
-        caption: "Velocity rises and surface speed falls at constant rates until they meet; from there the grain rolls. \
-                  dem:lammps at overlap/R = 1e-3 (markers), rigid answer (dashes)."
-            .to_owned(),
-        drawing: Drawing::Graph(Graph {
-            x: Axis { label: "time t (s)".to_owned(), logarithmic: false },
-            y: Axis { label: "velocity v, surface speed ΩR (m/s)".to_owned(), logarithmic: false },
-            curves,
-        }),
-    };
-    Ok(vec![velocity, rigid_rows::figure(bench, RIGID, OneGrain::rigid_backspin)?, elastic::figure(bench)?])
+    let velocity = Figure::graph(
+        "velocity",
+        "From sliding to rolling",
+        "Velocity rises and surface speed falls at constant rates until they meet; from there the grain rolls. \
+         dem:lammps at overlap/R = 1e-3 (markers), rigid answer (dashes).",
+        [Axis::linear("time t (s)"), Axis::linear("velocity v, surface speed ΩR (m/s)")],
+        curves,
+    );
+    Ok(vec![velocity, rigid_rows::figure(runner, RIGID, OneGrain::rigid_backspin)?, elastic::figure(runner)?])
 }

@@ -1,16 +1,14 @@
 //! The grain as an elastic body: what the material point method gives.
 //!
-//! An elastic grain rolls on a flattened side, at a smaller height, and comes out a few per cent faster than a rigid one:
-//! the displacement is compared with the rigid answer within that, the end speed with a band. The mean speed from .5 s on
-//! leaves out the ringing of the contact, which nothing damps.
+//! An elastic grain rolls on a flattened side, at a smaller height, and comes out a few per cent faster than a rigid
+//! one. Of the sphere an independent prototype says how far it gets. Of the disc nobody does, but ten and a hundred
+//! times larger moduli lead to the rigid answer, which needs no reference. The mean speed from .5 s on leaves out the
+//! ringing of the contact, which nothing damps.
 
-use crate::bench::Bench;
-use crate::elastic::{Rest, settle};
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
+use crate::elastic::{Rest, settle, stiffen};
 use crate::one_grain::{OneGrain, course, last};
-use crate::verdict::Evidence;
-use grainbench_scene::solver::{Resolution, RunError};
+use crate::sources::prototype::elastic_sphere;
+use grainbench_harness::prelude::*;
 
 const SPHERE: Rest = Rest { duration: 0.6, damping: 20.0 };
 const DISC: Rest = Rest { duration: 0.3, damping: 100.0 };
@@ -18,10 +16,22 @@ const TIME: f64 = 0.8;
 /// From when on the grain rolls (s), in both variants.
 const ROLLS: f64 = 0.5;
 
+const RIGID: Source = Source::Derived("a rigid disc slides, then rolls with Rω₀/3 (derivation)");
+/// What the prototype says of the sphere's end.
+const SPEED: &str = "mean velocity of rolling 1.459 to 1.478 m/s, where a rigid sphere has 10/7";
+
 fn run(variant: &'static str, solver: &'static str, cells: f64) -> Run {
+    stiffened(variant, solver, cells, 1.0)
+}
+
+/// The moduli times a factor.
+fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f64) -> Run {
     let (rest, points) = if variant == "sphere" { (SPHERE, 2) } else { (DISC, 3) };
-    Run::new(variant, solver, Resolution::grid(cells, points))
-        .adjusted("elastic and settled", move |scene| settle(scene, rest, TIME))
+    let name = format!("elastic and settled, moduli × {factor}");
+    Run::new(variant, solver, Resolution::grid(cells, points)).adjusted(&name, move |scene| {
+        settle(scene, rest, TIME);
+        stiffen(scene, factor);
+    })
 }
 
 /// Displacement over that of a rigid grain, less one.
@@ -41,65 +51,92 @@ fn rolling(done: &Done) -> Result<(f64, f64), Missing> {
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))
 }
 
-pub(super) fn gates() -> Vec<Gate> {
-    let mut gates = Vec::new();
-    for (cells, allowed) in [(4.0, 0.035), (8.0, 0.02)] {
-        // R/8 takes a minute.
-        let run = || if cells > 4.0 { run("sphere", "mpm", cells).long() } else { run("sphere", "mpm", cells) };
-        gates.push(Gate::new(
-            (format!("displacement at .8 s over the rigid one, less 1, R/{cells}"), "1"),
-            vec![run()],
-            (Evidence::Analytic, "2001 paper, section on backspin"),
-            (allowed, "elasticity, +1.5 % in an independent prototype, and discretisation"),
-            Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7)),
-            |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)),
-        ));
-        gates.push(Gate::new(
-            (format!("mean velocity of rolling, R/{cells}"), "m/s"),
-            vec![if cells > 4.0 { run() } else { run().slow() }],
-            (Evidence::OtherCode, "independent prototype of the elastic sphere: 1.459 to 1.478; rigid 10/7"),
-            (0.025, "the band 1.43 to 1.48"),
-            Control::scene("a tenth less spin", |scene| scene.grains[0].spin *= 0.9),
-            |done| Ok(Measured::new(rolling(&done[0])?.0, 1.455, 1.0)),
-        ));
-    }
-    gates.push(Gate::new(
-        ("displacement at .8 s over the rigid one, less 1, R/8", "1"),
-        vec![run("disc", "mpm", 8.0)],
-        (Evidence::Analytic, "Rω₀/3 for a disc (derivation)"),
-        (4e-3, "at R/8 what elasticity adds and what discretisation takes nearly cancel"),
-        Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7)),
-        |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)),
-    ));
-    gates.push(Gate::new(
-        ("mean ΩR over mean v of rolling, R/8", "1"),
-        vec![run("disc", "mpm", 8.0)],
-        (Evidence::Analytic, "rolling without slip"),
-        (0.015, "the radius of rolling is smaller by the indentation"),
-        Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000"),
-        |done| {
-            let (v, surface) = rolling(&done[0])?;
-            Ok(Measured::new(surface / v, 1.0, 1.0))
-        },
-    ));
-    gates.push(Gate::new(
-        ("displacement at .8 s over the rigid one, less 1, R/4", "1"),
-        vec![run("disc", "mpm:2000", 4.0).known(
-            "nodal contact holds the disc up over a patch of about √(2Rh): as the disc turns, new material is pressed into the \
-             patch, and its normal force and friction are several times the weight's",
-        )],
-        (Evidence::Analytic, "Rω₀/3 for a disc (derivation)"),
-        (0.05, "what a contact that acts at the surface reaches at this resolution"),
-        Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, 3)),
-        |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)),
-    ));
-    gates
+fn slippery() -> Control {
+    Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7))
 }
 
-pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
+pub(super) fn claims() -> Vec<Claim> {
+    let mut claims = Vec::new();
+    // Deviations that were asked for before the solver existed.
+    for (cells, asked) in [(4.0, 0.03), (8.0, 0.01)] {
+        // R/8 takes a minute.
+        let run = || if cells > 4.0 { run("sphere", "mpm", cells).long() } else { run("sphere", "mpm", cells) };
+        claims.push(
+            claim(format!("displacement at .8 s over the rigid one, less 1, R/{cells}"), "1")
+                .of(run())
+                .equals_cited(elastic_sphere::BACKSPIN, 1.0, |done| excess(&done[0]))
+                .within(required(
+                    asked + elastic_sphere::BACKSPIN.uncertainty,
+                    "asked for at this resolution before the solver existed, and the reference's own uncertainty",
+                ))
+                .refuses(slippery()),
+        );
+        claims.push(
+            claim(format!("mean velocity of rolling, R/{cells}"), "m/s")
+                .of(if cells > 4.0 { run() } else { run().slow() })
+                .between([1.43, 1.48], Source::Printed(&elastic_sphere::WORK, SPEED), |done| Ok(rolling(&done[0])?.0))
+                .within(exactly("the band was asked for before the solver existed"))
+                .refuses(Control::scene("a tenth less spin", |scene| scene.grains[0].spin *= 0.9)),
+        );
+    }
+    claims.extend(stiff_discs());
+    claims.push(
+        claim("mean ΩR over mean v of rolling, R/8", "1")
+            .of(run("disc", "mpm", 8.0))
+            .equals(Source::Derived("rolling without slip"), |done| {
+                let (v, surface) = rolling(&done[0])?;
+                Ok(Measured::new(surface / v, 1.0, 1.0))
+            })
+            .within(judged(0.015, "the radius of rolling is smaller by the indentation"))
+            .refuses(Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000")),
+    );
+    claims.push(
+        claim("displacement at .8 s over the rigid one, less 1, R/16", "1")
+            .of(run("disc", "mpm", 16.0).slow().known(
+                "a disc that slides fast on springs becomes noisy at twelve and more cells a radius: its centre rises \
+                 from .494 to .504 m, and it gets less far. Where it spins without a contact it does not",
+            ))
+            .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
+            .within(judged(0.02, "elasticity; it is worth .015 for the sphere of the prototype"))
+            .refuses(Control::without_the_error(
+                "nodal contact of surfaces that met",
+                "mpm:gap",
+                Resolution::grid(16.0, 3),
+            )),
+    );
+    claims.push(
+        claim("displacement at .8 s over the rigid one, less 1, R/4", "1")
+            .of(run("disc", "mpm:2000", 4.0).known(
+                "nodal contact holds the disc up over a patch of about √(2Rh): as the disc turns, new material is \
+                 pressed into the patch, and its normal force and friction are several times the weight's",
+            ))
+            .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
+            .within(judged(0.05, "what a contact that acts at the surface reaches at this resolution"))
+            .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, 3))),
+    );
+    claims
+}
+
+/// Moduli ten and a hundred times larger: nearer to the rigid answer, which needs no reference.
+fn stiff_discs() -> [Claim; 2] {
+    [(10.0, 0.01), (100.0, 0.008)].map(|(factor, allowed)| {
+        let run = stiffened("disc", "mpm", 8.0, factor);
+        claim(format!("displacement at .8 s over the rigid one, less 1, moduli × {factor}, R/8"), "1")
+            .of(if factor > 10.0 { run.long() } else { run.slow() })
+            .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
+            .within(judged(
+                allowed,
+                "as of the stiffened discs on the slopes: elasticity falls with the modulus or its square root, and \
+                 what is left is the discretisation of the contact",
+            ))
+            .refuses(slippery())
+    })
+}
+
+pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for (solver, stroke) in [("mpm", Stroke::Line), ("mpm:2000", Stroke::Dashed)] {
-        let done = bench.run(&run("disc", solver, 4.0))?;
+        let done = runner.run(&run("disc", solver, 4.0))?;
         let radius = done.scene.grains[0].radius;
         let states = course(&done).unwrap_or_default();
         curves.push(Curve::new(format!("{solver}: v"), stroke, states.iter().map(|(t, s)| (*t, s.v)).collect()));
@@ -109,8 +146,8 @@ pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "elastic",
         "Backspin of an elastic disc, R/4",
-        "`mpm` slides, then rolls and rings. With the 2000 paper's contact turning presses new material into the patch that holds \
-         the disc up: it is spun down at once, by several times the friction of its weight.",
+        "`mpm` slides, then rolls and rings. With the 2000 paper's contact turning presses new material into the patch \
+         that holds the disc up: it is spun down at once, by several times the friction of its weight.",
         [Axis::linear("time t (s)"), Axis::linear("velocity v, surface speed ΩR (m/s)")],
         curves,
     ))

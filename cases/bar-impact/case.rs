@@ -1,30 +1,26 @@
 //! Two elastic bars meet end to end.
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung, cells};
 use crate::elastic::stiffen;
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
-use crate::verdict::Evidence;
+use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::RunError;
 
 const LADDER: &[Rung] = &[cells("L/20", 20.0, 2), cells("L/40", 40.0, 2), cells("L/80", 80.0, 2)];
-const SOURCE: &str = "waves in a line of material (derivation)";
+const SOURCE: Source = Source::Derived("waves in a line of material (derivation)");
 
 pub(crate) static CASE: Case = Case {
     name: "bar-impact",
     title: "Two bars meet end to end",
-    claim: "Two equal bars meet, are in contact for the time a wave takes to the free end and back, and exchange their velocities.",
+    claim: "Two equal bars meet, are in contact for the time a wave takes to the free end and back, and exchange their \
+            velocities.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Flat faces that meet along the grid: a contact that acts at a distance of a cell is late by that over v, and is \
-               not seen otherwise.",
+    weakness: "Flat faces that meet along the grid: a contact that acts at a distance of a cell is late by that over \
+               v, and is not seen otherwise.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// Speed of approach (m/s), of waves (m/s), length (m), density (kg/m³).
@@ -64,63 +60,73 @@ fn plateau(done: &Done) -> Result<f64, Missing> {
     let within = |time: f64| (0.7 * transit..=1.3 * transit).contains(&time);
     let samples: Vec<f64> =
         done.series().time.iter().zip(stress).filter(|(time, _)| within(**time)).map(|(_, &stress)| stress).collect();
-    if samples.is_empty() { Err(Missing("samples".to_owned())) } else { Ok(samples.iter().sum::<f64>() / samples.len() as f64) }
+    if samples.is_empty() {
+        Err(Missing("samples".to_owned()))
+    } else {
+        Ok(samples.iter().sum::<f64>() / samples.len() as f64)
+    }
 }
 
 fn softer() -> Control {
     Control::scene("a tenth softer", |scene| stiffen(scene, 0.9))
 }
 
-fn gates() -> Vec<Gate> {
-    let mut gates = Vec::new();
+fn claims() -> Vec<Claim> {
+    let mut claims = Vec::new();
     for (rung, course, end) in [(LADDER[0], 0.042, 0.034), (LADDER[1], 0.03, 0.018), (LADDER[2], 0.017, 0.013)] {
-        let run = || vec![Run::new(PLAIN, "mpm", rung.resolution)];
-        gates.push(Gate::new(
-            (format!("velocity of the right bar, worst, {} cells", rung.name), "m/s"),
-            run(),
-            (Evidence::Analytic, SOURCE),
-            (course, "the corner at 2L/c is rounded by a few cells; in units of v, falling with the cell"),
-            softer(),
-            |done| {
-                let impact = Impact::of(&done[0].scene);
-                let velocity = done[0].column("right.vx")?;
-                Ok(Measured::worst(&done[0].series().time, velocity, |time| impact.velocity(time), impact.speed))
-            },
-        ));
-        gates.push(Gate::new(
-            (format!("velocity of the left bar in the end, {} cells", rung.name), "m/s"),
-            run(),
-            (Evidence::Analytic, SOURCE),
-            (end, "what stays behind as ringing; in units of v, falling with the cell"),
-            Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0),
-            |done| Ok(Measured::new(done[0].last("left.vx")?, 0.0, Impact::of(&done[0].scene).speed)),
-        ));
+        let run = || Run::new(PLAIN, "mpm", rung.resolution);
+        claims.push(
+            claim(format!("velocity of the right bar, worst, {} cells", rung.name), "m/s")
+                .of(run())
+                .equals(SOURCE, |done| {
+                    let impact = Impact::of(&done[0].scene);
+                    let velocity = done[0].column("right.vx")?;
+                    Ok(Measured::worst(&done[0].series().time, velocity, |time| impact.velocity(time), impact.speed))
+                })
+                .within(judged(
+                    course,
+                    "the corner at 2L/c is rounded by a few cells; in units of v, falling with the cell",
+                ))
+                .refuses(softer()),
+        );
+        claims.push(
+            claim(format!("velocity of the left bar in the end, {} cells", rung.name), "m/s")
+                .of(run())
+                .equals(SOURCE, |done| {
+                    Ok(Measured::new(done[0].last("left.vx")?, 0.0, Impact::of(&done[0].scene).speed))
+                })
+                .within(judged(end, "what stays behind as ringing; in units of v, falling with the cell"))
+                .refuses(Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0)),
+        );
     }
-    gates.push(Gate::new(
-        ("stress in the middle of the right bar, mean over .6 L/c", "Pa"),
-        vec![Run::new(PLAIN, "mpm", LADDER[1].resolution)],
-        (Evidence::Analytic, "σ = ρ c v/2 (derivation)"),
-        (0.015, "ringing behind a front that is a jump"),
-        softer(),
-        |done| {
-            let exact = -Impact::of(&done[0].scene).stress();
-            Ok(Measured::new(plateau(&done[0])?, exact, -exact))
-        },
-    ));
-    gates
+    claims.push(
+        claim("stress in the middle of the right bar, mean over .6 L/c", "Pa")
+            .of(Run::new(PLAIN, "mpm", LADDER[1].resolution))
+            .equals(Source::Derived("σ = ρ c v/2 (derivation)"), |done| {
+                let exact = -Impact::of(&done[0].scene).stress();
+                Ok(Measured::new(plateau(&done[0])?, exact, -exact))
+            })
+            .within(judged(0.015, "ringing behind a front that is a jump"))
+            .refuses(softer()),
+    );
+    claims
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let (mut velocities, mut stresses, mut exact) = (Vec::new(), Vec::new(), Vec::new());
     for (solver, rung) in [("mpm", LADDER[0]), ("mpm", LADDER[1]), ("mpm:gap", LADDER[1])] {
-        let done = bench.run(&Run::new(PLAIN, solver, rung.resolution))?;
+        let done = runner.run(&Run::new(PLAIN, solver, rung.resolution))?;
         let impact = Impact::of(&done.scene);
         let series = |name: &str, scale: f64| -> Vec<(f64, f64)> {
             let values = done.series().column(name).unwrap_or_default();
             done.series().time.iter().zip(values).map(|(&time, &value)| (time, value / scale)).collect()
         };
         velocities.push(Curve::new(format!("{solver}, {}", rung.name), Stroke::Line, series("right.vx", impact.speed)));
-        stresses.push(Curve::new(format!("{solver}, {}", rung.name), Stroke::Line, series("middle.sigma_xx", impact.stress())));
+        stresses.push(Curve::new(
+            format!("{solver}, {}", rung.name),
+            Stroke::Line,
+            series("middle.sigma_xx", impact.stress()),
+        ));
         exact = done.series().time.iter().map(|&time| (time, impact.velocity(time) / impact.speed)).collect();
     }
     velocities.push(Curve::new("exact", Stroke::Dashed, exact));

@@ -3,22 +3,17 @@
 #[path = "bessel.rs"]
 mod bessel;
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung, fraction};
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
-use crate::measure::slope;
 use crate::rigid_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::RunError;
+use grainbench_harness::measure::slope;
+use grainbench_harness::prelude::*;
+use std::f64::consts::PI;
 
 const LADDER: &[Rung] =
     &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025), fraction("dt=.0125", 0.0125)];
 const FINEST: Rung = LADDER[3];
-const BEADS: [(usize, &str); 6] = [(5, "v5.vx"), (10, "v10.vx"), (15, "v15.vx"), (18, "v18.vx"), (20, "v20.vx"), (22, "v22.vx")];
-const SOURCE: &str = "v_n = V∫(2n/s)J_2n(s)ds over 0 to 2ω₀t (derivation)";
+const BEADS: [(usize, &str); 6] =
+    [(5, "v5.vx"), (10, "v10.vx"), (15, "v15.vx"), (18, "v18.vx"), (20, "v20.vx"), (22, "v22.vx")];
+const BESSEL: Source = Source::Derived("v_n = V∫(2n/s)J_2n(s)ds over 0 to 2ω₀t (derivation)");
 
 pub(crate) static CASE: Case = Case {
     name: "chain",
@@ -31,8 +26,9 @@ pub(crate) static CASE: Case = Case {
                contacts, not their law.",
     ladder: LADDER,
     default_rung: LADDER[3],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 fn run(rung: Rung) -> Run {
@@ -52,80 +48,57 @@ fn bead(done: &Done, n: usize, column: &str) -> Result<Measured, Missing> {
     Ok(Measured::new(done.last(column)?, speed * bessel::velocity(n, 2.0 * omega * time), speed))
 }
 
-fn gates() -> Vec<Gate> {
+fn claims() -> Vec<Claim> {
     let heavier = || {
         Control::scene("beads half a percent too heavy", |scene: &mut Scene| {
             scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.005);
         })
     };
-    let at_bead = |(n, column): (usize, &'static str)| Gate {
-        quantity: format!("velocity of bead {n} at 20/ω₀"),
-        unit: "m/s",
-        evidence: Evidence::Analytic,
-        scope: Scope::AnySolver,
-        source: SOURCE,
-        allowed: 4e-4,
-        because: "numerical dispersion of central differences at this step, in units of V",
-        runs: vec![run(FINEST)],
-        measure: measure(move |done| bead(&done[0], n, column)),
-        control: heavier(),
+    let at_bead = |(n, column): (usize, &'static str)| {
+        claim(format!("velocity of bead {n} at 20/ω₀"), "m/s")
+            .of(run(FINEST))
+            .equals(BESSEL, move |done| bead(&done[0], n, column))
+            .within(judged(4e-4, "numerical dispersion of central differences at this step, in units of V"))
+            .refuses(heavier())
+            .fair_to_any()
     };
-    let order = Gate {
-        quantity: "order in Δt, rms over the six beads".to_owned(),
-        unit: "1",
-        evidence: Evidence::Convergence,
-        scope: Scope::Named,
-        source: "central differences are of second order",
-        allowed: 0.05,
-        because: "fitted over three halvings",
-        runs: LADDER.iter().map(|&rung| run(rung)).collect(),
-        measure: measure(|done| {
+    let order = claim("order in Δt, rms over the six beads", "1")
+        .of_all(LADDER.iter().map(|&rung| run(rung)))
+        .converges(2.0, Source::Derived("central differences are of second order"), |done| {
             let points: Result<Vec<(f64, f64)>, Missing> =
                 done.iter().map(|done| Ok((done.record.provenance.time_step, rms(done)?))).collect();
-            Ok(Measured::new(slope(&points?), 2.0, 1.0))
-        }),
-        control: heavier(),
-    };
-    let force = Gate {
-        quantity: "mean force on the driver over the last half".to_owned(),
-        unit: "N",
-        evidence: Evidence::Analytic,
-        scope: Scope::AnySolver,
-        source: "impedance of the chain, V√(km)",
-        allowed: 1e-3,
-        because: "the force rings about the impedance with J₀ and J₁ of 2ω₀t; the mean keeps a part",
-        runs: vec![run(FINEST)],
-        measure: measure(|done| {
+            Ok(slope(&points?))
+        })
+        .within(judged(0.05, "fitted over three halvings"))
+        .refuses(heavier());
+    let force = claim("mean force on the driver over the last half", "N")
+        .of(run(FINEST))
+        .equals(Source::Derived("impedance of the chain, V√(km)"), |done| {
             let (speed, _, impedance) = chain(&done[0].scene);
             let force = done[0].column("driver.force_x")?;
             let half = &force[force.len() / 2..];
             let mean = half.iter().sum::<f64>() / half.len() as f64;
             Ok(Measured::new(-mean, speed * impedance, speed * impedance))
-        }),
-        control: Control::scene("contacts 2 % too stiff", |scene| {
+        })
+        .within(computed(
+            2.0 * (2.0 / PI).sqrt() * 20_f64.powf(-2.5),
+            "the force rings about the impedance by √(2/π) x^(−3/2), x = 2ω₀t; the mean from x = 20 to 40 keeps at most one \
+             half wave of it, 2√(2/π) 20^(−5/2)",
+        ))
+        .refuses(Control::scene("contacts 2 % too stiff", |scene| {
             scene.change_laws(|law| law.normal_stiffness *= 1.02);
-        }),
-    };
-    BEADS.into_iter().map(at_bead).chain([order, force, rigid()]).collect()
-}
-
-/// Rigid beads have no dispersion, and no unique answer either: many beads touch at once.
-fn rigid() -> Gate {
-    Gate {
-        quantity: "velocity of bead 22 at 20/ω₀".to_owned(),
-        unit: "m/s",
-        evidence: Evidence::Analytic,
-        scope: Scope::Named,
-        source: SOURCE,
-        allowed: 4e-4,
-        because: "what a solver with springs reaches, in units of V",
-        runs: vec![Run::new(PLAIN, "rigid", rigid_rows::DEFAULT).known(
+        }))
+        .fair_to_any();
+    // Rigid beads have no dispersion, and no unique answer either: many beads touch at once.
+    let rigid = claim("velocity of bead 22 at 20/ω₀", "m/s")
+        .of(Run::new(PLAIN, "rigid", rigid_rows::DEFAULT).known(
             "contacts are rigid: an impulse passes through all beads in one step, and how many beads that touch at once share \
              it is up to the order in which the engine solves them",
-        )],
-        measure: measure(|done| bead(&done[0], 22, "v22.vx")),
-        control: Control::without_the_error("dem in its place", "dem", FINEST.resolution),
-    }
+        ))
+        .equals(BESSEL, |done| bead(&done[0], 22, "v22.vx"))
+        .within(judged(4e-4, "what a solver with springs reaches, in units of V"))
+        .refuses(Control::without_the_error("dem in its place", "dem", FINEST.resolution));
+    BEADS.into_iter().map(at_bead).chain([order, force, rigid]).collect()
 }
 
 /// Root mean square error of the six beads in units of V.
@@ -135,53 +108,44 @@ fn rms(done: &Done) -> Result<f64, Missing> {
     Ok((errors?.iter().map(|error| error * error).sum::<f64>() / BEADS.len() as f64).sqrt())
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let done = bench.run(&run(FINEST))?;
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let done = runner.run(&run(FINEST))?;
     let (speed, omega, _) = chain(&done.scene);
-    let curve = |label: String, stroke, points| Curve { label, stroke, points };
     let mut profiles = Vec::new();
     for snapshot in done.record.snapshots.iter().skip(1) {
-        let points = snapshot.grains.iter().take(32).map(|grain| (f64::from(grain.id), grain.velocity.x / speed)).collect();
-        profiles.push(curve(format!("ω₀t = {:.0}, dem", omega * snapshot.time), Stroke::Markers, points));
+        let points =
+            snapshot.grains.iter().take(32).map(|grain| (f64::from(grain.id), grain.velocity.x / speed)).collect();
+        profiles.push(Curve::new(format!("ω₀t = {:.0}, dem", omega * snapshot.time), Stroke::Markers, points));
     }
     for (at, snapshot) in done.record.snapshots.iter().skip(1).enumerate() {
         let x = 2.0 * omega * snapshot.time;
         let points = (1..=32).map(|n| (n as f64, bessel::velocity(n, x))).collect();
         let label = if at == 0 { "exact".to_owned() } else { format!("exact, {:.0}", omega * snapshot.time) };
-        profiles.push(curve(label, Stroke::Dashed, points));
+        profiles.push(Curve::new(label, Stroke::Dashed, points));
     }
     let mut errors = Vec::new();
     for &rung in LADDER {
-        let done = bench.run(&run(rung))?;
+        let done = runner.run(&run(rung))?;
         if let (Ok(rms), Some(critical)) = (rms(&done), done.record.provenance.critical_time_step) {
             errors.push((done.record.provenance.time_step / critical, rms));
         }
     }
-    let axis = |label: &str, logarithmic| Axis { label: label.to_owned(), logarithmic };
-    let figure = |name: &str, title: &str, caption: &str, x, y, curves| Figure {
-        name: name.to_owned(),
-        title: title.to_owned(),
-        caption: caption.to_owned(),
-        drawing: Drawing::Graph(Graph { x, y, curves }),
-    };
     Ok(vec![
-        figure(
+        Figure::graph(
             "profile",
             "Velocity along the chain",
             "The front moves one bead per 1/ω₀ and leaves a dispersive tail; markers dem, dashes the Bessel answer.",
-            axis("bead n", false),
-            axis("velocity v / V", false),
+            [Axis::linear("bead n"), Axis::linear("velocity v / V")],
             profiles,
         ),
-        figure(
+        Figure::graph(
             "convergence",
             "Error against the step",
             "Root mean square over beads 5, 10, 15, 18, 20 and 22 at ω₀t = 20.",
-            axis("Δt / critical step", true),
-            axis("rms error / V", true),
+            [Axis::log("Δt / critical step"), Axis::log("rms error / V")],
             vec![
-                curve("dem".to_owned(), Stroke::MarkedLine, errors),
-                curve("slope 2".to_owned(), Stroke::Dashed, vec![(0.0125, 3e-4), (0.1, 3e-4 * 64.0)]),
+                Curve::new("dem", Stroke::MarkedLine, errors),
+                Curve::new("slope 2", Stroke::Dashed, vec![(0.0125, 3e-4), (0.1, 3e-4 * 64.0)]),
             ],
         ),
     ])

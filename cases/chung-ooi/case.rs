@@ -1,16 +1,10 @@
-//! Impacts of Hertz spheres: benchmark tests 1 to 4 of Chung & Ooi (2011).
+//! Impacts of Hertz spheres: the scenes of benchmark tests 1 to 4 of Chung & Ooi (2011), against closed forms.
 
-use crate::bench::Bench;
-use crate::case::{Case, Rung, fraction};
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::program_forces::forces;
 use crate::program_rows::hertz_impact;
 use crate::rigid_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::scene::{ContactLaw, Scene};
-use grainbench_scene::solver::RunError;
+use grainbench_harness::prelude::*;
+use grainbench_scene::scene::ContactLaw;
 use std::f64::consts::PI;
 
 const LADDER: &[Rung] = &[fraction("dt=.01", 0.01), fraction("dt=.003", 0.003), fraction("dt=.001", 0.001)];
@@ -21,7 +15,9 @@ const OBLIQUE: [&str; 2] = ["4-aluminium-oxide", "4-aluminium-alloy"];
 const RESTITUTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.8, 1.0];
 /// Angles of impact from the normal (degrees) on the sliding branch.
 const ANGLES: [f64; 5] = [40.0, 50.0, 60.0, 70.0, 80.0];
-const SOURCE: &str = "Chung & Ooi 2011, tests 1-4; closed forms in the derivation";
+const HERTZ: Source = Source::Derived("energy and a quadrature of F = kδ^{3/2} (derivation)");
+const RESTITUTION: Source = Source::Derived("damped oscillator in δ^{5/4}: v′/v = −e (derivation)");
+const SLIDING: Source = Source::Derived("a contact that slides throughout has the impulse μ(1+e) m v_n (derivation)");
 
 pub(crate) static CASE: Case = Case {
     name: "chung-ooi",
@@ -34,20 +30,21 @@ pub(crate) static CASE: Case = Case {
                limit soon passes, so Mindlin's stiffness is not gated here, only drawn.",
     ladder: LADDER,
     default_rung: STEP,
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
-fn gates() -> Vec<Gate> {
-    let mut gates = [elastic(), restitution(), oblique(), rigid()].concat();
+fn claims() -> Vec<Claim> {
+    let mut claims = [elastic(), restitution(), oblique(), rigid()].concat();
     for variant in [ELASTIC[0], ELASTIC[2], DAMPED[0], OBLIQUE[0]] {
-        gates.extend(hertz_impact(variant, STEP.resolution, variant == OBLIQUE[0]));
+        claims.extend(hertz_impact(variant, STEP.resolution, variant == OBLIQUE[0]));
     }
     for variant in [ELASTIC[0], ELASTIC[2]] {
         let run = |solver| Run::new(variant, solver, STEP.resolution);
-        gates.extend(forces(run, &["contact.normal_force"], 1e-13, |scene, _| hertz(scene).1));
+        claims.extend(forces(run, &["contact.normal_force"], 1e-13, |scene, _| hertz(scene).1));
     }
-    gates
+    claims
 }
 
 /// The law of the contact that the scene is about: between spheres where there are two, else with the plane.
@@ -94,36 +91,40 @@ fn duration(done: &Done) -> Result<f64, Missing> {
     Ok(time[last] + overlap[last] / rate)
 }
 
-fn elastic() -> Vec<Gate> {
-    let stiffer = || Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.effective_modulus *= 1.01));
-    let gate = |variant: &'static str, quantity: &str, unit, of: fn(&Done) -> Result<Measured, Missing>| Gate {
-        quantity: quantity.to_owned(),
-        unit,
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: SOURCE,
-        allowed: 1e-6,
-        because: "discretisation of the impact by some thousand steps",
-        runs: vec![Run::new(variant, "dem", STEP.resolution)],
-        measure: measure(move |done| of(&done[0])),
-        control: stiffer(),
+fn elastic() -> Vec<Claim> {
+    let of = |variant: &'static str,
+              quantity: &str,
+              unit,
+              exact: fn(&Scene) -> f64,
+              read: fn(&Done) -> Result<f64, Missing>| {
+        claim(quantity, unit)
+            .of(Run::new(variant, "dem", STEP.resolution))
+            .equals(HERTZ, move |done| {
+                let exact = exact(&done[0].scene);
+                Ok(Measured::new(read(&done[0])?, exact, exact))
+            })
+            .within(judged(1e-6, "discretisation of the impact by some thousand steps"))
+            .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.effective_modulus *= 1.01)))
     };
-    let mut gates = Vec::new();
+    let mut claims = Vec::new();
     for variant in ELASTIC {
-        gates.push(gate(variant, "deepest overlap", "m", |done| {
-            let exact = hertz(&done.scene).0;
-            Ok(Measured::new(peak(done.column("contact.overlap")?), exact, exact))
-        }));
-        gates.push(gate(variant, "largest force", "N", |done| {
-            let exact = hertz(&done.scene).1;
-            Ok(Measured::new(peak(done.column("contact.normal_force")?), exact, exact))
-        }));
-        gates.push(gate(variant, "duration of contact", "s", |done| {
-            let exact = hertz(&done.scene).2;
-            Ok(Measured::new(duration(done)?, exact, exact))
-        }));
+        claims.push(of(
+            variant,
+            "deepest overlap",
+            "m",
+            |scene| hertz(scene).0,
+            |done| Ok(peak(done.column("contact.overlap")?)),
+        ));
+        claims.push(of(
+            variant,
+            "largest force",
+            "N",
+            |scene| hertz(scene).1,
+            |done| Ok(peak(done.column("contact.normal_force")?)),
+        ));
+        claims.push(of(variant, "duration of contact", "s", |scene| hertz(scene).2, duration));
     }
-    gates
+    claims
 }
 
 /// ζ of a coefficient of restitution.
@@ -142,28 +143,26 @@ fn rebound(done: &Done) -> Result<f64, Missing> {
     Ok(-done.last("a.vz")? / done.scene.grains[0].velocity.z)
 }
 
-fn restitution() -> Vec<Gate> {
-    let gate = |variant: &'static str, restitution: f64| Gate {
-        quantity: format!("rebound velocity over impact velocity, e = {restitution}"),
-        unit: "1",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: SOURCE,
-        allowed: 2e-4,
-        because: "the dashpot is half a step late and release falls within a step: first order in Δt",
-        runs: vec![with_restitution(variant, restitution)],
-        measure: measure(move |done| Ok(Measured::new(rebound(&done[0])?, restitution, 1.0))),
-        control: if restitution == 1.0 {
-            Control::scene("a little damping, e = .99", |scene| {
+fn restitution() -> Vec<Claim> {
+    let of = |variant: &'static str, restitution: f64| {
+        let (tolerance, control) = if restitution == 1.0 {
+            let more = Control::scene("a little damping, e = .99", |scene| {
                 scene.change_laws(|law| law.damping_ratio = damping_ratio(0.99));
-            })
+            });
+            (judged(1e-6, "discretisation of the impact by some thousand steps; there is no dashpot"), more)
         } else {
-            Control::scene("the factor √(5/6) left out", |scene| {
+            let more = Control::scene("the factor √(5/6) left out", |scene| {
                 scene.change_laws(|law| law.damping_ratio *= (6.0_f64 / 5.0).sqrt());
-            })
-        },
+            });
+            (judged(2e-4, "the dashpot is half a step late and release falls within a step: first order in Δt"), more)
+        };
+        claim(format!("rebound velocity over impact velocity, e = {restitution}"), "1")
+            .of(with_restitution(variant, restitution))
+            .equals(RESTITUTION, move |done| Ok(Measured::new(rebound(&done[0])?, restitution, 1.0)))
+            .within(tolerance)
+            .refuses(control)
     };
-    DAMPED.into_iter().flat_map(|variant| RESTITUTIONS.map(|restitution| gate(variant, restitution))).collect()
+    DAMPED.into_iter().flat_map(|variant| RESTITUTIONS.map(|restitution| of(variant, restitution))).collect()
 }
 
 fn at_angle(variant: &'static str, degrees: f64) -> Run {
@@ -193,144 +192,133 @@ fn sliding(scene: &Scene) -> (f64, f64) {
     (1.0 - impulse(scene) * onto / along, 2.5 * impulse(scene) * onto / grain.radius)
 }
 
-fn oblique() -> Vec<Gate> {
-    let gate = |variant: &'static str, degrees: f64, spin: bool| Gate {
-        quantity: format!("{} at {degrees}°", if spin { "spin after impact" } else { "tangential restitution" }),
-        unit: if spin { "rad/s" } else { "1" },
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: SOURCE,
-        allowed: 2e-5,
-        because: "the spring sticks for an instant at both ends of the impact, where Mindlin's stiffness vanishes",
-        runs: vec![at_angle(variant, degrees)],
-        measure: measure(move |done| {
-            let (restitution, turn) = sliding(&done[0].scene);
-            if spin {
-                return Ok(Measured::new(done[0].last("a.omega_y")?, turn, turn));
-            }
-            Ok(Measured::new(tangential(&done[0])?, restitution, 1.0))
-        }),
-        control: if spin {
-            Control::scene("a disc's inertia in a sphere", |scene| {
-                scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.5 / 0.4);
-            })
-        } else {
-            Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2))
-        },
-    };
-    let angles = |variant: &'static str| ANGLES.into_iter().flat_map(move |angle| [gate(variant, angle, false), gate(variant, angle, true)]);
-    OBLIQUE.into_iter().flat_map(angles).collect()
+fn oblique() -> Vec<Claim> {
+    const ENDS: &str =
+        "the spring sticks for an instant at both ends of the impact, where Mindlin's stiffness vanishes";
+    let mut claims = Vec::new();
+    for variant in OBLIQUE {
+        for degrees in ANGLES {
+            claims.push(
+                claim(format!("tangential restitution at {degrees}°"), "1")
+                    .of(at_angle(variant, degrees))
+                    .equals(SLIDING, |done| Ok(Measured::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
+                    .within(judged(2e-5, ENDS))
+                    .refuses(more_friction()),
+            );
+            claims.push(
+                claim(format!("spin after impact at {degrees}°"), "rad/s")
+                    .of(at_angle(variant, degrees))
+                    .equals(SLIDING, |done| {
+                        let exact = sliding(&done[0].scene).1;
+                        Ok(Measured::new(done[0].last("a.omega_y")?, exact, exact))
+                    })
+                    .within(judged(2e-5, ENDS))
+                    .refuses(Control::scene("a disc's inertia in a sphere", |scene| {
+                        scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.5 / 0.4);
+                    })),
+            );
+        }
+    }
+    claims
+}
+
+fn more_friction() -> Control {
+    Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2))
 }
 
 /// A rigid-body engine has neither overlap nor duration; restitution it gives back exactly. Friction it limits by the impulse
 /// that stops the approach, μ m v_n, and leaves out what restitution adds: μ(1+e) m v_n is Coulomb's.
-fn rigid() -> Vec<Gate> {
-    let gate = |quantity: &str, unit, run: Run, control, of: fn(&Done) -> Result<Measured, Missing>| Gate {
-        quantity: quantity.to_owned(),
-        unit,
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: SOURCE,
-        allowed: 1e-9,
-        because: "an impulse at one contact is solved to rounding",
-        runs: vec![Run { solver: "rigid", ..run.at(rigid_rows::DEFAULT) }],
-        measure: measure(move |done| of(&done[0])),
-        control,
+fn rigid() -> Vec<Claim> {
+    let rigid = |run: Run| Run { solver: "rigid", ..run.at(rigid_rows::DEFAULT) };
+    let oblique = || rigid(at_angle(OBLIQUE[0], 60.0));
+    let rounding = || {
+        computed(
+            1e3 * f64::EPSILON,
+            "an impulse at one contact is solved to rounding: ε in each of at most a thousand operations",
+        )
     };
-    let oblique = || at_angle(OBLIQUE[0], 60.0);
-    let known = gate(
-        "tangential restitution at 60°",
-        "1",
-        oblique().known("friction is limited by the impulse that stops the approach; what restitution adds to it is left out"),
-        Control::without_the_error("dem in its place", "dem", STEP.resolution),
-        |done| Ok(Measured::new(tangential(done)?, sliding(&done.scene).0, 1.0)),
-    );
     vec![
-        gate(
-            "rebound velocity over impact velocity, e = 0.8",
-            "1",
-            with_restitution(DAMPED[0], 0.8),
-            Control::scene("e = .79", |scene| scene.change_laws(|law| law.damping_ratio = damping_ratio(0.79))),
-            |done| Ok(Measured::new(rebound(done)?, 0.8, 1.0)),
-        ),
-        gate(
-            "tangential restitution at 60° with friction μ m v_n",
-            "1",
-            oblique(),
-            Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)),
-            |done| {
-                let velocity = done.scene.grains[0].velocity;
-                let exact = 1.0 + law(&done.scene).friction * velocity.z / velocity.x;
-                Ok(Measured::new(tangential(done)?, exact, 1.0))
-            },
-        ),
-        Gate { allowed: 2e-5, because: "what a solver with springs reaches", ..known },
+        claim("rebound velocity over impact velocity, e = 0.8", "1")
+            .of(rigid(with_restitution(DAMPED[0], 0.8)))
+            .equals(RESTITUTION, |done| Ok(Measured::new(rebound(&done[0])?, 0.8, 1.0)))
+            .within(rounding())
+            .refuses(Control::scene("e = .79", |scene| {
+                scene.change_laws(|law| law.damping_ratio = damping_ratio(0.79))
+            })),
+        claim("tangential restitution at 60° with friction μ m v_n", "1")
+            .of(oblique())
+            .equals(
+                Source::Derived("1 − μ v_n/v_t: friction limited by the impulse that stops the approach"),
+                |done| {
+                    let velocity = done[0].scene.grains[0].velocity;
+                    let exact = 1.0 + law(&done[0].scene).friction * velocity.z / velocity.x;
+                    Ok(Measured::new(tangential(&done[0])?, exact, 1.0))
+                },
+            )
+            .within(rounding())
+            .refuses(more_friction()),
+        claim("tangential restitution at 60°", "1")
+            .of(oblique().known(
+                "friction is limited by the impulse that stops the approach; what restitution adds to it is left out",
+            ))
+            .equals(SLIDING, |done| Ok(Measured::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
+            .within(judged(2e-5, "what a solver with springs reaches"))
+            .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution)),
     ]
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let curve = |label: String, stroke, points| Curve { label, stroke, points };
-    let axis = |label: &str| Axis { label: label.to_owned(), logarithmic: false };
-    let figure = |name: &str, title: &str, caption: &str, x, y, curves| Figure {
-        name: name.to_owned(),
-        title: title.to_owned(),
-        caption: caption.to_owned(),
-        drawing: Drawing::Graph(Graph { x, y, curves }),
-    };
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut impacts = Vec::new();
     for variant in ["1-glass", "1-limestone"] {
-        let done = bench.run(&Run::new(variant, "dem", STEP.resolution))?;
+        let done = runner.run(&Run::new(variant, "dem", STEP.resolution))?;
         let (force, time) = (done.series().column("contact.normal_force").unwrap_or_default(), &done.series().time);
         let every = force.len().div_ceil(300).max(1);
         let points = time.iter().zip(force).step_by(every).map(|(t, force)| (t * 1e6, force / 1e3)).collect();
-        impacts.push(curve(variant.to_owned(), Stroke::Line, points));
+        impacts.push(Curve::new(variant, Stroke::Line, points));
     }
     let (mut restitution, mut spin) = (Vec::new(), Vec::new());
     for variant in OBLIQUE {
         let (mut measured, mut turned) = (Vec::new(), Vec::new());
         for angle in [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0, 70.0, 80.0] {
-            let done = bench.run(&at_angle(variant, angle))?;
+            let done = runner.run(&at_angle(variant, angle))?;
             if let (Ok(vx), Ok(omega)) = (done.last("a.vx"), done.last("a.omega_y")) {
                 measured.push((angle, vx / done.scene.grains[0].velocity.x));
                 turned.push((angle, omega));
             }
         }
-        restitution.push(curve(variant.to_owned(), Stroke::Markers, measured));
-        spin.push(curve(variant.to_owned(), Stroke::Markers, turned));
+        restitution.push(Curve::new(variant, Stroke::Markers, measured));
+        spin.push(Curve::new(variant, Stroke::Markers, turned));
     }
-    let scene = |angle: f64| bench.scene(&at_angle(OBLIQUE[0], angle));
+    let scene = |angle: f64| runner.scene(&at_angle(OBLIQUE[0], angle));
     let (mut exact_restitution, mut exact_spin) = (Vec::new(), Vec::new());
     for angle in (33..=85).map(f64::from) {
         let (e, turn) = sliding(&scene(angle)?);
         exact_restitution.push((angle, e));
         exact_spin.push((angle, turn));
     }
-    restitution.push(curve("slides throughout, rigid".to_owned(), Stroke::Dashed, exact_restitution));
-    spin.push(curve("slides throughout, rigid".to_owned(), Stroke::Dashed, exact_spin));
+    restitution.push(Curve::new("slides throughout, rigid", Stroke::Dashed, exact_restitution));
+    spin.push(Curve::new("slides throughout, rigid", Stroke::Dashed, exact_spin));
     Ok(vec![
-        figure(
+        Figure::graph(
             "force",
             "Force during the impact of two spheres (test 1)",
             "R = 10 mm, ±10 m/s, elastic.",
-            axis("time t (µs)"),
-            axis("normal force (kN)"),
+            [Axis::linear("time t (µs)"), Axis::linear("normal force (kN)")],
             impacts,
         ),
-        figure(
+        Figure::graph(
             "tangential-restitution",
             "Tangential restitution of an oblique impact (test 4)",
             "Above 32.5° the impact slides throughout and depends on friction and restitution alone; below, Mindlin's spring \
              sticks and rings: there is no closed form, and no gate.",
-            axis("angle of impact from the normal (°)"),
-            axis("v_t after / v_t before"),
+            [Axis::linear("angle of impact from the normal (°)"), Axis::linear("v_t after / v_t before")],
             restitution,
         ),
-        figure(
+        Figure::graph(
             "spin",
             "Spin after an oblique impact (test 4)",
             "The same runs.",
-            axis("angle of impact from the normal (°)"),
-            axis("spin ω (rad/s)"),
+            [Axis::linear("angle of impact from the normal (°)"), Axis::linear("spin ω (rad/s)")],
             spin,
         ),
     ])

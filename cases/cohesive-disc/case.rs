@@ -1,21 +1,14 @@
 //! A cohesive disc on a slope: the threshold between rolling and sliding.
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung, fraction};
-use crate::effect::Effect;
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
-
 use crate::one_grain::{OneGrain, State, course};
 use crate::rigid_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::RunError;
+use grainbench_harness::prelude::*;
 
 const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Rung = LADDER[2];
-const SOURCE: &str = "rolls iff m g sin θ/3 ≤ μ m g cos θ + c (derivation; Cundall & Strack 1979, eq. 19)";
+const STRENGTH: Source = Source::Derived(
+    "rolls iff m g sin θ/3 ≤ μ m g cos θ + c (derivation; the strength is Cundall & Strack 1979, eq. 19)",
+);
 
 pub(crate) static CASE: Case = Case {
     name: "cohesive-disc",
@@ -28,8 +21,9 @@ pub(crate) static CASE: Case = Case {
                tension, which this law does not have.",
     ladder: LADDER,
     default_rung: STEP,
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// The cohesion at which the disc just rolls (N).
@@ -59,71 +53,51 @@ fn slip(done: &Done) -> Result<Measured, Missing> {
     Ok(Measured::new((slip(&end.1) - slip(&half.1)) / (end.0 - half.0), exact, grain.along))
 }
 
-fn gates() -> Vec<Gate> {
-    let gate = |quantity: &str, factor: f64, control| Gate {
-        quantity: quantity.to_owned(),
-        unit: "m/s²",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: SOURCE,
-        allowed: 1e-10,
-        because: "once the spring has come to rest or has yielded the force is constant; in units of g sin θ",
-        runs: vec![with_cohesion(factor)],
-        measure: measure(|done| slip(&done[0])),
-        control,
+fn claims() -> Vec<Claim> {
+    let steps = CASE.variant(PLAIN).ok().and_then(|scene| STEP.resolution.steps(&scene).ok());
+    let rounding = 4.0 * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64);
+    let of = |quantity: &str, factor: f64, wrong, by: f64| {
+        claim(quantity, "m/s²")
+            .of(with_cohesion(factor))
+            .equals(STRENGTH, |done| slip(&done[0]))
+            .within(computed(
+                rounding,
+                "once the spring has come to rest or has yielded the force is constant: position, velocity, spin and \
+                 spring round by ε in every step; in units of g sin θ",
+            ))
+            .refuses(Control::scene(wrong, move |scene| scene.change_laws(|law| law.cohesion *= by)))
     };
-    let rigid = Gate::refused(
-        Run::new(PLAIN, "rigid", rigid_rows::DEFAULT),
-        "refusal of cohesion",
-        "rapier's contacts only push",
-        Control::without(Effect::Cohesion),
-    );
+    let refusal = |solver, step| claim("refusal of cohesion", "1").of(Run::new(PLAIN, solver, step));
     let programs = ["lammps", "liggghts"].map(|program| {
-        Gate::refused(
-            Run::new(PLAIN, program, STEP.resolution),
-            "refusal of cohesion",
+        refusal(program, STEP.resolution).refused(
             "its cohesion attracts along the normal; shear strength that needs no load it has none",
             Control::scene("no cohesion", |scene| scene.change_laws(|law| law.cohesion = 0.0)),
         )
     });
-    let ours = vec![
-        rigid,
-        gate(
-            "growth of slip, cohesion a thousandth above the threshold",
-            1.001,
-            Control::scene("cohesion × .998", |scene| scene.change_laws(|law| law.cohesion *= 0.998)),
-        ),
-        gate(
-            "growth of slip, cohesion a thousandth below the threshold",
-            0.999,
-            Control::scene("cohesion × 1.002", |scene| scene.change_laws(|law| law.cohesion *= 1.002)),
-        ),
-        gate(
-            "growth of slip, half the cohesion",
-            0.5,
-            Control::scene("cohesion × 1.002", |scene| scene.change_laws(|law| law.cohesion *= 1.002)),
-        ),
+    let ours = [
+        refusal("rigid", rigid_rows::DEFAULT)
+            .refused("rapier's contacts only push", Control::without(Effect::Cohesion)),
+        of("growth of slip, cohesion a thousandth above the threshold", 1.001, "cohesion × .998", 0.998),
+        of("growth of slip, cohesion a thousandth below the threshold", 0.999, "cohesion × 1.002", 1.002),
+        of("growth of slip, half the cohesion", 0.5, "cohesion × 1.002", 1.002),
     ];
     ours.into_iter().chain(programs).collect()
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for factor in [0.5, 0.9, 0.999, 1.001] {
-        let done = bench.run(&with_cohesion(factor))?;
+        let done = runner.run(&with_cohesion(factor))?;
         let radius = done.scene.grains[0].radius;
         let states = course(&done).unwrap_or_default();
         let points = states.iter().map(|(t, state)| (*t, state.v - state.omega * radius)).collect();
-        curves.push(Curve { label: format!("c = {factor} of the threshold"), stroke: Stroke::Line, points });
+        curves.push(Curve::new(format!("c = {factor} of the threshold"), Stroke::Line, points));
     }
-    Ok(vec![Figure {
-        name: "slip".to_owned(),
-        title: "Slip of the surface".to_owned(),
-        caption: "60°, μ = .2: without cohesion the disc would slide; with the threshold's it rolls.".to_owned(),
-        drawing: Drawing::Graph(Graph {
-            x: Axis { label: "time t (s)".to_owned(), logarithmic: false },
-            y: Axis { label: "slip velocity v − ΩR (m/s)".to_owned(), logarithmic: false },
-            curves,
-        }),
-    }])
+    Ok(vec![Figure::graph(
+        "slip",
+        "Slip of the surface",
+        "60°, μ = .2: without cohesion the disc would slide; with the threshold's it rolls.",
+        [Axis::linear("time t (s)"), Axis::linear("slip velocity v − ΩR (m/s)")],
+        curves,
+    )])
 }

@@ -1,30 +1,26 @@
 //! A column under its own weight.
 
-use crate::bench::Bench;
-use crate::case::{Case, Rung, cells};
 use crate::elastic::stiffen;
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
-use crate::verdict::Evidence;
+use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::RunError;
 use std::f64::consts::PI;
 
 const LADDER: &[Rung] = &[cells("H/12", 12.5, 2), cells("H/25", 25.0, 2), cells("H/50", 50.0, 2)];
-const SOURCE: &str = "u_tt = c² u_yy − g on a fixed base (derivation)";
+const SOURCE: Source = Source::Derived("u_tt = c² u_yy − g on a fixed base (derivation)");
 
 pub(crate) static CASE: Case = Case {
     name: "column",
     title: "A column under its own weight",
-    claim: "A column swings about its static shape with the period 4H/c, and comes to rest with the stress of its weight.",
+    claim: "A column swings about its static shape with the period 4H/c, and comes to rest with the stress of its \
+            weight.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Small strain, one direction, no contact.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// Height (m), density (kg/m³), modulus (Pa) and gravity (m/s²).
@@ -67,65 +63,63 @@ fn softer() -> Control {
     Control::scene("two per cent softer", |scene| stiffen(scene, 0.98))
 }
 
-fn gates() -> Vec<Gate> {
-    let mut gates: Vec<Gate> = LADDER.iter().zip([0.037, 9e-3, 1.7e-3]).map(|(&rung, allowed)| swinging(rung, allowed)).collect();
-    let at_rest = || vec![Run::new("static", "mpm", LADDER[1].resolution)];
-    gates.push(Gate::new(
-        ("sinking of the centre of mass at rest", "m"),
-        at_rest(),
-        (Evidence::Analytic, SOURCE),
-        (2.5e-4, "strain of .0005, and discretisation"),
-        softer(),
-        |done| {
-            let y = done[0].column("column.y")?;
-            let exact = Column::of(&done[0].scene).sag();
-            Ok(Measured::new(y[0] - y[y.len() - 1], exact, exact))
-        },
-    ));
+fn claims() -> Vec<Claim> {
+    let mut claims: Vec<Claim> =
+        LADDER.iter().zip([0.037, 9e-3, 1.7e-3]).map(|(&rung, allowed)| swinging(rung, allowed)).collect();
+    let at_rest = || Run::new("static", "mpm", LADDER[1].resolution);
+    claims.push(
+        claim("sinking of the centre of mass at rest", "m")
+            .of(at_rest())
+            .equals(SOURCE, |done| {
+                let y = done[0].column("column.y")?;
+                let exact = Column::of(&done[0].scene).sag();
+                Ok(Measured::new(y[0] - y[y.len() - 1], exact, exact))
+            })
+            .within(judged(2.5e-4, "strain of .0005, and discretisation"))
+            .refuses(softer()),
+    );
     for (probe, share) in [("quarter", 0.25), ("middle", 0.5)] {
-        gates.push(Gate::new(
-            (format!("vertical stress at rest, {share} of the height"), "Pa"),
-            at_rest(),
-            (Evidence::Analytic, "σ = −ρ g (H − y): the weight above"),
-            (4e-5, "what still swings, and strain of .0005; in units of ρ g H"),
-            Control::scene("gravity × .95", |scene| scene.gravity *= 0.95),
-            move |done| {
-                let column = Column::of(&done[0].scene);
-                let weight = column.density * column.gravity * column.height;
-                let stress = done[0].last(&format!("{probe}.sigma_yy"))?;
-                Ok(Measured::new(stress, -weight * (1.0 - share), weight))
-            },
-        ));
+        claims.push(
+            claim(format!("vertical stress at rest, {share} of the height"), "Pa")
+                .of(at_rest())
+                .equals(Source::Derived("σ = −ρ g (H − y): the weight above"), move |done| {
+                    let column = Column::of(&done[0].scene);
+                    let weight = column.density * column.gravity * column.height;
+                    let stress = done[0].last(&format!("{probe}.sigma_yy"))?;
+                    Ok(Measured::new(stress, -weight * (1.0 - share), weight))
+                })
+                .within(judged(4e-5, "what still swings, and strain of .0005; in units of ρ g H"))
+                .refuses(Control::scene("gravity × .95", |scene| scene.gravity *= 0.95)),
+        );
     }
-    gates.push(Gate::new(
-        ("total energy over three periods, worst", "J"),
-        vec![Run::new("swinging", "mpm", LADDER[1].resolution)],
-        (Evidence::Invariant, "conservation of energy"),
-        (1e-3, "half a step between velocities and stresses; in units of the largest kinetic energy"),
-        Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01),
-        |done| {
-            let energy = done[0].column("all.total_energy")?;
-            let kinetic = done[0].column("all.kinetic_energy")?.iter().copied().fold(0.0, f64::max);
-            Ok(Measured::worst(&done[0].series().time, energy, |_| energy[0], kinetic))
-        },
-    ));
-    gates
+    claims.push(
+        claim("total energy over three periods, worst", "J")
+            .of(Run::new("swinging", "mpm", LADDER[1].resolution))
+            .holds("conservation of energy", |done| {
+                let energy = done[0].column("all.total_energy")?;
+                let kinetic = done[0].column("all.kinetic_energy")?.iter().copied().fold(0.0, f64::max);
+                Ok(Measured::worst(&done[0].series().time, energy, |_| energy[0], kinetic))
+            })
+            .within(judged(1e-3, "half a step between velocities and stresses; in units of the largest kinetic energy"))
+            .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01)),
+    );
+    claims
 }
 
-fn swinging(rung: Rung, allowed: f64) -> Gate {
-    Gate::new(
-        (format!("displacement of the centre of mass over three periods, worst, {} cells", rung.name), "m"),
-        vec![Run::new("swinging", "mpm", rung.resolution)],
-        (Evidence::Analytic, SOURCE),
-        (allowed, "dispersion of the grid, and the strain of .0005; in units of the largest displacement"),
-        softer(),
-        |done| {
+fn swinging(rung: Rung, allowed: f64) -> Claim {
+    claim(format!("displacement of the centre of mass over three periods, worst, {} cells", rung.name), "m")
+        .of(Run::new("swinging", "mpm", rung.resolution))
+        .equals(SOURCE, |done| {
             let column = Column::of(&done[0].scene);
             let y = done[0].column("column.y")?;
             let moved: Vec<f64> = y.iter().map(|now| now - y[0]).collect();
             Ok(Measured::worst(&done[0].series().time, &moved, |time| column.swing(time), 2.0 * column.sag()))
-        },
-    )
+        })
+        .within(judged(
+            allowed,
+            "dispersion of the grid, and the strain of .0005; in units of the largest displacement",
+        ))
+        .refuses(softer())
 }
 
 fn moved(done: &Done) -> Result<Vec<(f64, f64)>, Missing> {
@@ -133,10 +127,10 @@ fn moved(done: &Done) -> Result<Vec<(f64, f64)>, Missing> {
     Ok(done.series().time.iter().zip(y).map(|(&time, now)| (time, now - y[0])).collect())
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for variant in ["swinging", "static"] {
-        let done = bench.run(&Run::new(variant, "mpm", LADDER[1].resolution))?;
+        let done = runner.run(&Run::new(variant, "mpm", LADDER[1].resolution))?;
         curves.push(Curve::new(variant, Stroke::Line, moved(&done).unwrap_or_default()));
         let column = Column::of(&done.scene);
         let exact = |time| if variant == "static" { -column.sag() } else { column.swing(time) };

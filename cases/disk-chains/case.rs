@@ -7,15 +7,10 @@ mod fringes;
 #[path = "modal.rs"]
 mod modal;
 
-use crate::bench::Bench;
-use crate::case::{Case, Rung, fraction};
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::rigid_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::RunError;
+use crate::sources::literature::bardenhagen_2001;
+use grainbench_harness::prelude::*;
+use grainbench_scene::scene::Duration;
 use modal::Modes;
 
 const LADDER: &[Rung] = &[fraction("dt=.02", 0.02), fraction("dt=.01", 0.01), fraction("dt=.005", 0.005)];
@@ -24,23 +19,31 @@ const STEP: Rung = LADDER[2];
 const ARRIVED: f64 = 0.1;
 /// Longitudinal wave speed of the paper's material (m/s): the unit of time is the transit of one disc, d/c.
 const WAVE_SPEED: f64 = 10_208.355_710_680_81;
+/// Where the paper has its order of the chains.
+const FASTER: Source = Source::Printed(
+    &bardenhagen_2001::WORK,
+    "text to Figs 10 and 11: fringes pass the line, and the glued zig-zag, much faster than the zig-zag that slips",
+);
+/// Smaller than equal: the paper states no ratio.
+const SOONER: f64 = 0.99;
 const SMOOTH: &str = "zig-zag-smooth";
 const GLUED: &str = "zig-zag-glued";
 
 pub(crate) static CASE: Case = Case {
     name: "disk-chains",
     title: "Chains of discs, struck at one end",
-    claim: "Force arrives at every contact of a line and of a zig-zag of discs when the modes of the assembly say so; a zig-zag \
-            that sticks passes it on sooner than one that slips, and so does the line.",
+    claim: "Force arrives at every contact of a line and of a zig-zag of discs when the modes of the assembly say so; \
+            a zig-zag that sticks passes it on sooner than one that slips, and so does the line.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "To DEM a disc is one mass on springs: no stress wave inside, and no fringes that run. When a contact is first felt is a \
-               matter of the stiffness that was put in. The paper states its order of speeds for fringes, and prints no \
-               arrival times.",
+    weakness: "To DEM a disc is one mass on springs: no stress wave inside, and no fringes that run. When a contact is \
+               first felt is a matter of the stiffness that was put in. The paper states its order of speeds for \
+               fringes, and prints no arrival times.",
     ladder: LADDER,
     default_rung: STEP,
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// The two discs of a contact between neighbours, by their place in the scene: the odd ones come first there.
@@ -85,54 +88,43 @@ fn gentle(variant: &'static str) -> Run {
     })
 }
 
-fn gates() -> Vec<Gate> {
+fn claims() -> Vec<Claim> {
     let contacts = [("line", 2..=3), (SMOOTH, 2..=4)];
-    let mut gates: Vec<Gate> =
+    let mut claims: Vec<Claim> =
         contacts.into_iter().flat_map(|(variant, all)| all.map(move |first| exact(variant, first))).collect();
-    gates.push(glued());
-    gates.push(sooner(GLUED, "glued zig-zag over that of the slipping one"));
-    gates.push(sooner("line", "line over that of the slipping zig-zag"));
-    gates.push(rigid());
-    gates.extend(elastic::gates());
-    gates
+    claims.push(glued());
+    claims.push(sooner(GLUED, "glued zig-zag over that of the slipping one"));
+    claims.push(sooner("line", "line over that of the slipping zig-zag"));
+    claims.push(rigid());
+    claims.extend(elastic::claims());
+    claims
 }
 
 /// Arrival at a contact against the modes.
-fn exact(variant: &'static str, first: usize) -> Gate {
-    Gate {
-        quantity: format!("arrival of force between discs {first} and {}", first + 1),
-        unit: "s",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: "modes of the assembly (derivation)",
-        allowed: 2e-5,
-        because: "central differences at ω₀Δt = .01, and displacements of 2e-6 R turn the normals",
-        runs: vec![gentle(variant)],
-        measure: measure(move |done| {
+fn exact(variant: &'static str, first: usize) -> Claim {
+    claim(format!("arrival of force between discs {first} and {}", first + 1), "s")
+        .of(gentle(variant))
+        .equals(Source::Derived("modes of the assembly (derivation)"), move |done| {
             let scene = &done[0].scene;
             let modes = Modes::of(scene);
             let exact = modes.arrival(pair(scene, first), threshold(scene), duration(scene));
             Ok(Measured::new(arrival(&done[0], first)?, exact, exact))
-        }),
-        control: Control::scene("contacts 1 % too stiff", |scene| {
+        })
+        .within(computed(
+            0.02_f64.powi(2) / 24.0 + 2e-6,
+            "(ωΔt)²/24 of central differences at ωΔt = .02 of a chain's fastest mode, and displacements of 2e-6 R, \
+             which turn the normals",
+        ))
+        .refuses(Control::scene("contacts 1 % too stiff", |scene| {
             scene.change_laws(|law| law.normal_stiffness *= 1.01);
-        }),
-    }
+        }))
 }
 
 /// The force of the first two discs where they stick, for as long as no contact of the assembly opens.
-fn glued() -> Gate {
-    Gate {
-        quantity: "force between discs 1 and 2 until a contact opens, worst".to_owned(),
-        unit: "N",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: "modes of the assembly with sticking contacts (derivation)",
-        allowed: 1e-4,
-        because: "central differences at ω₀Δt = .01, and contacts that would pull by less than a hundredth of the striker's \
-                  way are taken for closed; in units of V√(k m)",
-        runs: vec![gentle(GLUED)],
-        measure: measure(move |done| {
+fn glued() -> Claim {
+    claim("force between discs 1 and 2 until a contact opens, worst", "N")
+        .of(gentle(GLUED))
+        .equals(Source::Derived("modes of the assembly with sticking contacts (derivation)"), |done| {
             let done = &done[0];
             let scene = &done.scene;
             let modes = Modes::of(scene);
@@ -141,57 +133,47 @@ fn glued() -> Gate {
             let count = time.iter().take_while(|&&time| time < opens).count();
             let exact = |time| modes.force(pair(scene, 1), time);
             Ok(Measured::worst(&time[..count], &force[..count], exact, threshold(scene) / ARRIVED))
-        }),
-        control: Control::scene("tangential springs 1 % too soft", |scene| {
+        })
+        .within(judged(
+            1e-4,
+            "central differences at ω₀Δt = .01, and contacts that would pull by less than a hundredth of the striker's \
+             way are taken for closed; in units of V√(k m)",
+        ))
+        .refuses(Control::scene("tangential springs 1 % too soft", |scene| {
             scene.change_laws(|law| law.tangential_stiffness *= 0.99);
-        }),
-    }
+        }))
 }
 
 /// The paper's order: a variant passes force to the fourth disc sooner than the slipping zig-zag.
-fn sooner(variant: &'static str, of: &str) -> Gate {
-    Gate {
-        quantity: format!("arrival at disc 4 of the {of}"),
-        unit: "1",
-        scope: Scope::Named,
-        evidence: Evidence::Paper,
-        source: "Bardenhagen et al. 2001, text to Figs 10 and 11: the glued zig-zag and the line are faster than the slipping zig-zag",
-        allowed: 0.49,
-        because: "the paper states an order of fringes and no ratio: anything from .01 to .99",
-        runs: vec![Run::new(variant, "dem", STEP.resolution), Run::new("zig-zag", "dem", STEP.resolution)],
-        measure: measure(|done| Ok(Measured::new(arrival(&done[0], 3)? / arrival(&done[1], 3)?, 0.5, 1.0))),
-        control: Control::scene("the slipping zig-zag four times as stiff", |scene| {
+fn sooner(variant: &'static str, of: &str) -> Claim {
+    claim(format!("arrival at disc 4 of the {of}"), "1")
+        .of(Run::new(variant, "dem", STEP.resolution))
+        .of(Run::new("zig-zag", "dem", STEP.resolution))
+        .at_most(SOONER, FASTER, |done| Ok(arrival(&done[0], 3)? / arrival(&done[1], 3)?))
+        .within(exactly("the paper states an order of fringes and no ratio: sooner by a hundredth or more"))
+        .refuses(Control::scene("the slipping zig-zag four times as stiff", |scene| {
             let slips = scene.laws.iter().flatten().any(|law| law.friction == 0.5);
             scene.change_laws(|law| law.normal_stiffness *= if slips { 4.0 } else { 1.0 });
-        }),
-    }
+        }))
 }
 
 /// A rigid contact passes an impulse through the whole chain in one step.
-fn rigid() -> Gate {
-    let run = Run::new("line", "rigid", rigid_rows::DEFAULT);
-    Gate {
-        quantity: "time until disc 4 moves at a tenth of the striker's speed".to_owned(),
-        unit: "s",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: "modes of the assembly (derivation)",
-        allowed: 1e-3,
-        because: "what a solver with springs reaches",
-        runs: vec![run.known(
+fn rigid() -> Claim {
+    claim("time until disc 4 moves at a tenth of the striker's speed", "s")
+        .of(Run::new("line", "rigid", rigid_rows::DEFAULT).known(
             "contacts are rigid: an impulse passes through all discs in one step, as if waves were infinitely fast",
-        )],
-        measure: measure(|done| {
+        ))
+        .equals(Source::Derived("modes of the assembly (derivation)"), |done| {
             let scene = &done[0].scene;
             let speed = ARRIVED * scene.walls[0].motion.phases[0].velocity.norm();
             let exact = Modes::of(scene).moving(pair(scene, 3)[1], speed, duration(scene));
             Ok(Measured::new(first_above(&done[0], "fourth.vx", speed)?, exact, exact))
-        }),
-        control: Control::without_the_error("dem in its place", "dem", STEP.resolution),
-    }
+        })
+        .within(judged(1e-3, "what a solver with springs reaches"))
+        .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution))
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut figures = Vec::new();
     let mut arrivals = Vec::new();
     for (variant, title) in [
@@ -199,7 +181,7 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         ("zig-zag", "Forces along the zig-zag, μ = .5"),
         (GLUED, "Forces along the glued zig-zag"),
     ] {
-        let done = bench.run(&Run::new(variant, "dem", STEP.resolution))?;
+        let done = runner.run(&Run::new(variant, "dem", STEP.resolution))?;
         let scene = &done.scene;
         let unit = 2.0 * scene.grains[0].radius / WAVE_SPEED;
         let impedance = threshold(scene) / ARRIVED;
@@ -230,7 +212,7 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
         [Axis::linear("disc"), Axis::linear("time of arrival t c/d")],
         arrivals,
     ));
-    figures.push(elastic::figure(bench)?);
-    figures.extend(fringes::figures(bench)?);
+    figures.push(elastic::figure(runner)?);
+    figures.extend(fringes::figures(runner)?);
     Ok(figures)
 }

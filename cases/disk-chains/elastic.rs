@@ -1,22 +1,20 @@
 //! The discs as elastic bodies: when stress arrives in them.
 //!
-//! Stress counts as arrived when the difference of the principal stresses at a disc's centre, which is what fringes show, first
-//! exceeds a tenth of ρcv. Time is counted in transits of a disc, d/c. Arrivals hang on how stiff contacts are at first touch:
-//! ours are held against finite elements (derivation), the papers' nodal contact against a prototype of the same.
+//! Stress counts as arrived when the difference of the principal stresses at a disc's centre, which is what fringes
+//! show, first exceeds a tenth of ρcv. Time is counted in transits of a disc, d/c. Arrivals hang on how stiff contacts
+//! are at first touch: ours are held against finite elements (derivation), the papers' nodal contact against a
+//! prototype of the same.
 
-use super::{WAVE_SPEED, fringes};
-use crate::bench::Bench;
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
-use crate::verdict::Evidence;
-use grainbench_scene::scene::{BodyName, Duration, Probe, ProbeTarget, Scene, Spot};
-use grainbench_scene::solver::{Resolution, RunError};
+use super::{FASTER, SOONER, WAVE_SPEED, fringes};
+use crate::sources::literature::bardenhagen_2001::FRINGES_SLOWER;
+use crate::sources::prototype::disk_chains::ARRIVAL_IN_DISC_4;
+use crate::sources::prototype::disk_chains_nodal_contact::{ARRIVAL_AT_40, ARRIVAL_AT_80};
+use grainbench_harness::prelude::*;
+use grainbench_scene::scene::{BodyName, Duration, Probe, ProbeTarget, Spot};
 
 const BEST: &str = "mpm";
 const STIFF: &str = "mpm+penalty=5.2";
 const PAPER: &str = "mpm:2001";
-const REFERENCE: &str = "independent prototype with gap-resolved contact, 20 to 80 cells a diameter";
-const FINITE_ELEMENTS: &str = "independent finite elements, 6.70 ± .01 (derivation)";
 /// Part of ρcv that counts as arrived.
 const ARRIVED: f64 = 0.1;
 /// The paper's second Poisson's ratio, at the same longitudinal modulus.
@@ -29,12 +27,11 @@ pub(super) const fn grid(cells: f64, points: u32) -> Resolution {
 
 /// A run that is watched at the centre of every disc for so many transits.
 pub(super) fn run(variant: &'static str, solver: &'static str, resolution: Resolution, transits: f64) -> Run {
-    Run::new(variant, solver, resolution)
-        .adjusted(&format!("elastic, {transits} transits"), move |scene| {
-            watch(scene, transits);
-            scene.snapshot_times = fringes::times(scene, variant);
-            scene.snapshot_times.retain(|&time| time <= transits * 2.0 * scene.grains[0].radius / WAVE_SPEED);
-        })
+    Run::new(variant, solver, resolution).adjusted(&format!("elastic, {transits} transits"), move |scene| {
+        watch(scene, transits);
+        scene.snapshot_times = fringes::times(scene, variant);
+        scene.snapshot_times.retain(|&time| time <= transits * 2.0 * scene.grains[0].radius / WAVE_SPEED);
+    })
 }
 
 fn watch(scene: &mut Scene, transits: f64) {
@@ -96,59 +93,56 @@ fn delay(done: &Done) -> Result<f64, Missing> {
     Ok(0.5 * (arrival(done, 4)? - arrival(done, 2)?))
 }
 
-pub(super) fn gates() -> Vec<Gate> {
-    let softer = || Control::scene("discs a fifth softer", |scene| crate::elastic::stiffen(scene, 0.8));
-    let mut gates = Vec::new();
-    for (solver, cells, points, expected, allowed) in
-        [(BEST, 20.0, 2, 6.7, 0.3), (BEST, 40.0, 2, 6.7, 0.2), (PAPER, 20.0, 1, 4.3, 0.2), (PAPER, 40.0, 1, 4.8, 0.2)]
-    {
+pub(super) fn claims() -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for (solver, cells, points, expected, allowed) in [
+        (BEST, 20.0, 2, ARRIVAL_IN_DISC_4, 0.3),
+        (BEST, 40.0, 2, ARRIVAL_IN_DISC_4, 0.2),
+        (PAPER, 20.0, 1, ARRIVAL_AT_40, 0.2),
+        (PAPER, 40.0, 1, ARRIVAL_AT_80, 0.2),
+    ] {
         let run = run("line", solver, grid(cells, points), 8.0);
-        let (source, because) = if solver == BEST {
-            (FINITE_ELEMENTS, "springs that are as soft as .4 cells of material hold the wave up at each of four contacts")
+        let because = if solver == BEST {
+            "springs that are as soft as .4 cells of material hold the wave up at each of four contacts"
         } else {
-            (REFERENCE, "nodal contact glues discs over a patch from the start: too fast, and slower with every refinement")
+            "nodal contact glues discs over a patch from the start: too fast, and slower with every refinement"
         };
-        gates.push(Gate::new(
-            (format!("arrival of stress in disc 4, {} cells a diameter", 2.0 * cells), "d/c"),
-            vec![if cells > 20.0 { run.long() } else { run.slow() }],
-            (Evidence::OtherCode, source),
-            (allowed, because),
-            softer(),
-            move |done| Ok(Measured::new(arrival(&done[0], 4)?, expected, 1.0)),
-        ));
+        claims.push(
+            claim(format!("arrival of stress in disc 4, {} cells a diameter", 2.0 * cells), "d/c")
+                .of(if cells > 20.0 { run.long() } else { run.slow() })
+                .equals_cited(expected, 1.0, |done| arrival(&done[0], 4))
+                .within(judged(allowed, because))
+                .refuses(Control::scene("discs a fifth softer", |scene| crate::elastic::stiffen(scene, 0.8))),
+        );
     }
     for (solver, points) in [(BEST, 2), (PAPER, 1)] {
-        gates.push(Gate::new(
-            ("delay per disc at ν = .48 over that at ν = .22", "1"),
-            vec![slower(solver, grid(10.0, points)).slow(), run("line", solver, grid(10.0, points), 8.0)],
-            (Evidence::Paper, "Bardenhagen et al. 2001: fringes are slower by more than a factor of two"),
-            (0.45, "2.0 to 2.9: the paper's bound, and what two contacts of the prototype reach"),
-            Control::scene("ν = .3 in both", |scene| set_poisson_ratio(scene, 0.3)),
-            |done| Ok(Measured::new(delay(&done[0])? / delay(&done[1])?, 2.45, 1.0)),
-        ));
+        claims.push(
+            claim("delay per disc at ν = .48 over that at ν = .22", "1")
+                .of(slower(solver, grid(10.0, points)).slow())
+                .of(run("line", solver, grid(10.0, points), 8.0))
+                .at_least(FRINGES_SLOWER.value, FRINGES_SLOWER.source(), |done| Ok(delay(&done[0])? / delay(&done[1])?))
+                .within(exactly("the paper states a bound"))
+                .refuses(Control::scene("ν = .3 in both", |scene| set_poisson_ratio(scene, 0.3))),
+        );
     }
     for (variant, of, disc) in [("zig-zag-glued", "glued zig-zag", 5), ("line", "line", 4)] {
-        gates.push(Gate::new(
-            (format!("arrival of stress in disc {disc} of the {of} over that of the slipping zig-zag"), "1"),
-            vec![run(variant, "mpm", grid(8.0, 2), 15.0), run("zig-zag", "mpm", grid(8.0, 2), 15.0)],
-            (
-                Evidence::Paper,
-                "Bardenhagen et al. 2001, text to Figs 10 and 11: the glued zig-zag and the line are faster than the slipping zig-zag",
-            ),
-            (0.49, "the paper states an order of fringes and no ratio: anything from .01 to .99"),
-            Control::scene("the slipping zig-zag glued and four times as stiff", |scene| {
-                if scene.laws.iter().flatten().any(|law| law.friction == 0.5) {
-                    scene.change_laws(|law| law.friction = if law.friction > 0.0 { 1e9 } else { 0.0 });
-                    crate::elastic::stiffen(scene, 4.0);
-                }
-            }),
-            move |done| Ok(Measured::new(arrival(&done[0], disc)? / arrival(&done[1], disc)?, 0.5, 1.0)),
-        ));
+        claims.push(
+            claim(format!("arrival of stress in disc {disc} of the {of} over that of the slipping zig-zag"), "1")
+                .of(run(variant, "mpm", grid(8.0, 2), 15.0))
+                .of(run("zig-zag", "mpm", grid(8.0, 2), 15.0))
+                .at_most(SOONER, FASTER, move |done| Ok(arrival(&done[0], disc)? / arrival(&done[1], disc)?))
+                .within(exactly("the paper states an order of fringes and no ratio: sooner by a hundredth or more"))
+                .refuses(Control::scene("the slipping zig-zag four times as stiff", |scene| {
+                    if scene.laws.iter().flatten().any(|law| law.friction == 0.5) {
+                        crate::elastic::stiffen(scene, 4.0);
+                    }
+                })),
+        );
     }
-    gates
+    claims
 }
 
-pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
+pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for (label, run) in [
         ("line, mpm", run("line", "mpm", grid(8.0, 2), 15.0)),
@@ -157,7 +151,7 @@ pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
         ("zig-zag, μ = .5, mpm", run("zig-zag", "mpm", grid(8.0, 2), 15.0)),
         ("glued zig-zag, mpm", run("zig-zag-glued", "mpm", grid(8.0, 2), 15.0)),
     ] {
-        let done = bench.run(&run)?;
+        let done = runner.run(&run)?;
         let discs = 1..=done.scene.grains.len();
         let points = discs.filter_map(|disc| Some((disc as f64, arrival(&done, disc).ok()?))).collect();
         curves.push(Curve::new(label, Stroke::MarkedLine, points));
@@ -165,8 +159,8 @@ pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "stress",
         "Arrival of stress in elastic discs",
-        "Where the difference of the principal stresses at a disc's centre first exceeds .1 ρcv; 16 cells a diameter. In the zig-zag the even discs are \
-         reached by shear as well: they light up late where contacts are glued.",
+        "Where the difference of the principal stresses at a disc's centre first exceeds .1 ρcv; 16 cells a diameter. \
+         In the zig-zag the even discs are reached by shear as well: they light up late where contacts are glued.",
         [Axis::linear("disc"), Axis::linear("time of arrival t c/d")],
         curves,
     ))

@@ -1,19 +1,15 @@
 //! Photoelastic fringes in the discs at the paper's frame times, and a film of the line.
 //!
-//! The paper chose its fringe constant c by eye from its own pictures of the line and does not print it. Here it is fitted once, to
-//! the line as well: at the line's last frame the first grey fringe, cos(Δσ/c) = 0, stands at the centre of the fourth disc. The
-//! zig-zags keep that c.
+//! The paper chose its fringe constant c by eye from its own pictures of the line and does not print it. Here it is
+//! fitted once, to the line as well: at the line's last frame the first grey fringe, cos(Δσ/c) = 0, stands at the
+//! centre of the fourth disc. The zig-zags keep that c.
 
 use super::WAVE_SPEED;
 use super::elastic::{grid, principal_difference, run};
-use crate::bench::Bench;
-use crate::field_picture::{Shot, film, pictures};
-use crate::figure::Figure;
-use crate::gate::Done;
+use grainbench_fields::picture::{Shot, film, pictures};
 use grainbench_fields::quantity::Quantity;
+use grainbench_harness::prelude::*;
 use grainbench_scene::record::Snapshot;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::RunError;
 use std::f64::consts::FRAC_PI_2;
 
 /// A chain of the paper.
@@ -42,7 +38,8 @@ const CHAINS: [Chain; 3] = [
         title: "zig-zag, μ = .5, Fig. 10",
         frames: [3.0, 6.0, 9.0],
         experiment: [5.3, 10.5, 15.8],
-        seen: "As in the paper the load first goes from contact to wall, and on to the next disc when its contact sticks.",
+        seen: "As in the paper the load first goes from contact to wall, and on to the next disc when its contact \
+               sticks.",
     },
     Chain {
         variant: "zig-zag-glued",
@@ -84,14 +81,15 @@ fn constant(line: &Done) -> f64 {
 }
 
 /// Fringes of all chains at the paper's times, and the film.
-pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let (cells, points) = if bench.is_thorough() { (20.0, 2) } else { (8.0, 2) };
-    let done = |variant| bench.run(&run(variant, "mpm", grid(cells, points), 15.0));
+pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let (cells, points) = if runner.is_thorough() { (20.0, 2) } else { (8.0, 2) };
+    let done = |variant| runner.run(&run(variant, "mpm", grid(cells, points), 15.0));
     let line = done("line")?;
     let constant = constant(&line);
     let quantity = Quantity::Fringes(constant);
     let resolution = format!(
-        "{} cells a diameter, c = {:.3} ρcv, bright without stress; the striker is on the left (the paper's on the right).",
+        "{} cells a diameter, c = {:.3} ρcv, bright without stress; the striker is on the left (the paper's on the \
+         right).",
         2.0 * cells,
         constant / impact_stress(&line)
     );
@@ -109,8 +107,8 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
             &format!("fringes-{variant}"),
             &format!("Fringes: {title}"),
             &format!(
-                "cos((σ₁ − σ₂)/c) at the times of the paper's frames, {resolution} c is fitted once, so that at 7.7 the first \
-                 grey fringe stands at the centre of the fourth disc of the line, and then kept. {seen}"
+                "cos((σ₁ − σ₂)/c) at the times of the paper's frames, {resolution} c is fitted once, so that at 7.7 \
+                 the first grey fringe stands at the centre of the fourth disc of the line, and then kept. {seen}"
             ),
             pictures(quantity, &shots, PIXELS, None),
         ));

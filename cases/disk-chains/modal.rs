@@ -154,7 +154,13 @@ fn springs(scene: &Scene) -> Vec<Spring> {
                     (3 * j + 1, -t.y),
                     (3 * j + 2, -b.radius),
                 ]);
-                springs.push(Spring { stretch: shear, stiffness: law.tangential_stiffness, is_shear: true, pair, driven });
+                springs.push(Spring {
+                    stretch: shear,
+                    stiffness: law.tangential_stiffness,
+                    is_shear: true,
+                    pair,
+                    driven,
+                });
             }
         }
         for (number, wall) in scene.walls.iter().enumerate() {

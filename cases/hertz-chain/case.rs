@@ -1,20 +1,14 @@
 //! A solitary wave in a chain of Hertz spheres.
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung, fraction};
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
-use crate::measure::slope;
 use crate::program_forces::forces;
 use crate::rigid_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_harness::measure::slope;
+use grainbench_harness::prelude::*;
+use grainbench_scene::scene::{Duration, Sampling};
 use std::f64::consts::PI;
 
 const LADDER: &[Rung] = &[fraction("dt=.04", 0.04), fraction("dt=.02", 0.02)];
-/// The discrete chain's coefficient.
+/// The discrete chain's coefficient, from its travelling wave: the test solves for it.
 const COEFFICIENT: f64 = 0.688_67;
 /// Speeds of the striker (m/s).
 const SPEEDS: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
@@ -32,8 +26,9 @@ pub(crate) static CASE: Case = Case {
                coefficient only by its cube root.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// A strike at a speed, for as long as the wave takes. The step follows the stiffness at the wave's own overlap, a
@@ -75,43 +70,30 @@ fn scale(scene: &Scene) -> f64 {
     (4.0 * law.effective_modulus / (2.0 * grain.radius * density.powf(1.5))).cbrt()
 }
 
-fn gates() -> Vec<Gate> {
-    let exponent = Gate {
-        quantity: "exponent of the speed in the force".to_owned(),
-        unit: "1",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: "scaling of F = kδ^{3/2} (derivation)",
-        allowed: 2e-5,
-        because: "discretisation of the pulse, the same at every speed but for rounding; relative to 1/6",
-        runs: SPEEDS.map(strike).to_vec(),
-        measure: measure(|done| {
+fn claims() -> Vec<Claim> {
+    let exponent = claim("exponent of the speed in the force", "1")
+        .of_all(SPEEDS.map(strike))
+        .equals(Source::Derived("scaling of F = kδ^{3/2} (derivation)"), |done| {
             let points: Result<Vec<(f64, f64)>, Missing> =
                 done.iter().map(|done| wave(done).map(|(speed, force)| (force, speed))).collect();
             Ok(Measured::new(slope(&points?), 1.0 / 6.0, 1.0 / 6.0))
-        }),
-        control: Control::scene("a dashpot of γ = 2000/s, which does not scale", |scene| {
+        })
+        .within(judged(2e-5, "discretisation of the pulse, the same at every speed but for rounding; relative to 1/6"))
+        .refuses(Control::scene("a dashpot of γ = 2000/s, which does not scale", |scene| {
             scene.change_laws(|law| law.normal_damping = 2000.0);
-        }),
-    };
-    let coefficient = Gate {
-        quantity: "coefficient of the speed".to_owned(),
-        unit: "1",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: "travelling wave of the discrete chain; Nesterenko's long-wave limit is .68024",
-        allowed: 2e-5,
-        because: "discretisation of the pulse; the long-wave limit is 1.2 % off",
-        runs: vec![strike(1.0)],
-        measure: measure(|done| {
+        }));
+    let coefficient = claim("coefficient of the speed", "1")
+        .of(strike(1.0))
+        .equals(Source::Derived("travelling wave of the discrete chain (derivation)"), |done| {
             let (speed, force) = wave(&done[0])?;
             Ok(Measured::new(speed / (scale(&done[0].scene) * force.powf(1.0 / 6.0)), COEFFICIENT, COEFFICIENT))
-        }),
-        control: Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.effective_modulus *= 1.01)),
-    };
-    let rigid = Gate::refused(
-        Run::new(PLAIN, "rigid", rigid_rows::DEFAULT),
-        "refusal of forces over time",
+        })
+        .within(judged(
+            2e-5,
+            "discretisation of the pulse, and five digits of the coefficient; the long-wave limit is 1.2 % off",
+        ))
+        .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.effective_modulus *= 1.01)));
+    let rigid = claim("refusal of forces over time", "1").of(Run::new(PLAIN, "rigid", rigid_rows::DEFAULT)).refused(
         "momentum passes through rigid beads in one step: there is no wave whose force could peak",
         Control::scene("no probes", |scene| scene.probes.clear()),
     );
@@ -134,33 +116,64 @@ fn gates() -> Vec<Gate> {
     [exponent, coefficient, rigid].into_iter().chain(programs).collect()
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut measured = Vec::new();
     for speed in SPEEDS {
-        let done = bench.run(&strike(speed))?;
+        let done = runner.run(&strike(speed))?;
         if let Ok((speed, force)) = wave(&done) {
             measured.push((force, speed));
         }
     }
-    let scale = scale(&bench.scene(&strike(1.0))?);
+    let scale = scale(&runner.scene(&strike(1.0))?);
     let line = |coefficient: f64| -> Vec<(f64, f64)> {
         let ends = [measured.first(), measured.last()];
         ends.into_iter().flatten().map(|(force, _)| (*force, coefficient * scale * force.powf(1.0 / 6.0))).collect()
     };
     let (discrete, long_wave) = (line(COEFFICIENT), line(0.680_24));
-    let curve = |label: &str, stroke, points| Curve { label: label.to_owned(), stroke, points };
-    Ok(vec![Figure {
-        name: "speed".to_owned(),
-        title: "Speed of the solitary wave".to_owned(),
-        caption: "Against the force of the wave itself; steel beads of 20 mm.".to_owned(),
-        drawing: Drawing::Graph(Graph {
-            x: Axis { label: "peak force F (N)".to_owned(), logarithmic: true },
-            y: Axis { label: "speed V (m/s)".to_owned(), logarithmic: true },
-            curves: vec![
-                curve("dem", Stroke::Markers, measured),
-                curve("discrete chain, .68867", Stroke::Dashed, discrete),
-                curve("long-wave limit, .68024", Stroke::Dashed, long_wave),
-            ],
-        }),
-    }])
+    Ok(vec![Figure::graph(
+        "speed",
+        "Speed of the solitary wave",
+        "Against the force of the wave itself; steel beads of 20 mm.",
+        [Axis::log("peak force F (N)"), Axis::log("speed V (m/s)")],
+        vec![
+            Curve::new("dem", Stroke::Markers, measured),
+            Curve::new("discrete chain, .68867", Stroke::Dashed, discrete),
+            Curve::new("long-wave limit, .68024", Stroke::Dashed, long_wave),
+        ],
+    )])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sites per unit of time of the wave whose largest force is 1, k = m = 1: its overlap r(ξ) obeys
+    /// c² r(ξ) = ∫ (1 − |s|) r(ξ + s)^{3/2} ds over |s| < 1, and is found by iteration on `cells` points a site.
+    fn sites_per_time(cells: usize) -> f64 {
+        let step = 1.0 / cells as f64;
+        let mut overlap: Vec<f64> = (0..=6 * cells).map(|at| (-(at as f64 * step).powi(2)).exp()).collect();
+        let mut square = 0.0;
+        for _ in 0..60 {
+            let force = |at: isize| overlap.get(at.unsigned_abs()).copied().unwrap_or(0.0).powf(1.5);
+            let reach = cells as isize;
+            let mean = |at: isize| -> f64 {
+                (-reach..=reach).map(|s| (1.0 - s.unsigned_abs() as f64 * step) * force(at + s) * step).sum()
+            };
+            let next: Vec<f64> = (0..overlap.len()).map(|at| mean(at as isize)).collect();
+            square = next[0];
+            overlap = next.iter().map(|value| value / square).collect();
+        }
+        square.sqrt()
+    }
+
+    /// V = 2R c (k^{2/3} F^{1/3}/m)^{1/2} with k = (4/3) E* √(R/2) has the coefficient .76053 c.
+    #[test]
+    fn the_travelling_wave_has_the_coefficient() {
+        let [coarse, fine] = [10, 20].map(sites_per_time);
+        let sites = fine + (fine - coarse) / 3.0;
+        let (stiffness, mass) = (4.0 / 3.0 * 0.5_f64.sqrt(), 4.0 / 3.0 * PI);
+        let coefficient = 2.0 * sites * (stiffness.powf(2.0 / 3.0) / mass).sqrt() / 2_f64.cbrt();
+        assert!((sites - 0.905_516).abs() < 1e-6, "{sites}");
+        assert!((coefficient - COEFFICIENT).abs() < 5e-6, "{coefficient}");
+    }
 }

@@ -3,15 +3,11 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::bench::Bench;
-use crate::case::{Case, Rung, fraction};
-use crate::figure::Figure;
-use crate::gate::Gate;
 use crate::incline::{self, Slope};
 use crate::one_grain::OneGrain;
 use crate::program_rows;
 use crate::rigid_rows::{self, Row};
-use grainbench_scene::solver::RunError;
+use grainbench_harness::prelude::*;
 
 const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 
@@ -41,18 +37,19 @@ pub(crate) static CASE: Case = Case {
                felt only where the disc slips, a wrong inertia mostly where it rolls: read the four together.",
     ladder: LADDER,
     default_rung: LADDER[2],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
-fn gates() -> Vec<Gate> {
+fn claims() -> Vec<Claim> {
     let programs = program_rows::one_grain(&SLOPES.iter().map(|slope| slope.variant).collect::<Vec<_>>());
-    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs, elastic::gates()].concat()
+    [incline::claims(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs, elastic::claims()].concat()
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let mut figures = incline::figures(bench, SLOPES)?;
-    figures.push(rigid_rows::figure(bench, RIGID, OneGrain::rigid_incline)?);
-    figures.extend(elastic::figures(bench)?);
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let mut figures = incline::figures(runner, SLOPES)?;
+    figures.push(rigid_rows::figure(runner, RIGID, OneGrain::rigid_incline)?);
+    figures.extend(elastic::figures(runner)?);
     Ok(figures)
 }

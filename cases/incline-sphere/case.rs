@@ -3,15 +3,11 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::bench::Bench;
-use crate::case::{Case, Rung, fraction};
-use crate::figure::Figure;
-use crate::gate::Gate;
 use crate::incline::{self, Slope};
 use crate::one_grain::OneGrain;
 use crate::program_rows;
 use crate::rigid_rows::{self, Row};
-use grainbench_scene::solver::RunError;
+use grainbench_harness::prelude::*;
 
 const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 
@@ -28,8 +24,9 @@ const RIGID: &[Row] = &[
 pub(crate) static CASE: Case = Case {
     name: "incline-sphere",
     title: "A sphere on an inclined plane",
-    claim: "A sphere released from rest rolls or slips as Coulomb friction says: displacement, velocity and spin follow \
-            the rigid answer up to the compliance of the contact, and the compliant answer to the step's own error.",
+    claim: "A sphere released from rest rolls or slips as Coulomb friction says: displacement, velocity and spin \
+            follow the rigid answer up to the compliance of the contact, and the compliant answer to the step's own \
+            error.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("../incline-disc/derivation.md"),
     weakness: "One contact that never opens and whose normal never turns, started at its static overlap: nothing is \
@@ -37,18 +34,19 @@ pub(crate) static CASE: Case = Case {
                felt only where the sphere slips, a wrong inertia mostly where it rolls: read the two together.",
     ladder: LADDER,
     default_rung: LADDER[2],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
-fn gates() -> Vec<Gate> {
+fn claims() -> Vec<Claim> {
     let programs = program_rows::one_grain(&SLOPES.iter().map(|slope| slope.variant).collect::<Vec<_>>());
-    [incline::gates(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs, elastic::gates()].concat()
+    [incline::claims(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs, elastic::claims()].concat()
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let mut figures = incline::figures(bench, SLOPES)?;
-    figures.push(rigid_rows::figure(bench, RIGID, OneGrain::rigid_incline)?);
-    figures.push(elastic::figure(bench)?);
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let mut figures = incline::figures(runner, SLOPES)?;
+    figures.push(rigid_rows::figure(runner, RIGID, OneGrain::rigid_incline)?);
+    figures.push(elastic::figure(runner)?);
     Ok(figures)
 }

@@ -2,7 +2,7 @@
 
 use crate::one_grain::OneGrain;
 use crate::one_grain_cost::displacement;
-use crate::subject::Subject;
+use grainbench_harness::subject::Subject;
 
 pub(crate) fn subjects() -> Vec<Subject> {
     const SOURCE: &str = "2001 paper, eqs. 23-26";

@@ -1,23 +1,17 @@
 //! A manufactured motion along an axis: order of accuracy.
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung, cells};
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::manufactured::error;
-use crate::measure::slope;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_harness::measure::slope;
+use grainbench_harness::prelude::*;
 
 const LADDER: &[Rung] = &[cells("1/16", 16.0, 2), cells("1/32", 32.0, 2), cells("1/64", 64.0, 2)];
 const GIMP: &str = "mpm+gimp+flip";
 const SPLINES: &str = "mpm+flip";
 const HATS: &str = "mpm+linear+flip";
-/// Points per cell and axis that B-splines need: the sum over moving points is a quadrature, whose error does not fall with the cell and
-/// takes over with fewer (order 1.3 with four, 1.8 with six).
+/// Points per cell and axis that B-splines need: the sum over moving points is a quadrature, whose error does not fall
+/// with the cell and takes over with fewer (order 1.3 with four, 1.8 with six).
 const POINTS_OF_SPLINES: u32 = 10;
-const SOURCE: &str = "manufactured solution (derivation)";
+const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
 pub(crate) static CASE: Case = Case {
     name: "mms-axis-aligned",
@@ -28,8 +22,9 @@ pub(crate) static CASE: Case = Case {
     weakness: "Periodic and along the grid: no boundary, no shear, no rotation.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 fn runs(solver: &'static str, points: u32) -> Vec<Run> {
@@ -43,58 +38,47 @@ fn order(done: &[Done]) -> Result<f64, Missing> {
     Ok(slope(&points?))
 }
 
-fn gates() -> Vec<Gate> {
-    let gate = |quantity: &str, expected: f64, allowed, because, runs, control| Gate {
-        quantity: quantity.to_owned(),
-        unit: "1",
-        scope: Scope::Named,
-        evidence: Evidence::Convergence,
-        source: SOURCE,
-        allowed,
-        because,
-        runs,
-        measure: measure(move |done| Ok(Measured::new(order(done)?, expected, 1.0))),
-        control,
-    };
+fn claims() -> Vec<Claim> {
     // Wrong moduli would not do: the body force follows them, and the motion stays.
     let wrong = || Control::scene("a damping of .3 per second", |scene| scene.global_damping = 0.3);
+    let second = |quantity, runs: Vec<Run>| {
+        claim(quantity, "1")
+            .of_all(runs)
+            .converges(2.0, SOURCE, order)
+            .within(judged(0.1, "fitted over 16 to 64 cells"))
+            .refuses(wrong())
+    };
     vec![
-        gate("order in the cell, uGIMP", 2.0, 0.1, "fitted over 16 to 64 cells", runs(GIMP, 2), wrong()),
-        gate(
+        second("order in the cell, uGIMP", runs(GIMP, 2)),
+        second(
             "order in the cell, quadratic B-splines",
-            2.0,
-            0.1,
-            "fitted over 16 to 64 cells",
             runs(SPLINES, POINTS_OF_SPLINES).into_iter().map(Run::slow).collect(),
-            wrong(),
         ),
-        gate(
-            "order in the cell, hat functions: they do not converge",
-            -0.5,
-            1.0,
-            "crossing a cell meets a jump of the gradient whatever its size: less than half an order, or the error grows",
-            runs(HATS, 2),
-            Control::solver("uGIMP in their place", GIMP),
-        ),
-        Gate {
-            quantity: "root mean square error of the displacement, 64 cells, uGIMP".to_owned(),
-            unit: "m",
-            evidence: Evidence::Analytic,
-            runs: vec![Run::new(PLAIN, GIMP, LADDER[2].resolution)],
-            measure: measure(|done| Ok(Measured::new(error(&done[0])?, 0.0, 0.05))),
-            ..gate("", 0.0, 1.2e-3, "discretisation; in units of the amplitude", vec![], wrong())
-        },
+        claim("order in the cell, hat functions", "1")
+            .of_all(runs(HATS, 2))
+            .between(
+                [-1.5, 0.5],
+                Source::Derived("who crosses a cell meets a jump of the gradient (derivation)"),
+                order,
+            )
+            .within(exactly("less than half an order, or the error grows"))
+            .refuses(Control::solver("uGIMP in their place", GIMP)),
+        claim("root mean square error of the displacement, 64 cells, uGIMP", "m")
+            .of(Run::new(PLAIN, GIMP, LADDER[2].resolution))
+            .equals(SOURCE, |done| Ok(Measured::new(error(&done[0])?, 0.0, 0.05)))
+            .within(judged(1.2e-3, "discretisation; in units of the amplitude"))
+            .refuses(wrong()),
     ]
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (label, solver, points) in
         [("uGIMP", GIMP, 2), ("quadratic B-splines", SPLINES, POINTS_OF_SPLINES), ("hat functions", HATS, 2)]
     {
         let mut measured = Vec::new();
         for (run, cells) in runs(solver, points).iter().zip([16.0, 32.0]) {
-            if let Ok(error) = error(&bench.run(run)?) {
+            if let Ok(error) = error(&runner.run(run)?) {
                 measured.push((1.0 / cells, error));
             }
         }

@@ -1,20 +1,18 @@
 //! A manufactured vortex: large rotation and shear.
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung};
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
 use crate::manufactured::error;
-use crate::measure::slope;
-use crate::verdict::Evidence;
-use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_harness::measure::slope;
+use grainbench_harness::prelude::*;
+use grainbench_scene::scene::Duration;
 
 const LADDER: &[Rung] = &[rung("1/16", 16.0), rung("1/32", 32.0), rung("1/64", 64.0)];
-const SOLVERS: [(&str, &str); 3] =
-    [("quadratic B-splines, FLIP with spin", "mpm"), ("uGIMP, FLIP", "mpm+gimp+flip"), ("hat functions, FLIP", "mpm+linear+flip")];
+const SOLVERS: [(&str, &str); 3] = [
+    ("quadratic B-splines, FLIP with spin", "mpm"),
+    ("uGIMP, FLIP", "mpm+gimp+flip"),
+    ("hat functions, FLIP", "mpm+linear+flip"),
+];
 const KEEPS_NO_NOISE: &str = "mpm+apic";
-const SOURCE: &str = "manufactured solution (derivation)";
+const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
 /// Small steps: the error in time must stay below that of the grid.
 const fn rung(name: &'static str, cells: f64) -> Rung {
@@ -24,15 +22,16 @@ const fn rung(name: &'static str, cells: f64) -> Rung {
 pub(crate) static CASE: Case = Case {
     name: "mms-vortex",
     title: "Manufactured vortex",
-    claim: "Displacements converge in a motion that turns and shears the material by far; points that are stretched that far do not \
-            let go of each other.",
+    claim: "Displacements converge in a motion that turns and shears the material by far; points that are stretched \
+            that far do not let go of each other.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "One material law, no contact, and edges at which nothing happens.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// Up to the largest turn.
@@ -50,60 +49,61 @@ fn order(done: &[Done]) -> Result<f64, Missing> {
     Ok(slope(&points?))
 }
 
-fn gates() -> Vec<Gate> {
+fn claims() -> Vec<Claim> {
     let damped = || Control::scene("a damping of .3 per second", |scene| scene.global_damping = 0.3);
-    let mut gates = Vec::new();
-    for (solver, least) in [("mpm", 1.9), ("mpm+gimp+flip", 1.8)] {
-        gates.push(Gate::new(
-            ("order in the cell at the largest turn, 16 to 32 cells", "1"),
-            LADDER[..2].iter().map(|&rung| run(solver, rung).slow()).collect(),
-            (Evidence::Convergence, SOURCE),
-            (2.0 - least, "two rungs, and a force that jumps at the edges"),
-            damped(),
-            |done| Ok(Measured::new(order(done)?, 2.0, 1.0)),
-        ));
+    let off = |quantity: String, run: Run, tolerance, control| {
+        claim(quantity, "m")
+            .of(run)
+            .equals(SOURCE, |done| Ok(Measured::new(error(&done[0])?, 0.0, 1.0)))
+            .within(tolerance)
+            .refuses(control)
+    };
+    let mut claims = Vec::new();
+    for (solver, allowed) in [("mpm", 0.1), ("mpm+gimp+flip", 0.2)] {
+        claims.push(
+            claim("order in the cell at the largest turn, 16 to 32 cells", "1")
+                .of_all(LADDER[..2].iter().map(|&rung| run(solver, rung).slow()))
+                .converges(2.0, SOURCE, order)
+                .within(judged(allowed, "two rungs, and a force that jumps at the edges"))
+                .refuses(damped()),
+        );
         for (rung, allowed) in LADDER.iter().zip([0.036, 9.5e-3]) {
-            gates.push(Gate::new(
-                (format!("root mean square error of the displacement at the largest turn, {} cells", rung.name), "m"),
-                vec![if *rung == LADDER[0] { run(solver, *rung) } else { run(solver, *rung).slow() }],
-                (Evidence::Analytic, SOURCE),
-                (allowed, "discretisation, of second order; in units of 1 m, the radius of the ring and nearly the largest way"),
+            claims.push(off(
+                format!("root mean square error of the displacement at the largest turn, {} cells", rung.name),
+                if *rung == LADDER[0] { run(solver, *rung) } else { run(solver, *rung).slow() },
+                judged(
+                    allowed,
+                    "discretisation, of second order; in units of 1 m, the radius of the ring and nearly the largest \
+                     way",
+                ),
                 damped(),
-                |done| Ok(Measured::new(error(&done[0])?, 0.0, 1.0)),
             ));
         }
     }
-    let back = |run: Run, allowed, because, control| {
-        Gate::new(
-            ("root mean square error of the displacement when all is back, t = 1 s, 1/32 cells", "m"),
-            vec![run],
-            (Evidence::Analytic, SOURCE),
-            (allowed, because),
-            control,
-            |done| Ok(Measured::new(error(&done[0])?, 0.0, 1.0)),
-        )
+    let back = |run, tolerance, control| {
+        let quantity = "root mean square error of the displacement when all is back, t = 1 s, 1/32 cells";
+        off(quantity.to_owned(), run, tolerance, control)
     };
     let full = |solver| Run::new(PLAIN, solver, LADDER[1].resolution).slow();
-    gates.push(back(full(KEEPS_NO_NOISE), 7e-3, "discretisation; in units of 1 m", damped()));
-    gates.push(back(
+    claims.push(back(full(KEEPS_NO_NOISE), judged(7e-3, "discretisation; in units of 1 m"), damped()));
+    claims.push(back(
         full("mpm").known(
-            "FLIP keeps what a grid cannot see of the points' velocities: it has grown by the time all is back. A transfer that \
-             drops it converges, and loses the energy of rolling grains instead",
+            "FLIP keeps what a grid cannot see of the points' velocities: it has grown by the time all is back. A \
+             transfer that drops it converges, and loses the energy of rolling grains instead",
         ),
-        1.2e-2,
-        "what APIC reaches",
+        judged(1.2e-2, "what APIC reaches"),
         Control::without_the_error("APIC", KEEPS_NO_NOISE, LADDER[1].resolution),
     ));
-    gates
+    claims
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (label, solver) in SOLVERS {
         let mut measured = Vec::new();
         for rung in [rung("1/8", 8.0), LADDER[0]] {
             let run = run(solver, rung);
-            if let (Resolution::Grid { cells, .. }, Ok(done)) = (rung.resolution, bench.run(&run)) {
+            if let (Resolution::Grid { cells, .. }, Ok(done)) = (rung.resolution, runner.run(&run)) {
                 measured.extend(error(&done).ok().map(|error| (1.0 / cells, error)));
             }
         }

@@ -7,18 +7,14 @@ mod figures;
 #[path = "modal.rs"]
 mod modal;
 
-use crate::case::{Case, Rung, fraction};
-use crate::effect::Effect;
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
-use crate::measure::{dominant_frequency, slope};
 use crate::program_forces;
 use crate::program_rows;
 use crate::rigid_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
+use crate::sources::literature::cundall_strack_1979;
+use grainbench_harness::measure::{dominant_frequency, slope};
+use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::Resolution;
+use grainbench_scene::scene::Duration;
 use modal::{Inward, Modal, law};
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -28,7 +24,8 @@ const FIGURE_STEP: Resolution = Resolution::CriticalFraction(0.0854);
 /// Cycles of the ramp in the plain scene.
 const RAMP: u64 = 40;
 const MODAL: [&str; 3] = ["kappa-0", "kappa-2_3", "kappa-1"];
-const SOURCE: &str = "modal solution of the nine discs without slip (derivation); Cundall & Strack 1979, Fig. 5";
+const MODES: Source =
+    Source::Derived("modal solution of the nine discs without slip (derivation), of Cundall & Strack 1979, Fig. 5");
 
 pub(crate) static CASE: Case = Case {
     name: "nine-discs",
@@ -43,16 +40,38 @@ pub(crate) static CASE: Case = Case {
                wrongly in less regular packings would pass.",
     ladder: LADDER,
     default_rung: LADDER[0],
-    gates,
+    claims,
     figures: figures::figures,
+    home: &crate::registry::HOME,
 };
 
-fn gates() -> Vec<Gate> {
-    [static_forces(), discrete(), vec![geometry()], continuous(), paper(), vec![rigid_rows::refuses_cycles("kappa-0")], program_rows::nine_discs(&MODAL, LADDER[0].resolution, travel), program_rows::turning_walls(DISTORTION[1], LADDER[0].resolution, travel), program_forces::nine_discs("kappa-1", LADDER[0].resolution), elastic::DISCS.gates(Run::slow)].concat()
+fn claims() -> Vec<Claim> {
+    let step = LADDER[0].resolution;
+    [
+        static_forces(),
+        discrete(),
+        vec![geometry()],
+        continuous(),
+        speed_of_loading(),
+        damping(),
+        slip_in_compression(),
+        distortion(),
+        vec![rigid_rows::refuses_cycles("kappa-0")],
+        program_rows::nine_discs(&MODAL, step, travel),
+        program_rows::turning_walls(DISTORTION[1], step, travel),
+        program_forces::nine_discs("kappa-1", step),
+        elastic::DISCS.claims(Run::slow),
+    ]
+    .concat()
+}
+
+/// Printed in the paper.
+fn printed(what: &'static str) -> Source {
+    Source::Printed(&cundall_strack_1979::WORK, what)
 }
 
 /// Static forces at every named contact, damped.
-fn static_forces() -> Vec<Gate> {
+fn static_forces() -> Vec<Claim> {
     type Force = fn(&Modal) -> f64;
     let contacts: [(&str, &str, Force); 6] = [
         ("centre-edge", "normal", |modal| modal.at_rest().edge),
@@ -62,39 +81,50 @@ fn static_forces() -> Vec<Gate> {
         ("wall-corner", "shear", |modal| modal.kappa * modal.at_rest().corner),
         ("corner-edge", "shear", |modal| modal.kappa * (modal.at_rest().edge - modal.at_rest().corner)),
     ];
-    let mut gates = Vec::new();
+    let mut claims = Vec::new();
     for variant in ["static-0", "static-2_3", "static-1"] {
-        for (contact, kind, force) in contacts.iter().copied() {
-            if variant == "static-0" && kind == "shear" {
-                continue;
-            }
-            gates.push(Gate {
-                quantity: format!("{kind} force at rest, {contact}"),
-                unit: "N",
-                evidence: Evidence::Analytic,
-                // With friction the forces depend on how a contact remembers: its control is a defect of ours.
-                scope: if variant == "static-0" { Scope::AnySolver } else { Scope::Named },
-                source: SOURCE,
-                allowed: if variant == "static-0" { 1e-10 } else { 1e-5 },
-                because: "geometry of second order in the overlap, δ/R = 5e-4, none at κ = 0; in units of k_n δ",
-                runs: vec![Run::new(variant, "dem", LADDER[0].resolution)],
-                measure: measure(move |done| {
+        let frictionless = variant == "static-0";
+        for (contact, kind, force) in contacts.into_iter().filter(|contact| !frictionless || contact.1 == "normal") {
+            let row = claim(format!("{kind} force at rest, {contact}"), "N")
+                .of(Run::new(variant, "dem", LADDER[0].resolution))
+                .equals(MODES, move |done| {
                     let scene = &done[0].scene;
                     let unit = law(scene).normal_stiffness * travel(&done[0]);
                     let value = done[0].last(&format!("{contact}.{kind}_force"))?.abs();
                     Ok(Measured::new(value, force(&Modal::of(scene)) * unit, unit))
-                }),
-                control: if variant == "static-0" {
-                    Control::scene("walls 1e-4 faster", |scene| {
-                        scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= 1.0001);
-                    })
-                } else {
-                    Control::forgets_history()
-                },
+                })
+                .within(computed(
+                    left_out(variant),
+                    if frictionless {
+                        "places of walls round by ε 3R in each of 40 steps; in units of k_n δ"
+                    } else {
+                        "geometry: normals turn by (a − b)/2R, and forces k_n b with them; in units of k_n δ"
+                    },
+                ));
+            claims.push(if frictionless {
+                row.refuses(Control::scene("walls 1e-4 faster", |scene| {
+                    scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= 1.0001);
+                }))
+                .fair_to_any()
+            } else {
+                // With friction the forces depend on how a contact remembers: its control is a defect of ours.
+                row.refuses(Control::forgets_history())
             });
         }
     }
-    gates
+    claims
+}
+
+/// What the static forces leave out, in units of k_n δ: the force b that turns by (a − b)/2R with its contact, none at κ = 0,
+/// and rounding of the walls' places, by ε 3R in each cycle in which they move.
+fn left_out(variant: &str) -> f64 {
+    let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
+    let (phase, step) = (&scene.walls[0].motion.phases[0], 0.1 * scene.critical_time_step());
+    let over_radius = phase.velocity.norm() * phase.stop.seconds(step) / scene.grains[0].radius;
+    let rest = Modal::of(&scene).at_rest();
+    let cycles = phase.stop.seconds(1.0);
+    let rounding = cycles * f64::EPSILON * 3.0 / over_radius;
+    0.5 * rest.corner * (rest.edge - rest.corner) * over_radius + rounding
 }
 
 /// How far each wall of a run travels in its first phase (m).
@@ -113,11 +143,11 @@ fn inward(done: &Done) -> Result<Vec<Inward>, Missing> {
 }
 
 /// The worse of both discs over a run: value and expectation at the worst sample.
-fn worst(time: &[f64], values: &[Inward], exact: &[Inward]) -> Measured {
+fn worst(time: &[f64], values: &[Inward], exact: &[Inward]) -> Result<Measured, Missing> {
     let pick = |list: &[Inward], of: fn(&Inward) -> f64| list.iter().map(of).collect::<Vec<f64>>();
     let judge = |of: fn(&Inward) -> f64| Measured::worst_of(time, &pick(values, of), &pick(exact, of), 1.0);
-    let (edge, corner) = (judge(|inward| inward.edge), judge(|inward| inward.corner));
-    if edge.error().abs() >= corner.error().abs() { edge } else { corner }
+    let both = [judge(|inward| inward.edge), judge(|inward| inward.corner)];
+    Measured::worst_among(both).ok_or_else(|| Missing("discs".to_owned()))
 }
 
 fn exact_cycles(done: &Done) -> Vec<Inward> {
@@ -134,70 +164,59 @@ fn at_speed(variant: &'static str, factor: f64) -> Run {
 }
 
 /// Against the answer of the calculation cycle itself, over 400 cycles.
-fn discrete() -> Vec<Gate> {
-    let gate = |variant: &'static str| Gate {
-        quantity: "displacement over 400 cycles, δ → 0, against the cycle's own answer, worst".to_owned(),
-        unit: "wall travel",
-        evidence: Evidence::Analytic,
-        scope: Scope::Named,
-        source: "exact solution of the central-difference cycle (derivation)",
-        allowed: if variant == "kappa-0" { 1e-11 } else { 1e-9 },
-        because: "rounding of positions against δ/R = 1.5e-3; with friction the extrapolation's own remainder",
-        runs: if variant == "kappa-0" {
-            vec![Run::new(variant, "dem", LADDER[0].resolution)]
-        } else {
-            [1.0, 0.5, 0.25].map(|factor| at_speed(variant, factor)).to_vec()
-        },
-        measure: measure(|done| {
-            let exact = exact_cycles(&done[0]);
-            let runs: Vec<Vec<Inward>> = done.iter().map(inward).collect::<Result<_, _>>()?;
-            let weights: &[f64] = if runs.len() == 1 { &[1.0] } else { &[1.0 / 3.0, -2.0, 8.0 / 3.0] };
-            let sum = |of: fn(&Inward) -> f64, at: usize| -> f64 {
-                runs.iter().zip(weights).map(|(run, weight)| weight * of(&run[at])).sum()
-            };
-            let limit: Vec<Inward> = (0..exact.len())
-                .map(|at| Inward { edge: sum(|inward| inward.edge, at), corner: sum(|inward| inward.corner, at) })
-                .collect();
-            Ok(worst(&done[0].series().time, &limit, &exact))
-        }),
-        control: if variant == "kappa-0" {
-            Control::scene("stiffness off by 1e-8", |scene| {
+fn discrete() -> Vec<Claim> {
+    let of = |variant: &'static str| {
+        let (runs, tolerance, control) = if variant == "kappa-0" {
+            let control = Control::scene("stiffness off by 1e-8", |scene| {
                 scene.change_laws(|law| law.normal_stiffness *= 1.0 + 1e-8);
-            })
+            });
+            let rounding = judged(1e-11, "rounding of positions, as it adds up over 400 cycles, against δ/R = 1.5e-3");
+            (vec![Run::new(variant, "dem", LADDER[0].resolution)], rounding, control)
         } else {
-            Control::scene("tangential stiffness off by 1e-7", |scene| {
+            let control = Control::scene("tangential stiffness off by 1e-7", |scene| {
                 scene.change_laws(|law| law.tangential_stiffness *= 1.0 + 1e-7);
+            });
+            let remainder = judged(1e-9, "the extrapolation's own remainder, of the order of (δ/R)³ with δ/R = 1.5e-3");
+            ([1.0, 0.5, 0.25].map(|factor| at_speed(variant, factor)).to_vec(), remainder, control)
+        };
+        claim("displacement over 400 cycles, δ → 0, against the cycle's own answer, worst", "wall travel")
+            .of_all(runs)
+            .equals(Source::Derived("exact solution of the central-difference cycle (derivation)"), |done| {
+                let exact = exact_cycles(&done[0]);
+                let runs: Vec<Vec<Inward>> = done.iter().map(inward).collect::<Result<_, _>>()?;
+                let weights: &[f64] = if runs.len() == 1 { &[1.0] } else { &[1.0 / 3.0, -2.0, 8.0 / 3.0] };
+                let sum = |of: fn(&Inward) -> f64, at: usize| -> f64 {
+                    runs.iter().zip(weights).map(|(run, weight)| weight * of(&run[at])).sum()
+                };
+                let limit: Vec<Inward> = (0..exact.len())
+                    .map(|at| Inward { edge: sum(|inward| inward.edge, at), corner: sum(|inward| inward.corner, at) })
+                    .collect();
+                worst(&done[0].series().time, &limit, &exact)
             })
-        },
+            .within(tolerance)
+            .refuses(control)
     };
-    MODAL.map(gate).to_vec()
+    MODAL.map(of).to_vec()
 }
 
 /// What the linear answer leaves out is geometry: it falls with the first power of the overlap.
-fn geometry() -> Gate {
-    Gate {
-        quantity: "exponent in δ/R of the deviation from the linear answer".to_owned(),
-        unit: "1",
-        evidence: Evidence::Convergence,
-        scope: Scope::Named,
-        source: "normals turn by (a − b)/2R (derivation)",
-        allowed: 0.05,
-        because: "fitted over a factor of four",
-        runs: [1.0, 0.5, 0.25].map(|factor| at_speed("kappa-1", factor)).to_vec(),
-        measure: measure(|done| {
+fn geometry() -> Claim {
+    claim("exponent in δ/R of the deviation from the linear answer", "1")
+        .of_all([1.0, 0.5, 0.25].map(|factor| at_speed("kappa-1", factor)))
+        .equals(Source::Derived("normals turn by (a − b)/2R (derivation)"), |done| {
             let points: Result<Vec<(f64, f64)>, Missing> = done
                 .iter()
                 .map(|done| {
-                    let worst = worst(&done.series().time, &inward(done)?, &exact_cycles(done));
+                    let worst = worst(&done.series().time, &inward(done)?, &exact_cycles(done))?;
                     Ok((travel(done), worst.error()))
                 })
                 .collect();
             Ok(Measured::new(slope(&points?), 1.0, 1.0))
-        }),
-        control: Control::scene("mass off by a thousandth", |scene| {
+        })
+        .within(judged(0.05, "fitted over a factor of four"))
+        .refuses(Control::scene("mass off by a thousandth", |scene| {
             scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.001);
-        }),
-    }
+        }))
 }
 
 /// The ramp lasts as long as 40 steps of fraction .1, whatever the step; ten periods of the slow mode are run.
@@ -217,57 +236,49 @@ fn modal_error(done: &Done) -> Result<Measured, Missing> {
     let modal = Modal::of(&done.scene);
     let ramp = done.scene.walls[0].motion.phases[0].stop.seconds(0.0);
     let exact: Vec<Inward> = done.series().time.iter().map(|&t| modal.continuous(t, ramp)).collect();
-    Ok(worst(&done.series().time, &inward(done)?, &exact))
+    worst(&done.series().time, &inward(done)?, &exact)
 }
 
-fn continuous() -> Vec<Gate> {
+fn continuous() -> Vec<Claim> {
     let lighter = || {
         Control::scene("mass 2 % too small", |scene: &mut Scene| {
             scene.grains.iter_mut().for_each(|grain| grain.mass *= 0.98);
         })
     };
-    let mut gates = Vec::new();
+    let mut claims = Vec::new();
     for variant in MODAL {
         for (rung, allowed) in LADDER.iter().copied().zip([1.2e-2, 3e-3, 8e-4]) {
-            gates.push(Gate {
-                quantity: "displacement over ten periods against the continuous answer, worst".to_owned(),
-                unit: "wall travel",
-                evidence: Evidence::Analytic,
-                // Coarser steps tell the phase error of central differences and no other's.
-                scope: if rung == LADDER[2] { Scope::AnySolver } else { Scope::Named },
-                source: SOURCE,
-                allowed,
-                because: "phase error of central differences, ω²Δt²/24 a radian, over ten periods",
-                runs: vec![modal_run(variant, rung)],
-                measure: measure(|done| modal_error(&done[0])),
-                control: lighter(),
-            });
+            let row = claim("displacement over ten periods against the continuous answer, worst", "wall travel")
+                .of(modal_run(variant, rung))
+                .equals(MODES, |done| modal_error(&done[0]))
+                .within(judged(
+                    allowed,
+                    "phase error of central differences, ω²Δt²/24 a radian, over ten periods; largest at κ = 0",
+                ))
+                .refuses(lighter());
+            // Coarser steps tell the phase error of central differences and no other's.
+            claims.push(if rung == LADDER[2] { row.fair_to_any() } else { row });
         }
-        gates.push(Gate {
-            quantity: "order in Δt of that deviation".to_owned(),
-            unit: "1",
-            evidence: Evidence::Convergence,
-            scope: Scope::Named,
-            source: "central differences are of second order",
-            allowed: 0.1,
-            because: "fitted over two halvings",
-            runs: LADDER.iter().map(|&rung| modal_run(variant, rung)).collect(),
-            measure: measure(|done| {
-                let points: Result<Vec<(f64, f64)>, Missing> = done
-                    .iter()
-                    .map(|done| Ok((done.record.provenance.time_step, modal_error(done)?.error())))
-                    .collect();
-                Ok(Measured::new(slope(&points?), 2.0, 1.0))
-            }),
-            control: lighter(),
-        });
+        claims.push(
+            claim("order in Δt of that deviation", "1")
+                .of_all(LADDER.iter().map(|&rung| modal_run(variant, rung)))
+                .converges(2.0, Source::Derived("central differences are of second order"), |done| {
+                    let points: Result<Vec<(f64, f64)>, Missing> = done
+                        .iter()
+                        .map(|done| Ok((done.record.provenance.time_step, modal_error(done)?.error())))
+                        .collect();
+                    Ok(slope(&points?))
+                })
+                .within(judged(0.1, "fitted over two halvings"))
+                .refuses(lighter()),
+        );
     }
-    gates
+    claims
 }
 
-/// What the paper found.
-fn paper() -> Vec<Gate> {
-    [speed_of_loading(), damping(), slip_in_compression(), distortion()].concat()
+/// The largest magnitude; what is not a number is larger than any.
+fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().map(f64::abs).max_by(f64::total_cmp).unwrap_or(f64::NAN)
 }
 
 /// Mean and amplitude of a column after the walls have stopped.
@@ -278,7 +289,7 @@ fn residual(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
     };
     let values = &done.column(column)?[stop..];
     let mean = values.iter().sum::<f64>() / values.len() as f64;
-    Ok((mean, values.iter().map(|value| (value - mean).abs()).fold(0.0, f64::max)))
+    Ok((mean, largest(values.iter().map(|value| value - mean))))
 }
 
 fn frequency(done: &Done) -> Result<f64, Missing> {
@@ -287,113 +298,112 @@ fn frequency(done: &Done) -> Result<f64, Missing> {
     Ok(dominant_frequency(&done.series().time[120..], &values[120..], 0.5 * slow, 1.2 * fast))
 }
 
-fn pair(fast: &'static str, slow: &'static str) -> Vec<Run> {
-    vec![Run::new(fast, "dem", FIGURE_STEP), Run::new(slow, "dem", FIGURE_STEP)]
+fn pair(fast: &'static str, slow: &'static str) -> [Run; 2] {
+    [fast, slow].map(|variant| Run::new(variant, "dem", FIGURE_STEP))
 }
 
-fn speed_of_loading() -> Vec<Gate> {
-    let mut gates = Vec::new();
+fn speed_of_loading() -> Vec<Claim> {
+    let spectrum = || {
+        let fast_over_slow = ((4.0 + SQRT_2) / (4.0 - SQRT_2)).sqrt();
+        computed(
+            (1.2 * fast_over_slow - 0.5) / 4000.0,
+            "one of 4000 steps of the spectrum, from half the slow frequency to 1.2 times the fast one, at κ = 1",
+        )
+    };
+    let mut claims = Vec::new();
     for (fast, slow, figure) in [("fast", "slow", "Fig. 7(a)"), ("soft-fast", "soft-slow", "Fig. 7(b)")] {
-        gates.push(Gate {
-            quantity: format!("residual amplitude, slow over fast loading, {figure}"),
-            unit: "1",
-            evidence: Evidence::Paper,
-            scope: Scope::Named,
-            source: "Cundall & Strack 1979, Fig. 7: the amplitude increases with the speed of loading",
-            allowed: 0.5,
-            because: "only the order is printed: any ratio from 0 to 1 passes",
-            runs: pair(fast, slow),
-            measure: measure(|done| {
-                let amplitude = |done: &Done| residual(done, "centre-edge.normal_force").map(|(_, amplitude)| amplitude);
-                Ok(Measured::new(amplitude(&done[1])? / amplitude(&done[0])?, 0.5, 1.0))
-            }),
-            control: Control::scene("the slow walls move nine times as fast", |scene| {
-                for wall in &mut scene.walls {
-                    let phase = &mut wall.motion.phases[0];
-                    if phase.stop == Moment::Cycle(120) {
-                        phase.velocity *= 9.0;
+        claims.push(
+            claim(format!("residual amplitude, slow over fast loading, {figure}"), "1")
+                .of_all(pair(fast, slow))
+                .at_most(
+                    1.0,
+                    printed(
+                        "Fig. 7 and the text: the amplitude at the end of loading increases with the speed of loading",
+                    ),
+                    |done| {
+                        let [fast, slow] = [0, 1].map(|at: usize| residual(&done[at], "centre-edge.normal_force"));
+                        Ok(slow?.1 / fast?.1)
+                    },
+                )
+                .within(exactly("only the order is printed"))
+                .refuses(Control::scene("the slow walls move nine times as fast", |scene| {
+                    for wall in &mut scene.walls {
+                        let phase = &mut wall.motion.phases[0];
+                        if phase.stop == Moment::Cycle(120) {
+                            phase.velocity *= 9.0;
+                        }
                     }
-                }
-            }),
-        });
-        gates.push(Gate {
-            quantity: format!("frequency, slow over fast loading, {figure}"),
-            unit: "1",
-            evidence: Evidence::Paper,
-            scope: Scope::Named,
-            source: "Cundall & Strack 1979, Fig. 7: the frequencies are about the same",
-            allowed: 2e-3,
-            because: "resolution of the spectrum over some 70 periods",
-            runs: pair(fast, slow),
-            measure: measure(|done| Ok(Measured::new(frequency(&done[1])? / frequency(&done[0])?, 1.0, 1.0))),
-            control: Control::scene("stiffness × 1.05 under slow loading", |scene| {
-                if scene.walls[0].motion.phases[0].stop == Moment::Cycle(120) {
-                    scene.change_laws(|law| law.normal_stiffness *= 1.05);
-                }
-            }),
-        });
-        gates.push(Gate {
-            quantity: format!("frequency of the slow mode, {figure}"),
-            unit: "rad/s",
-            evidence: Evidence::Analytic,
-            scope: Scope::Named,
-            source: SOURCE,
-            allowed: 2e-3,
-            because: "resolution of the spectrum over some 70 periods",
-            runs: vec![Run::new(fast, "dem", FIGURE_STEP)],
-            measure: measure(|done| {
-                let omega = Modal::of(&done[0].scene).frequencies()[0];
-                let step = done[0].record.provenance.time_step;
-                let seen = 2.0 * (0.5 * omega * step).asin() / step;
-                Ok(Measured::new(frequency(&done[0])?, seen, seen))
-            }),
-            control: Control::forgets_history(),
-        });
+                })),
+        );
+        claims.push(
+            claim(format!("frequency, slow over fast loading, {figure}"), "1")
+                .of_all(pair(fast, slow))
+                .equals(printed("Fig. 7 and the text: the frequencies are about the same"), |done| {
+                    Ok(Measured::new(frequency(&done[1])? / frequency(&done[0])?, 1.0, 1.0))
+                })
+                .within(spectrum())
+                .refuses(Control::scene("stiffness × 1.05 under slow loading", |scene| {
+                    if scene.walls[0].motion.phases[0].stop == Moment::Cycle(120) {
+                        scene.change_laws(|law| law.normal_stiffness *= 1.05);
+                    }
+                })),
+        );
+        claims.push(
+            claim(format!("frequency of the slow mode, {figure}"), "rad/s")
+                .of(Run::new(fast, "dem", FIGURE_STEP))
+                .equals(MODES, |done| {
+                    let omega = Modal::of(&done[0].scene).frequencies()[0];
+                    let step = done[0].record.provenance.time_step;
+                    let seen = 2.0 * (0.5 * omega * step).asin() / step;
+                    Ok(Measured::new(frequency(&done[0])?, seen, seen))
+                })
+                .within(spectrum())
+                .refuses(Control::forgets_history()),
+        );
     }
-    gates
+    claims
 }
 
-fn damping() -> Vec<Gate> {
-    let mut gates = Vec::new();
-    for (undamped, damped) in
-        [("fast", "damped-fast"), ("slow", "damped-slow"), ("soft-fast", "damped-soft-fast"), ("soft-slow", "damped-soft-slow")]
-    {
-        gates.push(Gate {
-            quantity: "force between centre and edge: mean undamped over final damped".to_owned(),
-            unit: "1",
-            evidence: Evidence::Paper,
-            scope: Scope::Named,
-            source: "Cundall & Strack 1979, Fig. 6: damping does not affect the equilibrium value",
-            allowed: 5e-4,
-            because: "the mean over some 70 periods keeps a part of the oscillation",
-            runs: vec![Run::new(undamped, "dem", FIGURE_STEP), Run::new(damped, "dem", FIGURE_STEP)],
-            measure: measure(|done| {
-                let (mean, _) = residual(&done[0], "centre-edge.normal_force")?;
-                Ok(Measured::new(mean / done[1].last("centre-edge.normal_force")?, 1.0, 1.0))
-            }),
-            control: Control::scene("damping holds the walls back: a hundredth less travel", |scene| {
-                if scene.global_damping > 0.0 {
-                    scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= 0.99);
-                }
-            }),
-        });
-        gates.push(Gate {
-            quantity: "rate at which the slow mode dies away".to_owned(),
-            unit: "1/s",
-            evidence: Evidence::Analytic,
-            scope: Scope::Named,
-            source: "product of the eigenvalues of the damped cycle (derivation)",
-            allowed: 5e-5,
-            because: "geometry of second order in the overlap, δ/R = 1.5e-3",
-            runs: vec![Run::new(damped, "dem", FIGURE_STEP)],
-            measure: measure(|done| {
-                let expected = Modal::of(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
-                Ok(Measured::new(decay(&done[0])?, expected, expected))
-            }),
-            control: Control::without(Effect::ContactDamping),
-        });
+fn damping() -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for (undamped, damped) in [
+        ("fast", "damped-fast"),
+        ("slow", "damped-slow"),
+        ("soft-fast", "damped-soft-fast"),
+        ("soft-slow", "damped-soft-slow"),
+    ] {
+        claims.push(
+            claim("force between centre and edge: mean undamped over final damped", "1")
+                .of_all(pair(undamped, damped))
+                .equals(
+                    printed("Fig. 6 and the text: damping does not affect the equilibrium value of the force"),
+                    |done| {
+                        let (mean, _) = residual(&done[0], "centre-edge.normal_force")?;
+                        Ok(Measured::new(mean / done[1].last("centre-edge.normal_force")?, 1.0, 1.0))
+                    },
+                )
+                .within(judged(5e-4, "the mean over some 70 periods keeps a part of the oscillation"))
+                .refuses(Control::scene("damping holds the walls back: a hundredth less travel", |scene| {
+                    if scene.global_damping > 0.0 {
+                        scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= 0.99);
+                    }
+                })),
+        );
+        claims.push(
+            claim("rate at which the slow mode dies away", "1/s")
+                .of(Run::new(damped, "dem", FIGURE_STEP))
+                .equals(Source::Derived("product of the eigenvalues of the damped cycle (derivation)"), |done| {
+                    let expected = Modal::of(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
+                    Ok(Measured::new(decay(&done[0])?, expected, expected))
+                })
+                .within(judged(
+                    5e-5,
+                    "geometry of first order in δ/R, which is 1.3e-3 of stiff discs and 1.1e-2 of soft ones",
+                ))
+                .refuses(Control::without(Effect::ContactDamping)),
+        );
     }
-    gates
+    claims
 }
 
 /// Rate (1/s) at which the slow mode p = a + √2 b dies away once the walls have stopped: x, its distance from where it ends, follows
@@ -423,30 +433,26 @@ const DISTORTION: [&str; 4] =
 const TURN: usize = 1500;
 
 /// Which contacts slip under slow compression: the eight at walls and corners at 15°, none at 30°.
-fn slip_in_compression() -> Vec<Gate> {
-    let gate = |variant: &'static str| {
-        let expected = if variant.contains("15deg") { 8.0 } else { 0.0 };
-        Gate {
-            quantity: "most contacts slipping at once in slow compression".to_owned(),
-            unit: "1",
-            evidence: Evidence::Analytic,
-            scope: Scope::Named,
-            source: "tan φ against κb/(δ − b): .4286 at κ = 2/3, .5556 at κ = 1 (derivation)",
-            allowed: 0.0,
-            because: "a count",
-            runs: vec![Run::new(variant, "dem", LADDER[0].resolution)],
-            measure: measure(move |done| {
-                let slipping = &done[0].column("all.slipping_contacts")?[..TURN];
-                Ok(Measured::new(slipping.iter().copied().fold(0.0, f64::max), expected, 1.0))
-            }),
-            control: if expected > 0.0 {
-                Control::scene("friction × 3", |scene| scene.change_laws(|law| law.friction *= 3.0))
-            } else {
-                Control::scene("friction halved", |scene| scene.change_laws(|law| law.friction *= 0.5))
-            },
-        }
+fn slip_in_compression() -> Vec<Claim> {
+    let of = |variant: &'static str| {
+        let (expected, control) = if variant.contains("15deg") {
+            (8.0, Control::scene("friction × 3", |scene| scene.change_laws(|law| law.friction *= 3.0)))
+        } else {
+            (0.0, Control::scene("friction halved", |scene| scene.change_laws(|law| law.friction *= 0.5)))
+        };
+        claim("most contacts slipping at once in slow compression", "1")
+            .of(Run::new(variant, "dem", LADDER[0].resolution))
+            .equals(
+                Source::Derived("tan φ against κb/(δ − b): .4286 at κ = 2/3, .5556 at κ = 1 (derivation)"),
+                move |done| {
+                    let slipping = &done[0].column("all.slipping_contacts")?[..TURN];
+                    Ok(Measured::new(largest(slipping.iter().copied()), expected, 1.0))
+                },
+            )
+            .within(exactly("a count"))
+            .refuses(control)
     };
-    DISTORTION.map(gate).to_vec()
+    DISTORTION.map(of).to_vec()
 }
 
 /// F_n between centre and edge from the cycle at which the walls begin to turn.
@@ -454,83 +460,76 @@ fn turning(done: &Done) -> Result<&[f64], Missing> {
     Ok(&done.column("centre-edge.normal_force")?[TURN..])
 }
 
-/// Largest difference of two curves over the largest value.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    let largest = a.iter().copied().fold(0.0, f64::max);
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+/// The largest F_n from there on (N).
+fn largest_turning(done: &Done) -> Result<f64, Missing> {
+    Ok(largest(turning(done)?.iter().copied()))
 }
 
-fn distortion() -> Vec<Gate> {
-    const SOURCE: &str = "Cundall & Strack 1979, Fig. 9 and its discussion";
-    let runs = |a: usize, b: usize| [DISTORTION[a], DISTORTION[b]].map(|v| Run::new(v, "dem", LADDER[0].resolution)).to_vec();
+/// Largest difference of the curves of two runs over the largest value of the first.
+fn apart(a: &Done, b: &Done) -> Result<f64, Missing> {
+    let differences = turning(a)?.iter().zip(turning(b)?).map(|(a, b)| a - b);
+    Ok(largest(differences) / largest_turning(a)?)
+}
+
+fn distortion() -> Vec<Claim> {
+    let runs = |variants: &[usize]| -> Vec<Run> {
+        variants.iter().map(|&at| Run::new(DISTORTION[at], "dem", LADDER[0].resolution)).collect()
+    };
     vec![
-        Gate {
-            quantity: "30°: F_n after compression, κ = 1 over κ = 2/3 (less than 1)".to_owned(),
-            unit: "1",
-            evidence: Evidence::Paper,
-            scope: Scope::Named,
-            source: SOURCE,
-            allowed: 5e-3,
-            because: "from the static answer 3/7 over .456522 = .939; the paper says less",
-            runs: runs(2, 3),
-            measure: measure(|done| Ok(Measured::new(turning(&done[1])?[0] / turning(&done[0])?[0], 0.939, 1.0))),
-            control: Control::forgets_history(),
-        },
-        Gate {
-            quantity: "30°: largest F_n in distortion, κ = 2/3 over κ = 1 (less than 1)".to_owned(),
-            unit: "1",
-            evidence: Evidence::Paper,
-            scope: Scope::Named,
-            source: SOURCE,
-            allowed: 0.5,
-            because: "only the order is printed: any ratio from 0 to 1 passes",
-            runs: runs(2, 3),
-            measure: measure(|done| {
-                let largest = |done: &Done| turning(done).map(|values| values.iter().copied().fold(0.0, f64::max));
-                Ok(Measured::new(largest(&done[0])? / largest(&done[1])?, 0.5, 1.0))
-            }),
-            control: Control::scene("κ = 1/10 where it should be 1", |scene| {
+        claim("30°: F_n after compression, κ = 1 over κ = 2/3", "1")
+            .of_all(runs(&[2, 3]))
+            .equals(
+                Source::Derived("static answer 3/7 over .456522 (derivation); the paper says less than 1"),
+                |done| {
+                    let [of_2_3, of_1] = [0, 1].map(|at: usize| Modal::of(&done[at].scene).at_rest().edge);
+                    Ok(Measured::new(turning(&done[1])?[0] / turning(&done[0])?[0], of_1 / of_2_3, 1.0))
+                },
+            )
+            .within(computed(
+                left_out(DISTORTION[2]) / 0.4565 + left_out(DISTORTION[3]) / (3.0 / 7.0),
+                "geometry: normals turn by (a − b)/2R, and forces k_n b with them, over either force",
+            ))
+            .refuses(Control::forgets_history()),
+        claim("30°: largest F_n in distortion, κ = 2/3 over κ = 1", "1")
+            .of_all(runs(&[2, 3]))
+            .at_most(
+                1.0,
+                printed(
+                    "Fig. 9(b) and the text: as shearing proceeds, F_n at κ = 1 increases beyond the one at κ = 2/3",
+                ),
+                |done| Ok(largest_turning(&done[0])? / largest_turning(&done[1])?),
+            )
+            .within(exactly("only the order is printed"))
+            .refuses(Control::scene("κ = 1/10 where it should be 1", |scene| {
                 scene.change_laws(|law| {
                     if law.tangential_stiffness >= law.normal_stiffness {
                         law.tangential_stiffness *= 0.1;
                     }
                 });
-            }),
-        },
-        Gate {
-            quantity: "30°: F_n in the end over its largest, κ = 1 (it falls back)".to_owned(),
-            unit: "1",
-            evidence: Evidence::Paper,
-            scope: Scope::Named,
-            source: SOURCE,
-            allowed: 0.5 - 1e-3,
-            because: "only a fall is printed: any ratio below .999 passes",
-            runs: vec![Run::new(DISTORTION[3], "dem", LADDER[0].resolution)],
-            measure: measure(|done| {
-                let values = turning(&done[0])?;
-                let largest = values.iter().copied().fold(0.0, f64::max);
-                Ok(Measured::new(values[values.len() - 1] / largest, 0.5, 1.0))
-            }),
-            control: Control::scene("no slip: friction × 10", |scene| scene.change_laws(|law| law.friction *= 10.0)),
-        },
-        Gate {
-            quantity: "F_n of κ = 1 and 2/3: largest difference at 15° over that at 30°".to_owned(),
-            unit: "1",
-            evidence: Evidence::Paper,
-            scope: Scope::Named,
-            source: "Cundall & Strack 1979, Fig. 9: nearly coincide at 15°, deviate significantly at 30°",
-            allowed: 0.5,
-            because: "only the order is printed: any ratio from 0 to 1 passes",
-            runs: [runs(0, 1), runs(2, 3)].concat(),
-            measure: measure(|done| {
-                let at_15 = apart(turning(&done[0])?, turning(&done[1])?);
-                let at_30 = apart(turning(&done[2])?, turning(&done[3])?);
-                Ok(Measured::new(at_15 / at_30, 0.5, 1.0))
-            }),
-            control: Control::scene("friction of 15° and 30° exchanged", |scene| {
+            })),
+        claim("30°: F_n in the end over its largest, κ = 1", "1")
+            .of_all(runs(&[3]))
+            .at_most(
+                0.999,
+                printed("Fig. 9(b) and the text: F_n reaches a maximum, after which slip sets in and it falls back"),
+                |done| {
+                    let values = turning(&done[0])?;
+                    Ok(values[values.len() - 1] / largest_turning(&done[0])?)
+                },
+            )
+            .within(exactly("only a fall is printed: a thousandth tells it from a force that grows to the end"))
+            .refuses(Control::scene("no slip: friction × 10", |scene| scene.change_laws(|law| law.friction *= 10.0))),
+        claim("F_n of κ = 1 and 2/3: largest difference at 15° over that at 30°", "1")
+            .of_all(runs(&[0, 1, 2, 3]))
+            .at_most(
+                1.0,
+                printed("Fig. 9 and the text: the curves nearly coincide at 15° and deviate significantly at 30°"),
+                |done| Ok(apart(&done[0], &done[1])? / apart(&done[2], &done[3])?),
+            )
+            .within(exactly("only the order is printed"))
+            .refuses(Control::scene("friction of 15° and 30° exchanged", |scene| {
                 let (low, high) = (15_f64.to_radians().tan(), 30_f64.to_radians().tan());
                 scene.change_laws(|law| law.friction = if law.friction > 0.4 { low } else { high });
-            }),
-        },
+            })),
     ]
 }

@@ -2,13 +2,11 @@
 
 use super::modal::{Modal, law};
 use super::{DISTORTION, FIGURE_STEP, LADDER, MODAL, TURN, modal_error, modal_run};
-use crate::bench::Bench;
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::force_plot::force_plot;
-use crate::gate::{Done, Run};
-use grainbench_scene::solver::RunError;
+use crate::sources::literature::cundall_strack_1979::RESIDUAL_AMPLITUDE;
+use grainbench_harness::force_plot::force_plot;
+use grainbench_harness::prelude::*;
 
-pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut all = Vec::new();
     for (name, variant, title, caption) in [
         (
@@ -26,44 +24,29 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
              corners and at the centre, and the corners of the other diagonal have come off the walls, as in Fig. 8(b).",
         ),
     ] {
-        let done = bench.run(&Run::new(variant, "dem", LADDER[0].resolution))?;
+        let done = runner.run(&Run::new(variant, "dem", LADDER[0].resolution))?;
         if let Some(snapshot) = done.record.snapshots.last() {
-            all.push(Figure {
-                name: name.to_owned(),
-                title: title.to_owned(),
-                caption: caption.to_owned(),
-                drawing: Drawing::Forces(force_plot(snapshot)),
-            });
+            all.push(Figure::forces(name, title, caption, force_plot(snapshot)));
         }
     }
-    all.push(damping(bench)?);
-    all.push(speed(bench, "speed-stiff", "Speed of loading, k_n = k_s = 1.35e9", ["fast", "slow"], [0.12, 0.04])?);
-    all.push(speed(bench, "speed-soft", "Speed of loading, k_n = k_s = 1.5e8", ["soft-fast", "soft-slow"], [0.36, 0.12])?);
-    all.push(residual_over_step(bench)?);
-    for (name, angle, variants) in
-        [("distortion-15deg", "15°", [DISTORTION[0], DISTORTION[1]]), ("distortion-30deg", "30°", [DISTORTION[2], DISTORTION[3]])]
-    {
-        all.push(distortion(bench, name, angle, variants)?);
+    all.push(damping(runner)?);
+    all.push(speed(runner, "speed-stiff", "Speed of loading, k_n = k_s = 1.35e9", ["fast", "slow"], [0.12, 0.04])?);
+    all.push(speed(
+        runner,
+        "speed-soft",
+        "Speed of loading, k_n = k_s = 1.5e8",
+        ["soft-fast", "soft-slow"],
+        [0.36, 0.12],
+    )?);
+    all.push(residual_over_step(runner)?);
+    for (name, angle, variants) in [
+        ("distortion-15deg", "15°", [DISTORTION[0], DISTORTION[1]]),
+        ("distortion-30deg", "30°", [DISTORTION[2], DISTORTION[3]]),
+    ] {
+        all.push(distortion(runner, name, angle, variants)?);
     }
-    all.push(convergence(bench)?);
+    all.push(convergence(runner)?);
     Ok(all)
-}
-
-fn axis(label: &str, logarithmic: bool) -> Axis {
-    Axis { label: label.to_owned(), logarithmic }
-}
-
-fn curve(label: &str, stroke: Stroke, points: Vec<(f64, f64)>) -> Curve {
-    Curve { label: label.to_owned(), stroke, points }
-}
-
-fn graph(name: &str, title: &str, caption: &str, x: Axis, y: Axis, curves: Vec<Curve>) -> Figure {
-    Figure {
-        name: name.to_owned(),
-        title: title.to_owned(),
-        caption: caption.to_owned(),
-        drawing: Drawing::Graph(Graph { x, y, curves }),
-    }
 }
 
 /// Force between centre and edge over its rest value, by cycles from the stop of the walls.
@@ -72,101 +55,111 @@ fn after_stop(done: &Done, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
     let travel = phase.velocity.norm() * stop as f64 * done.record.provenance.time_step;
     let rest = Modal::of(&done.scene).at_rest().edge * law(&done.scene).normal_stiffness * travel;
     let force = done.series().column("centre-edge.normal_force").unwrap_or_default();
-    force.iter().skip(stop as usize).take(cycles).enumerate().map(|(cycle, force)| (cycle as f64, force / rest)).collect()
+    force
+        .iter()
+        .skip(stop as usize)
+        .take(cycles)
+        .enumerate()
+        .map(|(cycle, force)| (cycle as f64, force / rest))
+        .collect()
 }
 
-fn damping(bench: &Bench) -> Result<Figure, RunError> {
-    let run = |variant| bench.run(&Run::new(variant, "dem", FIGURE_STEP));
-    Ok(graph(
+fn damping(runner: &Runner) -> Result<Figure, RunError> {
+    let run = |variant| runner.run(&Run::new(variant, "dem", FIGURE_STEP));
+    Ok(Figure::graph(
         "damping",
         "Effect of damping",
         "Force between centre and edge after the walls stop, as in Fig. 6: without damping it oscillates about F_eq, with \
          contact and global damping it settles there.",
-        axis("cycles after the walls stop", false),
-        axis("F_n / F_eq, centre-edge", false),
+        [Axis::linear("cycles after the walls stop"), Axis::linear("F_n / F_eq, centre-edge")],
         vec![
-            curve("1: no damping", Stroke::Line, after_stop(&run("fast")?, 40, 160)),
-            curve("2: contact and global damping", Stroke::Line, after_stop(&run("damped-fast")?, 40, 160)),
+            Curve::new("1: no damping", Stroke::Line, after_stop(&run("fast")?, 40, 160)),
+            Curve::new("2: contact and global damping", Stroke::Line, after_stop(&run("damped-fast")?, 40, 160)),
         ],
     ))
 }
 
-fn speed(bench: &Bench, name: &str, title: &str, variants: [&'static str; 2], speeds: [f64; 2]) -> Result<Figure, RunError> {
+fn speed(
+    runner: &Runner,
+    name: &str,
+    title: &str,
+    variants: [&'static str; 2],
+    speeds: [f64; 2],
+) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for ((variant, speed), stop) in variants.into_iter().zip(speeds).zip([40, 120]) {
-        let done = bench.run(&Run::new(variant, "dem", FIGURE_STEP))?;
-        curves.push(curve(&format!("wall velocity {speed}"), Stroke::Line, after_stop(&done, stop, 160)));
+        let done = runner.run(&Run::new(variant, "dem", FIGURE_STEP))?;
+        curves.push(Curve::new(format!("wall velocity {speed}"), Stroke::Line, after_stop(&done, stop, 160)));
     }
-    Ok(graph(
+    Ok(Figure::graph(
         name,
         title,
         "As in Fig. 7: the faster the loading, the larger the oscillation that is left; the frequency is the same.",
-        axis("cycles after the walls stop", false),
-        axis("F_n / F_eq, centre-edge", false),
+        [Axis::linear("cycles after the walls stop"), Axis::linear("F_n / F_eq, centre-edge")],
         curves,
     ))
 }
 
 /// Amplitude left after 40 cycles against the step, which the paper does not print.
-fn residual_over_step(bench: &Bench) -> Result<Figure, RunError> {
-    let scene = bench.scene(&Run::new("kappa-1", "dem", FIGURE_STEP))?;
+fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
+    let scene = runner.scene(&Run::new("kappa-1", "dem", FIGURE_STEP))?;
     let modal = Modal::of(&scene);
     let critical = scene.critical_time_step();
     let points =
         (10..=260).map(|at| f64::from(at) * 1e-3).map(|f| (f, modal.residual(40, f * critical))).collect::<Vec<_>>();
-    let printed = vec![(0.01, 0.15), (0.26, 0.15)];
-    Ok(graph(
+    let printed = [0.01, 0.26].map(|f| (f, RESIDUAL_AMPLITUDE.value)).to_vec();
+    Ok(Figure::graph(
         "residual",
         "Residual oscillation against the time step",
         "Amplitude left after 40 cycles of loading at κ = 1, from the exact answer of the cycle (both modes added). The paper \
          prints .15 F_eq without its step; the curve crosses it several times.",
-        axis("Δt / critical step", false),
-        axis("amplitude / F_eq, centre-edge", false),
-        vec![curve("exact answer of the cycle", Stroke::Line, points), curve("printed in the paper", Stroke::Dashed, printed)],
+        [Axis::linear("Δt / critical step"), Axis::linear("amplitude / F_eq, centre-edge")],
+        vec![
+            Curve::new("exact answer of the cycle", Stroke::Line, points),
+            Curve::new("printed in the paper", Stroke::Dashed, printed),
+        ],
     ))
 }
 
-fn distortion(bench: &Bench, name: &str, angle: &str, variants: [&'static str; 2]) -> Result<Figure, RunError> {
+fn distortion(runner: &Runner, name: &str, angle: &str, variants: [&'static str; 2]) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for (variant, kappa) in variants.into_iter().zip(["2/3", "1"]) {
-        let done = bench.run(&Run::new(variant, "dem", LADDER[0].resolution))?;
+        let done = runner.run(&Run::new(variant, "dem", LADDER[0].resolution))?;
         for (column, force) in [("centre-edge.normal_force", "F_n"), ("centre-edge.shear_force", "F_s")] {
             let values = done.series().column(column).unwrap_or_default();
             let points =
                 values.iter().skip(TURN).enumerate().map(|(cycle, value)| (cycle as f64, value.abs() / 1e8)).collect();
-            curves.push(curve(&format!("{force}, κ = {kappa}"), Stroke::Line, points));
+            curves.push(Curve::new(format!("{force}, κ = {kappa}"), Stroke::Line, points));
         }
     }
-    Ok(graph(
+    Ok(Figure::graph(
         name,
         &format!("Distortion at constant volume, φ = {angle}"),
         "Normal and shear force between centre and edge while the walls turn about their centres, as in Fig. 9.",
-        axis("cycles after the walls begin to turn", false),
-        axis("force (10⁸ N)", false),
+        [Axis::linear("cycles after the walls begin to turn"), Axis::linear("force (10⁸ N)")],
         curves,
     ))
 }
 
-fn convergence(bench: &Bench) -> Result<Figure, RunError> {
+fn convergence(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for variant in MODAL {
         let mut points = Vec::new();
         for &rung in LADDER {
-            let done = bench.run(&modal_run(variant, rung))?;
+            let done = runner.run(&modal_run(variant, rung))?;
             if let (Ok(worst), Some(critical)) = (modal_error(&done), done.record.provenance.critical_time_step) {
                 points.push((done.record.provenance.time_step / critical, worst.error().abs()));
             }
         }
-        curves.push(curve(variant, Stroke::MarkedLine, points));
+        curves.push(Curve::new(variant, Stroke::MarkedLine, points));
     }
     let square: Vec<(f64, f64)> = [0.025, 0.1].iter().map(|f| (*f, 0.8 * f * f)).collect();
-    curves.push(curve("slope 2", Stroke::Dashed, square));
-    Ok(graph(
+    curves.push(Curve::new("slope 2", Stroke::Dashed, square));
+    Ok(Figure::graph(
         "convergence",
         "Deviation from the continuous answer",
         "Worst displacement error over ten periods of the slow mode, in units of the wall travel.",
-        axis("Δt / critical step", true),
-        axis("worst error / wall travel", true),
+        [Axis::log("Δt / critical step"), Axis::log("worst error / wall travel")],
         curves,
     ))
 }

@@ -1,15 +1,8 @@
 //! A disc meets a frictional wall at an angle and slips throughout: exact velocities after it.
 
-use crate::bench::Bench;
-use crate::case::{Case, Rung, fraction};
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::incline::more_friction;
 use crate::program_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::RunError;
+use grainbench_harness::prelude::*;
 
 const LADDER: &[Rung] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), fraction("dt=.002", 0.002)];
 const VARIANTS: [&str; 2] = ["elastic", "damped"];
@@ -25,8 +18,9 @@ pub(crate) static CASE: Case = Case {
                remember. One plane wall, one angle.",
     ladder: LADDER,
     default_rung: LADDER[2],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// What is left after the impact.
@@ -73,93 +67,82 @@ fn exact(scene: &Scene) -> Exit {
 type Read = fn(&Done) -> Result<f64, Missing>;
 type Of = fn(&Exit) -> f64;
 
-fn gates() -> Vec<Gate> {
-    let quantities: [(&str, &'static str, f64, &'static str, Read, Of); 3] = [
+fn claims() -> Vec<Claim> {
+    let stiffness_damping = || {
+        Control::scene("stiffness-proportional damping of a fiftieth of the period", |scene| {
+            let law = scene.laws[0].unwrap_or_default();
+            let beta = 0.04 * (scene.grains[0].mass / law.normal_stiffness).sqrt();
+            scene.change_laws(|law| law.stiffness_damping = beta);
+        })
+    };
+    let friction = || Control::scene("friction ×1.05", more_friction);
+    let quantities: [(&str, &'static str, Tolerance, Control, Read, Of); 3] = [
         (
             "velocity along the wall after the impact",
             "m/s",
-            2e-4,
-            "the phase of the first touch within a step; relative to the velocity",
+            judged(2e-4, "the phase of the first touch within a step; relative to the velocity"),
+            friction(),
             |done| done.last("grain.vx"),
             |exit| exit.along,
         ),
         (
             "velocity across the wall after the impact",
             "m/s",
-            2e-4,
-            "discretisation at the first touch and the last; relative to the velocity",
+            judged(2e-4, "discretisation at the first touch and the last; relative to the velocity"),
+            stiffness_damping(),
             |done| done.last("grain.vy"),
             |exit| exit.across,
         ),
         (
             "spin after the impact",
             "rad/s",
-            1e-3,
-            "half the overlap in the arm of the torque, 5e-4, and the first touch; relative to the spin",
+            judged(1e-3, "half the overlap in the arm of the torque, 5e-4, and the first touch; relative to the spin"),
+            friction(),
             |done| done.last("grain.omega"),
             |exit| exit.spin,
         ),
     ];
-    let mut gates = Vec::new();
+    let mut claims = Vec::new();
     for variant in VARIANTS {
-        for (quantity, unit, allowed, because, read, of) in quantities {
+        for (quantity, unit, tolerance, control, read, of) in &quantities {
+            let (read, of) = (*read, *of);
             for solver in ["dem:lammps", "dem:liggghts"] {
-                gates.push(Gate {
-                    quantity: quantity.to_owned(),
-                    unit,
-                    evidence: Evidence::Analytic,
-                    // One row is enough for strangers, whose dashpots need not end and be limited as the two programs' are.
-                    scope: if solver == "dem:lammps" && variant == "elastic" { Scope::AnySolver } else { Scope::Named },
-                    source: "momentum and Coulomb's limit, by quadrature (derivation)",
-                    allowed,
-                    because,
-                    runs: vec![Run::new(variant, solver, LADDER[2].resolution)],
-                    measure: measure(move |done| {
+                let row = claim(*quantity, unit)
+                    .of(Run::new(variant, solver, LADDER[2].resolution))
+                    .equals(Source::Derived("momentum and Coulomb's limit, by quadrature (derivation)"), move |done| {
                         let expected = of(&exact(&done[0].scene));
                         Ok(Measured::new(read(&done[0])?, expected, expected))
-                    }),
-                    control: if unit == "m/s" && quantity.contains("across") {
-                        Control::scene("stiffness-proportional damping of a fiftieth of the period", |scene| {
-                            let law = scene.laws[0].unwrap_or_default();
-                            let beta = 0.04 * (scene.grains[0].mass / law.normal_stiffness).sqrt();
-                            scene.change_laws(|law| law.stiffness_damping = beta);
-                        })
-                    } else {
-                        Control::scene("friction ×1.05", more_friction)
-                    },
-                });
+                    })
+                    .within(tolerance.clone())
+                    .refuses(control.clone());
+                // One row is enough for strangers, whose dashpots need not end and be limited as the two programs' are.
+                claims.push(if solver == "dem:lammps" && variant == "elastic" { row.fair_to_any() } else { row });
             }
         }
     }
-    gates.extend(program_rows::impact(&VARIANTS, LADDER[1].resolution));
-    gates
+    claims.extend(program_rows::impact(&VARIANTS, LADDER[1].resolution));
+    claims
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for variant in VARIANTS {
-        let done = bench.run(&Run::new(variant, "dem:lammps", LADDER[2].resolution))?;
+        let done = runner.run(&Run::new(variant, "dem:lammps", LADDER[2].resolution))?;
         let (time, speed) = (&done.series().time, done.series().column("grain.vx").unwrap_or_default());
         let end = time.last().copied().unwrap_or_default();
         let after = exact(&done.scene).along;
         let points = time.iter().copied().zip(speed.iter().copied()).collect();
-        curves.push(Curve { label: format!("{variant}, dem:lammps"), stroke: Stroke::Line, points });
-        curves.push(Curve {
-            label: format!("{variant}, exact after the impact"),
-            stroke: Stroke::Dashed,
-            points: vec![(0.55 * end, after), (end, after)],
-        });
+        curves.push(Curve::new(format!("{variant}, dem:lammps"), Stroke::Line, points));
+        let rest = vec![(0.55 * end, after), (end, after)];
+        curves.push(Curve::new(format!("{variant}, exact after the impact"), Stroke::Dashed, rest));
     }
-    Ok(vec![Figure {
-        name: "velocity".to_owned(),
-        title: "Velocity along the wall".to_owned(),
-        caption: "4 m/s before the impact. Elastic it leaves at 3 m/s; damped less is taken.".to_owned(),
-        drawing: Drawing::Graph(Graph {
-            x: Axis::linear("time t (s)"),
-            y: Axis::linear("velocity along the wall (m/s)"),
-            curves,
-        }),
-    }])
+    Ok(vec![Figure::graph(
+        "velocity",
+        "Velocity along the wall",
+        "4 m/s before the impact. Elastic it leaves at 3 m/s; damped less is taken.",
+        [Axis::linear("time t (s)"), Axis::linear("velocity along the wall (m/s)")],
+        curves,
+    )])
 }
 
 #[cfg(test)]

@@ -1,13 +1,10 @@
 //! Force plots of both stages, and F_H/F_V on the way.
 
-use super::{PAIRS, PLAIN, RATIO, STEP, elastic, run, time_of_a, vertical_strain};
-use crate::bench::Bench;
-use crate::field_picture::{Shot, fringe_constant, pictures};
-use crate::figure::{Axis, Curve, Drawing, Figure, Stroke};
-use crate::force_plot::force_plot;
-use crate::gate::{Done, Run};
+use super::{PAIRS, STEP, elastic, experiment, run, time_of_a, vertical_strain};
+use grainbench_fields::picture::{Shot, fringe_constant, pictures};
 use grainbench_fields::quantity::Quantity;
-use grainbench_scene::solver::RunError;
+use grainbench_harness::force_plot::force_plot;
+use grainbench_harness::prelude::*;
 
 /// Pixels along the longer side of a picture, and fringes in it.
 const PIXELS: u32 = 900;
@@ -39,24 +36,24 @@ fn side_by_side(springs: &Done, elastic: &Done) -> Figure {
         "fringes-elastic",
         "Fringes of fifty discs, on springs and elastic",
         &format!(
-            "The same start, led to the same stages: stress from contact forces on springs, and as material points have it; c = {constant:.3e} Pa."
+            "The same start, led to the same stages: stress from contact forces on springs, and as material points \
+             have it; c = {constant:.3e} Pa."
         ),
         pictures(Quantity::Fringes(constant), &shots, PIXELS / 2, None),
     )
 }
 
-pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let done = bench.run(&run(PLAIN))?;
+pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let done = runner.run(&run(PLAIN))?;
     let mut figures = Vec::new();
     let stages = [("forces-a", "Contact forces at stage A"), ("forces-b", "Contact forces at stage B")];
     for (snapshot, (name, title)) in done.record.snapshots.iter().skip(1).zip(stages) {
-        figures.push(Figure {
-            name: name.to_owned(),
-            title: title.to_owned(),
-            caption: "As in the paper's Figs 10-13: a bar for every contact, along its force and as wide as the force is large."
-                .to_owned(),
-            drawing: Drawing::Forces(force_plot(snapshot)),
-        });
+        figures.push(Figure::forces(
+            name,
+            title,
+            "As in the paper's Figs 10-13: a bar for every contact, along its force and as wide as the force is large.",
+            force_plot(snapshot),
+        ));
     }
     if let [_, a, b, ..] = done.record.snapshots.as_slice() {
         let constant = fringe_constant([a, b], FRINGES);
@@ -65,13 +62,15 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
             "fringes",
             "Photoelastic fringes at stages A and B",
             &format!(
-                "What crossed polarisers would show: cos((σ₁ − σ₂)/c) from the elastic stress of every disc under its contact forces,                  bright without stress; c = {constant:.3e} Pa for both, three fringes at the stress that a fiftieth of the discs is above."
+                "What crossed polarisers would show: cos((σ₁ − σ₂)/c) from the elastic stress of every disc under its \
+                 contact forces, bright without stress; c = {constant:.3e} Pa for both, three fringes at the stress \
+                 that a fiftieth of the discs is above."
             ),
             pictures(Quantity::Fringes(constant), &shots, PIXELS, None),
         ));
     }
-    if bench.is_thorough() {
-        figures.push(side_by_side(&bench.run(&run("fifty"))?, &bench.run(&elastic::discs())?));
+    if runner.is_thorough() {
+        figures.push(side_by_side(&runner.run(&run("fifty"))?, &runner.run(&elastic::discs())?));
     }
     let course = path(&done);
     let far = course.last().map_or(0.0, |point| point.0);
@@ -79,19 +78,24 @@ pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
     let of = |strain: f64| course.iter().copied().find(|point| point.0 >= strain).into_iter().collect::<Vec<_>>();
     let level = |label: &str, ratio: f64| Curve::new(label, Stroke::Dashed, vec![(0.0, ratio), (far, ratio)]);
     let stages = [of(100.0 * at_a), course.last().copied().into_iter().collect()].concat();
-    let mut curves = vec![Curve::new("dem", Stroke::Line, course.clone()), Curve::new("stages A and B", Stroke::Markers, stages)];
-    for [program, _] in PAIRS {
+    let mut curves =
+        vec![Curve::new("dem", Stroke::Line, course.clone()), Curve::new("stages A and B", Stroke::Markers, stages)];
+    for [_, program] in PAIRS {
         // Without the program and without its stored run there is nothing to draw.
-        if let Ok(theirs) = bench.run(&Run::new("programs", program, STEP)) {
+        if let Ok(theirs) = runner.run(&Run::new("programs", program, STEP)) {
             let label = format!("{program}, dashpots at contacts only");
             curves.push(Curve::new(label, Stroke::Markers, path(&theirs).into_iter().step_by(10).collect()));
         }
     }
-    curves.extend([level("experiment, stage A (imposed)", RATIO), level("experiment, stage B (loads imposed)", 0.33)]);
+    curves.extend([
+        level("experiment, stage A (imposed)", experiment::RATIO_A.value),
+        level("experiment, stage B (loads imposed)", experiment::RATIO_B.value),
+    ]);
     figures.push(Figure::graph(
         "path",
         "Wall forces on the way",
-        "From touching discs to stage A at one ratio of strains, then at equal and opposite strains until F_V has grown by 4.348 %.",
+        "From touching discs to stage A at one ratio of strains, then at equal and opposite strains until F_V has \
+         grown by 4.348 %.",
         [Axis::linear("vertical strain (%)"), Axis::linear("F_H/F_V (1)")],
         curves,
     ));

@@ -1,17 +1,12 @@
-//! Ten thousand discs in plane shear, against LAMMPS and LIGGGHTS: moment by moment for as long as that can be foretold,
-//! by means over time after it.
+//! Ten thousand discs in plane shear, against LAMMPS and LIGGGHTS: moment by moment for as long as that can be
+//! foretold, by means over time after it.
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung};
-use crate::chaos::{self, Parting, Sum, TWIN};
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Gate, Measured, Run, measure};
-use crate::program_rows::PAIRS;
+use crate::program_rows::{PAIRS, row};
 use crate::rigid_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_reference::twin::move_one;
-use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_harness::compare::pointwise::{difference, largest, worst};
+use grainbench_harness::compare::twins::{self, Parting, Sum, TWIN};
+use grainbench_harness::prelude::*;
+use grainbench_scene::twin::move_one;
 
 const LADDER: &[Rung] = &[
     Rung { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
@@ -21,18 +16,23 @@ const LADDER: &[Rung] = &[
 pub(crate) static CASE: Case = Case {
     name: "plane-shear",
     title: "Ten thousand discs in plane shear",
-    claim: "In the conventions of LAMMPS and LIGGGHTS a dense, polydisperse, frictional and damped packing in shear moves as \
-            in the programs themselves, sum by sum, for as long as one unit in the last place of one position does not \
-            matter; after that it has the same mean energy, stress and coordination.",
+    claim: "In the conventions of LAMMPS and LIGGGHTS a dense, polydisperse, frictional and damped packing in shear \
+            moves as in the programs themselves, sum by sum, for as long as one unit in the last place of one \
+            position does not matter; after that it has the same mean energy, stress and coordination.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Other programs, not an exact answer: an error that all share is not seen. After the horizon the packing is \
-               still being set in motion, so that only differences between runs are statistics, not the means themselves.",
+    weakness: "Other programs, not an exact answer: an error that all share is not seen. After the horizon the \
+               packing is still being set in motion, so that only differences between runs are statistics, not the \
+               means themselves.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
+
+/// Kinetic energy of translation.
+const ENERGY: &str = "all.kinetic_energy";
 
 const fn sum(column: &'static str, words: &'static str, unit: &'static str) -> Sum {
     Sum { column, words, unit, logarithm: false }
@@ -40,7 +40,7 @@ const fn sum(column: &'static str, words: &'static str, unit: &'static str) -> S
 
 /// What has means after the horizon. The energy rises and falls by factors as the shear waves come and go.
 const SUMS: [Sum; 5] = [
-    Sum { logarithm: true, ..sum("all.kinetic_energy", "logarithm of the kinetic energy", "1") },
+    Sum { logarithm: true, ..sum(ENERGY, "logarithm of the kinetic energy", "1") },
     sum("packing.sigma_xx", "stress σ_xx", "Pa"),
     sum("packing.sigma_yy", "stress σ_yy", "Pa"),
     sum("packing.sigma_xy", "stress σ_xy", "Pa"),
@@ -48,8 +48,9 @@ const SUMS: [Sum; 5] = [
 ];
 
 /// What keeps LIGGGHTS' own arithmetic from being followed in every digit.
-const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 keeps the tangential stretch of a contact that opens for as long as the pair is on its \
-                             neighbour list, and goes on with it when the contact closes again (derivation)";
+const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 keeps the tangential stretch of a contact that opens for as long as the \
+                             pair is on its neighbour list, and goes on with it when the contact closes again \
+                             (derivation)";
 
 /// The run of the beginning, at a fine step.
 fn short(solver: &'static str) -> Run {
@@ -67,114 +68,87 @@ fn long(solver: &'static str) -> Run {
 }
 
 /// How twins part: of our solver in LAMMPS' convention.
-const PARTING: Parting = Parting { columns: &["all.kinetic_energy", "packing.sigma_xx", "packing.sigma_xy"] };
+const PARTING: Parting = Parting { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
 
-fn gates() -> Vec<Gate> {
+fn claims() -> Vec<Claim> {
     let friction = Control::ours("friction .1 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
-    let mut gates = Vec::new();
     let [lammps, liggghts] = PAIRS;
     let other = |solver| Control::solver("ours in the convention of the other program", solver);
-    let without = Control::without_the_error("our solver, which forgets", liggghts[1], LADDER[0].resolution);
-    gates.push(beginning(2000, lammps.map(short), other(liggghts[1])));
-    gates.push(beginning(85, liggghts.map(first), other(lammps[1])));
-    let twins = || [long(lammps[1]).aside(), long(lammps[1]).adjusted(TWIN, move_one).aside()];
-    let with_twins = |runs: [Run; 2]| [runs.as_slice(), &twins()].concat();
-    gates.push(chaos::pointwise(PARTING, with_twins(lammps.map(long)), other(liggghts[1])));
-    let runs = [long(liggghts[0]).known(STALE_STRETCH).slow(), long(liggghts[1])];
-    gates.push(chaos::pointwise(PARTING, with_twins(runs), without));
+    let without = Control::without_the_error("our solver, which forgets", liggghts[0], LADDER[0].resolution);
+    let with_twins = |runs: [Run; 2]| {
+        let twins = [long(lammps[0]).aside(), long(lammps[0]).adjusted(TWIN, move_one).aside()];
+        [runs, twins].concat()
+    };
+    let known = [long(liggghts[0]).known(STALE_STRETCH).slow(), long(liggghts[1])];
+    let mut claims = vec![
+        beginning(2000, lammps.map(short), other(liggghts[0])),
+        beginning(85, liggghts.map(first), other(lammps[0])),
+        twins::pointwise(PARTING, with_twins(lammps.map(long)), other(liggghts[0])),
+        twins::pointwise(PARTING, with_twins(known), without),
+    ];
     for pair in PAIRS {
         for sum in SUMS {
             let runs = pair.map(long).map(Run::slow);
-            gates.push(chaos::statistics(PARTING, sum, with_twins(runs), friction.clone()));
+            claims.push(twins::statistics(PARTING, sum, with_twins(runs), friction.clone()));
         }
     }
-    gates.push(chaos::horizon(PARTING, HORIZON, [long(PAIRS[0][1]), long(PAIRS[0][1]).adjusted(TWIN, move_one)]));
-    gates.push(rigid_rows::refuses_periodic_axes(PLAIN));
-    gates
+    claims.push(twins::horizon(PARTING, HORIZON, [long(lammps[0]), long(lammps[0]).adjusted(TWIN, move_one)]));
+    claims.push(rigid_rows::refuses_periodic_axes(PLAIN));
+    claims
 }
 
 /// The predictability horizon (steps of 1e-3).
 const HORIZON: u64 = 800;
 
 /// Kinetic energy over the first steps, where nothing has had time to become chaotic.
-fn beginning(steps: u32, runs: [Run; 2], control: Control) -> Gate {
-    Gate {
-        quantity: format!("kinetic energy of translation over {steps} steps, worst, against {}", runs[1].solver),
-        unit: "J",
-        evidence: Evidence::OtherCode,
-        scope: Scope::Named,
-        source: "the program, run on the deck of the same scene",
-        allowed: 1e-11,
-        because: "order of sums; one ulp in one position is worth 2e-13; relative to the largest value",
-        runs: runs.into(),
-        measure: measure(|done| {
-            let (theirs, ours) = chaos::together(&done[0], &done[1], "all.kinetic_energy")?;
-            let largest = ours.iter().copied().fold(0.0, f64::max);
-            Ok(Measured::worst_of(&done[0].series().time, &theirs, &ours, largest))
-        }),
-        control,
-    }
+fn beginning(steps: u32, runs: [Run; 2], control: Control) -> Claim {
+    let allowed = judged(1e-11, "order of sums; one ulp in one position is worth 2e-13; relative to the largest value");
+    let quantity = format!("kinetic energy of translation over {steps} steps, worst");
+    row(&quantity, "J", allowed, runs, control, |done| worst(done, &[ENERGY], largest(done[1].column(ENERGY)?)))
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let right = bench.run(&long(PAIRS[0][1]))?;
-    let twin = bench.run(&long(PAIRS[0][1]).adjusted(TWIN, move_one))?;
-    let horizon = chaos::time_of_horizon(PARTING, &right, &twin).unwrap_or(f64::NAN);
-    let mut partings = vec![("a twin moved by 1 ulp".to_owned(), right.clone(), twin)];
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let right = runner.run(&long(PAIRS[0][0]))?;
+    let twin = runner.run(&long(PAIRS[0][0]).adjusted(TWIN, move_one))?;
+    let horizon = twins::time_of_horizon(PARTING, &right, &twin).unwrap_or(f64::NAN);
+    let mut partings = vec![("a twin moved by 1 ulp".to_owned(), right, twin)];
     let mut courses = Vec::new();
-    for [program, ours] in PAIRS {
-        let ours = bench.run(&long(ours))?;
+    for [ours, program] in PAIRS {
+        let ours = runner.run(&long(ours))?;
         // Without the program and without its stored run there is nothing to draw.
-        if let Ok(theirs) = bench.run(&long(program)) {
+        if let Ok(theirs) = runner.run(&long(program)) {
             courses.push((program.to_owned(), Stroke::Markers, theirs.clone()));
             partings.push((format!("{program} and ours"), ours.clone(), theirs));
         }
         courses.push((ours.record.provenance.solver.clone(), Stroke::Line, ours));
     }
-    let points = |done: &crate::gate::Done, column: &str| -> Vec<(f64, f64)> {
-        let values = done.series().column(column).unwrap_or_default();
-        done.series().time.iter().copied().zip(values.iter().copied()).collect()
+    let graph = |name: &str, title: &str, caption: &str, y: Axis, curves| {
+        Figure::graph(name, title, caption, [Axis::linear("time t (mean diameter / wall speed)"), y], curves)
     };
-    let line = |low: f64, high: f64| Curve {
-        label: "predictability horizon".to_owned(),
-        stroke: Stroke::Dashed,
-        points: vec![(horizon, low), (horizon, high)],
-    };
-    let time = || Axis::linear("time t (mean diameter / wall speed)");
-    let graph = |name: &str, title: &str, caption: &str, y: Axis, curves| Figure {
-        name: name.to_owned(),
-        title: title.to_owned(),
-        caption: caption.to_owned(),
-        drawing: Drawing::Graph(Graph { x: time(), y, curves }),
-    };
-    let parted = partings.iter().map(|(label, a, b)| Curve {
-        label: label.clone(),
-        stroke: Stroke::Line,
-        points: chaos::difference(a, b, "all.kinetic_energy"),
-    });
+    let line = Curve::new("predictability horizon", Stroke::Dashed, vec![(horizon, 1e-16), (horizon, 1.0)]);
+    let parted = partings.iter().map(|(label, a, b)| Curve::new(label, Stroke::Line, difference(a, b, ENERGY)));
     let course = |column: &str| -> Vec<Curve> {
-        let curves = courses.iter().map(|(label, stroke, done)| Curve {
-            label: label.clone(),
-            stroke: *stroke,
-            points: points(done, column),
-        });
-        curves.collect()
+        let curve = |(label, stroke, done): &(String, Stroke, Done)| {
+            let values = done.series().column(column).unwrap_or_default();
+            Curve::new(label, *stroke, done.series().time.iter().copied().zip(values.iter().copied()).collect())
+        };
+        courses.iter().map(curve).collect()
     };
     Ok(vec![
         graph(
             "parting",
             "Where pointwise comparison ends",
-            "Difference of the kinetic energies of two runs, over their largest value. Left of the horizon runs are compared \
-             moment by moment, right of it by means over blocks of time.",
+            "Difference of the kinetic energies of two runs, over their largest value. Left of the horizon runs are \
+             compared moment by moment, right of it by means over blocks of time.",
             Axis::log("difference / largest"),
-            parted.chain([line(1e-16, 1.0)]).collect(),
+            parted.chain([line]).collect(),
         ),
         graph(
             "kinetic-energy",
             "Kinetic energy in plane shear",
             "Walls at −1 and +1 from t = 0. Both programs and our solver in the convention of each.",
             Axis::linear("kinetic energy (lj units)"),
-            course("all.kinetic_energy"),
+            course(ENERGY),
         ),
         graph(
             "coordination",

@@ -19,10 +19,8 @@ mod springs;
 #[path = "yielding.rs"]
 mod yielding;
 
-use crate::case::{Case, Rung};
-use crate::gate::{Done, Gate, Measured, Missing, Run};
-use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::Resolution;
+use grainbench_harness::prelude::*;
+use grainbench_scene::scene::Duration;
 
 /// Cells across the slab, two points a cell and axis, as in the paper.
 const fn grid(cells: f64) -> Resolution {
@@ -39,26 +37,23 @@ const LADDER: &[Rung] = &[
 pub(crate) static CASE: Case = Case {
     name: "polydisperse-shear",
     title: "A sheared slab of 369 grains",
-    claim: "Grains that stick to each other yield several times as much as grains that slide with friction, which roll and slide past \
-            each other in a band at the moving side. What walls bring in is stored, or lost to plastic flow and friction, and the \
-            method itself takes hardly any of it.",
+    claim: "Grains that stick to each other yield several times as much as grains that slide with friction, which \
+            roll and slide past each other in a band at the moving side. What walls bring in is stored, or lost to \
+            plastic flow and friction, and the method itself takes hardly any of it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The paper's packing is not printed: ours has its sizes, and packings differ by factors of two to three, so that ratios are \
-               compared. Findings of the paper are looked at on half of its grid and over five packings in the long set; grains of \
-               two cells across do not resolve the stress inside them.",
+    weakness: "The paper's packing is not printed: ours has its sizes, and packings differ by factors of two to \
+               three, so that ratios are compared. Findings of the paper are looked at on half of its grid and over \
+               five packings in the long set; grains of two cells across do not resolve the stress inside them.",
     ladder: LADDER,
     default_rung: LADDER[0],
-    gates,
+    claims,
     figures: figures::figures,
+    home: &crate::registry::HOME,
 };
 
-fn gates() -> Vec<Gate> {
-    let mut gates = coarse::gates();
-    gates.extend(springs::gates());
-    gates.extend(paper::gates());
-    gates.extend(yielding::gates());
-    gates
+fn claims() -> Vec<Claim> {
+    [coarse::claims(), springs::claims(), paper::claims(), yielding::claims()].concat()
 }
 
 /// Snapshots on the way to the end, every 2.5 % of shear.
@@ -95,16 +90,6 @@ fn entry(done: &Done, name: &str) -> Result<f64, Missing> {
 fn gained(done: &Done, name: &str) -> Result<f64, Missing> {
     let column = done.column(&format!("budget.{name}"))?;
     Ok(column[column.len() - 1] - column[0])
-}
-
-/// A value that must not be above a bound: how far it is above.
-fn at_most(value: f64, bound: f64) -> Measured {
-    if value <= bound { Measured::new(value, value, bound) } else { Measured::new(value, bound, bound) }
-}
-
-/// A value that must not be below a bound: how far it is below.
-fn at_least(value: f64, bound: f64) -> Measured {
-    if value >= bound { Measured::new(value, value, bound) } else { Measured::new(value, bound, bound) }
 }
 
 /// Change of momentum less the impulse given, of the largest impulse so far.

@@ -1,9 +1,10 @@
-//! Force chains: quasi-linear rows of grains that carry more than the mean, after Peters, Muthuswamy, Wibowo & Tordesillas,
-//! Physical Review E 72 (2005) 041307.
+//! Force chains: quasi-linear rows of grains that carry more than the mean, after Peters, Muthuswamy, Wibowo &
+//! Tordesillas, Physical Review E 72 (2005) 041307.
 //!
-//! The stress of a grain is σ = (1/πR²) Σ r ⊗ f over its contacts, r from its centre. A grain is stressed when its largest
-//! principal compression is above the mean of all grains; two stressed grains that touch are linked when the line between them
-//! is within 45° of the direction of that compression in both; a chain is three or more that hang together.
+//! The stress of a grain is σ = (1/πR²) Σ r ⊗ f over its contacts, r from its centre. A grain is stressed when its
+//! largest principal compression is above the mean of all grains; two stressed grains that touch are linked when the
+//! line between them is within 45° of the direction of that compression in both; a chain is three or more that hang
+//! together.
 
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::{Matrix2, SymmetricEigen, Vector2, Vector3};
@@ -51,7 +52,8 @@ pub(crate) fn chains(snapshot: &Snapshot) -> Chains {
         add(contact.grain, force);
         if let Partner::Grain(other) = contact.partner {
             add(other, -force);
-            let between = snapshot.grains[other as usize - 1].position - snapshot.grains[contact.grain as usize - 1].position;
+            let between =
+                snapshot.grains[other as usize - 1].position - snapshot.grains[contact.grain as usize - 1].position;
             touching.push((contact.grain.min(other), contact.grain.max(other), nearest(between)));
         }
     }
@@ -147,8 +149,14 @@ mod tests {
                 slipping: false,
             }
         };
-        let contacts =
-            vec![touch(1, 2, 5.0), touch(2, 3, 5.0), touch(3, 4, 5.0), touch(1, 4, 5.0), touch(1, 5, 0.1), touch(2, 5, 0.1)];
+        let contacts = vec![
+            touch(1, 2, 5.0),
+            touch(2, 3, 5.0),
+            touch(3, 4, 5.0),
+            touch(1, 4, 5.0),
+            touch(1, 5, 0.1),
+            touch(2, 5, 0.1),
+        ];
         let snapshot = Snapshot {
             step: 0,
             time: 0.0,

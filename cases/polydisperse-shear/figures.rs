@@ -1,16 +1,13 @@
 //! Graphs of grains on springs, and beside them of those that yield where minutes may be spent.
 
 use super::chains::{Chains, chains};
-use super::pictures::{self, PROFILES, Slab};
 use super::measures;
-use crate::bench::Bench;
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::Done;
+use super::pictures::{self, PROFILES, Slab};
+use grainbench_harness::prelude::*;
 use grainbench_scene::record::Snapshot;
-use grainbench_scene::solver::RunError;
 
-pub(super) fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let slabs = pictures::slabs(bench)?;
+pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let slabs = pictures::slabs(runner)?;
     let mut all = vec![displacement(&slabs)];
     all.extend(over_shear(&slabs));
     // Grains on springs come last and are always there.
@@ -35,8 +32,8 @@ fn displacement(slabs: &[Slab]) -> Figure {
     Figure::graph(
         "displacement",
         "Displacement across the slab",
-        "Fig. 8 of the paper: displacement of grains averaged over columns, as a fraction of that of the moving side, at the right. The \
-         straight line is uniform shear.",
+        "Fig. 8 of the paper: displacement of grains averaged over columns, as a fraction of that of the moving side, \
+         at the right. The straight line is uniform shear.",
         [Axis::linear("x over the width (1)"), Axis::linear("displacement over that of the side (1)")],
         curves,
     )
@@ -46,7 +43,8 @@ fn displacement(slabs: &[Slab]) -> Figure {
 fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
     let graph = |name: &str, title: &str, caption: &str, label: &str, of: &dyn Fn(&Done, &Snapshot) -> f64| {
         let curve = |(words, done): &Slab| {
-            let points = done.record.snapshots.iter().map(|at| (measures::shear(done, at.time), of(done, at))).collect();
+            let points =
+                done.record.snapshots.iter().map(|at| (measures::shear(done, at.time), of(done, at))).collect();
             Curve::new(*words, Stroke::Line, points)
         };
         let axes = [Axis::linear("mean shear (1)"), Axis::linear(label)];
@@ -92,8 +90,8 @@ fn of_springs(done: &Done) -> Vec<Figure> {
     all.push(Figure::graph(
         "stress",
         "Stress on the sides",
-        "Shear force on the moving side and on the one that stands still, and normal force on the latter, over the length of the side. \
-         The moving side feels the inertia of what it sets in motion; chains come and go.",
+        "Shear force on the moving side and on the one that stands still, and normal force on the latter, over the \
+         length of the side. The moving side feels the inertia of what it sets in motion; chains come and go.",
         [Axis::linear("mean shear (1)"), Axis::linear("stress (MPa)")],
         vec![
             Curve::new("shear, moving side", Stroke::Line, course("right.force_y", -1.0)),
@@ -101,12 +99,8 @@ fn of_springs(done: &Done) -> Vec<Figure> {
             Curve::new("normal, standing side", Stroke::Line, course("left.force_x", -1.0)),
         ],
     ));
-    let entries = [
-        ("work of the side", "work"),
-        ("kinetic", "kinetic"),
-        ("springs", "springs"),
-        ("friction", "friction"),
-    ];
+    let entries =
+        [("work of the side", "work"), ("kinetic", "kinetic"), ("springs", "springs"), ("friction", "friction")];
     let curve = |(label, name): (&str, &str)| {
         let values = named(&format!("budget.{name}"));
         let start = values.first().copied().unwrap_or_default();
@@ -125,7 +119,11 @@ fn of_springs(done: &Done) -> Vec<Figure> {
 
 /// Force chains over the shear.
 fn of_chains(done: &Done) -> [Figure; 2] {
-    let looked: Vec<(f64, Chains)> = done.record.snapshots.iter().skip(1)
+    let looked: Vec<(f64, Chains)> = done
+        .record
+        .snapshots
+        .iter()
+        .skip(1)
         .map(|snapshot| (measures::shear(done, snapshot.time), chains(snapshot)))
         .collect();
     let points = |of: &dyn Fn(&Chains) -> f64| -> Vec<(f64, f64)> {
@@ -137,19 +135,23 @@ fn of_chains(done: &Done) -> [Figure; 2] {
         Figure::graph(
             "chains",
             "Force chains come and go",
-            "Part of the grains that carry more than the mean, and part of the links of chains that are still there at the next look, \
-             2.5 % of shear later at most. Grains on springs.",
+            "Part of the grains that carry more than the mean, and part of the links of chains that are still there \
+             at the next look, 2.5 % of shear later at most. Grains on springs.",
             [Axis::linear("mean shear (1)"), Axis::linear("part (1)")],
             vec![
                 Curve::new("stressed grains", Stroke::MarkedLine, points(&|chains| chains.stressed)),
-                Curve::new("links that are still there", Stroke::MarkedLine, surviving.filter(|(_, part)| part.is_finite()).collect()),
+                Curve::new(
+                    "links that are still there",
+                    Stroke::MarkedLine,
+                    surviving.filter(|(_, part)| part.is_finite()).collect(),
+                ),
             ],
         ),
         Figure::graph(
             "chain-length",
             "Length and direction of force chains",
-            "Mean number of grains of a chain, and mean direction of compression of its grains from the normal of the sides. Shear of the \
-             right side upwards compresses along −45°.",
+            "Mean number of grains of a chain, and mean direction of compression of its grains from the normal of the \
+             sides. Shear of the right side upwards compresses along −45°.",
             [Axis::linear("mean shear (1)"), Axis::linear("grains; degrees over ten")],
             vec![
                 Curve::new("grains of a chain", Stroke::MarkedLine, points(&|chains| mean(&chains.lengths))),

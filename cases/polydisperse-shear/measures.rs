@@ -1,7 +1,8 @@
-//! What is measured of a sheared slab, of grains alone so that it is one measure for all methods, but for voids and yield.
+//! What is measured of a sheared slab, of grains alone so that it is one measure for all methods, but for voids and
+//! yield.
 
-use crate::gate::{Done, Missing};
 use grainbench_fields::overlap::disc_in_box;
+use grainbench_harness::prelude::{Done, Missing};
 use grainbench_scene::record::{GrainState, PointState, Snapshot};
 use std::collections::HashMap;
 
@@ -58,8 +59,8 @@ fn between(edges: [f64; 2], x: f64, radius: f64) -> f64 {
     disc_in_box(radius, [edges[0] - x, -radius], [edges[1] - x, radius])
 }
 
-/// Displacement of grains along the slab, averaged over columns by the area of grains in each, as a fraction of that of the
-/// moving side: (middle of the column over the width, displacement).
+/// Displacement of grains along the slab, averaged over columns by the area of grains in each, as a fraction of that of
+/// the moving side: (middle of the column over the width, displacement).
 pub(crate) fn profile(done: &Done, snapshot: &Snapshot) -> Vec<(f64, f64)> {
     let (moved, period, width) = (speed(done) * snapshot.time, period(done), width(done));
     let displacements: Vec<f64> = (snapshot.grains.iter().zip(&done.scene.grains))
@@ -83,8 +84,8 @@ pub(crate) fn profile(done: &Done, snapshot: &Snapshot) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Width of the band in which displacement goes from nothing to all, over that of the slab: twice the mean of the profile,
-/// which is 1 for uniform shear and b for a profile that rises linearly over the part b at the moving side.
+/// Width of the band in which displacement goes from nothing to all, over that of the slab: twice the mean of the
+/// profile, which is 1 for uniform shear and b for a profile that rises linearly over the part b at the moving side.
 pub(crate) fn band(done: &Done, snapshot: &Snapshot) -> f64 {
     let profile = profile(done, snapshot);
     2.0 * profile.iter().map(|(_, displacement)| displacement).sum::<f64>() / profile.len() as f64
@@ -107,13 +108,13 @@ const CELLS: usize = 150;
 /// Cells across a large void.
 const VOID: usize = 5;
 
-/// Large voids: squares of five cells of the paper's grid, 40 µm, at any place of that grid within the slab, in which there is
-/// nothing; no material point lies in them, or no disc covers the centre of one of their cells. Squares may overlap.
+/// Large voids: squares of five cells of the paper's grid, 40 µm, at any place of that grid within the slab, in which
+/// there is nothing; no material point lies in them, or no disc covers the centre of one of their cells. Squares may
+/// overlap.
 pub(crate) fn large_voids(done: &Done, snapshot: &Snapshot) -> usize {
     let empty = empty_cells(done, snapshot);
-    let is_void = |column: usize, row: usize| {
-        (0..VOID).all(|i| (0..VOID).all(|j| empty[(row + j) % CELLS * CELLS + column + i]))
-    };
+    let is_void =
+        |column: usize, row: usize| (0..VOID).all(|i| (0..VOID).all(|j| empty[(row + j) % CELLS * CELLS + column + i]));
     (0..CELLS).map(|row| (0..=CELLS - VOID).filter(|&column| is_void(column, row)).count()).sum()
 }
 

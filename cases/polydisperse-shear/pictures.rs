@@ -2,15 +2,12 @@
 
 use super::measures::at;
 use super::{CHAINS, FRAMES, springs, yielding};
-use crate::bench::Bench;
-use crate::coarse_picture::{self, Mean};
-use crate::field_picture::{Shot, film, pictures};
-use crate::figure::Figure;
-use crate::force_plot::force_plot;
-use crate::gate::Done;
+use grainbench_fields::coarse_picture::{self, Mean};
+use grainbench_fields::picture::{Shot, film, pictures};
 use grainbench_fields::quantity::Quantity;
+use grainbench_harness::force_plot::force_plot;
+use grainbench_harness::prelude::*;
 use grainbench_scene::record::{GrainState, Owner, Record, Snapshot};
-use grainbench_scene::solver::RunError;
 use std::sync::Arc;
 
 /// Mean shear of the paper's profiles.
@@ -29,13 +26,13 @@ const SHEAR_RATES: (f64, f64) = (0.0, 2e5);
 pub(super) type Slab = (&'static str, Done);
 
 /// Grains on springs; and those that yield, with friction and without slip, where minutes may be spent.
-pub(super) fn slabs(bench: &Bench) -> Result<Vec<Slab>, RunError> {
+pub(super) fn slabs(runner: &Runner) -> Result<Vec<Slab>, RunError> {
     let mut slabs = Vec::new();
-    if bench.is_thorough() {
-        slabs.push(("yielding, μ = .3", bench.run(&yielding::whole("seed-1", "mpm"))?));
-        slabs.push(("yielding, no slip", bench.run(&yielding::whole("seed-1", "mpm:no-slip"))?));
+    if runner.is_thorough() {
+        slabs.push(("yielding, μ = .3", runner.run(&yielding::whole("seed-1", "mpm"))?));
+        slabs.push(("yielding, no slip", runner.run(&yielding::whole("seed-1", "mpm:no-slip"))?));
     }
-    slabs.push(("on springs, μ = .3", bench.run(&springs::slab())?));
+    slabs.push(("on springs, μ = .3", runner.run(&springs::slab())?));
     Ok(slabs)
 }
 
@@ -84,17 +81,17 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
     let mut figures = vec![Figure::field(
         "rotation",
         "Grains roll",
-        "Rotation since the start. Grains of the two sides do not turn. In the band at the moving side neighbours turn against each \
-         other, like the wheels of a gear; without friction to roll on they could not. The same packing in every row; grains pushed out \
-         through a side are not shown.",
+        "Rotation since the start. Grains of the two sides do not turn. In the band at the moving side neighbours \
+         turn against each other, like the wheels of a gear; without friction to roll on they could not. The same \
+         packing in every row; grains pushed out through a side are not shown.",
         pictures(Quantity::Rotation, &shots(&with_friction, &PROFILES), PIXELS, Some(TURNED)),
     )];
     if !deformable.is_empty() {
         figures.push(Figure::field(
             "plastic-strain",
             "Plastic strain, with friction and without slip",
-            "Fig. 6 of the paper: with friction grains roll and slide, and yield a little where they touch; without slip they are drawn \
-             out and leave large voids. One scale.",
+            "Fig. 6 of the paper: with friction grains roll and slide, and yield a little where they touch; without \
+             slip they are drawn out and leave large voids. One scale.",
             pictures(Quantity::PlasticStrain, &shots(&deformable, &PROFILES), PIXELS, Some((0.0, 0.5))),
         ));
     }
@@ -103,7 +100,8 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
         figures.push(Figure::field(
             name,
             &format!("Force chains at 63 and 71 % shear, grains {}", slab.0),
-            "Difference of the principal stresses, as in Fig. 7 of the paper. Few grains carry the load, and 8 % of shear later it is others.",
+            "Difference of the principal stresses, as in Fig. 7 of the paper. Few grains carry the load, and 8 % of \
+             shear later it is others.",
             pictures(Quantity::StressDifference, &shots(&[slab], &CHAINS), PIXELS, None),
         ));
     }
@@ -132,7 +130,10 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
         .filter_map(|(words, done)| Some(((*words).to_owned(), at(done, SHEAR).ok()?, done.scene.as_ref())))
         .collect();
     let figure = |name: &str, title: &str, caption: &str, mean: Mean, range: (f64, f64)| {
-        let caption = format!("{caption} Means over squares of 200 µm at 50 % shear, of material points or of grains and their contacts; white where there are too few.");
+        let caption = format!(
+            "{caption} Means over squares of 200 µm at 50 % shear, of material points or of grains and their \
+             contacts; white where there are too few."
+        );
         Figure::field(name, title, &caption, coarse_picture::pictures(mean, &shots, CELL, range))
     };
     vec![

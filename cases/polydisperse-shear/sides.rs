@@ -1,8 +1,9 @@
 //! Sides that grains on springs do not get out through.
 //!
-//! At a side there are the grains that it cuts and pores between them, through which others are pushed out. The grid of the paper
-//! ends at the sides, and nothing passes. Here walls without friction stand there. Grains that the sides cut reach through the walls
-//! from the start: they are of a material of their own, the same but that it has no law with the walls.
+//! At a side there are the grains that it cuts and pores between them, through which others are pushed out. The grid of
+//! the paper ends at the sides, and nothing passes. Here walls without friction stand there. Grains that the sides cut
+//! reach through the walls from the start: they are of a material of their own, the same but that it has no law with
+//! the walls.
 
 use grainbench_scene::motion::Motion;
 use grainbench_scene::scene::{ContactLaw, Scene, Wall, WallShape};

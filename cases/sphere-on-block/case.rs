@@ -3,48 +3,56 @@
 #[path = "backspin.rs"]
 mod backspin;
 
-use crate::bench::Bench;
-use crate::case::{Case, Rung, cells};
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
 use crate::one_grain::{OneGrain, last};
-use crate::verdict::Evidence;
-use grainbench_scene::solver::RunError;
+use crate::sources::prototype::{elastic_sphere, nodal_contact_2000, nodal_contact_2001};
+use grainbench_harness::prelude::*;
+use grainbench_harness::source::Cited;
 
 const LADDER: &[Rung] = &[cells("R/2", 2.0, 2), cells("R/4", 4.0, 2), cells("R/8", 8.0, 2)];
-const REFERENCE: &str = "independent prototype of the elastic sphere, Richardson over R/2, R/4 and R/8";
-const FLAT: &str = "nodal contact acts before surfaces meet and holds the sphere up over a patch of about √(2Rh), along normals of its own";
+const FLAT: &str = "nodal contact acts before surfaces meet and holds the sphere up over a patch of about √(2Rh), \
+                    along normals of its own";
 
 pub(crate) static CASE: Case = Case {
     name: "sphere-on-block",
     title: "A sphere rolls on a deformable plane",
-    claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane, with backspin too; the papers' \
-            contacts at nodes are slow by what they are known for.",
+    claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane, with backspin too; \
+            the papers' contacts at nodes are slow by what they are known for.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The elastic answer comes from a prototype of the same family of methods, on a rigid plane, not in closed form.",
+    weakness: "The elastic answer comes from a prototype of the same family of methods, on a rigid plane, not in \
+               closed form.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// One slope.
 #[derive(Clone, Copy)]
 struct Slope {
     variant: &'static str,
-    /// Displacement after a second over the rigid one, less one, of the converged elastic sphere, and its uncertainty.
-    excess: f64,
-    uncertainty: f64,
+    /// Displacement after a second over the rigid one, less one, of the converged elastic sphere on a rigid plane.
+    reference: Cited,
     /// Allowed deviation at R/4 and R/8.
     allowed: [f64; 2],
     /// What the 2000 and the 2001 contact give at R/4, touching at the start.
-    papers: [f64; 2],
+    papers: [(&'static str, Cited); 2],
 }
 
 const SLOPES: [Slope; 2] = [
-    Slope { variant: "45deg-mu.495", excess: -0.002, uncertainty: 0.003, allowed: [0.035, 0.01], papers: [-0.26, -0.32] },
-    Slope { variant: "60deg-mu2_7", excess: 0.014, uncertainty: 0.0, allowed: [0.01, 0.005], papers: [-0.22, -0.27] },
+    Slope {
+        variant: "45deg-mu.495",
+        reference: elastic_sphere::ROLLS_45,
+        allowed: [0.035, 0.01],
+        papers: [("mpm:2000", nodal_contact_2000::SPHERE_ROLLS_45), ("mpm:2001", nodal_contact_2001::SPHERE_ROLLS_45)],
+    },
+    Slope {
+        variant: "60deg-mu2_7",
+        reference: elastic_sphere::SLIPS_60,
+        allowed: [0.01, 0.005],
+        papers: [("mpm:2000", nodal_contact_2000::SPHERE_SLIPS_60), ("mpm:2001", nodal_contact_2001::SPHERE_SLIPS_60)],
+    },
 ];
 
 /// Displacement over that of a rigid sphere, less one.
@@ -63,48 +71,54 @@ fn in_set(run: Run, quick: bool) -> Run {
     if quick { run.slow() } else { run.long() }
 }
 
-fn gates() -> Vec<Gate> {
-    let mut gates = Vec::new();
+fn claims() -> Vec<Claim> {
+    let mut claims = Vec::new();
     for slope in SLOPES {
         let rolls = slope.variant == SLOPES[0].variant;
         for (rung, allowed) in LADDER[1..].iter().zip(slope.allowed) {
             let run = Run::new(slope.variant, "mpm", rung.resolution);
-            gates.push(Gate::new(
-                (format!("displacement at 1 s over the rigid one, less 1, {}", rung.name), "1"),
-                vec![in_set(run, rolls && *rung == LADDER[1])],
-                (Evidence::OtherCode, REFERENCE),
-                (allowed + slope.uncertainty, "discretisation at this resolution, and the reference's own uncertainty"),
-                Control::scene("half the friction", |scene| scene.change_laws(|law| law.friction *= 0.5)),
-                move |done| Ok(Measured::new(excess(&done[0])?, slope.excess, 1.0)),
-            ));
+            claims.push(
+                claim(format!("displacement at 1 s over the rigid one, less 1, {}", rung.name), "1")
+                    .of(in_set(run, rolls && *rung == LADDER[1]))
+                    .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
+                    .within(judged(
+                        allowed + slope.reference.uncertainty,
+                        "discretisation at this resolution, the plane's part, and the reference's own uncertainty",
+                    ))
+                    .refuses(Control::scene("half the friction", |scene| scene.change_laws(|law| law.friction *= 0.5))),
+            );
         }
-        for (solver, expected) in ["mpm:2000", "mpm:2001"].into_iter().zip(slope.papers) {
-            gates.push(Gate::new(
-                ("displacement at 1 s over the rigid one, less 1, touching at the start, R/4", "1"),
-                vec![in_set(set_down(slope.variant, solver), rolls && solver == "mpm:2000")],
-                (Evidence::OtherCode, "independent prototype of the papers' contacts (derivation)"),
-                (0.07, "two implementations of one method at the same resolution, with other material points"),
-                Control::solver("springs at the surface", "mpm"),
-                move |done| Ok(Measured::new(excess(&done[0])?, expected, 1.0)),
-            ));
-            gates.push(Gate::new(
-                ("displacement at 1 s over the rigid one, less 1, against the elastic sphere, R/4", "1"),
-                vec![in_set(Run::new(slope.variant, solver, LADDER[1].resolution).known(FLAT), false)],
-                (Evidence::OtherCode, REFERENCE),
-                (slope.allowed[0] + slope.uncertainty, "what a contact that acts at the surface reaches at this resolution"),
-                Control::without_the_error("springs at the surface", "mpm", LADDER[1].resolution),
-                move |done| Ok(Measured::new(excess(&done[0])?, slope.excess, 1.0)),
-            ));
+        for (solver, cited) in slope.papers {
+            claims.push(
+                claim("displacement at 1 s over the rigid one, less 1, touching at the start, R/4", "1")
+                    .of(in_set(set_down(slope.variant, solver), rolls && solver == "mpm:2000"))
+                    .equals_cited(cited, 1.0, |done| excess(&done[0]))
+                    .within(judged(
+                        0.07,
+                        "two implementations of one method at the same resolution, with other material points",
+                    ))
+                    .refuses(Control::solver("springs at the surface", "mpm")),
+            );
+            claims.push(
+                claim("displacement at 1 s over the rigid one, less 1, against the elastic sphere, R/4", "1")
+                    .of(in_set(Run::new(slope.variant, solver, LADDER[1].resolution).known(FLAT), false))
+                    .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
+                    .within(judged(
+                        slope.allowed[0] + slope.reference.uncertainty,
+                        "what a contact that acts at the surface reaches at this resolution",
+                    ))
+                    .refuses(Control::without_the_error("springs at the surface", "mpm", LADDER[1].resolution)),
+            );
         }
     }
-    gates.extend(backspin::gates());
-    gates
+    claims.extend(backspin::claims());
+    claims
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (solver, stroke) in [("mpm", Stroke::Line), ("mpm:2000", Stroke::Dashed)] {
-        let done = bench.run(&Run::new(SLOPES[0].variant, solver, LADDER[0].resolution))?;
+        let done = runner.run(&Run::new(SLOPES[0].variant, solver, LADDER[0].resolution))?;
         let rigid = OneGrain::of(&done.scene);
         let x = done.series().column("grain.x").unwrap_or_default();
         let points = done.series().time.iter().zip(x).map(|(&t, x)| (t, x - rigid.rigid_incline(t).x)).collect();
@@ -113,7 +127,8 @@ fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "way",
         "A sphere on a deformable plane at 45°, R/2: way less that of a rigid sphere",
-        "At two cells a radius `mpm` is a few per cent slow; with the 2000 paper's contact the sphere hardly rolls. The whole way is 2.5 m.",
+        "At two cells a radius `mpm` is a few per cent slow; with the 2000 paper's contact the sphere hardly rolls. \
+         The whole way is 2.5 m.",
         [Axis::linear("time t (s)"), Axis::linear("x − x_rigid (m)")],
         curves,
     )])

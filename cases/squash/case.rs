@@ -3,17 +3,13 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung, fraction};
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::rigid_rows;
-use crate::scope::Scope;
-use crate::verdict::Evidence;
+use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
-use grainbench_scene::solver::RunError;
 
 const LADDER: &[Rung] = &[fraction("dt=.05", 0.05)];
+/// By how much positions up to 4 R round (R) over the way of a wall in a step (R): forces, in units of k v Δt.
+const ROUNDING: f64 = 4.0 * f64::EPSILON / 1e-3;
 
 pub(crate) static CASE: Case = Case {
     name: "squash",
@@ -22,12 +18,13 @@ pub(crate) static CASE: Case = Case {
             that the paper's equations give, to rounding.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One dimension, no friction, no rotation and no contact that opens. It tells the order of operations in a \
-               cycle and nothing about contact detection: a code may pass and still find contacts one step late.",
+    weakness: "One dimension, no friction, no rotation and no contact that opens. It tells the order of operations in \
+               a cycle and nothing about contact detection: a code may pass and still find contacts one step late.",
     ladder: LADDER,
     default_rung: LADDER[0],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 fn run() -> Run {
@@ -57,63 +54,52 @@ fn first_cycles(cycle: u32, q: f64) -> (f64, f64) {
     }
 }
 
-fn gates() -> Vec<Gate> {
-    let late = || {
-        Control::scene("the left wall starts one cycle late", |scene| {
-            scene.walls[0].motion.phases[0].start = Moment::Cycle(1);
-        })
-    };
-    let mut gates = Vec::new();
+fn claims() -> Vec<Claim> {
+    let mut claims = Vec::new();
     for cycle in 1..=3_u32 {
         for (contact, column) in [("A", "A.normal_force"), ("B", "B.normal_force"), ("C", "C.normal_force")] {
-            gates.push(Gate {
-                quantity: format!("normal force at {contact}, cycle {cycle}"),
-                unit: "N",
-                evidence: Evidence::Analytic,
-                scope: Scope::Named,
-                source: "Cundall & Strack 1979, eqs. 1-7",
-                allowed: 1e-12,
-                because: "rounding of positions of order R, in units of k v Δt with v Δt = 1e-3 R",
-                runs: vec![run()],
-                measure: measure(move |done| {
-                    let (q, unit) = units(&done[0]);
-                    let (side, middle) = first_cycles(cycle, q);
-                    let expected = if column.starts_with('B') { middle } else { side };
-                    Ok(Measured::new(done[0].at_step(column, u64::from(cycle))?, expected * unit, unit))
-                }),
-                control: match (cycle, contact) {
-                    (1, "B") => Control::scene("the discs overlap by 1e-6 R at the start", |scene| {
-                        scene.grains[1].position.x -= 1e-6;
+            claims.push(
+                claim(format!("normal force at {contact}, cycle {cycle}"), "N")
+                    .of(run())
+                    .equals(Source::Derived("Cundall & Strack 1979, eqs. 1-7 (derivation)"), move |done| {
+                        let (q, unit) = units(&done[0]);
+                        let (side, middle) = first_cycles(cycle, q);
+                        let expected = if contact == "B" { middle } else { side };
+                        Ok(Measured::new(done[0].at_step(column, u64::from(cycle))?, expected * unit, unit))
+                    })
+                    .within(computed(ROUNDING, "positions up to 4 R round by ε; in units of k v Δt with v Δt = 1e-3 R"))
+                    .refuses(match (cycle, contact) {
+                        (1, "B") => Control::scene("the discs overlap by 1e-6 R at the start", |scene| {
+                            scene.grains[1].position.x -= 1e-6;
+                        }),
+                        (3, _) => Control::scene("the mass of the discs off by a millionth", |scene| {
+                            scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.0 + 1e-6);
+                        }),
+                        (_, "C") => late("the right wall starts one cycle late", 1),
+                        _ => late("the left wall starts one cycle late", 0),
                     }),
-                    (2, "C") | (1, "C") => Control::scene("the right wall starts one cycle late", |scene| {
-                        scene.walls[1].motion.phases[0].start = Moment::Cycle(1);
-                    }),
-                    (3, _) => Control::scene("the mass of disc y off by a millionth", |scene| {
-                        scene.grains[1].mass *= 1.0 + 1e-6;
-                        scene.grains[0].mass *= 1.0 + 1e-6;
-                    }),
-                    _ => late(),
-                },
-            });
+            );
         }
     }
-    gates.push(Gate {
-        quantity: "normal force at A over 200 cycles, worst".to_owned(),
-        unit: "N",
-        evidence: Evidence::Analytic,
-        scope: Scope::Named,
-        source: "closed solution of the paper's recurrence (derivation)",
-        allowed: 1e-10,
-        because: "rounding adds up over 200 cycles; in units of k v Δt",
-        runs: vec![run()],
-        measure: measure(worst_at_a),
-        control: Control::scene("damping of 1e-6 of critical", |scene| {
-            scene.change_laws(|law| law.normal_damping = 2e-6);
-        }),
-    });
-    gates.push(rigid_rows::refuses_cycles(PLAIN));
-    gates.extend(elastic::DISCS.gates(|run| run));
-    gates
+    claims.push(
+        claim("normal force at A over 200 cycles, worst", "N")
+            .of(run())
+            .equals(Source::Derived("closed solution of the paper's recurrence (derivation)"), worst_at_a)
+            .within(computed(
+                200_f64.sqrt() * ROUNDING,
+                "positions up to 4 R round by ε at random over 200 cycles; in units of k v Δt with v Δt = 1e-3 R",
+            ))
+            .refuses(Control::scene("damping of 1e-6 of critical", |scene| {
+                scene.change_laws(|law| law.normal_damping = 2e-6);
+            })),
+    );
+    claims.push(rigid_rows::refuses_cycles(PLAIN));
+    claims.extend(elastic::DISCS.claims(|run| run));
+    claims
+}
+
+fn late(name: &'static str, wall: usize) -> Control {
+    Control::scene(name, move |scene| scene.walls[wall].motion.phases[0].start = Moment::Cycle(1))
 }
 
 fn worst_at_a(done: &[Done]) -> Result<Measured, Missing> {
@@ -123,30 +109,28 @@ fn worst_at_a(done: &[Done]) -> Result<Measured, Missing> {
     Ok(Measured::worst_of(&done[0].series().time, done[0].column("A.normal_force")?, &expected, unit))
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
-    let done = bench.run(&run())?;
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let done = runner.run(&run())?;
     let (q, unit) = units(&done);
     let measured = |column: &str| -> Vec<(f64, f64)> {
         let values = done.series().column(column).unwrap_or_default();
         done.series().step.iter().zip(values).take(61).map(|(&n, force)| (n as f64, force / unit)).collect()
     };
     let exact = |of: &dyn Fn(f64) -> f64| (0..=60).map(|n| (f64::from(n), of(f64::from(n)))).collect();
-    let curve = |label: &str, stroke, points| Curve { label: label.to_owned(), stroke, points };
-    Ok(vec![Figure {
-        name: "forces".to_owned(),
-        title: "Forces at the walls and between the discs".to_owned(),
-        caption: "Each cycle of the solver against the closed solution of the paper's recurrence. The wall force leads; \
-                  the discs pass it on after the disturbance has crossed them."
-            .to_owned(),
-        drawing: Drawing::Graph(Graph {
-            x: Axis { label: "calculation cycle n".to_owned(), logarithmic: false },
-            y: Axis { label: "normal force / (k v Δt)".to_owned(), logarithmic: false },
-            curves: vec![
-                curve("wall A, dem", Stroke::Markers, measured("A.normal_force")),
-                curve("between, B, dem", Stroke::Markers, measured("B.normal_force")),
-                curve("A, exact", Stroke::Dashed, exact(&|n| n - displacement(n, q))),
-                curve("B, exact", Stroke::Dashed, exact(&|n| 2.0 * displacement(n, q))),
+    Ok(vec![
+        Figure::graph(
+            "forces",
+            "Forces at the walls and between the discs",
+            "Each cycle of the solver against the closed solution of the paper's recurrence. The wall force leads; the \
+             discs pass it on after the disturbance has crossed them.",
+            [Axis::linear("calculation cycle n"), Axis::linear("normal force / (k v Δt)")],
+            vec![
+                Curve::new("wall A, dem", Stroke::Markers, measured("A.normal_force")),
+                Curve::new("between, B, dem", Stroke::Markers, measured("B.normal_force")),
+                Curve::new("A, exact", Stroke::Dashed, exact(&|n| n - displacement(n, q))),
+                Curve::new("B, exact", Stroke::Dashed, exact(&|n| 2.0 * displacement(n, q))),
             ],
-        }),
-    }, elastic::figure(bench)?])
+        ),
+        elastic::figure(runner)?,
+    ])
 }

@@ -1,13 +1,13 @@
 //! How the disc moves between the walls, in time that flows: the paper's recurrence without its step.
 //!
-//! m ü = F_A − F_B, with F_A = k(vt − u), F_B = 2ku for equal and opposite discs: u = vt/3 − (v/3W) sin Wt, W = √(3k/m).
+//! m ü = F_A − F_B, with F_A = k(vt − u), F_B = 2ku for equal and opposite discs: u = vt/3 − (v/3W) sin Wt, W =
+//! √(3k/m).
 
-use crate::case::PLAIN;
-use crate::gate::{Measured, Missing, measure};
 use crate::registry;
-use crate::subject::{Lane, Method, Subject};
-use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling, Scene};
-use grainbench_scene::solver::Resolution;
+use grainbench_harness::prelude::*;
+use grainbench_harness::subject::{Lane, Subject};
+use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling};
+use grainbench_scene::solver::Method;
 use std::sync::Arc;
 
 /// Several periods of the pair (s): 2π/√3 = 3.63 s.
@@ -30,8 +30,8 @@ pub(crate) fn subjects() -> Vec<Subject> {
         variant: PLAIN,
         quantity: "displacement of disc x over 20 s, worst".to_owned(),
         unit: "m",
-        source: "u = vt/3 − (v/3W) sin Wt, W = √(3k/m) (derivation)",
-        measure: measure(|done| {
+        source: "u = vt/3 − (v/3W) sin Wt, W = √(3k/m) (derivation)".to_owned(),
+        measure: Arc::new(|done| {
             let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
             let scene = &done.scene;
             let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness).fold(0.0, f64::max);
@@ -42,9 +42,6 @@ pub(crate) fn subjects() -> Vec<Subject> {
             let exact = |t: f64| speed / 3.0 * (t - (frequency * t).sin() / frequency);
             Ok(Measured::worst(&done.series().time, &moved, exact, speed / frequency / 3.0))
         }),
-        lanes: vec![
-            lane(Method::Dem, Resolution::CriticalFraction(0.1)),
-            lane(Method::Rigid, Resolution::substeps(8)),
-        ],
+        lanes: vec![lane(Method::Dem, Resolution::CriticalFraction(0.1)), lane(Method::Rigid, Resolution::substeps(8))],
     }]
 }

@@ -1,15 +1,14 @@
-//! The discs as elastic bodies: the force at the walls, the frequency at which they ring between them, and the spring that they show.
+//! The discs as elastic bodies: the force at the walls, the frequency at which they ring between them, and the spring
+//! that they show.
 //!
-//! The walls move in by d = .01 R and stop; by symmetry the plane between the discs is one more wall. A disc's diameter is shortened by d.
-//! A rigid disc on springs k_n has the wall force F = (2/3) k_n d and rings with ω² = 3 k_n/m. An elastic one has F(d) in closed form, and
-//! as its compliance lies one half at each of its two contacts, ω² = 4 (dF/dd)/m as long as it moves as a whole.
+//! The walls move in by d = .01 R and stop; by symmetry the plane between the discs is one more wall. A disc's diameter
+//! is shortened by d. A rigid disc on springs k_n has the wall force F = (2/3) k_n d and rings with ω² = 3 k_n/m. An
+//! elastic one has F(d) in closed form, and as its compliance lies one half at each of its two contacts, ω² = 4
+//! (dF/dd)/m as long as it moves as a whole.
 
-use crate::bench::Bench;
-use crate::case::PLAIN;
 use crate::elastic::Pressed;
-use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::ringing::Ringing;
-use grainbench_scene::solver::RunError;
+use grainbench_harness::prelude::*;
 
 /// Discs of E' = 16 Pa, ν = 1/4, as heavy as in the example, whose ringing has periods of some 1.6 s.
 pub(super) const DISCS: Ringing = Ringing {
@@ -34,10 +33,10 @@ pub(super) const DISCS: Ringing = Ringing {
     because: "patches of a third of a cell, on springs as soft as .4 cells of material",
 };
 
-pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
+pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for (name, run) in [("mpm, elastic discs", DISCS.discs()), ("dem, k_n = 3F/2d", DISCS.rigid())] {
-        let done = bench.run(&run)?;
+        let done = runner.run(&run)?;
         let unit = DISCS.exact(&done).map_or(1.0, |(force, _)| force);
         let force = done.series().column(DISCS.column).unwrap_or_default();
         let points = done.series().time.iter().zip(force).map(|(&time, force)| (time, force / unit)).collect();
@@ -46,8 +45,8 @@ pub(super) fn figure(bench: &Bench) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "elastic",
         "Force at the wall: elastic discs, and rigid ones on springs",
-        "The walls move in by d = .01 R and stop. A spring of k_n = 3F/2d, F the force of elastic discs in closed form, gives the force at \
-         rest; the frequency is then nearly theirs.",
+        "The walls move in by d = .01 R and stop. A spring of k_n = 3F/2d, F the force of elastic discs in closed \
+         form, gives the force at rest; the frequency is then nearly theirs.",
         [Axis::linear("time t (s)"), Axis::linear("force / F")],
         curves,
     ))

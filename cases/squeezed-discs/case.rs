@@ -1,14 +1,9 @@
 //! Nine elastic discs squeezed by four walls: how stiff contacts are.
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung, cells};
 use crate::elastic::{Pressed, stiffen};
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
-use crate::verdict::Evidence;
+use crate::sources::prototype::squeezed_discs::{LEAST_NODAL_FORCE, MOST_NODAL_FORCE};
+use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError};
 use std::collections::BTreeMap;
 
 const LADDER: &[Rung] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
@@ -17,19 +12,22 @@ const WALLS: [&str; 4] = ["left.force_x", "right.force_x", "bottom.force_y", "to
 const PHASES: [&str; 3] = ["mpm", "mpm+phase=0.25", "mpm+phase=0.5"];
 /// Springs twice as stiff, which slow what rolls on a coarse grid.
 const STIFF: &str = "mpm+penalty=5.2";
-const SOURCE: &str = "Johnson, Contact Mechanics, line contact, with the swelling by the pair across (derivation)";
+const SOURCE: Source =
+    Source::Derived("Johnson, Contact Mechanics, line contact, with the swelling by the pair across (derivation)");
 
 pub(crate) static CASE: Case = Case {
     name: "squeezed-discs",
     title: "Nine elastic discs squeezed",
-    claim: "Elastic discs press on each other and on walls with the force that their elasticity gives, all contacts alike.",
+    claim: "Elastic discs press on each other and on walls with the force that their elasticity gives, all contacts \
+            alike.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "At the squeeze of .01 R patches are narrower than cells, and the force hangs on how the grid lies.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// Distance by which each wall moves in (m).
@@ -46,8 +44,8 @@ fn exact(scene: &Scene) -> f64 {
     Pressed::of(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
 }
 
-/// Mean contact force at the walls (N per metre), three discs on each, over the last quarter of the run: material points go on
-/// trembling by a per cent.
+/// Mean contact force at the walls (N per metre), three discs on each, over the last quarter of the run: material
+/// points go on trembling by a per cent.
 fn mean_force(done: &Done) -> Result<f64, Missing> {
     let mut sum = 0.0;
     for wall in WALLS {
@@ -83,64 +81,67 @@ fn over_phases(done: &[Done]) -> Result<f64, Missing> {
     Ok(forces?.iter().sum::<f64>() / done.len() as f64)
 }
 
-fn gates() -> Vec<Gate> {
-    let mut gates = vec![Gate::new(
-        ("largest deviation of the 24 contact forces from their mean", "1"),
-        vec![Run::new(PLAIN, "mpm", LADDER[1].resolution).slow()],
-        (Evidence::Invariant, "equilibrium and symmetry: all are equal (derivation)"),
-        (5e-3, "what is left of the swinging, and tracers that stand in for surfaces"),
-        Control::scene("the left wall moves in twice as far", |scene| scene.walls[0].motion.phases[0].velocity *= 2.0),
-        |done| {
-            let (count, spread) = spread(&done[0])?;
-            if count == 24 { Ok(Measured::new(spread, 0.0, 1.0)) } else { Err(Missing(format!("24 contacts, but {count}"))) }
-        },
-    )];
-    for (rung, allowed, because) in [
-        (LADDER[1], 0.1, "springs are as soft as .4 cells of material, and the patch is a quarter of a cell wide"),
-        (LADDER[2], 0.08, "the same with a patch of half a cell"),
+fn claims() -> Vec<Claim> {
+    let mut claims = vec![
+        claim("largest deviation of the 24 contact forces from their mean", "1")
+            .of(Run::new(PLAIN, "mpm", LADDER[1].resolution).slow())
+            .holds("equilibrium and symmetry: all are equal (derivation)", |done| match spread(&done[0])? {
+                (24, spread) => Ok(Measured::new(spread, 0.0, 1.0)),
+                (count, _) => Err(Missing(format!("24 contacts, but {count}"))),
+            })
+            .within(required(5e-3, "what is left of the swinging, and tracers that stand in for surfaces"))
+            .refuses(Control::scene("the left wall moves in twice as far", |scene| {
+                scene.walls[0].motion.phases[0].velocity *= 2.0;
+            })),
+    ];
+    for (rung, tolerance) in [
+        (
+            LADDER[1],
+            required(0.1, "springs are as soft as .4 cells of material, and the patch is a quarter of a cell wide"),
+        ),
+        (LADDER[2], judged(0.08, "the same with a patch of half a cell")),
     ] {
         let runs = phases(rung).map(|run| if rung.name == "R/12" { run.long() } else { run.slow() });
-        gates.push(Gate::new(
-            (format!("contact force, mean over three positions of the grid, {}", rung.name), "N/m"),
-            runs.to_vec(),
-            (Evidence::Analytic, SOURCE),
-            (allowed, because),
-            Control::scene("a tenth softer", |scene| stiffen(scene, 0.9)),
-            |done| {
-                let exact = exact(&done[0].scene);
-                Ok(Measured::new(over_phases(done)?, exact, exact))
-            },
-        ));
+        claims.push(
+            claim(format!("contact force, mean over three positions of the grid, {}", rung.name), "N/m")
+                .of_all(runs)
+                .equals(SOURCE, |done| {
+                    let exact = exact(&done[0].scene);
+                    Ok(Measured::new(over_phases(done)?, exact, exact))
+                })
+                .within(tolerance)
+                .refuses(Control::scene("a tenth softer", |scene| stiffen(scene, 0.9))),
+        );
     }
-    gates.push(Gate::new(
-        ("contact force over the exact one, R/6", "1"),
-        vec![Run::new(PLAIN, "mpm:gap", LADDER[1].resolution).slow()],
-        (Evidence::OtherCode, "independent prototype of nodal contact: 1.6 to 2.2"),
-        (0.4, "it hangs on how the grid lies"),
-        Control::solver("springs at the surface", "mpm"),
-        |done| Ok(Measured::new(mean_force(&done[0])? / exact(&done[0].scene), 1.9, 1.0)),
-    ));
-    gates.push(Gate::new(
-        ("contact force, R/4", "N/m"),
-        vec![Run::new(PLAIN, "mpm:gap", LADDER[0].resolution)
-            .known("a node in contact stops a whole cell of surface at once: contacts are about twice too stiff")],
-        (Evidence::Analytic, SOURCE),
-        (0.2, "what springs at the surface reach at any position of the grid"),
-        Control::without_the_error("springs at the surface", "mpm", LADDER[0].resolution),
-        |done| {
-            let exact = exact(&done[0].scene);
-            Ok(Measured::new(mean_force(&done[0])?, exact, exact))
-        },
-    ));
-    gates
+    claims.push(
+        claim("contact force over the exact one, R/6", "1")
+            .of(Run::new(PLAIN, "mpm:gap", LADDER[1].resolution).slow())
+            .between([LEAST_NODAL_FORCE.value, MOST_NODAL_FORCE.value], MOST_NODAL_FORCE.source(), |done| {
+                Ok(mean_force(&done[0])? / exact(&done[0].scene))
+            })
+            .within(exactly("the band is wide because the force hangs on how the grid lies"))
+            .refuses(Control::solver("springs at the surface", "mpm")),
+    );
+    claims.push(
+        claim("contact force, R/4", "N/m")
+            .of(Run::new(PLAIN, "mpm:gap", LADDER[0].resolution)
+                .known("a node in contact stops a whole cell of surface at once: contacts are about twice too stiff"))
+            .equals(SOURCE, |done| {
+                let exact = exact(&done[0].scene);
+                Ok(Measured::new(mean_force(&done[0])?, exact, exact))
+            })
+            .within(judged(0.2, "what springs at the surface reach at any position of the grid"))
+            .refuses(Control::without_the_error("springs at the surface", "mpm", LADDER[0].resolution)),
+    );
+    claims
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for solver in ["mpm", STIFF, "mpm:gap"] {
         let mut points = Vec::new();
         for cells in [2.0, 3.0] {
-            let done = bench.run(&Run::new(PLAIN, solver, Resolution::grid(cells, 3)))?;
+            let done = runner.run(&Run::new(PLAIN, solver, Resolution::grid(cells, 3)))?;
             points.extend(mean_force(&done).ok().map(|force| (cells, force / exact(&done.scene))));
         }
         curves.push(Curve::new(solver, Stroke::MarkedLine, points));

@@ -1,15 +1,12 @@
-//! Gates that inclines share, whether the grain is a disc or a sphere.
+//! Claims that inclines share, whether the grain is a disc or a sphere.
 
-use crate::bench::Bench;
-use crate::case::Case;
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Run, measure};
-use crate::measure::slope;
 use crate::one_grain::{OneGrain, State, course, last, rest_at_overlap};
-use crate::scope::Scope;
-use crate::verdict::Evidence;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_harness::measure::slope as fitted;
+use grainbench_harness::prelude::*;
+
+/// Where the rigid answers are printed.
+const RIGID: Source =
+    Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
 
 /// One slope: variant, whether it rolls, and the error against the rigid answer that is allowed at overlap/R = 1e-3.
 #[derive(Clone, Copy, Debug)]
@@ -69,134 +66,98 @@ pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
     })
 }
 
-/// All gates of some slopes.
+/// All claims of some slopes.
 #[must_use]
-pub fn gates(case: &Case, slopes: &[Slope]) -> Vec<Gate> {
-    let mut gates = Vec::new();
+pub fn claims(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
+    let mut claims = Vec::new();
     for &slope in slopes {
         if !slope.sticks {
-            gates.extend(compliant(case, slope));
+            claims.extend(compliant(case, slope));
         }
-        gates.extend(rigid(slope));
-        gates.push(exponent(slope));
-        gates.extend(near_rigid(slope));
+        claims.extend(rigid(slope));
+        claims.push(exponent(slope));
+        claims.extend(near_rigid(slope));
         if slope.sticks {
-            gates.extend(final_motion(slope));
+            claims.extend(final_motion(slope));
         }
     }
-    gates
+    claims
+}
+
+/// The last state against an exact one, in units of what is expected.
+fn end(done: &Done, exact: impl Fn(&OneGrain, f64) -> State, pick: fn(State) -> f64) -> Result<Measured, Missing> {
+    let (t, state) = last(done)?;
+    let expected = pick(exact(&OneGrain::of(&done.scene), t));
+    Ok(Measured::new(pick(state), expected, expected))
 }
 
 /// Undamped slip against the exact compliant answer: small at a fine step, second order in the step.
-fn compliant(case: &Case, slope: Slope) -> Vec<Gate> {
-    const SOURCE: &str = "closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law";
+fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
+    const SOURCE: Source =
+        Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
     let run = |step| at_overlap(slope.variant, "dem:lammps", 1e-3, 0.0, step);
     let slips_from = case.variant(slope.variant).map_or(f64::NAN, |scene| OneGrain::of(&scene).slips_from());
-    let error = |done: &Done| {
-        let (t, state) = last(done)?;
-        let exact = OneGrain::of(&done.scene).compliant_incline(t);
-        Ok(Measured::new(state.x, exact.x, exact.x))
-    };
-    let fine = Gate {
-        quantity: "displacement at 1 s, undamped, against the elastic answer".to_owned(),
-        unit: "m",
-        evidence: Evidence::Analytic,
-        scope: Scope::Named,
-        source: SOURCE,
-        allowed: 1e-7,
-        because: "discretisation, of second order in Δt; relative to the displacement",
-        runs: vec![run(FINE)],
-        measure: measure(move |done| error(&done[0])),
-        control: Control::scene("friction ×1.05", more_friction),
-    };
-    let order = Gate {
-        quantity: "order in Δt of that displacement".to_owned(),
-        unit: "1",
-        evidence: Evidence::Convergence,
-        scope: Scope::Named,
-        source: "central differences are of second order",
-        allowed: 2e-3,
-        because: "fitted over three halvings; the next power of Δt is seen at the coarsest",
-        runs: STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))).collect(),
-        measure: measure(move |done| {
-            let points: Result<Vec<(f64, f64)>, _> =
-                done.iter().map(|done| Ok((done.record.provenance.time_step, error(done)?.error()))).collect();
-            Ok(Measured::new(crate::measure::slope(&points?), 2.0, 1.0))
-        }),
-        control: Control::scene("friction ×1.05", more_friction),
-    };
-    vec![fine, order]
+    let error = |done: &Done| end(done, OneGrain::compliant_incline, |state| state.x);
+    vec![
+        claim("displacement at 1 s, undamped, against the elastic answer", "m")
+            .of(run(FINE))
+            .equals(SOURCE, move |done| error(&done[0]))
+            .within(judged(1e-7, "discretisation, of second order in Δt; relative to the displacement"))
+            .refuses(Control::scene("friction ×1.05", more_friction)),
+        claim("order in Δt of that displacement", "1")
+            .of_all(STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))))
+            .converges(2.0, Source::Derived("central differences are of second order"), move |done| {
+                let points: Result<Vec<(f64, f64)>, _> =
+                    done.iter().map(|done| Ok((done.record.provenance.time_step, error(done)?.error()))).collect();
+                Ok(fitted(&points?))
+            })
+            .within(judged(2e-3, "fitted over three halvings; the next power of Δt is seen at the coarsest"))
+            .refuses(Control::scene("friction ×1.05", more_friction)),
+    ]
 }
 
 /// Damped motion against the rigid answer.
-fn rigid(slope: Slope) -> Vec<Gate> {
-    let run = || at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP);
-    let gate =
-        |quantity: &str, unit, allowed, because, pick: fn(&Done) -> Result<Measured, crate::gate::Missing>| Gate {
-            quantity: quantity.to_owned(),
-            unit,
-            evidence: Evidence::Analytic,
-            scope: Scope::Named,
-            source: "MPM 2000 eq. 25; 2001 eqs. 23-26",
-            allowed,
-            because,
-            runs: vec![run()],
-            measure: measure(move |done| pick(&done[0])),
-            control: telling(slope),
-        };
+fn rigid(slope: Slope) -> Vec<Claim> {
+    let of = |quantity: &str, unit, allowed, because: &str, pick: fn(State) -> f64| {
+        claim(quantity, unit)
+            .of(at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))
+            .equals(RIGID, move |done| end(&done[0], OneGrain::rigid_incline, pick))
+            .within(judged(allowed, because))
+            .refuses(telling(slope))
+    };
     let physics = if slope.sticks {
         "compliance of the contact at overlap/R = 1e-3; falls with overlap/R"
     } else {
         "compliance of the contact at overlap/R = 1e-3; falls with its square root"
     };
-    let mut gates = vec![gate("displacement at 1 s", "m", slope.rigid_allowed, physics, |done| {
-        let (t, state) = last(done)?;
-        let exact = OneGrain::of(&done.scene).rigid_incline(t);
-        Ok(Measured::new(state.x, exact.x, exact.x))
-    })];
-    // A grain that rolls has its velocity and spin gated to rounding, below.
+    let mut claims = vec![of("displacement at 1 s", "m", slope.rigid_allowed, physics, |state| state.x)];
+    // A grain that rolls has its velocity and spin held to rounding, below.
     if !slope.sticks {
-        gates.push(gate("velocity at 1 s", "m/s", slope.rigid_allowed, physics, |done| {
-            let (t, state) = last(done)?;
-            let exact = OneGrain::of(&done.scene).rigid_incline(t);
-            Ok(Measured::new(state.v, exact.v, exact.v))
-        }));
+        claims.push(of("velocity at 1 s", "m/s", slope.rigid_allowed, physics, |state| state.v));
         let because = "as for the velocity; the missing friction impulse weighs more in the spin";
-        gates.push(gate("spin at 1 s", "rad/s", 2.5 * slope.rigid_allowed, because, |done| {
-            let (t, state) = last(done)?;
-            let exact = OneGrain::of(&done.scene).rigid_incline(t);
-            Ok(Measured::new(state.omega, exact.omega, exact.omega))
-        }));
+        claims.push(of("spin at 1 s", "rad/s", 2.5 * slope.rigid_allowed, because, |state| state.omega));
     }
-    gates
+    claims
 }
 
 /// How the error against the rigid answer falls with the overlap.
-fn exponent(slope_: Slope) -> Gate {
-    let expected = if slope_.sticks { 1.0 } else { 0.5 };
-    Gate {
-        quantity: "exponent of the displacement's error in overlap/R, 1e-3 to 1e-5".to_owned(),
-        unit: "1",
-        evidence: Evidence::Analytic,
-        scope: Scope::Named,
-        source: "elastic phase before slip lasts ∝ √(overlap/R), its stretch ∝ overlap/R (derivation)",
-        allowed: 2e-3,
-        because: "fitted over two decades; higher powers of the overlap are small there",
-        runs: OVERLAPS.iter().map(|&ratio| at_overlap(slope_.variant, "dem:lammps", ratio, DAMPING, STEP)).collect(),
-        measure: measure(move |done| {
-            let points: Result<Vec<(f64, f64)>, _> = done
-                .iter()
-                .map(|done| {
-                    let (t, state) = last(done)?;
-                    let grain = OneGrain::of(&done.scene);
-                    let exact = grain.rigid_incline(t);
-                    Ok((grain.overlap_ratio, (state.x - exact.x) / exact.x))
-                })
-                .collect();
-            Ok(Measured::new(slope(&points?), expected, 1.0))
-        }),
-        control: telling(slope_),
-    }
+fn exponent(slope: Slope) -> Claim {
+    let expected = if slope.sticks { 1.0 } else { 0.5 };
+    claim("exponent of the displacement's error in overlap/R, 1e-3 to 1e-5", "1")
+        .of_all(OVERLAPS.iter().map(|&ratio| at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP)))
+        .equals(
+            Source::Derived("elastic phase before slip lasts ∝ √(overlap/R), its stretch ∝ overlap/R (derivation)"),
+            move |done| {
+                let error = |done: &Done| {
+                    let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
+                    Ok((OneGrain::of(&done.scene).overlap_ratio, error))
+                };
+                let points: Result<Vec<(f64, f64)>, _> = done.iter().map(error).collect();
+                Ok(Measured::new(fitted(&points?), expected, 1.0))
+            },
+        )
+        .within(judged(2e-3, "fitted over two decades; higher powers of the overlap are small there"))
+        .refuses(telling(slope))
 }
 
 /// Wrong physics that is felt: inertia where the grain rolls, friction where it slips.
@@ -209,68 +170,55 @@ fn telling(slope: Slope) -> Control {
 }
 
 /// Against the rigid answer where the contact is so stiff that conventions hardly differ: fair to any solver.
-fn near_rigid(slope: Slope) -> Vec<Gate> {
-    type Exact = fn(State) -> f64;
-    let gate = |quantity: &str, unit, slipping: f64, pick: Exact| Gate {
-        quantity: format!("{quantity} at 1 s, nearly rigid contact"),
-        unit,
-        evidence: Evidence::Analytic,
-        scope: Scope::AnySolver,
-        source: "MPM 2000 eq. 25; 2001 eqs. 23-26",
-        allowed: if slope.sticks { 1e-5 } else { slipping },
-        because: if slope.sticks {
-            "compliance, and a torque arm between R and R − overlap/2: both ∝ overlap/R, here 1e-5"
+fn near_rigid(slope: Slope) -> Vec<Claim> {
+    let of = |quantity: &str, unit, slipping: f64, pick: fn(State) -> f64| {
+        let tolerance = if slope.sticks {
+            computed(
+                NEARLY_RIGID,
+                "compliance, and a torque arm between R and R − overlap/2: both ∝ overlap/R, here 1e-5",
+            )
         } else {
-            "the contact is elastic until it slips, a time ∝ √(overlap/R); overlap/R = 1e-5"
-        },
-        runs: vec![nearly_rigid(slope.variant, slope.sticks)],
-        measure: measure(move |done| {
-            let (t, state) = last(&done[0])?;
-            let exact = pick(OneGrain::of(&done[0].scene).rigid_incline(t));
-            Ok(Measured::new(pick(state), exact, exact))
-        }),
-        control: telling(slope),
+            judged(slipping, "the contact is elastic until it slips, a time ∝ √(overlap/R); overlap/R = 1e-5")
+        };
+        claim(format!("{quantity} at 1 s, nearly rigid contact"), unit)
+            .of(nearly_rigid(slope.variant, slope.sticks))
+            .equals(RIGID, move |done| end(&done[0], OneGrain::rigid_incline, pick))
+            .within(tolerance)
+            .refuses(telling(slope))
+            .fair_to_any()
     };
     vec![
-        gate("displacement", "m", 1e-3, |state| state.x),
-        gate("velocity", "m/s", 5e-4, |state| state.v),
-        gate("spin", "rad/s", 1.5e-3, |state| state.omega),
+        of("displacement", "m", 1e-3, |state| state.x),
+        of("velocity", "m/s", 5e-4, |state| state.v),
+        of("spin", "rad/s", 1.5e-3, |state| state.omega),
     ]
 }
 
 /// Rolling in the end: v and ΩR to rounding, with the torque arm that each convention has.
-fn final_motion(slope: Slope) -> Vec<Gate> {
-    const BECAUSE: &str = "momentum and angular momentum fix it once the spring has come to rest";
-    let gate = |solver: &'static str, quantity: &str, of_spin: bool| {
+fn final_motion(slope: Slope) -> Vec<Claim> {
+    let of = |solver: &'static str, quantity: &str, of_spin: bool| {
         let at_contact = solver == "dem:liggghts";
-        Gate {
-            quantity: quantity.to_owned(),
-            unit: "m/s",
-            evidence: Evidence::Analytic,
-            scope: Scope::Named,
-            source: "v(1 + i(R/a)²) = g_t t with arm a (derivation)",
-            allowed: 1e-9,
-            because: BECAUSE,
-            runs: vec![at_overlap(slope.variant, solver, 1e-3, DAMPING, STEP)],
-            measure: measure(move |done| {
+        claim(quantity, "m/s")
+            .of(at_overlap(slope.variant, solver, 1e-3, DAMPING, STEP))
+            .equals(Source::Derived("v(1 + i(R/a)²) = g_t t with arm a (derivation)"), move |done| {
                 let (t, state) = last(&done[0])?;
                 let grain = OneGrain::of(&done[0].scene);
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = grain.rolling_velocity(t, arm);
                 Ok(Measured::new(if of_spin { state.omega * arm } else { state.v }, exact, exact))
-            }),
-            control: if at_contact {
+            })
+            .within(judged(1e-9, "momentum and angular momentum fix it once the spring has come to rest"))
+            .refuses(if at_contact {
                 Control::solver("torque arm R", "dem:lammps")
             } else {
                 Control::solver("torque arm R − overlap/2", "dem:liggghts")
-            },
-        }
+            })
     };
     vec![
-        gate("dem:lammps", "final velocity, rolling, arm R", false),
-        gate("dem:lammps", "final ΩR, rolling, arm R", true),
-        gate("dem:liggghts", "final velocity, rolling, arm R − overlap/2", false),
-        gate("dem:liggghts", "final Ωa, rolling, arm a = R − overlap/2", true),
+        of("dem:lammps", "final velocity, rolling, arm R", false),
+        of("dem:lammps", "final ΩR, rolling, arm R", true),
+        of("dem:liggghts", "final velocity, rolling, arm R − overlap/2", false),
+        of("dem:liggghts", "final Ωa, rolling, arm a = R − overlap/2", true),
     ]
 }
 
@@ -278,12 +226,12 @@ fn final_motion(slope: Slope) -> Vec<Gate> {
 ///
 /// # Errors
 /// When a run fails.
-pub fn figures(bench: &Bench, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
+pub fn figures(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
     let mut motion = Vec::new();
     let mut spin = Vec::new();
     let mut sweep = Vec::new();
     for slope in slopes {
-        let done = bench.run(&at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
+        let done = runner.run(&at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
         let grain = OneGrain::of(&done.scene);
         let states = course(&done).unwrap_or_default();
         let thin: Vec<_> = states.iter().step_by(states.len().div_ceil(12).max(1)).collect();
@@ -295,7 +243,7 @@ pub fn figures(bench: &Bench, slopes: &[Slope]) -> Result<Vec<Figure>, RunError>
         spin.push(curve(format!("{}, rigid", slope.variant), Stroke::Dashed, exact(&|t| grain.rigid_incline(t).omega)));
         let mut points = Vec::new();
         for ratio in OVERLAPS {
-            let done = bench.run(&at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP))?;
+            let done = runner.run(&at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP))?;
             if let Ok((t, state)) = last(&done) {
                 let exact = OneGrain::of(&done.scene).rigid_incline(t).x;
                 points.push((ratio, ((state.x - exact) / exact).abs()));
@@ -304,36 +252,26 @@ pub fn figures(bench: &Bench, slopes: &[Slope]) -> Result<Vec<Figure>, RunError>
         let kind = if slope.sticks { "rolls" } else { "slips" };
         sweep.push(curve(format!("{} ({kind})", slope.variant), Stroke::MarkedLine, points));
     }
-    let axis = |label: &str, logarithmic| Axis { label: label.to_owned(), logarithmic };
-    let figure = |name: &str, title: &str, caption: &str, x, y, curves| Figure {
-        name: name.to_owned(),
-        title: title.to_owned(),
-        caption: caption.to_owned(),
-        drawing: Drawing::Graph(Graph { x, y, curves }),
-    };
     Ok(vec![
-        figure(
+        Figure::graph(
             "displacement",
             "Displacement down the slope",
             "dem:lammps at overlap/R = 1e-3 (markers) and the rigid answer (dashes).",
-            axis("time t (s)", false),
-            axis("displacement x (m)", false),
+            [Axis::linear("time t (s)"), Axis::linear("displacement x (m)")],
             motion,
         ),
-        figure(
+        Figure::graph(
             "spin",
             "Spin",
             "The same runs: what a grain that only slides would miss.",
-            axis("time t (s)", false),
-            axis("spin Ω (rad/s)", false),
+            [Axis::linear("time t (s)"), Axis::linear("spin Ω (rad/s)")],
             spin,
         ),
-        figure(
+        Figure::graph(
             "compliance",
             "Error against the rigid answer is the contact's compliance",
             "Sticking grains: ∝ overlap/R. Slipping grains: ∝ √(overlap/R), since the spring must first be stretched.",
-            axis("static overlap / R", true),
-            axis("|x − x_rigid| / x_rigid at 1 s", true),
+            [Axis::log("static overlap / R"), Axis::log("|x − x_rigid| / x_rigid at 1 s")],
             sweep,
         ),
     ])

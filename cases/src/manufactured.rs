@@ -1,6 +1,6 @@
 //! What manufactured motions are judged by.
 
-use crate::gate::{Done, Missing};
+use grainbench_harness::prelude::{Done, Missing};
 use grainbench_scene::manufactured::Medium;
 
 /// Root mean square over the material points of the displacement's error at the end (m).

@@ -12,7 +12,7 @@
 //! Sources: Bardenhagen, Brackbill & Sulsky 2000, eq. 25; Bardenhagen et al. 2001, eqs. 23-26; the compliant forms are
 //! derived here.
 
-use crate::gate::{Done, Missing};
+use grainbench_harness::run::{Done, Missing};
 use grainbench_scene::scene::{Dimension, Scene};
 
 /// The grain, the plane and the law between them.

@@ -1,15 +1,14 @@
 //! What accuracy is measured by where one grain moves on a plane: its displacement against the rigid answer, over the
 //! stiffness of the contact and of the grain.
 
-use crate::case::Case;
-use crate::gate::{Change, Missing, measure};
 use crate::incline::DAMPING;
 use crate::one_grain::{OneGrain, State, last, rest_at_overlap};
 use crate::registry;
-use crate::subject::{Lane, Method, Subject};
+use grainbench_harness::prelude::*;
+use grainbench_harness::subject::{Lane, Subject};
 use grainbench_scene::body::{Constitutive, Deformable, Settle};
-use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::Resolution;
+use grainbench_scene::scene::Duration;
+use grainbench_scene::solver::Method;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -61,12 +60,12 @@ fn subject(
         variant,
         quantity: format!("displacement at {seconds} s"),
         unit: "m",
-        source,
-        measure: measure(move |done| {
+        source: source.to_owned(),
+        measure: Arc::new(move |done| {
             let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
             let (t, state) = last(done)?;
             let expected = exact(&OneGrain::of(&done.scene), t).x;
-            Ok(crate::gate::Measured::new(state.x, expected, expected))
+            Ok(Measured::new(state.x, expected, expected))
         }),
         lanes: dem.into_iter().chain([rigid]).chain(grid).collect(),
     }

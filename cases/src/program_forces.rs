@@ -4,10 +4,9 @@
 //! Both programs evaluate them anew when they are written, with the velocities of the full step: what dashpots add differs
 //! from what moved the grains, and all rows here are undamped.
 
-use crate::gate::{Control, Gate, Run};
-use crate::program_rows::{PAIRS, layer_of_spheres, row, worst};
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::Resolution;
+use crate::program_rows::{PAIRS, layer_of_spheres, row};
+use grainbench_harness::compare::pointwise::worst;
+use grainbench_harness::prelude::*;
 
 const BECAUSE: &str = "the same cycle: overlaps round as positions do";
 
@@ -27,20 +26,20 @@ pub fn forces(
     columns: &'static [&'static str],
     allowed: f64,
     unit: impl Fn(&Scene, f64) -> f64 + Clone + Send + Sync + 'static,
-) -> Vec<Gate> {
-    let gate = |pair: [&'static str; 2]| {
+) -> Vec<Claim> {
+    let of = |pair: [&'static str; 2]| {
         let unit = unit.clone();
-        row("force at contacts, worst", "N", (allowed, BECAUSE), pair.map(&runs), stiffer(), move |done| {
+        row("force at contacts, worst", "N", judged(allowed, BECAUSE), pair.map(&runs), stiffer(), move |done| {
             worst(done, columns, unit(&done[0].scene, done[0].record.provenance.time_step))
         })
     };
-    PAIRS.map(gate).to_vec()
+    PAIRS.map(of).to_vec()
 }
 
 /// Forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves walls as meshes, whose
 /// forces it does not tell disc by disc.
 #[must_use]
-pub fn nine_discs(variant: &'static str, resolution: Resolution) -> Vec<Gate> {
+pub fn nine_discs(variant: &'static str, resolution: Resolution) -> Vec<Claim> {
     const BETWEEN: &[&str] =
         &["centre-edge.normal_force", "corner-edge.normal_force", "centre-edge.shear_force", "corner-edge.shear_force"];
     const AT_WALLS: &[&str] = &["wall-edge.normal_force", "wall-corner.normal_force", "wall-corner.shear_force"];
@@ -49,18 +48,18 @@ pub fn nine_discs(variant: &'static str, resolution: Resolution) -> Vec<Gate> {
         let stiffness = scene.laws[0].map_or(0.0, |law| law.normal_stiffness);
         stiffness * phase.velocity.norm() * phase.stop.seconds(time_step)
     };
-    let gate = |pair: [&'static str; 2], quantity: &str, columns: &'static [&'static str]| {
+    let of = |pair: [&'static str; 2], quantity: &str, columns: &'static [&'static str]| {
         let runs = pair.map(|solver| {
             let run = Run::new(variant, solver, resolution);
-            if pair[0] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
+            if pair[1] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
         });
-        row(quantity, "N", (1e-10, BECAUSE), runs, stiffer(), move |done| {
+        row(quantity, "N", judged(1e-10, BECAUSE), runs, stiffer(), move |done| {
             worst(done, columns, unit(&done[0].scene, done[0].record.provenance.time_step))
         })
     };
     vec![
-        gate(PAIRS[0], "forces between discs, worst", BETWEEN),
-        gate(PAIRS[1], "forces between discs, worst", BETWEEN),
-        gate(PAIRS[0], "forces at walls, worst", AT_WALLS),
+        of(PAIRS[0], "forces between discs, worst", BETWEEN),
+        of(PAIRS[1], "forces between discs, worst", BETWEEN),
+        of(PAIRS[0], "forces at walls, worst", AT_WALLS),
     ]
 }

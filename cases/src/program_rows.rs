@@ -1,85 +1,64 @@
 //! Rows of the programs `lammps` and `liggghts`, stored or run now: our solver in a program's convention gives what the
 //! program gives.
 
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
-use crate::incline::{DAMPING, at_overlap, more_friction, wrong_inertia};
-use crate::scope::Scope;
-use crate::verdict::Evidence;
+use crate::incline::{DAMPING, at_overlap};
+use grainbench_harness::compare::pointwise::worst;
+use grainbench_harness::prelude::*;
 use grainbench_scene::file::GrainShape;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::Resolution;
 
-/// A program, and our solver in its convention.
-pub const PAIRS: [[&str; 2]; 2] = [["lammps", "dem:lammps"], ["liggghts", "dem:liggghts"]];
+/// Our solver in the convention of a program, and the program.
+pub const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];
 
-const SOURCE: &str = "the program, run on the deck of the same scene";
 /// The time step of one grain on a plane (s).
 const STEP: Resolution = Resolution::TimeStep(1e-4);
 
-/// The worst difference in some columns, in units of `scale`.
-pub(crate) fn worst(done: &[Done], columns: &[&str], scale: f64) -> Result<Measured, Missing> {
-    let mut worst: Option<Measured> = None;
-    for column in columns {
-        let theirs = done[0].column(column)?;
-        // Of a stored run not every sample is kept.
-        let steps = &done[0].series().step;
-        let ours: Vec<f64> = steps.iter().map(|&step| done[1].at_step(column, step)).collect::<Result<_, _>>()?;
-        let found = Measured::worst_of(&done[0].series().time, theirs, &ours, scale);
-        let is_worse = |than: &Measured| found.error().is_nan() || found.error().abs() > than.error().abs();
-        if worst.as_ref().is_none_or(is_worse) {
-            worst = Some(found);
-        }
-    }
-    worst.ok_or_else(|| Missing("columns to compare".to_owned()))
-}
-
+/// A row of ours (first run) against a program (second).
 pub(crate) fn row(
     quantity: &str,
     unit: &'static str,
-    (allowed, because): (f64, &'static str),
+    tolerance: Tolerance,
     runs: [Run; 2],
     control: Control,
     of: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
-) -> Gate {
-    Gate {
-        quantity: format!("{quantity}, against {}", runs[1].solver),
-        unit,
-        evidence: Evidence::OtherCode,
-        scope: Scope::Named,
-        source: SOURCE,
-        allowed,
-        because,
-        runs: runs.into(),
-        measure: measure(of),
-        control,
-    }
+) -> Claim {
+    claim(format!("{quantity}, against {}", runs[1].solver), unit)
+        .of_all(runs)
+        .agrees(Source::Program, of)
+        .within(tolerance)
+        .refuses(control)
 }
 
 /// Motion of one grain on a plane over one second: undamped, and damped, where the programs' conventions part.
 #[must_use]
-pub fn one_grain(variants: &[&'static str]) -> Vec<Gate> {
-    let mut gates = Vec::new();
+pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
+    let mut claims = Vec::new();
     for &variant in variants {
-        for (pair, [_, other]) in PAIRS.into_iter().zip([PAIRS[1], PAIRS[0]]) {
-            // One is felt where the grain slips, the other where it rolls.
-            let wrong = Control::ours("friction ×1.05 and the inertia of the other shape in ours", |scene| {
-                more_friction(scene);
-                wrong_inertia(scene);
-            });
-            gates.push(on_a_plane(pair.map(|solver| at_overlap(variant, solver, 1e-3, 0.0, STEP)), "undamped", wrong));
+        for (pair, [other, _]) in PAIRS.into_iter().zip([PAIRS[1], PAIRS[0]]) {
+            claims.push(on_a_plane(
+                pair.map(|solver| at_overlap(variant, solver, 1e-3, 0.0, STEP)),
+                "undamped",
+                telling(),
+            ));
             let other = Control::solver("ours in the convention of the other program", other);
-            gates.push(on_a_plane(
+            claims.push(on_a_plane(
                 pair.map(|solver| at_overlap(variant, solver, 1e-3, DAMPING, STEP)),
                 "damped",
                 other,
             ));
         }
     }
-    gates
+    claims
 }
 
-fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Gate {
-    let allowed = (1e-11, "the same cycle: rounding, which grows over 10,000 steps; in units of R");
+/// Coulomb's limit is felt where a grain slips, and the spring by which it comes to roll everywhere.
+fn telling() -> Control {
+    Control::ours("tangential stiffness × 1.001 in ours", |scene| {
+        scene.change_laws(|law| law.tangential_stiffness *= 1.001);
+    })
+}
+
+fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
+    let allowed = judged(1e-11, "the same cycle: rounding, which grows over 10,000 steps; in units of R");
     row(&format!("position over 1 s, {damping}, worst"), "m", allowed, runs, control, |done| {
         let scene = &done[0].scene;
         let axes = if scene.dimension.count() == 2 { &["grain.x", "grain.y"][..] } else { &["grain.x", "grain.z"] };
@@ -89,12 +68,12 @@ fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Gate {
 
 /// The speed at which two grains part, as a part of that at which they met.
 #[must_use]
-pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Gate> {
+pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
     fn of(done: &Done) -> Result<f64, Missing> {
         let grains = &done.scene.grains;
         Ok((done.last("b.vx")? - done.last("a.vx")?) / (grains[0].velocity.x - grains[1].velocity.x))
     }
-    let mut gates = Vec::new();
+    let mut claims = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
@@ -104,13 +83,13 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Gat
                     law.stiffness_damping *= 1.001;
                 });
             });
-            let allowed = (1e-14, "the same cycle: rounding");
-            gates.push(row("coefficient of restitution", "1", allowed, runs, control, |done| {
+            let allowed = judged(1e-14, "the same cycle: rounding");
+            claims.push(row("coefficient of restitution", "1", allowed, runs, control, |done| {
                 Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0))
             }));
         }
     }
-    gates
+    claims
 }
 
 /// LIGGGHTS moves walls inwards in three dimensions only: one layer of spheres, whose masses are those of the discs.
@@ -125,39 +104,39 @@ const NINE_DISCS: [&str; 4] = ["edge.x", "edge.y", "corner.x", "corner.y"];
 
 /// Positions of the nine discs over all cycles, in units of what `travel` says.
 #[must_use]
-pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Gate> {
-    let mut gates = Vec::new();
+pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Claim> {
+    let mut claims = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
             let runs = pair.map(|solver| {
                 let run = Run::new(variant, solver, resolution);
-                if pair[0] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
+                if pair[1] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
             });
             let control = Control::ours("stiffness off by 1e-6 in ours", |scene| {
                 scene.change_laws(|law| law.normal_stiffness *= 1.0 + 1e-6);
             });
-            let allowed = (2e-11, "the same cycle: rounding of positions, 3e-12 of the wall travel a step");
+            let allowed = judged(2e-11, "the same cycle: rounding of positions, 3e-12 of the wall travel a step");
             let quantity = "position over all cycles, worst";
-            gates.push(row(quantity, "m", allowed, runs, control, move |done| {
+            claims.push(row(quantity, "m", allowed, runs, control, move |done| {
                 worst(done, &NINE_DISCS, travel(&done[0]))
             }));
         }
     }
-    gates
+    claims
 }
 
 /// The same while the walls turn. Neither program has mass-proportional damping, and a damped contact of LIGGGHTS feels where
 /// one `run` ends and the next begins: the row is undamped.
 #[must_use]
-pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Gate> {
+pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Claim> {
     fn undamped(scene: &mut Scene) {
         scene.global_damping = 0.0;
         scene.change_laws(|law| law.stiffness_damping = 0.0);
     }
-    let gate = |pair: [&'static str; 2]| {
+    let of = |pair: [&'static str; 2]| {
         let runs = pair.map(|solver| {
             let run = Run::new(variant, solver, resolution);
-            if pair[0] == "liggghts" {
+            if pair[1] == "liggghts" {
                 run.adjusted("undamped, one layer of spheres", |scene| {
                     undamped(scene);
                     layer_of_spheres(scene);
@@ -169,53 +148,53 @@ pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&
         let control = Control::ours("walls that turn faster by 1e-6 in ours", |scene| {
             scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases).for_each(|phase| phase.spin *= 1.0 + 1e-6);
         });
-        let rounding = if pair[0] == "lammps" { 3e-11 } else { 5e-10 };
+        let rounding = if pair[1] == "lammps" { 3e-11 } else { 5e-10 };
         let allowed =
-            (rounding, "the same cycle: rounding, which sliding contacts carry on; in units of the wall travel");
+            judged(rounding, "the same cycle: rounding, which sliding contacts carry on; in units of the wall travel");
         row("position while the walls turn, worst", "m", allowed, runs, control, move |done| {
             worst(done, &NINE_DISCS, travel(&done[0]))
         })
     };
-    PAIRS.map(gate).to_vec()
+    PAIRS.map(of).to_vec()
 }
 
 /// Velocity of a Hertz sphere over an impact, and its spin where `turns` says that it gains one.
 #[must_use]
-pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) -> Vec<Gate> {
-    let mut gates = Vec::new();
+pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) -> Vec<Claim> {
+    let mut claims = Vec::new();
     for pair in PAIRS {
-        let allowed = (1e-12, "the same cycle: rounding; relative to the velocity before");
+        let allowed = judged(1e-12, "the same cycle: rounding; relative to the velocity before");
         let runs = || pair.map(|solver| Run::new(variant, solver, resolution));
         let control = Control::ours("E* × 1.00001 in ours", |scene| {
             scene.change_laws(|law| law.effective_modulus *= 1.00001);
         });
-        gates.push(row("velocity over the impact, worst", "m/s", allowed, runs(), control, |done| {
+        claims.push(row("velocity over the impact, worst", "m/s", allowed, runs(), control, |done| {
             worst(done, &["a.vx", "a.vz"], done[0].scene.grains[0].velocity.norm())
         }));
         if turns {
-            let allowed = (1e-12, "the same cycle: rounding; relative to the velocity before over the radius");
+            let allowed = judged(1e-12, "the same cycle: rounding; relative to the velocity before over the radius");
             let control = Control::ours("G* × 1.00001 in ours", |scene| {
                 scene.change_laws(|law| law.effective_shear_modulus *= 1.00001);
             });
-            gates.push(row("spin over the impact, worst", "rad/s", allowed, runs(), control, |done| {
+            claims.push(row("spin over the impact, worst", "rad/s", allowed, runs(), control, |done| {
                 let grain = &done[0].scene.grains[0];
                 worst(done, &["a.omega_y"], grain.velocity.norm() / grain.radius)
             }));
         }
     }
-    gates
+    claims
 }
 
 /// A grain that rolls to rest on a flat plane, in units of R.
 #[must_use]
-pub fn rolling(variant: &'static str) -> Vec<Gate> {
-    let gate = |pair: [&'static str; 2]| {
-        let allowed = if pair[0] == "lammps" {
-            (3e-12, "the same cycle: rounding, which grows over 50,000 steps; in units of R")
+pub fn rolling(variant: &'static str) -> Vec<Claim> {
+    let of = |pair: [&'static str; 2]| {
+        let allowed = if pair[1] == "lammps" {
+            judged(3e-12, "the same cycle: rounding, which grows over 50,000 steps; in units of R")
         } else {
             let because = "its evaluation at the start takes a step of rolling for done, a moment k_r ωΔt: second order in Δt, \
                            and a grain that starts at rest (the slopes) shows nothing of it; in units of R";
-            (3e-8, because)
+            judged(3e-8, because)
         };
         let runs = pair.map(|solver| Run::new(variant, solver, Resolution::TimeStep(2e-5)));
         let control = Control::ours("rolling resistance × 1.00001 in ours", |scene| {
@@ -223,13 +202,13 @@ pub fn rolling(variant: &'static str) -> Vec<Gate> {
         });
         row("position over 1 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
     };
-    PAIRS.map(gate).to_vec()
+    PAIRS.map(of).to_vec()
 }
 
 /// A grain that starts from rest on a slope, over a damped rolling spring: `tilted` are the runs of both sides.
 #[must_use]
-pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Gate {
-    let allowed = (1e-13, "the same cycle: rounding; in units of R");
+pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
+    let allowed = judged(1e-13, "the same cycle: rounding; in units of R");
     let runs = PAIRS[1].map(tilted);
     let control = Control::ours("the dashpot of the rolling spring × .999 in ours", |scene| {
         scene.change_laws(|law| law.rolling_damping *= 0.999);
@@ -239,26 +218,27 @@ pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Gate {
 
 /// Motion and wall force of one grain that meets a wall, in units of what they are before the impact.
 #[must_use]
-pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Gate> {
-    let mut gates = Vec::new();
+pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
+    let mut claims = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
-            let allowed = (1e-12, "the same cycle: rounding; relative to the velocity before");
+            let allowed = judged(1e-12, "the same cycle: rounding; relative to the velocity before");
             let control = Control::ours("friction ×1.001 in ours", |scene| {
                 scene.change_laws(|law| law.friction *= 1.001);
             });
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
-            gates.push(row("velocity over the impact, worst", "m/s", allowed, runs, control.clone(), |done| {
+            claims.push(row("velocity over the impact, worst", "m/s", allowed, runs, control.clone(), |done| {
                 worst(done, &["grain.vx", "grain.vy"], done[0].scene.grains[0].velocity.norm())
             }));
-            let allowed = (1e-12, "the same cycle: rounding; relative to the largest force of the spring, v√(km)");
+            let allowed =
+                judged(1e-12, "the same cycle: rounding; relative to the largest force of the spring, v√(km)");
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
-            gates.push(row("force on the wall, worst", "N", allowed, runs, control, |done| {
+            claims.push(row("force on the wall, worst", "N", allowed, runs, control, |done| {
                 let (grain, law) = (&done[0].scene.grains[0], done[0].scene.laws[0].unwrap_or_default());
                 let largest = grain.velocity.y.abs() * (law.normal_stiffness * grain.mass).sqrt();
                 worst(done, &["wall.force_x", "wall.force_y"], largest)
             }));
         }
     }
-    gates
+    claims
 }

@@ -15,17 +15,12 @@
 //! b = ω/(hω + 2ζ) and c = b/(hω²), ω = 2πf; hence δ = g_n h c/b = g_n/ω². It is reached within about
 //! 2ζ/ω + 1/(hω²), which is longer the finer the step.
 
-use crate::bench::Bench;
-use crate::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run, measure};
 use crate::incline::{more_friction, wrong_inertia};
-use crate::measure::slope;
 use crate::one_grain::{OneGrain, State, last};
-use crate::scope::Scope;
-use crate::verdict::Evidence;
+use grainbench_harness::measure::slope;
+use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
-use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_scene::scene::Duration;
 use std::f64::consts::TAU;
 
 /// The solver.
@@ -38,8 +33,9 @@ const LADDER: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
 /// reached early in the run.
 const FITTED: [u32; 4] = [16, 20, 24, 32];
 
-const RIGID_SOURCE: &str = "MPM 2000 eq. 25; 2001 eqs. 23-26";
-const ORDER_SOURCE: &str = "symplectic Euler is of first order in positions";
+const RIGID_SOURCE: Source =
+    Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
+const ORDER_SOURCE: Source = Source::Derived("symplectic Euler is of first order in positions");
 
 /// A variant with the errors that are allowed at the default resolution, relative to the exact values at 1 s.
 #[derive(Clone, Copy, Debug)]
@@ -81,61 +77,50 @@ fn wrong(row: Row) -> Control {
 }
 
 /// Displacement, velocity and spin at 1 s against the rigid answer.
-fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, because: [&'static str; 3]) -> Vec<Gate> {
-    let gate = |quantity: &str, unit, allowed, because, control, pick: fn(State) -> f64| Gate {
-        quantity: quantity.to_owned(),
-        unit,
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: RIGID_SOURCE,
-        allowed,
-        because,
-        runs: vec![run(row.variant, DEFAULT)],
-        measure: measure(move |done| {
-            let (t, state) = last(&done[0])?;
-            let expected = pick(exact(&OneGrain::of(&done[0].scene), t));
-            Ok(Measured::new(pick(state), expected, expected))
-        }),
-        control,
+fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, because: [&'static str; 3]) -> Vec<Claim> {
+    let of = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
+        claim(quantity, unit)
+            .of(run(row.variant, DEFAULT))
+            .equals(RIGID_SOURCE, move |done| {
+                let (t, state) = last(&done[0])?;
+                let expected = pick(exact(&OneGrain::of(&done[0].scene), t));
+                Ok(Measured::new(pick(state), expected, expected))
+            })
+            .within(tolerance)
+            .refuses(control)
     };
+    let [x, v, omega] = because;
     vec![
-        gate("displacement at 1 s", "m", row.x, because[0], x_control, |state| state.x),
-        gate("velocity at 1 s", "m/s", row.v, because[1], wrong(row), |state| state.v),
-        gate("spin at 1 s", "rad/s", row.omega, because[2], wrong(row), |state| state.omega),
+        of("displacement at 1 s", "m", judged(row.x, x), x_control, |state| state.x),
+        of("velocity at 1 s", "m/s", judged(row.v, v), wrong(row), |state| state.v),
+        of("spin at 1 s", "rad/s", judged(row.omega, omega), wrong(row), |state| state.omega),
     ]
 }
 
 /// Order of the displacement's error in the time step.
-fn order(row: Row, allowed: f64, because: &'static str, exact: fn(&OneGrain, f64) -> f64) -> Gate {
-    Gate {
-        quantity: "order in Δt of the displacement's error".to_owned(),
-        unit: "1",
-        scope: Scope::Named,
-        evidence: Evidence::Convergence,
-        source: ORDER_SOURCE,
-        allowed,
-        because,
-        runs: FITTED.iter().map(|&substeps| run(row.variant, Resolution::substeps(substeps))).collect(),
-        measure: measure(move |done| {
+fn order(row: Row, allowed: f64, because: &'static str, exact: fn(&OneGrain, f64) -> f64) -> Claim {
+    claim("order in Δt of the displacement's error", "1")
+        .of_all(FITTED.iter().map(|&substeps| run(row.variant, Resolution::substeps(substeps))))
+        .converges(1.0, ORDER_SOURCE, move |done| {
             let error = |done: &Done| {
                 let (t, state) = last(done)?;
                 let exact = exact(&OneGrain::of(&done.scene), t);
                 Ok((done.record.provenance.time_step, (state.x - exact) / exact))
             };
             let points: Result<Vec<(f64, f64)>, Missing> = done.iter().map(error).collect();
-            Ok(Measured::new(slope(&points?), 1.0, 1.0))
-        }),
-        control: wrong(row),
-    }
+            Ok(slope(&points?))
+        })
+        .within(judged(allowed, because))
+        .refuses(wrong(row))
 }
 
 /// Rows of a grain released on a slope.
 #[must_use]
-pub fn inclines(rows: &[Row]) -> Vec<Gate> {
+pub fn inclines(rows: &[Row]) -> Vec<Claim> {
     rows.iter().flat_map(|&row| incline(row)).collect()
 }
 
-fn incline(row: Row) -> Vec<Gate> {
+fn incline(row: Row) -> Vec<Claim> {
     const X: &str = "positions are ahead of their velocities by h/t = 5.2e-4, h = Δt/4 (symplectic Euler); where \
                      turning lifts the contact point off, friction lacks the impulse of the fall";
     const V: &str = "turning lifts the contact point off for parts of a step: friction lacks μ m |v_n|, which ends at finer \
@@ -143,14 +128,14 @@ fn incline(row: Row) -> Vec<Gate> {
     const OMEGA: &str = "as for the velocity, with more weight; what remains is the arm R − δ/2";
     const ORDER: &str =
         "fitted over steps without lift-off; the overlap at rest takes time to be reached, more the finer the step";
-    let mut gates = against(row, OneGrain::rigid_incline, wrong(row), [X, V, OMEGA]);
-    gates.push(order(row, 0.05, ORDER, |grain, t| {
+    let mut claims = against(row, OneGrain::rigid_incline, wrong(row), [X, V, OMEGA]);
+    claims.push(order(row, 0.05, ORDER, |grain, t| {
         if grain.sticks() { 0.5 * t * rolling(grain, t) } else { grain.rigid_incline(t).x }
     }));
     if row.rolls {
-        gates.push(final_velocity(row));
+        claims.push(final_velocity(row));
     }
-    gates
+    claims
 }
 
 /// Velocity of rolling with friction at the arm that rapier's overlap at rest leaves (m/s).
@@ -159,32 +144,28 @@ fn rolling(grain: &OneGrain, t: f64) -> f64 {
 }
 
 /// What does not go away with the time step is the arm.
-fn final_velocity(row: Row) -> Gate {
-    Gate {
-        quantity: "velocity at 1 s, arm R − δ/2".to_owned(),
-        unit: "m/s",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: "v(1 + i(R/a)²) = g_t t with arm a = R − δ/2, δ = g_n/(2πf)² (derived beside the row)",
-        allowed: 3e-6,
-        because: "the overlap is reached within 2ζ/(2πf) = .05 s: a twentieth of the arm's effect",
-        runs: vec![run(row.variant, Resolution::substeps(32))],
-        measure: measure(|done| {
-            let (t, state) = last(&done[0])?;
-            let exact = rolling(&OneGrain::of(&done[0].scene), t);
-            Ok(Measured::new(state.v, exact, exact))
-        }),
-        control: wrong(row),
-    }
+fn final_velocity(row: Row) -> Claim {
+    claim("velocity at 1 s, arm R − δ/2", "m/s")
+        .of(run(row.variant, Resolution::substeps(32)))
+        .equals(
+            Source::Derived("v(1 + i(R/a)²) = g_t t with arm a = R − δ/2, δ = g_n/(2πf)² (derived beside the row)"),
+            |done| {
+                let (t, state) = last(&done[0])?;
+                let exact = rolling(&OneGrain::of(&done[0].scene), t);
+                Ok(Measured::new(state.v, exact, exact))
+            },
+        )
+        .within(judged(3e-6, "the overlap is reached within 2ζ/(2πf) = .05 s: a twentieth of the arm's effect"))
+        .refuses(wrong(row))
 }
 
 /// Rows of a grain set down with spin.
 #[must_use]
-pub fn backspins(rows: &[Row]) -> Vec<Gate> {
+pub fn backspins(rows: &[Row]) -> Vec<Claim> {
     rows.iter().flat_map(|&row| backspin(row)).collect()
 }
 
-fn backspin(row: Row) -> Vec<Gate> {
+fn backspin(row: Row) -> Vec<Claim> {
     const X: &str = "while RΩ² exceeds g the contact point lifts off faster than the grain can fall: friction starts a \
                      part of a step late, and then acts in bursts";
     const V: &str = "arm R − δ/2 and rounding";
@@ -196,12 +177,12 @@ fn backspin(row: Row) -> Vec<Gate> {
 ///
 /// # Errors
 /// When a run fails otherwise than by breaking.
-pub fn figure(bench: &Bench, rows: &[Row], exact: fn(&OneGrain, f64) -> State) -> Result<Figure, RunError> {
+pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for row in rows {
         let mut points = Vec::new();
         for substeps in LADDER {
-            let done = match bench.run(&run(row.variant, Resolution::substeps(substeps))) {
+            let done = match runner.run(&run(row.variant, Resolution::substeps(substeps))) {
                 // Too coarse for what turns as fast: it has no point.
                 Err(RunError::Broken(_)) => continue,
                 done => done?,
@@ -220,41 +201,35 @@ pub fn figure(bench: &Bench, rows: &[Row], exact: fn(&OneGrain, f64) -> State) -
         stroke: Stroke::Dashed,
         points: ends.iter().map(|&substeps| (substeps, small / substeps)).collect(),
     });
-    Ok(Figure {
-        name: "rigid-substeps".to_owned(),
-        title: "rigid: error against the rigid answer".to_owned(),
-        caption: "A rigid-body engine has no compliance to pay for; what is left is its time step. Positions of symplectic \
-                  Euler are off by h/t (dashed), h being a quarter of a substep; above it, turning lifts contact points off. \
-                  Steps in which a grain turns too far have no point."
-            .to_owned(),
-        drawing: Drawing::Graph(Graph {
-            x: Axis { label: "substeps in 1/60 s".to_owned(), logarithmic: true },
-            y: Axis { label: "|x − x_rigid| / x_rigid at 1 s".to_owned(), logarithmic: true },
-            curves,
-        }),
-    })
+    Ok(Figure::graph(
+        "rigid-substeps",
+        "rigid: error against the rigid answer",
+        "A rigid-body engine has no compliance to pay for; what is left is its time step. Positions of symplectic Euler are \
+         off by h/t (dashed), h being a quarter of a substep; above it, turning lifts contact points off. Steps in which a \
+         grain turns too far have no point.",
+        [Axis::log("substeps in 1/60 s"), Axis::log("|x − x_rigid| / x_rigid at 1 s")],
+        curves,
+    ))
 }
 
 /// Restitution of a head-on impact.
 #[must_use]
-pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured, Missing>) -> Gate {
-    Gate {
-        quantity: "coefficient of restitution".to_owned(),
-        unit: "1",
-        scope: Scope::Named,
-        evidence: Evidence::Analytic,
-        source: "damped oscillator whose dashpot may pull (derivation)",
-        allowed: 1e-12,
-        because: "rapier reverses the approach velocity times e once, at the end of the step of the impact: rounding",
-        runs: vec![Run::new(variant, RIGID, DEFAULT)],
-        measure: measure(move |done| measured(&done[0])),
-        control: Control::scene("damping ×1.05", |scene| {
+pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured, Missing>) -> Claim {
+    claim("coefficient of restitution", "1")
+        .of(Run::new(variant, RIGID, DEFAULT))
+        .equals(Source::Derived("damped oscillator whose dashpot may pull (derivation)"), move |done| {
+            measured(&done[0])
+        })
+        .within(judged(
+            1e-12,
+            "rapier reverses the approach velocity times e once, at the end of the step of the impact: rounding",
+        ))
+        .refuses(Control::scene("damping ×1.05", |scene| {
             scene.change_laws(|law| {
                 law.stiffness_damping *= 1.05;
                 law.normal_damping *= 1.05;
             });
-        }),
-    }
+        }))
 }
 
 /// A momentum that is kept to rounding.
@@ -263,19 +238,12 @@ pub fn momentum(
     variant: &'static str,
     quantity: String,
     worst: impl Fn(&Done) -> Result<Measured, Missing> + Send + Sync + 'static,
-) -> Gate {
-    Gate {
-        quantity,
-        unit: "kg m/s",
-        scope: Scope::Named,
-        evidence: Evidence::Invariant,
-        source: "equal and opposite impulses",
-        allowed: 1e-12,
-        because: "rounding, in units of one grain's momentum",
-        runs: vec![Run::new(variant, RIGID, DEFAULT)],
-        measure: measure(move |done| worst(&done[0])),
-        control: Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9),
-    }
+) -> Claim {
+    claim(quantity, "kg m/s")
+        .of(Run::new(variant, RIGID, DEFAULT))
+        .holds("equal and opposite impulses", move |done| worst(&done[0]))
+        .within(judged(1e-12, "rounding, in units of one grain's momentum"))
+        .refuses(Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9))
 }
 
 /// Angular momentum of an impact off centre.
@@ -283,56 +251,46 @@ pub fn momentum(
 pub fn angular_momentum(
     variant: &'static str,
     worst: impl Fn(&Done) -> Result<Measured, Missing> + Send + Sync + 'static,
-) -> Gate {
-    Gate {
-        quantity: "angular momentum, worst".to_owned(),
-        unit: "kg m²/s",
-        scope: Scope::Named,
-        evidence: Evidence::Invariant,
-        source: "equal and opposite impulses at one point",
-        allowed: 1.5e-3,
-        because: "normal and arms are those of the beginning of the step, and the grains have moved on when the impulse \
+) -> Claim {
+    claim("angular momentum, worst", "kg m²/s")
+        .of(Run::new(variant, RIGID, DEFAULT))
+        .holds("equal and opposite impulses at one point", move |done| worst(&done[0]))
+        .within(judged(
+            1.5e-3,
+            "normal and arms are those of the beginning of the step, and the grains have moved on when the impulse \
                   acts: ∝ v Δt, in units of m v R",
-        runs: vec![Run::new(variant, RIGID, DEFAULT)],
-        measure: measure(move |done| worst(&done[0])),
-        control: Control::scene("the inertia of spheres", |scene| {
+        ))
+        .refuses(Control::scene("the inertia of spheres", |scene| {
             scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.8);
-        }),
-    }
+        }))
 }
 
 /// Energy of a gas of elastic grains over some seconds, in place of a number of cycles.
 #[must_use]
-pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Result<Measured, Missing>) -> Gate {
+pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Result<Measured, Missing>) -> Claim {
     let run = Run::new(variant, RIGID, DEFAULT).adjusted(&format!("{seconds} s"), move |scene| {
         scene.duration = Duration::Seconds(seconds);
     });
-    Gate {
-        quantity: format!("total energy over {seconds} s, worst"),
-        unit: "J",
-        scope: Scope::Named,
-        evidence: Evidence::Invariant,
-        source: "conservation of energy",
-        allowed: 1.5e-2,
-        because: "impacts one at a time keep it to rounding; a disc that meets two others in one step is given back one \
+    claim(format!("total energy over {seconds} s, worst"), "J")
+        .of(run)
+        .holds("conservation of energy", move |done| worst(&done[0]))
+        .within(judged(
+            1.5e-2,
+            "impacts one at a time keep it to rounding; a disc that meets two others in one step is given back one \
                   approach velocity after the other, and the second undoes a part of the first. It happens \
                   once in this run: finer steps make it rarer, not smaller",
-        runs: vec![run],
-        measure: measure(move |done| worst(&done[0])),
-        control: Control::scene("dashpots of a hundredth of critical", |scene| {
+        ))
+        .refuses(Control::scene("dashpots of a hundredth of critical", |scene| {
             let law = scene.laws[0].unwrap_or_default();
             let rate = 2e-2 * (law.normal_stiffness / scene.grains[0].mass).sqrt();
             scene.change_laws(|law| law.normal_damping = rate);
-        }),
-    }
+        }))
 }
 
 /// A variant whose length is a number of cycles: `rigid` must say that it cannot run it.
 #[must_use]
-pub fn refuses_cycles(variant: &'static str) -> Gate {
-    Gate::refused(
-        Run::new(variant, RIGID, DEFAULT),
-        "refusal of a length in calculation cycles",
+pub fn refuses_cycles(variant: &'static str) -> Claim {
+    claim("refusal of a length in calculation cycles", "1").of(Run::new(variant, RIGID, DEFAULT)).refused(
         "a cycle is a fraction of the period of the contacts' springs, which rigid contacts do not have",
         Control::scene("a length in seconds, walls at rest, no forces asked for", |scene| {
             scene.duration = Duration::Seconds(0.1);
@@ -344,10 +302,8 @@ pub fn refuses_cycles(variant: &'static str) -> Gate {
 
 /// A scene with periodic axes: `rigid` must say that it cannot run it.
 #[must_use]
-pub fn refuses_periodic_axes(variant: &'static str) -> Gate {
-    Gate::refused(
-        Run::new(variant, RIGID, DEFAULT),
-        "refusal of periodic axes",
+pub fn refuses_periodic_axes(variant: &'static str) -> Claim {
+    claim("refusal of periodic axes", "1").of(Run::new(variant, RIGID, DEFAULT)).refused(
         "rapier has no periodic axes",
         Control::scene("no box, a thousandth of a second", |scene| {
             scene.domain = None;

@@ -2,13 +2,11 @@
 //! that they show; without friction, beside rigid discs on springs that have their force at rest.
 
 use crate::elastic::stiffen;
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
-use crate::measure::dominant_frequency;
-use crate::verdict::Evidence;
+use grainbench_harness::measure::dominant_frequency;
+use grainbench_harness::prelude::*;
 use grainbench_scene::body::{Constitutive, Deformable};
 use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::solver::Resolution;
+use grainbench_scene::scene::{Duration, Sampling};
 
 /// What one arrangement of discs is, and what is exact of it.
 #[derive(Clone, Copy)]
@@ -100,48 +98,43 @@ impl Ringing {
     }
 
     /// The force at rest, the frequency, and the latter over that of the springs.
-    pub(crate) fn gates(self, set: impl Fn(Run) -> Run) -> Vec<Gate> {
+    pub(crate) fn claims(self, set: impl Fn(Run) -> Run) -> Vec<Claim> {
         let softer = || Control::scene("discs a quarter softer", |scene| stiffen(scene, 0.75));
-        let analytic = (Evidence::Analytic, self.source);
+        let exact = Source::Derived(self.source);
         let [of_force, of_frequency] = self.allowed;
         vec![
-            Gate::new(
-                ("force at the wall of elastic discs, mean after the walls have stopped", "N/m"),
-                vec![set(self.discs())],
-                analytic,
-                (of_force, self.because),
-                softer(),
-                move |done| {
+            claim("force at the wall of elastic discs, mean after the walls have stopped", "N/m")
+                .of(set(self.discs()))
+                .equals(exact, move |done| {
                     let (force, _) = self.exact(&done[0])?;
                     let (_, found) = self.ringing(&done[0])?;
                     Ok(Measured::new(found.iter().sum::<f64>() / found.len() as f64, force, force))
-                },
-            ),
-            Gate::new(
-                ("frequency at which elastic discs ring", "rad/s"),
-                vec![set(self.discs())],
-                analytic,
-                (of_frequency, "half the error of the stiffness, and discs that do not move quite as a whole"),
-                softer(),
-                move |done| {
+                })
+                .within(judged(of_force, self.because))
+                .refuses(softer()),
+            claim("frequency at which elastic discs ring", "rad/s")
+                .of(set(self.discs()))
+                .equals(exact, move |done| {
                     let expected = self.expected(&done[0])?;
                     Ok(Measured::new(self.frequency(&done[0])?, expected, expected))
-                },
-            ),
-            Gate::new(
-                ("frequency of elastic discs over that of rigid ones on springs with their force at rest", "1"),
-                vec![set(self.discs()), self.rigid().aside()],
-                analytic,
-                (of_frequency, "that of the frequency"),
-                softer(),
-                move |done| {
+                })
+                .within(judged(
+                    of_frequency,
+                    "half the error of the stiffness, and discs that do not move quite as a whole",
+                ))
+                .refuses(softer()),
+            claim("frequency of elastic discs over that of rigid ones on springs with their force at rest", "1")
+                .of(set(self.discs()))
+                .of(self.rigid().aside())
+                .equals(exact, move |done| {
                     let (force, stiffness) = self.exact(&done[0])?;
                     // m cancels; k_n is what gives the springs that force.
                     let spring = force / (self.share * self.squeeze);
                     let expected = (self.diameters * stiffness / (self.springs * spring)).sqrt();
                     Ok(Measured::new(self.frequency(&done[0])? / self.frequency(&done[1])?, expected, expected))
-                },
-            ),
+                })
+                .within(judged(of_frequency, "that of the frequency"))
+                .refuses(softer()),
         ]
     }
 }

@@ -1,13 +1,21 @@
 //! The registry of solvers: a line each.
 
-use crate::varied;
+use crate::{stored, varied};
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
+use grainbench_harness::case::Case;
+use grainbench_harness::run::Run;
+use grainbench_harness::solvers::Solvers;
 use grainbench_mpm::solver::Mpm;
 use grainbench_reference::deck::Program;
 use grainbench_reference::live::Live;
 use grainbench_rigid::solver::Rigid;
-use grainbench_scene::solver::Solver;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Defect, RunError, Solver};
+use grainbench_scene::terms::Terms;
+use std::sync::Arc;
+use std::time::Duration;
 
 /// Every solver of ours.
 #[must_use]
@@ -34,6 +42,48 @@ pub fn names() -> Vec<String> {
 #[must_use]
 pub fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     all().into_iter().chain(programs()).find(|solver| solver.name() == name).or_else(|| varied::by_name(name))
+}
+
+/// Every solver of ours with what it claims of itself, in scenes that take a moment.
+#[must_use]
+pub fn with_terms() -> Vec<(Box<dyn Solver>, Terms)> {
+    let dem = Convention::ALL.into_iter().map(|convention| (Box::new(Dem::new(convention)) as Box<dyn Solver>, Dem::TERMS));
+    let mpm = Mpm::ALL.into_iter().map(|mpm| (Box::new(mpm) as Box<dyn Solver>, mpm.terms().in_the_plane()));
+    dem.chain([(Box::new(Rigid::new()) as Box<dyn Solver>, Rigid::TERMS)]).chain(mpm).collect()
+}
+
+/// The solvers and stored runs that the harness is handed.
+#[derive(Clone, Copy, Debug)]
+pub struct Registry;
+
+impl Solvers for Registry {
+    fn find(&self, name: &str) -> Option<Arc<dyn Solver>> {
+        by_name(name).map(Arc::from)
+    }
+
+    fn find_within(&self, name: &str, limit: Duration) -> Option<Arc<dyn Solver>> {
+        match Program::by_name(name) {
+            Some(program) => Some(Arc::new(Live::find(program).with_time_limit(limit))),
+            None => self.find(name),
+        }
+    }
+
+    fn with_defect(&self, name: &str, defect: Defect) -> Option<Arc<dyn Solver>> {
+        let convention = Convention::ALL.into_iter().find(|convention| convention.name == name)?;
+        Some(Arc::new(Dem::new(convention).with_defect(defect)))
+    }
+
+    fn is_program(&self, name: &str) -> bool {
+        is_program(name)
+    }
+
+    fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
+        stored::record(case, run, scene)
+    }
+
+    fn is_stored(&self, case: &Case, run: &Run) -> bool {
+        stored::exists(case, run)
+    }
 }
 
 /// Whether a name is that of another program.

@@ -1,8 +1,8 @@
-//! Which runs of other programs are kept with the sources: those that gates read, by the names of their folders.
+//! Which runs of other programs are kept with the sources: those that claims read, by the names of their folders.
 
-use crate::case::{Case, PLAIN};
-use crate::gate::{Run, Standing};
 use crate::registry::CASES;
+use grainbench_harness::case::{Case, PLAIN};
+use grainbench_harness::run::{Run, Standing};
 use grainbench_reference::deck::Program;
 use grainbench_reference::stored::{StoredRun, folder, unusable};
 use grainbench_scene::error::SceneError;
@@ -13,7 +13,7 @@ use grainbench_scene::solver::RunError;
 /// One of them, whether or not it has been made.
 #[derive(Clone)]
 pub struct Reference {
-    /// The case whose gates read it.
+    /// The case whose claims read it.
     pub case: &'static Case,
     /// The run.
     pub run: Run,
@@ -23,12 +23,12 @@ pub struct Reference {
     pub id: String,
 }
 
-/// All that gates read, in the order of the registry; each once.
+/// All that claims read, in the order of the registry; each once.
 #[must_use]
 pub fn all() -> Vec<Reference> {
     let mut all: Vec<Reference> = Vec::new();
     for &case in CASES {
-        for run in (case.gates)().into_iter().flat_map(|gate| gate.runs) {
+        for run in (case.claims)().into_iter().flat_map(|claim| claim.runs) {
             let Some(program) = Program::by_name(run.solver).filter(|_| run.standing != Standing::Refused) else {
                 continue;
             };

@@ -1,17 +1,11 @@
 //! A bar vibrates along its length.
 
-use crate::bench::Bench;
-use crate::case::{Case, PLAIN, Rung, cells};
 use crate::elastic::stiffen;
-use crate::figure::{Axis, Curve, Figure, Stroke};
-use crate::gate::{Control, Done, Gate, Measured, Missing, Run};
-use crate::verdict::Evidence;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::RunError;
+use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
 const LADDER: &[Rung] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
-const SOURCE: &str = "u_tt = (E/ρ) u_xx, fixed-free (derivation)";
+const SOURCE: Source = Source::Derived("u_tt = (E/ρ) u_xx, fixed-free (derivation)");
 
 pub(crate) static CASE: Case = Case {
     name: "vibrating-bar",
@@ -22,8 +16,9 @@ pub(crate) static CASE: Case = Case {
     weakness: "Small strain, one direction, no contact.",
     ladder: LADDER,
     default_rung: LADDER[1],
-    gates,
+    claims,
     figures,
+    home: &crate::registry::HOME,
 };
 
 /// ω (rad/s) and mean velocity at the start (m/s).
@@ -32,6 +27,22 @@ fn mode(scene: &Scene) -> (f64, f64) {
     let wave = bar.wave.map_or((f64::NAN, f64::NAN), |wave| (wave.wave_number, wave.amplitude));
     let material = scene.deformable[0].map_or(f64::NAN, |material| material.longitudinal_modulus());
     (wave.0 * (material / bar.density).sqrt(), 2.0 / PI * wave.1)
+}
+
+/// (kh)² of the mode at a resolution, k = π/2L and h a cell, and the largest strain v₀√(ρ/E): what tolerances are made
+/// of.
+fn small(resolution: Resolution) -> (f64, f64) {
+    let Resolution::Grid { cells, .. } = resolution else { return (f64::NAN, f64::NAN) };
+    let strain = CASE.variant(PLAIN).ok().and_then(|scene| {
+        let wave = scene.bodies[0].wave?;
+        Some(wave.amplitude * wave.wave_number / mode(&scene).0)
+    });
+    ((PI / 2.0 / cells).powi(2), strain.unwrap_or(f64::NAN))
+}
+
+/// Fraction by which a mode is slower on the grid (derivation): (1/4 + 1/96)(kh)².
+fn slower(wave_number_squared: f64) -> f64 {
+    25.0 / 96.0 * wave_number_squared
 }
 
 /// Mean of the periods between crossings of zero (s).
@@ -50,65 +61,71 @@ fn period(done: &Done) -> Result<f64, Missing> {
     }
 }
 
-fn gates() -> Vec<Gate> {
+fn claims() -> Vec<Claim> {
     let softer = || Control::scene("two per cent softer", |scene| stiffen(scene, 0.98));
-    let runs = |rung: Rung| vec![Run::new(PLAIN, "mpm", rung.resolution)];
-    let mut gates: Vec<Gate> = LADDER
+    let run = |rung: Rung| Run::new(PLAIN, "mpm", rung.resolution);
+    let mut claims: Vec<Claim> = LADDER
         .iter()
-        .zip([5e-3, 1.3e-3, 4e-4])
-        .map(|(&rung, allowed)| {
-            Gate::new(
-                (format!("period, {} cells", rung.name), "s"),
-                runs(rung),
-                (Evidence::Analytic, SOURCE),
-                (allowed, "dispersion of the grid, falling with the cell, and the strain of .01"),
-                softer(),
-                |done| {
+        .map(|&rung| {
+            let (squared, strain) = small(rung.resolution);
+            claim(format!("period, {} cells", rung.name), "s")
+                .of(run(rung))
+                .equals(SOURCE, |done| {
                     let exact = 2.0 * PI / mode(&done[0].scene).0;
                     Ok(Measured::new(period(&done[0])?, exact, exact))
-                },
-            )
+                })
+                .within(computed(
+                    slower(squared) + strain * strain,
+                    "dispersion of quadratic B-splines with two points a cell, (1/4 + 1/96)(kh)², and ε² of the strain \
+                     ε = v₀√(ρ/E)",
+                ))
+                .refuses(softer())
         })
         .collect();
-    gates.push(Gate::new(
-        ("mean velocity over two periods, worst", "m/s"),
-        runs(LADDER[1]),
-        (Evidence::Analytic, SOURCE),
-        (0.02, "phase after two periods, and the strain of .01; in units of the amplitude"),
-        softer(),
-        |done| {
-            let (frequency, amplitude) = mode(&done[0].scene);
-            let exact = |time: f64| amplitude * (frequency * time).cos();
-            Ok(Measured::worst(&done[0].series().time, done[0].column("bar.vx")?, exact, amplitude))
-        },
-    ));
-    gates.push(Gate::new(
-        ("total energy over two periods, worst", "J"),
-        runs(LADDER[1]),
-        (Evidence::Invariant, "conservation of energy"),
-        (4e-3, "half a step between velocities and stresses"),
-        Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01),
-        |done| {
-            let energy = done[0].column("all.total_energy")?;
-            Ok(Measured::worst(&done[0].series().time, energy, |_| energy[0], energy[0]))
-        },
-    ));
-    gates
+    let (squared, strain) = small(LADDER[1].resolution);
+    claims.push(
+        claim("mean velocity over two periods, worst", "m/s")
+            .of(run(LADDER[1]))
+            .equals(SOURCE, |done| {
+                let (frequency, amplitude) = mode(&done[0].scene);
+                let exact = |time: f64| amplitude * (frequency * time).cos();
+                Ok(Measured::worst(&done[0].series().time, done[0].column("bar.vx")?, exact, amplitude))
+            })
+            .within(computed(
+                4.0 * PI * slower(squared) + 0.355 * strain,
+                "phase that dispersion loses in two periods, 4π (1/4 + 1/96)(kh)², and .355 ε of the law at a strain \
+                 ε; in units of the amplitude",
+            ))
+            .refuses(softer()),
+    );
+    claims.push(
+        claim("total energy over two periods, worst", "J")
+            .of(run(LADDER[1]))
+            .holds("conservation of energy", |done| {
+                let energy = done[0].column("all.total_energy")?;
+                Ok(Measured::worst(&done[0].series().time, energy, |_| energy[0], energy[0]))
+            })
+            .within(computed(
+                8.0 / (9.0 * PI) * strain + Resolution::COURANT.powi(2) * squared,
+                "(8/9π) ε of an elastic energy that is taken as quadratic in σ, and (ωΔt)² of velocities half a step \
+                 beside stresses",
+            ))
+            .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01)),
+    );
+    claims
 }
 
-fn figures(bench: &Bench) -> Result<Vec<Figure>, RunError> {
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     let mut exact = Vec::new();
     for rung in LADDER {
-        let done = bench.run(&Run::new(PLAIN, "mpm", rung.resolution))?;
+        let done = runner.run(&Run::new(PLAIN, "mpm", rung.resolution))?;
         let (frequency, amplitude) = mode(&done.scene);
         let velocity = done.series().column("bar.vx").unwrap_or_default();
         let samples = done.series().time.iter().zip(velocity).step_by(4);
         curves.push(Curve::new(rung.name, Stroke::Line, samples.map(|(&time, &velocity)| (time, velocity)).collect()));
-        exact = (0..=200)
-            .map(|k| f64::from(k) / 10.0)
-            .map(|time| (time, amplitude * (frequency * time).cos()))
-            .collect();
+        exact =
+            (0..=200).map(|k| f64::from(k) / 10.0).map(|time| (time, amplitude * (frequency * time).cos())).collect();
     }
     curves.push(Curve::new("exact", Stroke::Dashed, exact));
     Ok(vec![Figure::graph(

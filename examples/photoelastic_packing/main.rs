@@ -9,7 +9,8 @@ mod prepare;
 mod search;
 mod walls;
 
-use grainbench::cases::case::{PLAIN, read_grains};
+use grainbench::cases::registry::read_grains;
+use grainbench::harness::case::PLAIN;
 use grainbench::cases::registry;
 use grainbench::scene::scene::{Scene, WallShape};
 use grainbench::scene::source::SceneSource;

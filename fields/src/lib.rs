@@ -3,10 +3,11 @@
 //! Material points carry fields and grains carry contact forces; here both become the same quantities at the same places.
 
 pub mod coarse;
+pub mod coarse_picture;
 pub mod disc;
 pub mod overlap;
 pub mod paint;
+pub mod picture;
 pub mod points;
 pub mod profile;
 pub mod quantity;
-pub mod raster;

@@ -3,7 +3,7 @@
 use crate::disc::LoadedDisc;
 use crate::points::PointCloud;
 use crate::quantity::Quantity;
-use crate::raster::{RIM, Raster, VOID, level};
+use grainbench_harness::raster::{RIM, Raster, VOID, level};
 use grainbench_scene::record::{Owner, Snapshot};
 use nalgebra::Vector2;
 
@@ -190,7 +190,7 @@ impl Painting {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::{HIGH, LOW};
+    use grainbench_harness::raster::{HIGH, LOW};
     use grainbench_scene::record::{GrainState, PointState};
     use nalgebra::Vector3;
 

@@ -24,12 +24,9 @@ pub mod observer;
 pub mod outputs;
 mod pair_forces;
 mod read_error;
-pub mod refined;
 mod snapshot;
-pub mod statistics;
 pub mod stored;
 mod table;
-pub mod twin;
 
 pub use atom::Atom;
 pub use data_file::{DataFile, parse_data, read_data_file};

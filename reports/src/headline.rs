@@ -1,6 +1,8 @@
 //! Counting rows by how they ended.
 
-use grainbench_cases::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::control::Red;
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
 use crate::report::{Report, Section};
 
@@ -39,6 +41,10 @@ pub struct Headline {
     pub controls: usize,
     /// Negative controls that turned red, as they must.
     pub controls_red: usize,
+    /// Of those, the ones that had to break and did.
+    pub controls_broken: usize,
+    /// Rows within the allowed error that only hold what was found before: they show no one to be right.
+    pub regression: usize,
 }
 
 impl Headline {
@@ -51,10 +57,13 @@ impl Headline {
         let mut counts = Self::default();
         for verdict in verdicts {
             *counts.slot(verdict.outcome) += 1;
+            counts.regression +=
+                usize::from(verdict.evidence == Evidence::Regression && verdict.outcome == Outcome::Pass);
         }
         for control in controls {
             counts.controls += 1;
             counts.controls_red += usize::from(control.turned_red);
+            counts.controls_broken += usize::from(control.turned_red && control.how == Red::Breaking);
         }
         counts
     }
@@ -99,11 +108,18 @@ impl Headline {
         for outcome in OUTCOMES {
             let count = self.count(outcome);
             if count > 0 || matches!(outcome, Outcome::Pass | Outcome::Fail) {
-                parts.push(format!("{count} {}", outcome.word()));
+                let regression = if outcome == Outcome::Pass && self.regression > 0 {
+                    format!(" ({} of them regression)", self.regression)
+                } else {
+                    String::new()
+                };
+                parts.push(format!("{count} {}{regression}", outcome.word()));
             }
         }
         let controls = if self.controls > 0 {
-            format!("; negative controls: {} of {} turned red", self.controls_red, self.controls)
+            let broken =
+                if self.controls_broken > 0 { format!(", {} of them by breaking", self.controls_broken) } else { String::new() };
+            format!("; negative controls: {} of {} turned red{broken}", self.controls_red, self.controls)
         } else {
             String::new()
         };

@@ -1,6 +1,6 @@
 //! `junit.xml`, which continuous-integration services show.
 
-use grainbench_cases::verdict::{Outcome, Verdict};
+use grainbench_harness::verdict::{Outcome, Verdict};
 use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, TestSuite};
 
 use crate::line;

@@ -1,6 +1,8 @@
 //! A row in one line: what a person reads first when something fails.
 
-use grainbench_cases::verdict::{Control, Evidence, Outcome, Verdict};
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::expect::Expected;
+use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
 use crate::number;
 
@@ -34,13 +36,19 @@ pub fn control_in_section(control: &Control) -> String {
 
 fn tried(control: &Control) -> String {
     let error = control.error.map_or_else(|| "by no finite number".to_owned(), |error| number::fraction(error.abs()));
-    let end = if control.turned_red { "turned red, as it must" } else { "stayed green, but must turn red" };
+    let end = match control.error {
+        _ if control.turned_red => "turned red, as it must",
+        Some(error) if error.abs() <= control.allowed => "stayed green, but must turn red",
+        _ => "not red as it must be",
+    };
+    let detail = control.detail.as_ref().map_or_else(String::new, |detail| format!("; {detail}"));
     format!(
-        "{} · {}: fed with {}, off {error}, allowed {}: {end}",
+        "{} · {}: fed with {}, off {error}, allowed {}, to be red by {}: {end}{detail}",
         control.solver,
         control.quantity,
         control.wrong_physics,
         number::fraction(control.allowed),
+        control.how.word(),
     )
 }
 
@@ -52,16 +60,24 @@ pub const fn expected_word(evidence: Evidence) -> &'static str {
         Evidence::Experiment => "measured",
         Evidence::OtherCode => "other code",
         Evidence::Paper => "printed",
+        Evidence::Prototype => "prototype",
         Evidence::Convergence => "converged",
         Evidence::Invariant => "required",
+        Evidence::Regression => "before",
     }
+}
+
+/// What is expected, with its unit: `1.43 m/s`, `≥ 5`, `order 2`; a dash where nothing is.
+#[must_use]
+pub fn expected(expected: Option<Expected>, unit: &str) -> String {
+    expected.map_or_else(|| "—".to_owned(), |expected| expected.words(|value| number::with_unit(value, unit)))
 }
 
 /// `of SCALE` where an error is not relative to the expected value itself.
 #[must_use]
 pub fn scale_note(verdict: &Verdict) -> Option<String> {
     let scale = verdict.scale?;
-    let own = verdict.expected.map_or(0.0, f64::abs);
+    let own = verdict.expected.map_or(0.0, |expected| expected.nearest(verdict.value.unwrap_or(0.0)).abs());
     ((scale - own).abs() > 1e-6 * own).then(|| format!("of {}", number::with_unit(scale, &verdict.unit)))
 }
 
@@ -78,7 +94,7 @@ fn within_case(verdict: &Verdict) -> String {
             verdict.value.map_or_else(|| "no value".to_owned(), |value| number::with_unit(value, &verdict.unit));
         line.push_str(&format!(" {value}"));
         if let Some(expected) = verdict.expected {
-            line.push_str(&format!(", {} {}", expected_word(verdict.evidence), number::value(expected)));
+            line.push_str(&format!(", {} {}", expected_word(verdict.evidence), expected.words(number::value)));
         }
         line.push_str(&format!(" ({})", verdict.source));
         if let Some(error) = verdict.error {

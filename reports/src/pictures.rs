@@ -4,7 +4,7 @@ use crate::page::{shell, slug, unique};
 use crate::plot;
 use crate::staged::StagedDir;
 use crate::store::SaveError;
-use grainbench_cases::figure::{Drawing, Figure};
+use grainbench_harness::figure::{Drawing, Figure};
 use grainbench_scene::record::{Provenance, Record};
 use maud::{PreEscaped, html};
 use std::collections::BTreeSet;

@@ -2,9 +2,9 @@
 //! stand beside one another at equal times.
 
 use crate::number;
-use grainbench_cases::field_picture::{Shot, film, fringe_constant, pictures};
-use grainbench_cases::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_cases::force_plot::force_plot;
+use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::force_plot::force_plot;
 use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
 use grainbench_scene::record::{Record, Snapshot};
@@ -190,7 +190,7 @@ fn caption(quantity: Quantity) -> String {
 mod tests {
     use super::*;
     use crate::export::sample;
-    use grainbench_cases::figure::Drawing;
+    use grainbench_harness::figure::Drawing;
 
     fn named<'a>(name: &str, record: &'a Record) -> Named<'a> {
         Named { name: name.to_owned(), record }

@@ -1,7 +1,7 @@
 //! Everything a report is made from: enough to redo every output without a solver.
 
-use grainbench_cases::figure::Figure;
-use grainbench_cases::verdict::{Control, Verdict};
+use grainbench_harness::figure::Figure;
+use grainbench_harness::verdict::{Control, Verdict};
 use serde::{Deserialize, Serialize};
 
 use crate::stored_figure;

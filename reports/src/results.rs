@@ -1,6 +1,6 @@
 //! Result files for other programs.
 
-use grainbench_cases::verdict::{Control, Verdict};
+use grainbench_harness::verdict::{Control, Verdict};
 use serde::Serialize;
 
 use crate::report::{Provenance, Report};

@@ -1,7 +1,11 @@
 //! A small report with every kind of row and figure, for tests.
 
-use grainbench_cases::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
-use grainbench_cases::verdict::{Control, Evidence, Outcome, Verdict};
+use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
+use grainbench_harness::control::Red;
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::expect::Expected;
+use grainbench_harness::tolerance::Made;
+use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
 use crate::report::{Provenance, Report, RunCost, Section};
 
@@ -16,10 +20,11 @@ pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expe
         quantity: quantity.into(),
         unit: "m/s".into(),
         value: Some(value),
-        expected: Some(expected),
+        expected: Some(Expected::Value(expected)),
         scale: Some(expected.abs()),
         error: Some(error),
         allowed,
+        tolerance: Made::Judged,
         because: "the scheme is first order in Δt".into(),
         evidence: Evidence::Analytic,
         source: "rigid sphere under Coulomb friction, eq. 26".into(),
@@ -37,7 +42,10 @@ fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) ->
         wrong_physics: wrong_physics.into(),
         error: Some(if turned_red { 0.31 } else { 0.004 }),
         allowed: 0.02,
+        how: Red::Value,
         turned_red,
+        detail: None,
+        seconds: 0.01,
     }
 }
 
@@ -87,7 +95,7 @@ fn backspin() -> Section {
     let mut momentum = verdict(case, "dem", "momentum drift", 2.2e-16, 1.0, 1e-12);
     momentum.quantity = "largest momentum drift".into();
     momentum.unit = "kg m/s".into();
-    momentum.expected = Some(0.0);
+    momentum.expected = Some(Expected::Value(0.0));
     momentum.scale = Some(0.5);
     momentum.error = Some(4.4e-16);
     momentum.evidence = Evidence::Invariant;

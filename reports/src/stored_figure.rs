@@ -1,7 +1,7 @@
 //! Reading figures back. A run that blew up has points that are not finite; JSON writes those as `null`, and here
 //! `null` becomes not-a-number again, which every drawer leaves out and counts.
 
-use grainbench_cases::figure::{Axis, Curve, Drawing, Field, Figure, ForceBar, ForcePlot, Graph, Stroke};
+use grainbench_harness::figure::{Axis, Curve, Drawing, Field, Figure, ForceBar, ForcePlot, Graph, Stroke};
 use serde::{Deserialize, Deserializer};
 
 /// A number, or `null`.

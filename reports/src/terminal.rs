@@ -1,6 +1,6 @@
 //! The summary as plain text.
 
-use grainbench_cases::verdict::Outcome;
+use grainbench_harness::verdict::Outcome;
 
 use crate::headline::{self, Headline};
 use crate::line;

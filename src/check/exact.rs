@@ -1,17 +1,18 @@
 //! Against the exact answers of a case's gates.
 
-use super::{Candidate, judge};
-use grainbench_cases::gate::{Done, Gate};
-use grainbench_cases::verdict::Verdict;
+use super::{Candidate, widened};
+use grainbench_harness::claim::Claim;
+use grainbench_harness::run::Done;
+use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::Outputs;
 use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
 use std::sync::Arc;
 
-/// A gate of the case, its tolerance widened by what the printed digits may have moved the quantity.
+/// A claim of the case, its tolerance widened by what the printed digits may have moved the quantity.
 pub(super) fn exact(
-    gate: &Gate,
+    claim: &Claim,
     candidate: &Candidate,
     outputs: &Outputs,
     observed: &Observed,
@@ -20,19 +21,19 @@ pub(super) fn exact(
     let scene = Arc::new(candidate.scene.clone());
     let measured = |series: Series| {
         let record = record(&candidate.scene, outputs, observed, series);
-        (gate.measure)(&[Done { scene: Arc::clone(&scene), record: Arc::new(record) }])
+        (claim.measure)(&[Done { scene: Arc::clone(&scene), record: Arc::new(record) }])
     };
-    let mut verdict = row(gate.quantity.clone(), gate.unit);
-    verdict.evidence = gate.evidence;
-    verdict.source = gate.source.to_owned();
-    verdict.allowed = gate.allowed;
-    verdict.because = gate.because.to_owned();
+    let row = Verdict {
+        evidence: claim.evidence(),
+        source: claim.source.words(),
+        allowed: claim.tolerance.allowed,
+        tolerance: claim.tolerance.made,
+        because: claim.tolerance.because.clone(),
+        ..row(claim.quantity.clone(), claim.unit)
+    };
     let found = match measured(observed.series.clone()) {
         Ok(found) => found,
-        Err(missing) => {
-            verdict.detail = Some(missing.to_string());
-            return verdict;
-        }
+        Err(missing) => return row.left(Outcome::NoReference, missing.to_string()),
     };
     let mut open = 0.0;
     for (at, moves) in observed.uncertainty.iter().enumerate() {
@@ -45,9 +46,7 @@ pub(super) fn exact(
             open += moved(1.0).max(moved(-1.0));
         }
     }
-    verdict.allowed += open;
-    judge(&mut verdict, &found, open, outputs);
-    verdict
+    widened(row, open, outputs).judged(&found)
 }
 
 fn record(scene: &Scene, outputs: &Outputs, observed: &Observed, series: Series) -> Record {

@@ -1,7 +1,7 @@
 //! Pictures of what was observed beside our runs.
 
 use super::ours::{Ours, is_compared};
-use grainbench_cases::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use grainbench_reference::observer::Observed;
 
 /// The first moving columns: what was observed, and our runs.

@@ -8,10 +8,11 @@ mod stored;
 
 use exact::exact;
 use figures::figures;
-use grainbench_cases::case::{Case, PLAIN};
-use grainbench_cases::gate::{Gate, Measured};
-use grainbench_cases::scope::Scope;
-use grainbench_cases::verdict::{Evidence, Outcome, Verdict};
+use grainbench_harness::case::{Case, PLAIN};
+use grainbench_harness::claim::Claim;
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::scope::Scope;
+use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::{OutputError, Outputs};
 use grainbench_reports::{Section, number};
@@ -61,7 +62,7 @@ struct Candidate {
     variant: String,
     scene: Scene,
     /// The gates whose scene it is.
-    gates: Vec<Gate>,
+    claims: Vec<Claim>,
 }
 
 /// Judges the outputs of a case's scene, of one variant or of whichever they start as.
@@ -117,11 +118,11 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
     names.retain(|name| variant.is_none_or(|variant| variant == name));
     let mut candidates: Vec<Candidate> = Vec::new();
     for name in names {
-        candidates.push(Candidate { scene: case.variant(&name)?, variant: name, gates: Vec::new() });
+        candidates.push(Candidate { scene: case.variant(&name)?, variant: name, claims: Vec::new() });
     }
-    for gate in (case.gates)() {
-        let [run] = &gate.runs[..] else { continue };
-        if gate.scope != Scope::AnySolver || variant.is_some_and(|variant| variant != run.variant) {
+    for claim in (case.claims)() {
+        let [run] = &claim.runs[..] else { continue };
+        if claim.scope != Scope::AnySolver || variant.is_some_and(|variant| variant != run.variant) {
             continue;
         }
         let mut scene = case.variant(run.variant)?;
@@ -130,8 +131,8 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
         }
         let variant = run.variant.to_owned();
         match candidates.iter_mut().find(|other| other.variant == variant && other.scene == scene) {
-            Some(candidate) => candidate.gates.push(gate),
-            None => candidates.push(Candidate { variant, scene, gates: vec![gate] }),
+            Some(candidate) => candidate.claims.push(claim),
+            None => candidates.push(Candidate { variant, scene, claims: vec![claim] }),
         }
     }
     Ok(candidates)
@@ -163,26 +164,19 @@ fn misplaced(scene: &Scene, observed: &Observed) -> Option<(String, String)> {
 fn section(case: &'static Case, candidate: &Candidate, outputs: &Outputs, observed: &Observed) -> Section {
     let file = outputs.name();
     let step = outputs.time_step();
-    let row = |quantity: String, unit: &str| Verdict {
-        case: case.name.to_owned(),
-        variant: candidate.variant.clone(),
-        solver: file.clone(),
-        resolution: step.map_or_else(|| "step not told".to_owned(), |step| Resolution::TimeStep(step).to_string()),
-        quantity,
-        unit: unit.to_owned(),
-        value: None,
-        expected: None,
-        scale: None,
-        error: None,
-        allowed: 0.0,
-        because: String::new(),
-        evidence: Evidence::OtherCode,
-        source: String::new(),
-        outcome: Outcome::NoReference,
-        detail: None,
+    let row = |quantity: String, unit: &str| {
+        let resolution = step.map_or_else(|| "step not told".to_owned(), |step| Resolution::TimeStep(step).to_string());
+        Verdict {
+            variant: candidate.variant.clone(),
+            solver: file.clone(),
+            resolution,
+            evidence: Evidence::OtherCode,
+            outcome: Outcome::NoReference,
+            ..Verdict::open(case.name, quantity, unit)
+        }
     };
     let mut verdicts: Vec<Verdict> =
-        candidate.gates.iter().map(|gate| exact(gate, candidate, outputs, observed, &row)).collect();
+        candidate.claims.iter().map(|claim| exact(claim, candidate, outputs, observed, &row)).collect();
     let (compared, figures) = step.map_or_else(
         || (Err("the files do not tell the time step (--dt gives it)".to_owned()), Vec::new()),
         |step| match ours(&candidate.scene, step, observed) {
@@ -196,7 +190,8 @@ fn section(case: &'static Case, candidate: &Candidate, outputs: &Outputs, observ
         Ok(rows) => verdicts.extend(rows),
         Err(reason) => {
             let quantity = "comparison with our solvers".to_owned();
-            verdicts.push(Verdict { detail: Some(reason), because: "none was made".to_owned(), ..row(quantity, "1") });
+            let row = Verdict { because: "none was made".to_owned(), ..row(quantity, "1") };
+            verdicts.push(row.left(Outcome::NoReference, reason));
         }
     }
     verdicts.extend(stored::compare(case, candidate, outputs, observed, &row));
@@ -217,20 +212,14 @@ fn section(case: &'static Case, candidate: &Candidate, outputs: &Outputs, observ
     }
 }
 
-/// Fills in what was measured, and how the row ends.
-fn judge(verdict: &mut Verdict, found: &Measured, open: f64, outputs: &Outputs) {
-    let finite = |value: f64| value.is_finite().then_some(value);
-    let error = found.error();
-    (verdict.value, verdict.expected) = (finite(found.value), finite(found.expected));
-    (verdict.scale, verdict.error) = (finite(found.scale), finite(error));
-    verdict.outcome = if error.abs() <= verdict.allowed { Outcome::Pass } else { Outcome::Fail };
+/// The row with its tolerance widened by what the printed digits leave open.
+fn widened(mut row: Verdict, open: f64, outputs: &Outputs) -> Verdict {
+    row.allowed += open;
     // Below a thousandth of the tolerance nobody need know.
-    if open > 1e-3 * verdict.allowed {
+    if open > 1e-3 * row.allowed {
         let digits = outputs.significant_digits();
-        let widened = format!("; widened by {} for the digits printed, {digits} at most", number::fraction(open));
-        verdict.because.push_str(&widened);
+        let words = format!("; widened by {} for the digits printed, {digits} at most", number::fraction(open));
+        row.because.push_str(&words);
     }
-    if verdict.outcome == Outcome::Fail {
-        verdict.detail = found.first_outside(verdict.allowed);
-    }
+    row
 }

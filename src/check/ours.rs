@@ -1,14 +1,14 @@
 //! Against what our solvers make of the same scene.
 
-use super::judge;
-use grainbench_cases::gate::Measured;
-use grainbench_cases::verdict::Verdict;
+use super::widened;
+use grainbench_harness::expect::Measured;
+use grainbench_harness::tolerance::Made;
+use grainbench_harness::verdict::Verdict;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_reference::deck::Stepping;
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::Outputs;
-use grainbench_reference::refined::refined;
+use grainbench_scene::refined::refined;
 use grainbench_reports::number;
 use grainbench_scene::record::Series;
 use grainbench_scene::scene::Scene;
@@ -42,9 +42,8 @@ pub(super) fn ours(scene: &Scene, step: f64, observed: &Observed) -> Result<Ours
         return Err(format!("{} samples are more than {MOST_SAMPLES}", last / interval));
     }
     let run = |convention: Convention, halves: u64| {
-        let stepping = Stepping { time_step: step, steps: last, interval };
         let (scene, resolution) =
-            refined(&Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() }, &stepping, halves);
+            refined(&Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() }, step, [last, interval], halves);
         let record = Dem::new(convention).run(&scene, &resolution, &mut ());
         record.map(|record| record.series).map_err(|error| error.to_string())
     };
@@ -164,7 +163,8 @@ pub(super) fn compare(
         let found = Measured::worst_of(&observed.series.time, column.values, expected, column.scale);
         let mut verdict = row(format!("{} over the run, worst", column.name), column.unit);
         verdict.source = format!("{}, the nearest of our conventions, at the file's time step", ours.runs[nearest].0);
-        verdict.allowed = FLOOR + between + halved + open;
+        verdict.tolerance = Made::Computed;
+        verdict.allowed = FLOOR + between + halved;
         verdict.because = format!(
             "conventions differ by {}, half the step by {}{}, and {} beside",
             number::fraction(between),
@@ -172,8 +172,7 @@ pub(super) fn compare(
             if times > 1.0 { format!(", taken {times} times") } else { String::new() },
             number::fraction(FLOOR)
         );
-        judge(&mut verdict, &found, open, outputs);
-        verdicts.push(verdict);
+        verdicts.push(widened(verdict, open, outputs).judged(&found));
     }
     verdicts
 }

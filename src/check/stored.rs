@@ -1,11 +1,12 @@
 //! Against the stored runs of LAMMPS and LIGGGHTS of the same scene.
 
 use super::ours::is_compared;
-use super::{Candidate, judge};
-use grainbench_cases::case::Case;
-use grainbench_cases::gate::Measured;
+use super::{Candidate, widened};
+use grainbench_harness::case::Case;
+use grainbench_harness::expect::Measured;
 use grainbench_cases::stored;
-use grainbench_cases::verdict::Verdict;
+use grainbench_harness::tolerance::Made;
+use grainbench_harness::verdict::Verdict;
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::Outputs;
 use grainbench_reference::stored::{StoredRun, folder};
@@ -69,15 +70,15 @@ pub(super) fn compare(
         let measured = Measured::worst_of(&times, &found, &expected, scale);
         let mut verdict = row(format!("{} at {} stored samples, worst", column.name, times.len()), &column.unit);
         verdict.source.clone_from(&nearest.name);
-        verdict.allowed = FLOOR + between + SAFETY * halved + open;
+        verdict.tolerance = Made::Estimated;
+        verdict.allowed = FLOOR + between + SAFETY * halved;
         verdict.because = format!(
             "stored runs differ by {}, half the step changes them by {}, taken {SAFETY} times, and {} beside",
             number::fraction(between),
             number::fraction(halved),
             number::fraction(FLOOR)
         );
-        judge(&mut verdict, &measured, open, outputs);
-        verdicts.push(verdict);
+        verdicts.push(widened(verdict, open, outputs).judged(&measured));
     }
     verdicts
 }

@@ -5,7 +5,7 @@ use super::provenance::provenance;
 use super::run::exit_code;
 use super::simulate::{path_and_value, positive};
 use super::subject::Variant;
-use grainbench::cases::verdict;
+use grainbench::harness::verdict;
 use grainbench::check::check as judge;
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources};

@@ -5,8 +5,11 @@ use super::exit::{Fault, Outcome, check_writable, print};
 use super::provenance::provenance;
 use super::run::exit_code;
 use super::simulate::positive;
-use grainbench::cases::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use grainbench::cases::verdict::{self, Evidence, Verdict};
+use grainbench::harness::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use grainbench::harness::evidence::Evidence;
+use grainbench::harness::expect::Measured;
+use grainbench::harness::tolerance::Made;
+use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::comparison::{Comparison, Difference, compare as differences};
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, number, write_report};
@@ -82,23 +85,11 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
 }
 
 fn row(of: &Difference, tolerance: f64, a: &str, b: &str) -> Verdict {
-    let error = (of.second - of.first) / of.scale;
     let open = of.open / of.scale;
-    let allowed = tolerance + open;
-    let first = of.course.iter().find(|(_, off)| off.is_nan() || off / of.scale > allowed);
-    let passes = error.abs() <= allowed;
-    Verdict {
-        case: "compare".to_owned(),
-        variant: String::new(),
+    let row = Verdict {
         solver: b.to_owned(),
-        resolution: String::new(),
-        quantity: format!("column {}, worst", of.name),
-        unit: "1".to_owned(),
-        value: Some(of.second),
-        expected: Some(of.first),
-        scale: Some(of.scale),
-        error: error.is_finite().then_some(error),
-        allowed,
+        allowed: tolerance + open,
+        tolerance: Made::Required,
         because: format!(
             "asked for {}, and {} for the printed digits of both",
             number::fraction(tolerance),
@@ -106,8 +97,13 @@ fn row(of: &Difference, tolerance: f64, a: &str, b: &str) -> Verdict {
         ),
         evidence: Evidence::OtherCode,
         source: a.to_owned(),
-        outcome: if passes { verdict::Outcome::Pass } else { verdict::Outcome::Fail },
-        detail: first.filter(|_| !passes).map(|(step, _)| format!("first outside at step or row {step}")),
+        ..Verdict::open("compare", format!("column {}, worst", of.name), "1")
+    };
+    let first = of.course.iter().find(|(_, off)| off.is_nan() || off / of.scale > row.allowed);
+    let row = row.judged(&Measured::new(of.second, of.first, of.scale));
+    match first.filter(|_| row.outcome == verdict::Outcome::Fail) {
+        Some((step, _)) => Verdict { detail: Some(format!("first outside at step or row {step}")), ..row },
+        None => row,
     }
 }
 

@@ -4,9 +4,9 @@ use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::subject::Variant;
-use grainbench::cases::registry::CASES;
+use grainbench::cases::registry::{self, CASES};
 use grainbench::cases::solvers;
-use grainbench::cases::subject::{self, Subject};
+use grainbench::harness::subject::Subject;
 use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, write_study};
 use grainbench::studies::Follow;
 use grainbench::studies::cost::against::compare;
@@ -50,7 +50,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     check_writable(&arguments.out)?;
     let shelf = Shelf::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::input)?;
     let wanted = Wanted { solvers: arguments.solver.clone(), all: arguments.rungs == "all" };
-    let meter = Meter::new(&shelf, wanted);
+    let meter = Meter::new(&shelf, wanted, &solvers::Registry);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
     if pieces == 0 {
         return Err(Fault::input("expected at least one point, found none of the cases and solvers named"));
@@ -100,7 +100,7 @@ fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
         let wanted = |variant: &str| {
             mine.is_empty() || mine.iter().any(|named| named.variant.is_none_or(|name| name == variant))
         };
-        found.extend(subject::of(case).into_iter().filter(|subject| wanted(subject.variant)));
+        found.extend(registry::subjects(case).into_iter().filter(|subject| wanted(subject.variant)));
     }
     if found.is_empty() {
         return Err(Fault::input(

@@ -5,13 +5,15 @@ use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
 use super::subject::Variant;
 use grainbench::cases::registry::CASES;
-use grainbench::cases::study::ledger::Worth;
+use grainbench::cases::solvers::Registry;
+use grainbench::harness::study::ledger::Worth;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::studies::effects::ledger::{Ledger, Piece};
 use grainbench::studies::shelf::Shelf;
 use grainbench::studies::{Follow, identity};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What the command takes.
@@ -89,7 +91,7 @@ fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<Piece>)>, Fault> {
         let wanted = |variant: &str| {
             mine.is_empty() || mine.iter().any(|named| named.variant.is_none_or(|name| name == variant))
         };
-        let ledger = Ledger::new(case);
+        let ledger = Ledger::new(case, Arc::new(Registry));
         let pieces = ledger.pieces().into_iter().filter(|piece| wanted(piece.variant)).collect();
         found.push((ledger, pieces));
     }

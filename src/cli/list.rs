@@ -2,7 +2,7 @@
 
 use super::exit::{Outcome, print, print_json};
 use super::select;
-use grainbench::cases::case::Case;
+use grainbench::harness::case::Case;
 use grainbench::cases::registry::CASES;
 use serde::Serialize;
 use std::process::ExitCode;
@@ -40,17 +40,17 @@ pub(crate) fn list(arguments: &Arguments) -> Outcome {
 }
 
 fn entry(case: &Case) -> Result<Entry, super::exit::Fault> {
-    let gates = (case.gates)();
-    let rungs = select::rungs(case, &gates);
+    let claims = (case.claims)();
+    let rungs = select::rungs(case, &claims);
     Ok(Entry {
         name: case.name,
         title: case.title,
         claim: case.claim,
-        variants: select::variants(case, &gates)?,
-        gates: gates.len(),
+        variants: select::variants(case, &claims)?,
+        gates: claims.len(),
         default_rung: case.default_rung.name,
         rungs,
-        solvers: select::solvers(&gates),
+        solvers: select::solvers(&claims),
     })
 }
 

@@ -1,20 +1,21 @@
-//! Which gates a command line means.
+//! Which claims a command line means.
 
 use super::exit::Fault;
 use super::subject::Variant;
-use grainbench::cases::case::{Case, PLAIN};
-use grainbench::cases::gate::{Gate, Run, Set};
+use grainbench::harness::case::{Case, PLAIN};
+use grainbench::harness::claim::Claim;
+use grainbench::harness::run::{Run, Set};
 use grainbench::cases::registry::CASES;
 
-/// The gates of one case that are to be judged.
+/// The claims of one case that are to be judged.
 pub(crate) struct Selected {
     /// The case.
     pub(crate) case: &'static Case,
-    /// Its gates, in their order; never empty.
-    pub(crate) gates: Vec<Gate>,
+    /// Its claims, in their order; never empty.
+    pub(crate) claims: Vec<Claim>,
 }
 
-/// The gates of the cases (`CASE` or `CASE/VARIANT`; all when none is named) whose rows are of one of the solvers and
+/// The claims of the cases (`CASE` or `CASE/VARIANT`; all when none is named) whose rows are of one of the solvers and
 /// that need one of the rungs, in the order of the registry.
 pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> Result<Vec<Selected>, Fault> {
     let named = cases.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
@@ -24,26 +25,29 @@ pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> 
         if mine.is_empty() && !named.is_empty() {
             continue;
         }
-        let mut gates = (case.gates)();
+        let mut claims = (case.claims)();
         if !mine.is_empty() && mine.iter().all(|named| named.variant.is_some()) {
             let wanted = |variant: &str| mine.iter().any(|named| named.variant == Some(variant));
-            gates.retain(|gate| row(gate).is_some_and(|run| wanted(run.variant)));
+            claims.retain(|claim| row(claim).is_some_and(|run| wanted(run.variant)));
         }
-        selected.push(Selected { case, gates });
+        selected.push(Selected { case, claims });
     }
     refuse_unknown_solvers(&selected, solvers)?;
     let rungs = wanted_rungs(&selected, rungs)?;
-    for Selected { case, gates } in &mut selected {
+    for Selected { case, claims } in &mut selected {
         if !solvers.is_empty() {
-            gates.retain(|gate| row(gate).is_some_and(|run| solvers.iter().any(|name| name == run.solver)));
+            let wanted = |run: &Run| solvers.iter().any(|name| name == run.solver);
+            // A program is asked for by rows that compare ours with it.
+            let asked = |run: &Run| wanted(run) && grainbench::cases::solvers::is_program(run.solver);
+            claims.retain(|claim| row(claim).is_some_and(wanted) || claim.runs.iter().any(asked));
         }
         match &rungs {
-            Rungs::Default => gates.retain(|gate| gate.set() == Set::Main),
+            Rungs::Default => claims.retain(|claim| claim.set() == Set::Main),
             Rungs::All => {}
-            Rungs::Named(names) => gates.retain(|gate| gate.runs.iter().any(|run| is_at(case, run, names))),
+            Rungs::Named(names) => claims.retain(|claim| claim.runs.iter().any(|run| is_at(case, run, names))),
         }
     }
-    selected.retain(|selected| !selected.gates.is_empty());
+    selected.retain(|selected| !selected.claims.is_empty());
     // A selection without a row would end green without having looked at anything.
     if selected.is_empty() {
         return Err(Fault::input(
@@ -53,15 +57,15 @@ pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> 
     Ok(selected)
 }
 
-/// The run that names a gate's row.
-fn row(gate: &Gate) -> Option<&Run> {
-    gate.runs.first()
+/// The run that names a claim's row.
+fn row(claim: &Claim) -> Option<&Run> {
+    claim.runs.first()
 }
 
 fn refuse_unknown_solvers(selected: &[Selected], names: &[String]) -> Result<(), Fault> {
     let ours = grainbench::cases::solvers::names();
     let mut known: Vec<&str> = ours.iter().map(String::as_str).collect();
-    for name in selected.iter().flat_map(|selected| solvers(&selected.gates)) {
+    for name in selected.iter().flat_map(|selected| solvers(&selected.claims)) {
         push_new(&mut known, name);
     }
     match names.iter().find(|name| !known.contains(&name.as_str())) {
@@ -87,7 +91,7 @@ fn wanted_rungs(selected: &[Selected], names: &[String]) -> Result<Rungs, Fault>
         return Ok(Rungs::Default);
     }
     let mut known: Vec<String> = vec!["default".to_owned(), "all".to_owned()];
-    for name in selected.iter().flat_map(|Selected { case, gates }| rungs(case, gates)) {
+    for name in selected.iter().flat_map(|Selected { case, claims }| rungs(case, claims)) {
         push_new(&mut known, name);
     }
     let unified: Vec<String> = known.iter().map(|name| unified(name)).collect();
@@ -117,28 +121,32 @@ pub(crate) fn rung_of(case: &Case, run: &Run) -> String {
     rung.map_or_else(|| run.resolution.to_string(), |rung| rung.name.to_owned())
 }
 
-/// Names of the rungs of a case: its ladder, then what its gates have beside it.
-pub(crate) fn rungs(case: &Case, gates: &[Gate]) -> Vec<String> {
+/// Names of the rungs of a case: its ladder, then what its claims have beside it.
+pub(crate) fn rungs(case: &Case, claims: &[Claim]) -> Vec<String> {
     let mut names: Vec<String> = case.ladder.iter().map(|rung| rung.name.to_owned()).collect();
-    for run in gates.iter().flat_map(|gate| &gate.runs) {
+    for run in claims.iter().flat_map(|claim| &claim.runs) {
         push_new(&mut names, rung_of(case, run));
     }
     names
 }
 
-/// Names of the variants of a case, the plain scene among them where a gate looks at it.
-pub(crate) fn variants(case: &Case, gates: &[Gate]) -> Result<Vec<String>, Fault> {
+/// Names of the variants of a case, the plain scene among them where a claim looks at it.
+pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fault> {
     let mut names = case.variants()?;
-    if gates.iter().filter_map(row).any(|run| run.variant == PLAIN) {
+    if claims.iter().filter_map(row).any(|run| run.variant == PLAIN) {
         push_new(&mut names, PLAIN.to_owned());
     }
     Ok(names)
 }
 
-/// Solvers that gates name their rows by, each once, in their order.
-pub(crate) fn solvers(gates: &[Gate]) -> Vec<&'static str> {
+/// Solvers that claims name their rows by, and programs that they are compared with, each once, in their order.
+pub(crate) fn solvers(claims: &[Claim]) -> Vec<&'static str> {
     let mut names = Vec::new();
-    for run in gates.iter().filter_map(row) {
+    for run in claims.iter().filter_map(row) {
+        push_new(&mut names, run.solver);
+    }
+    let programs = claims.iter().flat_map(|claim| &claim.runs);
+    for run in programs.filter(|run| grainbench::cases::solvers::is_program(run.solver)) {
         push_new(&mut names, run.solver);
     }
     names

@@ -3,7 +3,7 @@
 use super::checkpoint::{self, Store};
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
 use super::progress::Progress;
-use grainbench::cases::case::read_grains;
+use grainbench::cases::registry::read_grains;
 use grainbench::cases::solvers;
 use grainbench::reports::{StagedDir, export, number};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
@@ -175,7 +175,7 @@ fn write(record: &Record, arguments: &Arguments) -> Result<(), Fault> {
 
 /// What is known before the first step.
 fn header(scene: &Scene, solver: &dyn Solver) -> String {
-    let effects = Effects::of(scene).words();
+    let effects = Effects::words(scene);
     let effects = if effects.is_empty() { "contact springs only".to_owned() } else { effects.join(", ") };
     format!(
         "scene      {}\nsolver     {}\neffects    {effects}\ngrains     {}\n",

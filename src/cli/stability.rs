@@ -3,8 +3,9 @@
 use super::cost::Follower;
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
-use grainbench::cases::solvers;
-use grainbench::cases::study::stability::{Hardness, Limit};
+use grainbench::cases::{registry, solvers};
+use grainbench::harness::case::PLAIN;
+use grainbench::harness::study::stability::{Hardness, Limit};
 use grainbench::reports::number;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::studies::shelf::Shelf;
@@ -102,19 +103,24 @@ fn do_piece(
     match *piece {
         Piece::Assembly(assembly, solver) => {
             follower.now(&format!("{} · {solver}", assembly.name));
-            let (limit, reused) = limit::of_assembly(program, assembly, solver, shelf).map_err(Fault::input)?;
+            let asked = limit::of_assembly(program, assembly, (&solvers::Registry, solver), shelf);
+            let (limit, reused) = asked.map_err(Fault::input)?;
             study.limits.push(limit);
             Ok(reused)
         }
         Piece::Bar(setting, cells) => {
             follower.now(&format!("{BAR} · {setting}"));
-            let (limit, reused) = limit::of_bar(program, setting, cells, shelf).map_err(Fault::input)?;
+            let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;
+            let scene = bar.variant(PLAIN)?;
+            let asked = limit::of_bar(program, &scene, (&solvers::Registry, setting), cells, shelf);
+            let (limit, reused) = asked.map_err(Fault::input)?;
             study.limits.push(limit);
             Ok(reused)
         }
         Piece::Hard(case, solver) => {
             follower.now(&format!("{} · {solver}", case.name));
-            let (row, reused) = hard::verdict(program, case, solver, shelf).map_err(Fault::input)?;
+            let asked = hard::verdict(program, case, (&solvers::Registry, solver), shelf);
+            let (row, reused) = asked.map_err(Fault::input)?;
             study.hard.push(row);
             Ok(reused)
         }

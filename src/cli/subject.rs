@@ -2,10 +2,10 @@
 
 use super::exit::Fault;
 use super::select;
-use grainbench::cases::case::{Case, PLAIN, read_grains};
-use grainbench::cases::gate::Gate;
-use grainbench::cases::registry::CASES;
-use grainbench::cases::scope::Scope;
+use grainbench::cases::registry::{CASES, read_grains};
+use grainbench::harness::case::{Case, PLAIN};
+use grainbench::harness::claim::Claim;
+use grainbench::harness::scope::Scope;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
@@ -28,7 +28,7 @@ impl<'a> Variant<'a> {
             .find(|case| case.name == name)
             .ok_or_else(|| Fault::unknown("a case", name, CASES.iter().map(|case| case.name)))?;
         if let Some(variant) = variant {
-            let known = select::variants(case, &(case.gates)())?;
+            let known = select::variants(case, &(case.claims)())?;
             if variant != PLAIN && !known.iter().any(|name| name == variant) {
                 let what = format!("a variant of {}", case.name);
                 return Err(Fault::unknown(&what, variant, known.iter().map(String::as_str)));
@@ -64,11 +64,11 @@ pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Opti
 /// The scene of the first gate of a case or variant that is fair to any solver, and its resolution.
 pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
     let named = Variant::read(text)?;
-    let fair = |gate: &Gate| gate.scope == Scope::AnySolver && gate.runs.len() == 1;
-    let run = (named.case.gates)()
+    let fair = |claim: &Claim| claim.scope == Scope::AnySolver && claim.runs.len() == 1;
+    let run = (named.case.claims)()
         .into_iter()
         .filter(fair)
-        .filter_map(|gate| gate.runs.into_iter().next())
+        .filter_map(|claim| claim.runs.into_iter().next())
         .find(|run| named.variant.is_none_or(|variant| variant == run.variant));
     let Some(run) = run else {
         return Err(Fault::input(format!("expected a case with a gate that is fair to any solver, found `{text}`")));

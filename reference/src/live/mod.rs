@@ -120,7 +120,7 @@ impl Solver for Live {
                 resolution: resolution.to_string(),
                 time_step: stepping.time_step,
                 critical_time_step: critical.is_finite().then_some(critical),
-                effects: Effects::of(scene).words(),
+                effects: Effects::words(scene),
                 options: log.version.into_iter().collect(),
             },
             series: observed.series,

@@ -5,16 +5,16 @@ use std::io::Write as _;
 
 use flate2::{Compression, GzBuilder};
 use grainbench_scene::record::{Record, Series};
+use grainbench_scene::refined::refined;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver};
+use grainbench_scene::twin::{PARTED, move_one};
 
 use super::drift::drift;
 use super::scene_hash::scene_hash;
 use super::{HALF_STEP_SERIES, PROVENANCE, Provenance, SERIES};
 use crate::deck::{Program, Stepping, write_deck};
 use crate::live::Live;
-use crate::refined::refined;
-use crate::twin::{PARTED, move_one};
 
 /// Most samples that are kept of a run, beside its last one.
 const MOST_SAMPLES: usize = 100;
@@ -45,7 +45,7 @@ pub fn make(
     let fail = |reason: String| RunError::Resolution { solver: program.name().to_owned(), reason };
     let stepping = Stepping::of(scene, resolution).map_err(fail)?;
     let run = live.run(scene, resolution, &mut ())?;
-    let (twin_scene, twin_resolution) = refined(scene, &stepping, 2);
+    let (twin_scene, twin_resolution) = refined(scene, stepping.time_step, [stepping.steps, stepping.interval], 2);
     let twin = live.run(&twin_scene, &twin_resolution, &mut ())?;
     let mut moved_scene = scene.clone();
     move_one(&mut moved_scene);

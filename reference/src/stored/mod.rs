@@ -119,7 +119,7 @@ impl StoredRun {
                 resolution: resolution.to_string(),
                 time_step: stepping.time_step,
                 critical_time_step: critical.is_finite().then_some(critical),
-                effects: grainbench_scene::effects::Effects::of(scene).words(),
+                effects: grainbench_scene::effects::Effects::words(scene),
                 options: vec![self.provenance.version.clone(), format!("stored run of {}", self.provenance.date)],
             },
             series: self.series(scene),

@@ -8,7 +8,7 @@ mod summary;
 
 use std::collections::BTreeSet;
 
-use grainbench_cases::verdict::Outcome;
+use grainbench_harness::verdict::Outcome;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::headline::Headline;

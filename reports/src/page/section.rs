@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use grainbench_cases::figure::Drawing;
-use grainbench_cases::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::figure::Drawing;
+use grainbench_harness::verdict::{Control, Outcome, Verdict};
 use maud::{Markup, PreEscaped, html};
 
 use super::{prose, scrolling, sign, slug, unique};
@@ -118,14 +118,18 @@ fn verdict_row(verdict: &Verdict, variants: bool) -> Markup {
             td { (verdict.solver) }
             td { (verdict.resolution) }
             td.n { (number(verdict.value)) }
-            td.n { (number(verdict.expected)) }
+            td.n { (line::expected(verdict.expected, &verdict.unit)) }
             td.n {
                 (number::error(verdict.error))
                 @if let (Some(scale), Some(_)) = (line::scale_note(verdict), verdict.error) {
                     span.fine { (scale) }
                 }
             }
-            td.n { (number::fraction(verdict.allowed)) }
+            td.n {
+                (number::fraction(verdict.allowed))
+                span.fine { (verdict.tolerance.word()) }
+                @if let Some(used) = verdict.closeness() { span.fine { (number::significant(used, 2)) " of it used" } }
+            }
             td { (verdict.evidence.word()) }
             td.wide {
                 (verdict.source)
@@ -149,6 +153,7 @@ fn control_table(controls: &[Control]) -> Markup {
                     @if variants { th scope="col" { "Variant" } }
                     th scope="col" { "Solver" }
                     th scope="col" { "Wrong physics" }
+                    th scope="col" { "Red by" }
                     th.n scope="col" { "Error seen" }
                     th.n scope="col" { "Allowed" }
                     th scope="col" { "Result" }
@@ -159,13 +164,14 @@ fn control_table(controls: &[Control]) -> Markup {
                     @let (class, result) = if control.turned_red {
                         ("pass", "✓ turned red")
                     } else {
-                        ("fail", "✗ stayed green")
+                        ("fail", "✗ not red")
                     };
                     tr class=(class) {
                         th scope="row" { (control.quantity) }
                         @if variants { td { (control.variant) } }
                         td { (control.solver) }
                         td.wide { (control.wrong_physics) }
+                        td { (control.how.word()) }
                         td.n { (number::error(control.error)) }
                         td.n { (number::fraction(control.allowed)) }
                         td.verdict { span.mark class=(class) { (result) } }

@@ -1,6 +1,6 @@
 //! What a reader sees first: the counts, what fails, and a row a case.
 
-use grainbench_cases::verdict::Outcome;
+use grainbench_harness::verdict::Outcome;
 use maud::{Markup, html};
 
 use super::{scrolling, sign};
@@ -41,12 +41,20 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                     @let (symbol, class) = sign(outcome);
                     li class={ (class) @if count == 0 { " none" } } {
                         b { (count) }
-                        span { (symbol) " " (outcome.word()) }
+                        span {
+                            (symbol) " " (outcome.word())
+                            @if outcome == Outcome::Pass && counts.regression > 0 {
+                                ", " (counts.regression) " of them regression"
+                            }
+                        }
                     }
                 }
                 li class={ "controls " @if counts.controls_red < counts.controls { "fail" } } {
                     b { (counts.controls_red) " of " (counts.controls) }
-                    span { "negative controls turned red" }
+                    span {
+                        "negative controls turned red"
+                        @if counts.controls_broken > 0 { ", " (counts.controls_broken) " by breaking" }
+                    }
                 }
             }
             (failing(report, anchors))

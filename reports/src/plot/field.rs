@@ -4,8 +4,8 @@ use std::io;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use grainbench_cases::figure::{Field, Panel, Shades};
-use grainbench_fields::raster::{HIGH, LOW, RIM, Raster, VOID};
+use grainbench_harness::figure::{Field, Panel, Shades};
+use grainbench_harness::raster::{HIGH, LOW, RIM, Raster, VOID};
 use maud::{Markup, html};
 
 use super::scale::Scale;

@@ -1,6 +1,6 @@
 //! Cundall and Strack's force plot: discs, walls, and on every contact a bar as wide as its force.
 
-use grainbench_cases::figure::{ForceBar, ForcePlot};
+use grainbench_harness::figure::{ForceBar, ForcePlot};
 use maud::{Markup, html};
 
 use super::{FONTS, WIDTH};

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use grainbench_cases::figure::{Curve, Graph, Stroke};
+use grainbench_harness::figure::{Curve, Graph, Stroke};
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::element::DashedPathElement;
@@ -456,7 +456,7 @@ fn text(
 
 #[cfg(test)]
 mod tests {
-    use grainbench_cases::figure::Axis;
+    use grainbench_harness::figure::Axis;
 
     use super::*;
 

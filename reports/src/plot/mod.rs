@@ -6,7 +6,7 @@ pub mod graph;
 pub mod palette;
 pub mod scale;
 
-use grainbench_cases::figure::{Drawing, Figure};
+use grainbench_harness::figure::{Drawing, Figure};
 use thiserror::Error;
 
 /// Width of every figure in its own units, which a page scales.

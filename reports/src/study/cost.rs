@@ -2,8 +2,8 @@
 
 use super::Study;
 use crate::number;
-use grainbench_cases::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_cases::study::point::{Counts, Diagram, Point, Standing};
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::study::point::{Counts, Diagram, Point, Standing};
 
 /// Lines of every diagram, in one order, so that a solver has the same colour in all.
 pub const LINES: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];

@@ -3,7 +3,7 @@
 use super::Study;
 use crate::number;
 use crate::page::scrolling;
-use grainbench_cases::study::ledger::{Entry, Shift, Worth};
+use grainbench_harness::study::ledger::{Entry, Shift, Worth};
 use maud::{Markup, html};
 
 /// The section of the page.

@@ -7,9 +7,9 @@ pub mod stability;
 mod store;
 
 use crate::report::Provenance;
-use grainbench_cases::study::ledger::Entry;
-use grainbench_cases::study::point::{Change, Diagram};
-use grainbench_cases::study::stability::{Hard, Limit};
+use grainbench_harness::study::ledger::Entry;
+use grainbench_harness::study::point::{Change, Diagram};
+use grainbench_harness::study::stability::{Hard, Limit};
 use serde::{Deserialize, Serialize};
 
 pub use store::{STUDY_FILE, load_study, points_of, study_json, write_study};

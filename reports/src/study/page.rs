@@ -4,8 +4,8 @@ use super::{Study, cost, effects, stability};
 use crate::number;
 use crate::page::{provenance, scrolling, shell, slug, unique};
 use crate::plot::{self, DrawError};
-use grainbench_cases::figure::Figure;
-use grainbench_cases::study::point::{Diagram, Point, Standing};
+use grainbench_harness::figure::Figure;
+use grainbench_harness::study::point::{Diagram, Point, Standing};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 

@@ -5,8 +5,8 @@ use super::page::figure;
 use crate::number;
 use crate::page::scrolling;
 use crate::plot::DrawError;
-use grainbench_cases::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_cases::study::stability::{Hard, Hardness, Limit};
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::study::stability::{Hard, Hardness, Limit};
 use maud::{Markup, html};
 
 /// Each value once, in the order of first sight.

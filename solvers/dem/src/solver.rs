@@ -7,21 +7,15 @@ use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless,
 use crate::convention::{Convention, CoulombCap, History};
 use crate::simulation::{Kernel, Simulation};
 use crate::stability::damped_step;
-use grainbench_scene::checkpoint::{Checkpoint, RunIdentity};
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
-use grainbench_scene::record::{Provenance, Record};
+use grainbench_scene::record::{Cost, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Scene};
-use grainbench_scene::solver::{Broken, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Broken, Defect, Resolution, RunError, Solver, Watch};
 use grainbench_scene::space::{Plane, Solid, Space};
-use std::time::Instant;
-
-/// A defect built in on purpose, for the negative controls of gates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Defect {
-    /// Every contact forgets its history after every step.
-    ForgetsHistory,
-}
+use grainbench_scene::terms::Terms;
 
 /// The discrete element method in one convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +27,9 @@ pub struct Dem {
 }
 
 impl Dem {
+    /// What it claims of itself, in every convention.
+    pub const TERMS: Terms = Terms::SECOND_ORDER;
+
     /// The method in a convention.
     #[must_use]
     pub const fn new(convention: Convention) -> Self {
@@ -186,43 +183,10 @@ impl Dem {
         self.refuse_lagging_dashpots(scene, time_step)?;
         let mut simulation = self.start(scene, time_step)?;
         let identity = self.identity(scene, time_step, steps, simulation.layout());
-        let mut recorder = match from {
-            None => Recorder::new(scene, time_step, steps),
-            Some(checkpoint) => simulation.recall(&identity, checkpoint)?,
-        };
-        watch.begin(time_step, steps);
-        let first = simulation.step();
-        // No checkpoint is wanted of where the run begins.
-        let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
-        let start = Instant::now();
-        loop {
-            let now = simulation.step();
-            let is_new = from.is_none() || now > first;
-            if is_new && recorder.is_due(now) {
-                recorder.take(scene, simulation.look());
-            }
-            watch.progress(now, steps);
-            if now == steps {
-                break;
-            }
-            if now > first && now.is_multiple_of(between_checkpoints) {
-                watch.checkpoint(simulation.keep(&identity, &recorder)?)?;
-            }
-            match self.defect {
-                None => {
-                    let checkpoint = (now / between_checkpoints + 1).saturating_mul(between_checkpoints);
-                    let stop = recorder.next(now).min(checkpoint).min(now + STEPS_BETWEEN_PROGRESS);
-                    simulation.advance(stop - now)?;
-                }
-                Some(Defect::ForgetsHistory) => {
-                    simulation.advance(1)?;
-                    simulation.forget_history();
-                }
-            }
-        }
-        let (series, snapshots) = recorder.finish();
-        let mut cost = simulation.cost();
-        cost.wall_seconds = start.elapsed().as_secs_f64();
+        let resumed = from.map(|checkpoint| simulation.recall(&identity, checkpoint)).transpose()?;
+        let mut running = Running { simulation, identity, defect: self.defect };
+        let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
+        let Driven { series, snapshots, cost } = course.drive(&mut running, watch)?;
         let critical = scene.critical_time_step();
         Ok(Record {
             provenance: Provenance {
@@ -231,13 +195,51 @@ impl Dem {
                 resolution: resolution.to_string(),
                 time_step,
                 critical_time_step: critical.is_finite().then_some(critical),
-                effects: Effects::of(scene).words(),
+                effects: Effects::words(scene),
                 options: self.convention.words(),
             },
             series,
             snapshots,
             cost,
         })
+    }
+}
+
+/// A simulation under way.
+struct Running {
+    simulation: Box<dyn Simulation>,
+    identity: RunIdentity,
+    defect: Option<Defect>,
+}
+
+impl Stepper for Running {
+    fn step(&self) -> u64 {
+        self.simulation.step()
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), RunError> {
+        match self.defect {
+            None => self.simulation.advance(steps)?,
+            Some(Defect::ForgetsHistory) => {
+                for _ in 0..steps {
+                    self.simulation.advance(1)?;
+                    self.simulation.forget_history();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn look(&mut self, _snapshot: bool) -> Look {
+        self.simulation.look()
+    }
+
+    fn cost(&self) -> Cost {
+        self.simulation.cost()
+    }
+
+    fn keep(&self, recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
+        self.simulation.keep(&self.identity, recorder).map(Some)
     }
 }
 

@@ -39,5 +39,6 @@ mod start;
 mod state;
 mod stress;
 mod surface;
+mod terms;
 mod transfer;
 mod walls;

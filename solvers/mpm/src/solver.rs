@@ -5,14 +5,14 @@ use crate::limits;
 use crate::options::{Contact, Setting};
 use crate::simulation::Simulation;
 use grainbench_scene::body::{BlockShape, Hold};
-use grainbench_scene::checkpoint::{Checkpoint, RunIdentity};
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
-use grainbench_scene::record::{Provenance, Record};
+use grainbench_scene::record::{Cost, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
 use grainbench_scene::space::{Plane, Solid, Space};
-use std::time::Instant;
 
 /// The material point method in one setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,42 +106,14 @@ impl Mpm {
         plan: &Plan,
         from: Option<&Checkpoint>,
         watch: &mut dyn Watch,
-    ) -> Result<Done, RunError> {
+    ) -> Result<Driven, RunError> {
         let &Plan { lattice, points, time_step, steps, critical } = plan;
         let mut simulation = Simulation::<S>::new(scene, self.setting, lattice, points, time_step, critical);
         let solver = format!("{} at {resolution} ({})", self.name(), self.setting.words().join(", "));
         let identity = RunIdentity::new(solver, scene, time_step, steps, std::any::type_name::<Simulation<S>>());
-        let mut recorder = match from {
-            None => {
-                simulation.begin()?;
-                Recorder::new(scene, time_step, steps)
-            }
-            Some(checkpoint) => simulation.recall(&identity, checkpoint)?,
-        };
-        let first = simulation.step;
-        // No checkpoint is wanted of where the run begins.
-        let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
-        let start = Instant::now();
-        loop {
-            let now = simulation.step;
-            let is_new = from.is_none() || now > first;
-            if is_new && recorder.is_due(now) {
-                recorder.take(scene, simulation.look(recorder.is_snapshot(now)));
-            }
-            watch.progress(now, steps);
-            if now == steps {
-                break;
-            }
-            if now > first && now.is_multiple_of(between_checkpoints) {
-                watch.checkpoint(simulation.keep(&identity, &recorder)?)?;
-            }
-            let checkpoint = (now / between_checkpoints + 1).saturating_mul(between_checkpoints);
-            let stop = recorder.next(now).min(checkpoint).min(now + STEPS_BETWEEN_PROGRESS);
-            simulation.advance(stop - now)?;
-        }
-        let mut cost = simulation.cost;
-        cost.wall_seconds = start.elapsed().as_secs_f64();
-        Ok(Done { recorder, cost })
+        let resumed = from.map(|checkpoint| simulation.recall(&identity, checkpoint)).transpose()?;
+        let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
+        course.drive(&mut Running { simulation, identity }, watch)
     }
 
     /// Runs from the start or from a checkpoint to the end.
@@ -153,12 +125,10 @@ impl Mpm {
         watch: &mut dyn Watch,
     ) -> Result<Record, RunError> {
         let plan = self.plan(scene, resolution)?;
-        watch.begin(plan.time_step, plan.steps);
-        let Done { recorder, cost } = match scene.dimension {
+        let Driven { series, snapshots, cost } = match scene.dimension {
             Dimension::Two => self.run_in::<Plane>(scene, resolution, &plan, from, watch)?,
             Dimension::Three => self.run_in::<Solid>(scene, resolution, &plan, from, watch)?,
         };
-        let (series, snapshots) = recorder.finish();
         Ok(Record {
             provenance: Provenance {
                 scene: scene.title.clone(),
@@ -166,7 +136,7 @@ impl Mpm {
                 resolution: resolution.to_string(),
                 time_step: plan.time_step,
                 critical_time_step: Some(plan.critical),
-                effects: Effects::of(scene).words(),
+                effects: Effects::words(scene),
                 options: self.setting.words(),
             },
             series,
@@ -182,9 +152,36 @@ const STEPS_BETWEEN_PROGRESS: u64 = 500;
 /// Cells that a radius must have: a body smaller than a cell shows the grid no gradient of its own.
 const SMALLEST: f64 = 0.5;
 
-struct Done {
-    recorder: Recorder,
-    cost: grainbench_scene::record::Cost,
+/// A simulation under way.
+struct Running<S: Space> {
+    simulation: Simulation<S>,
+    identity: RunIdentity,
+}
+
+impl<S: Space> Stepper for Running<S> {
+    fn begin(&mut self) -> Result<(), RunError> {
+        Ok(self.simulation.begin()?)
+    }
+
+    fn step(&self) -> u64 {
+        self.simulation.step
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), RunError> {
+        Ok(self.simulation.advance(steps)?)
+    }
+
+    fn look(&mut self, snapshot: bool) -> Look {
+        self.simulation.look(snapshot)
+    }
+
+    fn cost(&self) -> Cost {
+        self.simulation.cost
+    }
+
+    fn keep(&self, recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
+        self.simulation.keep(&self.identity, recorder).map(Some)
+    }
 }
 
 /// Grid and steps of a run.

@@ -6,7 +6,7 @@ use crate::options::Contact;
 use crate::simulation::Simulation;
 use crate::surface::Tracers;
 use grainbench_scene::manufactured::Medium;
-use grainbench_scene::record::{Cost, Owner};
+use grainbench_scene::record::Owner;
 use grainbench_scene::solver::Broken;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
@@ -27,7 +27,8 @@ impl<S: Space> Simulation<S> {
                 self.cycle(false)?;
             }
             (self.gravity, self.damping) = (S::restrict(self.scene.gravity), self.scene.global_damping);
-            (self.settling, self.step, self.cost) = (false, 0, Cost::default());
+            // Its steps are not those of the scene's clock, but they are work.
+            (self.settling, self.step) = (false, 0);
             self.touches.clear();
         }
         Ok(())

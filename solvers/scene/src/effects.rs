@@ -1,6 +1,7 @@
-//! Which physics a scene calls for, derived from the scene and never typed beside it.
+//! Which physics a scene calls for, as flags by which solvers pick their kernels; derived from the list of effects.
 
-use crate::scene::{ContactLaw, Scene};
+use crate::effect::Effect;
+use crate::scene::Scene;
 
 /// The effects that are on. Solvers pick their kernels from this, once, before the first step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,37 +31,23 @@ impl Effects {
     /// What `scene` calls for.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
+        let on = |effect: Effect| effect.is_on(scene);
         Self {
-            friction: scene.laws.iter().flatten().any(|law| law.has_friction() || law.rolling_friction > 0.0),
-            contact_damping: scene.laws.iter().flatten().any(ContactLaw::has_damping),
-            restitution: scene.laws.iter().flatten().any(|law| law.damping_ratio != 0.0),
-            hertz: scene.laws.iter().flatten().any(ContactLaw::is_hertz),
-            rolling_resistance: scene.laws.iter().flatten().any(|law| law.rolling_friction > 0.0),
-            global_damping: scene.global_damping != 0.0,
-            gravity: scene.gravity.norm() > 0.0,
-            periodic: scene.is_periodic(),
-            moving_walls: scene.walls.iter().any(|wall| wall.motion.is_moving())
-                || scene.driven.iter().any(|driven| driven.velocity.norm() > 0.0),
+            friction: on(Effect::Friction) || on(Effect::Cohesion) || on(Effect::RollingResistance),
+            contact_damping: on(Effect::ContactDamping),
+            restitution: on(Effect::Restitution),
+            hertz: on(Effect::Hertz),
+            rolling_resistance: on(Effect::RollingResistance),
+            global_damping: on(Effect::GlobalDamping),
+            gravity: on(Effect::Gravity),
+            periodic: on(Effect::PeriodicAxes),
+            moving_walls: on(Effect::MovingWalls),
         }
     }
 
     /// The effects that are on, in words.
     #[must_use]
-    pub fn words(&self) -> Vec<String> {
-        [
-            (self.friction, "friction and rotation"),
-            (self.hertz, "Hertz contacts"),
-            (self.contact_damping, "contact damping"),
-            (self.restitution, "restitution"),
-            (self.rolling_resistance, "rolling resistance"),
-            (self.global_damping, "global damping"),
-            (self.gravity, "gravity"),
-            (self.periodic, "periodic axes"),
-            (self.moving_walls, "moving walls"),
-        ]
-        .iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, words)| (*words).to_owned())
-        .collect()
+    pub fn words(scene: &Scene) -> Vec<String> {
+        Effect::ALL.into_iter().filter(|effect| effect.is_on(scene)).map(|effect| effect.word().to_owned()).collect()
     }
 }

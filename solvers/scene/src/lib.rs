@@ -7,6 +7,8 @@ pub mod body;
 pub mod budget;
 mod check;
 pub mod checkpoint;
+pub mod drive;
+pub mod effect;
 pub mod effects;
 pub mod error;
 pub mod file;
@@ -18,11 +20,14 @@ pub mod packing;
 mod probe;
 pub mod record;
 pub mod recorder;
+pub mod refined;
 pub mod resolve;
 pub mod scene;
 pub mod solver;
 pub mod source;
 pub mod space;
+pub mod terms;
+pub mod twin;
 
 /// The vectors of scenes and records, for who writes a solver.
 pub use nalgebra;

@@ -114,6 +114,47 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
+/// A kind of solver, by what its resolution is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Method {
+    /// Grains on springs: a time step.
+    Dem,
+    /// Rigid grains: substeps and iterations.
+    Rigid,
+    /// Deformable grains on a grid: cells and points.
+    Grid,
+}
+
+impl Method {
+    /// The kind of a solver of ours, by name.
+    #[must_use]
+    pub fn of(solver: &str) -> Option<Self> {
+        match solver.split([':', '+']).next() {
+            Some("dem") => Some(Self::Dem),
+            Some("rigid") => Some(Self::Rigid),
+            Some("mpm") => Some(Self::Grid),
+            _ => None,
+        }
+    }
+
+    /// What is left of an error when the resolution is as fine as one likes.
+    #[must_use]
+    pub const fn floor(self) -> &'static str {
+        match self {
+            Self::Dem => "compliance of the contact",
+            Self::Rigid => "the engine's own overlap and order of contacts",
+            Self::Grid => "deformability, and contact as soft as a cell",
+        }
+    }
+}
+
+/// A defect that a solver has built in on purpose, for negative controls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Defect {
+    /// Every contact forgets its history after every step.
+    ForgetsHistory,
+}
+
 /// Why a simulation broke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {

@@ -13,7 +13,7 @@
 //! slower where m − 3s > ln 1.1, with at least three points: what repetitions within one session cannot see (where memory
 //! happened to lie, what else ran) has been seen to move all points of a case by 6 % more than 3s in 36 pairs of sessions.
 
-use grainbench_cases::study::point::{Change, Point, Standing};
+use grainbench_harness::study::point::{Change, Point, Standing};
 use std::collections::BTreeMap;
 
 /// Change of a time that sessions differ by although nothing changed.
@@ -128,7 +128,7 @@ fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
-    use grainbench_cases::study::point::{Counts, Timing};
+    use grainbench_harness::study::point::{Counts, Timing};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 

@@ -1,8 +1,8 @@
 //! The knobs of every kind of solver, and which turns of them are tried.
 
-use grainbench_cases::subject::{Lane, Method};
+use grainbench_harness::subject::Lane;
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::Resolution;
+use grainbench_scene::solver::{Method, Resolution};
 
 /// One turn of a solver's knobs.
 #[derive(Clone, Debug, PartialEq)]

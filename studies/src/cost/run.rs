@@ -4,14 +4,14 @@ use super::knobs::{self, Turn};
 use crate::clock::{self, Clocked};
 use crate::shelf::Shelf;
 use crate::{Follow, identity};
-use grainbench_cases::gate::{Change, Done};
-use grainbench_cases::solvers;
-use grainbench_cases::study::point::{Counts, Diagram, Point, Standing, Timing};
-use grainbench_cases::subject::{Method, Subject};
+use grainbench_harness::run::{Change, Done};
+use grainbench_harness::study::point::{Counts, Diagram, Point, Standing, Timing};
+use grainbench_harness::solvers::Solvers;
+use grainbench_harness::subject::Subject;
 use grainbench_reports::WriteError;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{RunError, Solver};
+use grainbench_scene::solver::{Method, RunError, Solver};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
@@ -60,12 +60,14 @@ struct Task {
     /// Processor time of a run of one step (s), of a program; what a program needs to start is no part of what steps cost. It is that
     /// of the scene, whatever the step.
     start: Arc<OnceLock<f64>>,
+    /// Whether the solver is another program.
+    is_program: bool,
 }
 
 impl Task {
     /// Processor time that is not that of the steps (s).
     fn start(&self) -> f64 {
-        if !solvers::is_program(&self.turn.solver) {
+        if !self.is_program {
             return 0.0;
         }
         *self.start.get_or_init(|| {
@@ -88,14 +90,14 @@ pub struct Meter<'a> {
     /// What is wanted.
     pub wanted: Wanted,
     /// Gives the solver of a name.
-    pub solver: fn(&str) -> Option<Box<dyn Solver>>,
+    pub solvers: &'a dyn Solvers,
 }
 
 impl<'a> Meter<'a> {
-    /// A meter of the solvers of the registry.
+    /// A meter of some solvers.
     #[must_use]
-    pub fn new(shelf: &'a Shelf, wanted: Wanted) -> Self {
-        Self { program: identity::of_this_program(), shelf, wanted, solver: solvers::by_name }
+    pub fn new(shelf: &'a Shelf, wanted: Wanted, solvers: &'a dyn Solvers) -> Self {
+        Self { program: identity::of_this_program(), shelf, wanted, solvers }
     }
 
     /// How many points a subject has.
@@ -147,7 +149,7 @@ impl<'a> Meter<'a> {
             case: subject.case.name.to_owned(),
             variant: subject.variant.to_owned(),
             quantity: subject.quantity.clone(),
-            source: subject.source.to_owned(),
+            source: subject.source.clone(),
             points,
         })
     }
@@ -169,12 +171,13 @@ impl<'a> Meter<'a> {
                 if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || name == turn.line) {
                     continue;
                 }
-                let slower = if solvers::is_program(&turn.solver) { PROGRAM } else { 1.0 };
+                let is_program = self.solvers.is_program(&turn.solver);
+                let slower = if is_program { PROGRAM } else { 1.0 };
                 if !self.wanted.all && slower * knobs::nominal_seconds(&scene, &turn.resolution) > LONGEST {
                     continue;
                 }
                 let solver =
-                    solvers.entry(turn.solver.clone()).or_insert_with(|| (self.solver)(&turn.solver).map(Arc::from));
+                    solvers.entry(turn.solver.clone()).or_insert_with(|| self.solvers.find(&turn.solver));
                 let Some(solver) = solver.clone() else { continue };
                 let read = format!("{}|{}|{}", subject.quantity, subject.variant, turn.knobs);
                 let name = identity::of_run(&self.program, &turn.solver, &scene, &turn.resolution, &read);
@@ -182,7 +185,7 @@ impl<'a> Meter<'a> {
                 if tasks.iter().all(|task: &Task| task.name != name) {
                     let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
                     let scene = Arc::clone(&scene);
-                    tasks.push(Task { turn, method: lane.method, scene, solver, name, start });
+                    tasks.push(Task { turn, method: lane.method, scene, solver, name, start, is_program });
                 }
             }
         }
@@ -249,7 +252,7 @@ fn first(subject: &Subject, task: &Task) -> Point {
                 Ok(measured) if measured.error().is_finite() => {
                     point.standing = Standing::Measured;
                     point.value = Some(measured.value);
-                    point.expected = Some(measured.expected);
+                    point.expected = measured.expected.value();
                     point.error = Some(measured.error().abs());
                 }
                 Ok(_) => point.detail = Some("its error is not finite".to_owned()),

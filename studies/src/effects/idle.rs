@@ -1,10 +1,9 @@
 //! An absent effect, compiled in with a value that does nothing: the answer bit by bit, and what it costs.
 
-use grainbench_cases::effect::Effect;
-use grainbench_cases::solvers;
+use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::{self, Scene};
-use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_scene::solver::{Resolution, RunError, Solver};
 use std::time::{Duration, Instant};
 
 /// Steps at most: enough for contacts to open and close.
@@ -33,7 +32,7 @@ pub struct Idle {
 /// # Errors
 /// When the solver cannot run the scene.
 pub fn try_idly(
-    solver: &str,
+    solver: &dyn Solver,
     scene: &Scene,
     resolution: &Resolution,
     effect: Effect,
@@ -50,7 +49,9 @@ pub fn try_idly(
         }
     }
     let mut idle = plain.clone();
-    let Some(solver) = solvers::by_name(solver).filter(|_| effect.switch_on_idly(&mut idle)) else { return Ok(None) };
+    if !effect.switch_on_idly(&mut idle) {
+        return Ok(None);
+    }
     // The critical step is that of the scene as it is: a material that nobody has must not change it.
     let resolution = match resolution.steps(&plain) {
         Ok((time_step, _)) => Resolution::TimeStep(time_step),

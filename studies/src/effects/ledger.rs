@@ -3,16 +3,16 @@
 use super::idle::try_idly;
 use crate::identity;
 use crate::shelf::Shelf;
-use grainbench_cases::bench::Bench;
-use grainbench_cases::case::Case;
-use grainbench_cases::effect::Effect;
-use grainbench_cases::gate::{Done, Gate, Run, Set, Standing};
-use grainbench_cases::solvers;
-use grainbench_cases::study::ledger::{Entry, Shift, Worth};
-use grainbench_cases::subject::Method;
+use grainbench_harness::case::Case;
+use grainbench_harness::claim::Claim;
+use grainbench_scene::effect::Effect;
+use grainbench_harness::run::{Done, Run, Set, Standing};
+use grainbench_harness::runner::Runner;
+use grainbench_harness::solvers::Solvers;
+use grainbench_harness::study::ledger::{Entry, Shift, Worth};
 use grainbench_reports::WriteError;
 use grainbench_scene::record::Record;
-use grainbench_scene::solver::{RunError, Solver};
+use grainbench_scene::solver::{Method, RunError};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
@@ -34,29 +34,32 @@ pub struct Piece {
 /// A case at work: runs with an effect switched off are done once, whoever asks.
 pub struct Ledger {
     case: &'static Case,
-    bench: Bench,
-    gates: Vec<Gate>,
+    solvers: Arc<dyn Solvers>,
+    runner: Runner,
+    claims: Vec<Claim>,
     /// By effect and run.
     without: BTreeMap<(Effect, String), Result<Done, RunError>>,
 }
 
 impl Ledger {
-    /// The ledger of a case: of its gates that pass, of which all runs can be had here.
+    /// The ledger of a case: of its claims that pass, of which all runs can be had here.
     #[must_use]
-    pub fn new(case: &'static Case) -> Self {
-        let bench = Bench::new(case);
-        let mut gates = (case.gates)();
-        gates.retain(|gate| gate.standing() == Standing::Passes && gate.set() < Set::Long && bench.is_available(gate));
-        Self { case, bench, gates, without: BTreeMap::new() }
+    pub fn new(case: &'static Case, solvers: Arc<dyn Solvers>) -> Self {
+        let runner = Runner::new(case, Arc::clone(&solvers));
+        let mut claims = (case.claims)();
+        claims.retain(|claim| {
+            claim.standing() == Standing::Passes && claim.set() < Set::Long && runner.is_available(claim)
+        });
+        Self { case, solvers, runner, claims, without: BTreeMap::new() }
     }
 
-    /// Every variant that gates look at with every effect, on or off.
+    /// Every variant that claims look at with every effect, on or off.
     #[must_use]
     pub fn pieces(&self) -> Vec<Piece> {
         let mut pieces: Vec<Piece> = Vec::new();
-        for run in self.gates.iter().flat_map(|gate| &gate.runs) {
-            let Ok(scene) = self.bench.scene(run) else { continue };
-            for effect in Effect::ALL {
+        for run in self.claims.iter().flat_map(|claim| &claim.runs) {
+            let Ok(scene) = self.runner.scene(run) else { continue };
+            for effect in Effect::switches() {
                 let key = effect.key(&scene).filter(|_| knows(run, effect));
                 match pieces.iter_mut().find(|piece| piece.variant == run.variant && piece.effect == effect) {
                     // A change that belongs to a claim may turn on what the scene as it stands does not call for.
@@ -83,21 +86,21 @@ impl Ledger {
         Ok((entry, false))
     }
 
-    /// Whether some gate of the case turns red when the effect is switched off: the first that does.
+    /// Whether some claim of the case turns red when the effect is switched off: the first that does.
     #[must_use]
     pub fn catches(&mut self, effect: Effect) -> Option<String> {
-        let mut gates = self.gates.clone();
-        gates.retain(|gate| self.calls_for(gate, effect));
+        let mut claims = self.claims.clone();
+        claims.retain(|claim| self.calls_for(claim, effect));
         // One that is caught by what the main job runs need not wait for more.
-        gates.sort_by_key(Gate::set);
-        gates.iter().find_map(|gate| {
-            let red = is_red(gate, self.error_without(gate, effect));
-            red.then(|| format!("{} · {}", gate.runs[0].solver, gate.quantity))
+        claims.sort_by_key(Claim::set);
+        claims.iter().find_map(|claim| {
+            let red = is_red(claim, self.error_without(claim, effect));
+            red.then(|| format!("{} · {}", claim.runs[0].solver, claim.quantity))
         })
     }
 
-    fn calls_for(&self, gate: &Gate, effect: Effect) -> bool {
-        gate.runs.iter().any(|run| knows(run, effect) && self.bench.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
+    fn calls_for(&self, claim: &Claim, effect: Effect) -> bool {
+        claim.runs.iter().any(|run| knows(run, effect) && self.runner.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
     }
 
     fn blank(&self, piece: &Piece) -> Entry {
@@ -114,17 +117,17 @@ impl Ledger {
         }
     }
 
-    /// Asks every gate of the variant without the effect.
+    /// Asks every claim of the variant without the effect.
     fn switched_off(&mut self, piece: &Piece) -> Entry {
         let mut entry = self.blank(piece);
-        let gates: Vec<Gate> = self
-            .gates
+        let claims: Vec<Claim> = self
+            .claims
             .iter()
-            .filter(|gate| gate.runs[0].variant == piece.variant && self.calls_for(gate, piece.effect))
+            .filter(|claim| claim.runs[0].variant == piece.variant && self.calls_for(claim, piece.effect))
             .cloned()
             .collect();
-        for gate in &gates {
-            entry.shifts.push(self.shift(gate, piece.effect));
+        for claim in &claims {
+            entry.shifts.push(self.shift(claim, piece.effect));
         }
         let red = entry.shifts.iter().any(|shift| shift.red);
         entry.worth = match (red, entry.shifts.is_empty()) {
@@ -132,8 +135,8 @@ impl Ledger {
             (false, false) => Worth::NotWorthSimulating,
             (false, true) => Worth::Untold,
         };
-        if let Some(run) = gates.iter().flat_map(|gate| &gate.runs).find(|run| is_judged(run)) {
-            let with = self.bench.run(run);
+        if let Some(run) = claims.iter().flat_map(|claim| &claim.runs).find(|run| self.is_judged(run)) {
+            let with = self.runner.run(run);
             if let (Ok(with), Ok(without)) = (with, self.run_without(run, piece.effect)) {
                 let work = |record: &Record| (record.cost.particle_steps + record.cost.contact_evaluations) as f64;
                 let time = |record: &Record| record.cost.wall_seconds;
@@ -144,30 +147,30 @@ impl Ledger {
         entry
     }
 
-    /// A gate with and without an effect.
-    fn shift(&mut self, gate: &Gate, effect: Effect) -> Shift {
-        let without = self.error_without(gate, effect);
+    /// A claim with and without an effect.
+    fn shift(&mut self, claim: &Claim, effect: Effect) -> Shift {
+        let without = self.error_without(claim, effect);
         Shift {
-            quantity: gate.quantity.clone(),
-            solver: gate.runs[0].solver.to_owned(),
-            with: self.bench.judge(gate).error,
+            quantity: claim.quantity.clone(),
+            solver: claim.runs[0].solver.to_owned(),
+            with: self.runner.judge(claim).error,
             without,
-            allowed: gate.allowed,
-            red: is_red(gate, without),
+            allowed: claim.tolerance.allowed,
+            red: is_red(claim, without),
         }
     }
 
-    /// The error of a gate without an effect; none when it cannot be run or measured any more.
-    fn error_without(&mut self, gate: &Gate, effect: Effect) -> Option<f64> {
-        let done: Result<Vec<Done>, RunError> = gate.runs.iter().map(|run| self.run_without(run, effect)).collect();
-        (gate.measure)(&done.ok()?).ok().map(|measured| measured.error()).filter(|error| error.is_finite())
+    /// The error of a claim without an effect; none when it cannot be run or measured any more.
+    fn error_without(&mut self, claim: &Claim, effect: Effect) -> Option<f64> {
+        let done: Result<Vec<Done>, RunError> = claim.runs.iter().map(|run| self.run_without(run, effect)).collect();
+        (claim.measure)(&done.ok()?).ok().map(|measured| measured.error()).filter(|error| error.is_finite())
     }
 
-    /// A run of a gate whose solver is given the scene without the effect; the scene of the claim stays what it was, and so do
+    /// A run of a claim whose solver is given the scene without the effect; the scene of the claim stays what it was, and so do
     /// the runs that others are judged by.
     fn run_without(&mut self, run: &Run, effect: Effect) -> Result<Done, RunError> {
-        if !is_judged(run) {
-            return self.bench.run(run);
+        if !self.is_judged(run) {
+            return self.runner.run(run);
         }
         let key = (effect, run.key());
         if let Some(done) = self.without.get(&key) {
@@ -179,23 +182,29 @@ impl Ledger {
     }
 
     fn simulate_without(&self, run: &Run, effect: Effect) -> Result<Done, RunError> {
-        let scene = self.bench.scene(run)?;
+        let scene = self.runner.scene(run)?;
         let mut given = scene.clone();
         effect.switch_off(&mut given);
         let unknown =
             || RunError::Unsupported { solver: run.solver.to_owned(), reason: "there is no such solver".to_owned() };
-        let solver: Box<dyn Solver> = solvers::by_name(run.solver).ok_or_else(unknown)?;
+        let solver = self.solvers.find(run.solver).ok_or_else(unknown)?;
         let record = solver.run(&given, &run.resolution, &mut ())?;
         Ok(Done { scene: Arc::new(scene), record: Arc::new(record) })
+    }
+
+    /// Whether a run is one of ours that is judged, and not one that others are judged by.
+    fn is_judged(&self, run: &Run) -> bool {
+        !run.aside && !self.solvers.is_program(run.solver)
     }
 
     /// The first run of the variant by the kind of solver that knows the effect, with the effect compiled in.
     fn idle(&self, piece: &Piece) -> Option<Entry> {
         let method = Some(piece.effect.tried_with());
-        let is_ours = |run: &&Run| is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == method;
-        let run = self.gates.iter().flat_map(|gate| &gate.runs).find(is_ours)?;
-        let scene = self.bench.scene(run).ok()?;
-        let idle = try_idly(run.solver, &scene, &run.resolution, piece.effect, PATIENCE).ok()??;
+        let is_ours = |run: &&Run| self.is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == method;
+        let run = self.claims.iter().flat_map(|claim| &claim.runs).find(is_ours)?;
+        let scene = self.runner.scene(run).ok()?;
+        let solver = self.solvers.find(run.solver)?;
+        let idle = try_idly(&*solver, &scene, &run.resolution, piece.effect, PATIENCE).ok()??;
         let mut entry = self.blank(piece);
         entry.worth = if idle.same { Worth::Inert } else { Worth::NotInert };
         (entry.counts, entry.time) = (Some(idle.counts), Some(idle.time));
@@ -208,12 +217,7 @@ fn knows(run: &Run, effect: Effect) -> bool {
     Method::of(run.solver).is_none_or(|method| effect.concerns(method))
 }
 
-/// Whether a gate turns red at an error: what cannot be run or measured any more is red, as in any control.
-fn is_red(gate: &Gate, error: Option<f64>) -> bool {
-    error.is_none_or(|error| error.abs() > gate.allowed)
-}
-
-/// Whether a run is one of ours that is judged, and not one that others are judged by.
-fn is_judged(run: &Run) -> bool {
-    !run.aside && !solvers::is_program(run.solver)
+/// Whether a claim turns red at an error: what cannot be run or measured any more is red, as in any control.
+fn is_red(claim: &Claim, error: Option<f64>) -> bool {
+    error.is_none_or(|error| error.abs() > claim.tolerance.allowed)
 }

@@ -2,11 +2,12 @@
 
 use super::assembly::Assembly;
 use super::bisection::largest;
+use super::PATIENCE;
 use super::failure::{Failure, of_error};
 use crate::identity;
 use crate::shelf::Shelf;
-use grainbench_cases::registry;
-use grainbench_cases::study::stability::Limit;
+use grainbench_harness::solvers::Solvers;
+use grainbench_harness::study::stability::Limit;
 use grainbench_reports::WriteError;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver};
@@ -33,7 +34,7 @@ const MORE_ENERGY: f64 = 1.1;
 pub fn of_assembly(
     program: &str,
     assembly: &Assembly,
-    solver: &str,
+    (solvers, solver): (&dyn Solvers, &str),
     shelf: &Shelf,
 ) -> Result<(Limit, bool), WriteError> {
     let text = format!("{:?}", assembly.scene);
@@ -55,7 +56,7 @@ pub fn of_assembly(
         margin: None,
         detail: String::new(),
     };
-    match super::solver(solver) {
+    match solvers.find_within(solver, PATIENCE) {
         None => "there is no such solver".clone_into(&mut limit.detail),
         Some(solver) => {
             fill(&mut limit, RANGE, 1, |step| {
@@ -69,11 +70,17 @@ pub fn of_assembly(
 }
 
 /// Courant number up to which the method with a grid keeps the energy of a vibrating bar to a tenth, at a number of cells over
-/// the length.
+/// the length of `bar`, the scene of a vibrating bar.
 ///
 /// # Errors
 /// When it cannot be kept.
-pub fn of_bar(program: &str, setting: &str, cells: f64, shelf: &Shelf) -> Result<(Limit, bool), WriteError> {
+pub fn of_bar(
+    program: &str,
+    bar: &Scene,
+    (solvers, setting): (&dyn Solvers, &str),
+    cells: f64,
+    shelf: &Shelf,
+) -> Result<(Limit, bool), WriteError> {
     let name = identity::of_words(program, &["bar", setting, &cells.to_string()]);
     if let Some(limit) = shelf.take(&name) {
         return Ok((limit, true));
@@ -92,18 +99,15 @@ pub fn of_bar(program: &str, setting: &str, cells: f64, shelf: &Shelf) -> Result
         margin: None,
         detail: String::new(),
     };
-    let scene = registry::by_name("vibrating-bar").and_then(|case| case.variant("plain").ok());
-    match (super::solver(setting), scene) {
-        (Some(solver), Some(scene)) => {
-            fill(&mut limit, [0.05, 0.8], 2, |courant| bar(&*solver, &scene, cells, courant))
-        }
-        _ => "there is no such solver or scene".clone_into(&mut limit.detail),
+    match solvers.find(setting) {
+        Some(solver) => fill(&mut limit, [0.05, 0.8], 2, |courant| vibrate(&*solver, bar, cells, courant)),
+        None => "there is no such solver".clone_into(&mut limit.detail),
     }
     shelf.put(&name, &limit)?;
     Ok((limit, false))
 }
 
-fn bar(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Result<(), Stop> {
+fn vibrate(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Result<(), Stop> {
     let mut scene = scene.clone();
     // Two periods.
     scene.duration = Duration::Seconds(20.0);

@@ -4,11 +4,13 @@ mod contacts;
 mod extremes;
 mod long;
 
+use super::PATIENCE as LIMIT;
 use super::failure::{Failure, finite, of_error};
 use crate::cost::knobs::nominal_seconds;
 use crate::identity;
 use crate::shelf::Shelf;
-use grainbench_cases::study::stability::{Hard, Hardness};
+use grainbench_harness::solvers::Solvers;
+use grainbench_harness::study::stability::{Hard, Hardness};
 use grainbench_reports::WriteError;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::{GrainState, Record};
@@ -79,20 +81,25 @@ fn changed(
 ///
 /// # Errors
 /// When it cannot be kept.
-pub fn verdict(program: &str, case: &HardCase, solver: &str, shelf: &Shelf) -> Result<(Hard, bool), WriteError> {
+pub fn verdict(
+    program: &str,
+    case: &HardCase,
+    (solvers, solver): (&dyn Solvers, &str),
+    shelf: &Shelf,
+) -> Result<(Hard, bool), WriteError> {
     let text = format!("{:?}", case.scene);
     let name = identity::of_words(program, &["hard", &case.name, &text, solver]);
     if let Some(row) = shelf.take(&name) {
         return Ok((row, true));
     }
-    let row = judge(case, solver);
+    let row = judge(case, solvers, solver);
     shelf.put(&name, &row)?;
     Ok((row, false))
 }
 
 /// Runs a case with a solver by name: at its default step, and where that fails at smaller ones.
 #[must_use]
-pub fn judge(case: &HardCase, name: &str) -> Hard {
+pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> Hard {
     let mut row = Hard {
         case: case.name.clone(),
         must: case.must.to_owned(),
@@ -101,7 +108,7 @@ pub fn judge(case: &HardCase, name: &str) -> Hard {
         resolution: resolution(name, 1.0).to_string(),
         detail: String::new(),
     };
-    let (scene, solver) = match (&case.scene, crate::stability::solver(name)) {
+    let (scene, solver) = match (&case.scene, solvers.find_within(name, LIMIT)) {
         (Ok(scene), Some(solver)) => (scene, solver),
         (Err(error), _) => {
             row.detail = error.to_string();
@@ -226,6 +233,8 @@ fn head_on(scene: &Scene, record: &Record) -> Result<(), Failure> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
+    use grainbench_dem::convention::Convention;
+    use grainbench_dem::solver::Dem;
 
     #[test]
     fn every_case_has_a_scene() {
@@ -247,7 +256,7 @@ mod tests {
                 grain.velocity += nalgebra::Vector3::new(-1e9, -2e9, 0.0);
             }
             let snapshot = grainbench_scene::record::Snapshot::of_grains(&scene, 1, 1.0, grains);
-            let solver = crate::stability::solver("dem").unwrap();
+            let solver = Dem::new(Convention::CUNDALL_STRACK);
             let mut short = crate::stability::assembly::all().unwrap().swap_remove(0).scene;
             short.duration = grainbench_scene::scene::Duration::Cycles(1);
             let mut record = solver.run(&short, &Resolution::TimeStep(0.1), &mut ()).unwrap();

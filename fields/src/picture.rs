@@ -1,0 +1,132 @@
+//! Snapshots as pictures of a field: panels beside one another on one scale, or films.
+
+use grainbench_harness::figure::{Field, Panel, Shades};
+use crate::paint::{Painting, View};
+use crate::quantity::Quantity;
+use grainbench_harness::raster::{HIGH, LOW, Raster};
+use grainbench_scene::record::Snapshot;
+
+/// What one panel shows: its title, and a snapshot for every frame.
+pub struct Shot<'a> {
+    /// What stands above it.
+    pub title: String,
+    /// One for a picture.
+    pub frames: Vec<&'a Snapshot>,
+}
+
+impl<'a> Shot<'a> {
+    /// A picture.
+    #[must_use]
+    pub fn new(title: impl Into<String>, snapshot: &'a Snapshot) -> Self {
+        Self { title: title.into(), frames: vec![snapshot] }
+    }
+}
+
+/// Panels of a quantity, `longest` pixels along the longer side of what all of them show. The range is that of the values but for
+/// the highest fiftieth, unless it is given.
+#[must_use]
+pub fn pictures(quantity: Quantity, shots: &[Shot<'_>], longest: u32, range: Option<(f64, f64)>) -> Field {
+    film(quantity, shots, ("", &[0.0]), longest, range)
+}
+
+/// The same as a film: `clock` says what its frames are told apart by, and where each stands.
+#[must_use]
+pub fn film(
+    quantity: Quantity,
+    shots: &[Shot<'_>],
+    (clock, times): (&str, &[f64]),
+    longest: u32,
+    range: Option<(f64, f64)>,
+) -> Field {
+    let view = common_view(shots, longest);
+    let paintings: Vec<Vec<Painting>> = shots
+        .iter()
+        .map(|shot| shot.frames.iter().map(|snapshot| Painting::new(snapshot, quantity, view)).collect())
+        .collect();
+    let range = range.unwrap_or_else(|| own_range(quantity, paintings.iter().flatten()));
+    let panels = shots.iter().zip(&paintings).map(|(shot, paintings)| Panel {
+        title: shot.title.clone(),
+        frames: paintings.iter().map(|painting| of_few_levels(painting.raster(range), times.len())).collect(),
+    });
+    let (label, unit) = quantity.label();
+    Field {
+        label: label.to_owned(),
+        unit: unit.to_owned(),
+        range,
+        shades: match quantity {
+            Quantity::StressDifference => Shades::Glow,
+            Quantity::Fringes(_) => Shades::Fringes,
+            Quantity::PlasticStrain | Quantity::Speed => Shades::Amount,
+            Quantity::Rotation => Shades::Signed,
+        },
+        pixel: view.pixel,
+        panels: panels.collect(),
+        clock: clock.to_owned(),
+        times: times.to_vec(),
+    }
+}
+
+/// The fringe constant c (Pa) for which the stress that only a fiftieth of the material is above, in any of the snapshots, is so many
+/// fringes from none.
+#[must_use]
+pub fn fringe_constant<'a>(snapshots: impl IntoIterator<Item = &'a Snapshot>, fringes: f64) -> f64 {
+    let quantity = Quantity::StressDifference;
+    let high = |snapshot| Painting::new(snapshot, quantity, View::of(snapshot, 200)).quantile(0.98);
+    snapshots.into_iter().map(high).fold(0.0, f64::max) / (fringes * std::f64::consts::TAU)
+}
+
+/// The frames of a film have a quarter of the levels: nobody sees the difference, and a page can hold it.
+fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
+    if frames > 1 {
+        let values = raster.levels.iter_mut().filter(|level| (LOW..=HIGH).contains(level));
+        values.for_each(|level| *level = (LOW + (*level - LOW + 2) / 4 * 4).min(HIGH));
+    }
+    raster
+}
+
+/// What holds all that is to be seen.
+fn common_view(shots: &[Shot<'_>], longest: u32) -> View {
+    let mut corners: Option<([f64; 2], [f64; 2])> = None;
+    for snapshot in shots.iter().flat_map(|shot| &shot.frames) {
+        let view = View::of(snapshot, longest);
+        let (low, high) = corners.unwrap_or((view.low, view.high()));
+        let both = |of: fn(f64, f64) -> f64, a: [f64; 2], b: [f64; 2]| [of(a[0], b[0]), of(a[1], b[1])];
+        corners = Some((both(f64::min, low, view.low), both(f64::max, high, view.high())));
+    }
+    let (low, high) = corners.unwrap_or(([0.0; 2], [1.0; 2]));
+    View::new(low, high, longest)
+}
+
+fn own_range<'a>(quantity: Quantity, paintings: impl Iterator<Item = &'a Painting>) -> (f64, f64) {
+    let ends = paintings.map(|painting| (painting.quantile(0.02), painting.quantile(0.98)));
+    let (low, high) = ends.fold((f64::INFINITY, 0.0_f64), |(low, high), ends| (low.min(ends.0), high.max(ends.1)));
+    match quantity {
+        Quantity::Fringes(_) => (-1.0, 1.0),
+        Quantity::Rotation => {
+            let largest = two_digits(high.abs().max(low.abs()));
+            (-largest, largest)
+        }
+        Quantity::StressDifference | Quantity::PlasticStrain | Quantity::Speed => (0.0, two_digits(high)),
+    }
+}
+
+/// A number of two digits that is not below `value`; one where there is nothing to show.
+fn two_digits(value: f64) -> f64 {
+    if !(value.is_finite() && value > 0.0) {
+        return 1.0;
+    }
+    let unit = 10_f64.powf(value.log10().floor() - 1.0);
+    (value / unit * (1.0 - 1e-12)).ceil() * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_end_at_a_number_one_can_read() {
+        for (value, end) in [(0.123, 0.13), (1.2, 1.2), (98.7, 99.0), (99.2, 100.0), (0.0, 1.0), (f64::NAN, 1.0)] {
+            assert!((two_digits(value) / end - 1.0).abs() < 1e-9, "{value}");
+        }
+    }
+}

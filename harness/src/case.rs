@@ -1,0 +1,102 @@
+//! A case: scenes, a ladder of resolutions, claims.
+
+use crate::claim::Claim;
+use crate::figure::Figure;
+use crate::runner::Runner;
+use grainbench_scene::error::SceneError;
+use grainbench_scene::resolve::FileGrain;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError};
+use grainbench_scene::source::SceneSource;
+use std::path::{Path, PathBuf};
+
+/// One rung of a ladder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rung {
+    /// Name, such as `dt=.1`.
+    pub name: &'static str,
+    /// The resolution.
+    pub resolution: Resolution,
+}
+
+/// A time step as a fraction of the critical one.
+#[must_use]
+pub const fn fraction(name: &'static str, fraction: f64) -> Rung {
+    Rung { name, resolution: Resolution::CriticalFraction(fraction) }
+}
+
+/// Cells per reference length and material points per cell and axis, of a method with a grid.
+#[must_use]
+pub const fn cells(name: &'static str, cells: f64, points: u32) -> Rung {
+    Rung { name, resolution: Resolution::grid(cells, points) }
+}
+
+/// A benchmark case. Its folder holds scene, claims and derivation.
+pub struct Case {
+    /// Name, as on the command line and as its folder.
+    pub name: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What is claimed as a whole, in a sentence or two.
+    pub claim: &'static str,
+    /// Text of `scene.toml`.
+    pub scene: &'static str,
+    /// Text of `derivation.md`: where the expected values come from.
+    pub derivation: &'static str,
+    /// Where this test is weak.
+    pub weakness: &'static str,
+    /// Resolutions, coarse to fine.
+    pub ladder: &'static [Rung],
+    /// The rung of the ladder that most claims take.
+    pub default_rung: Rung,
+    /// The claims.
+    pub claims: fn() -> Vec<Claim>,
+    /// The figures, from runs of the case.
+    pub figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
+    /// Where its files are, and who reads grains from them.
+    pub home: &'static Home,
+}
+
+/// Where the folders of cases are, and who reads the data files in them: the harness reads no file of a program itself.
+pub struct Home {
+    /// The folder in which each case has its own.
+    pub folder: &'static str,
+    /// Reads grains for a scene from a data file.
+    pub read_grains: fn(&Path) -> Result<Vec<FileGrain>, String>,
+}
+
+impl Case {
+    /// Folder of the case's files.
+    #[must_use]
+    pub fn directory(&self) -> PathBuf {
+        Path::new(self.home.folder).join(self.name)
+    }
+
+    /// The scene file.
+    #[must_use]
+    pub fn source(&self) -> SceneSource {
+        SceneSource::from_text(&format!("{}/scene.toml", self.name), &self.directory(), self.scene)
+    }
+
+    /// The scene of a variant.
+    ///
+    /// # Errors
+    /// When the scene file is wrong or there is no such variant.
+    pub fn variant(&self, variant: &str) -> Result<Scene, SceneError> {
+        let source = self.source();
+        let source = if variant == PLAIN { source } else { source.variant(variant) };
+        source.scene(&self.home.read_grains)
+    }
+
+    /// Names of the variants; [`PLAIN`] alone where the scene has none.
+    ///
+    /// # Errors
+    /// When the scene file is wrong.
+    pub fn variants(&self) -> Result<Vec<String>, SceneError> {
+        let names = self.source().variants()?;
+        Ok(if names.is_empty() { vec![PLAIN.to_owned()] } else { names })
+    }
+}
+
+/// Name of the scene without a variant.
+pub const PLAIN: &str = "plain";

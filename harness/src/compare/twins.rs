@@ -1,0 +1,142 @@
+//! Comparing runs that no two machines can repeat for long: moment by moment up to the predictability horizon, by means
+//! with confidence intervals after it.
+//!
+//! The horizon is measured: a twin of the run, one position moved by one unit in the last place, is within [`PARTED`] of it
+//! up to there. Two programs that do the same arithmetic in another order differ by many such units at once, which is what
+//! [`ALLOWED`] leaves room for.
+//!
+//! Runs of a claim stand in one order: ours, the program's, our run again and its twin.
+
+use super::pointwise::{largest, together};
+use crate::claim::{Claim, claim};
+use crate::control::Control;
+use crate::expect::Measured;
+use crate::run::{Done, Missing, Run};
+use crate::source::Source;
+use crate::statistics::{BLOCKS, difference as of_blocks};
+use crate::tolerance::{computed, one_interval};
+use grainbench_scene::scene::Duration;
+use grainbench_scene::twin::PARTED;
+
+/// How far two programs may be apart before that, in the same units.
+pub const ALLOWED: f64 = 1e-8;
+/// The adjustment that makes a twin, by name.
+pub const TWIN: &str = "one position moved by 1 ulp";
+
+/// Which columns of the series twins are watched by.
+#[derive(Clone, Copy, Debug)]
+pub struct Parting {
+    /// The columns.
+    pub columns: &'static [&'static str],
+}
+
+/// The last sample up to which twins are within [`PARTED`].
+fn last_together(of: Parting, run: &Done, twin: &Done) -> Result<usize, Missing> {
+    let mut last = run.series().step.len();
+    for column in of.columns {
+        let (b, a) = together(twin, run, column)?;
+        let scale = PARTED * largest(&a);
+        let parted = |(a, b): (&f64, &f64)| (a - b).is_nan() || (a - b).abs() > scale;
+        last = last.min(a.iter().zip(&b).position(parted).unwrap_or(last));
+    }
+    last.checked_sub(1).ok_or_else(|| Missing("moment at which twins are together".to_owned()))
+}
+
+/// The step of the horizon, from our run and its twin.
+fn step_of_horizon(of: Parting, run: &Done, twin: &Done) -> Result<u64, Missing> {
+    Ok(run.series().step[last_together(of, run, twin)?])
+}
+
+/// The time of the horizon (s).
+///
+/// # Errors
+/// When a column is missing.
+pub fn time_of_horizon(of: Parting, run: &Done, twin: &Done) -> Result<f64, Missing> {
+    Ok(run.series().time[last_together(of, run, twin)?])
+}
+
+/// The horizon itself, which nobody knows beforehand: what it was when the case was written.
+#[must_use]
+pub fn horizon(of: Parting, steps: u64, runs: [Run; 2]) -> Claim {
+    let expected = steps as f64;
+    claim(format!("predictability horizon in steps: twins part by {PARTED:e}"), "1")
+        .of_all(runs)
+        .equals(
+            Source::Regression("steps until a run and its twin, one position moved by one unit in the last place, part"),
+            move |done| Ok(Measured::new(step_of_horizon(of, &done[0], &done[1])? as f64, expected, expected)),
+        )
+        .within(computed(
+            0.25,
+            "growth of a disturbance is exponential: a factor ten in it, or in where it begins, is a quarter of the way",
+        ))
+        .refuses(Control::scene("a run that ends before twins can part", |scene| {
+            scene.duration = Duration::Cycles(400);
+        }))
+}
+
+/// All watched columns of ours (first run) and a program (second) up to the horizon that the twins (third and fourth) have.
+#[must_use]
+pub fn pointwise(of: Parting, runs: Vec<Run>, control: Control) -> Claim {
+    let program = runs[1].solver;
+    claim(format!("energy and stress up to the horizon, worst, against {program}"), "1")
+        .of_all(runs)
+        .agrees(Source::Program, move |done| {
+            let horizon = step_of_horizon(of, &done[2], &done[3])?;
+            let found: Result<Vec<Measured>, Missing> = of
+                .columns
+                .iter()
+                .map(|column| {
+                    let (ours, theirs) = together(&done[0], &done[1], column)?;
+                    let scale = largest(&theirs);
+                    let series = done[1].series();
+                    let until = series.step.partition_point(|&step| step <= horizon);
+                    let relative = |values: &[f64]| values[..until].iter().map(|value| value / scale).collect::<Vec<f64>>();
+                    Ok(Measured::worst_of(&series.time[..until], &relative(&ours), &relative(&theirs), 1.0))
+                })
+                .collect();
+            Measured::worst_among(found?).ok_or_else(|| Missing("columns to compare".to_owned()))
+        })
+        .within(computed(
+            ALLOWED,
+            "ten times what the twins have parted by at the horizon, for two programs round every sum otherwise; relative \
+             to the largest value",
+        ))
+        .refuses(control)
+}
+
+/// What a mean is taken of.
+#[derive(Clone, Copy, Debug)]
+pub struct Sum {
+    /// The column of the series.
+    pub column: &'static str,
+    /// What it is called.
+    pub words: &'static str,
+    /// Unit of what the mean is taken of.
+    pub unit: &'static str,
+    /// Whether the mean is that of the logarithm: of what grows and falls by factors, for its largest values would
+    /// otherwise outweigh all others.
+    pub logarithm: bool,
+}
+
+/// The mean of a column after the horizon, in units of half the confidence interval of the difference.
+#[must_use]
+pub fn statistics(of: Parting, Sum { column, words, unit, logarithm }: Sum, runs: Vec<Run>, control: Control) -> Claim {
+    let program = runs[1].solver;
+    claim(format!("mean {words} after the horizon, against {program}"), unit)
+        .of_all(runs)
+        .agrees(Source::Program, move |done| {
+            let horizon = step_of_horizon(of, &done[2], &done[3])?;
+            let (ours, theirs) = together(&done[0], &done[1], column)?;
+            let from = done[1].series().step.partition_point(|&step| step <= horizon);
+            let read = |values: &[f64]| -> Vec<f64> {
+                values[from..].iter().map(|value| if logarithm { value.ln() } else { *value }).collect()
+            };
+            let estimate = of_blocks(&read(&theirs), &read(&ours), BLOCKS)
+                .ok_or_else(|| Missing(format!("{BLOCKS} samples after the horizon, at step {horizon}")))?;
+            Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
+        })
+        .within(one_interval(
+            "in units of half the 99 % confidence interval of the difference, from the means over 8 blocks of time",
+        ))
+        .refuses(control)
+}

@@ -1,0 +1,126 @@
+//! Solvers that are wrong on purpose, each in one way and by about a billionth, or by a thousandth where less is not seen.
+
+use grainbench_scene::checkpoint::Checkpoint;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::{Dimension, Scene};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use nalgebra::Vector3;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Size of a flaw, as a fraction of the velocities.
+const SIZE: f64 = 1e-9;
+/// The same for what falls, where a solver claims no more than the first order and may be off by gΔt/2.
+const LARGE: f64 = 1e-3;
+
+/// How a solver is wrong. All but the last three act on the velocities it starts from, which any solver can express.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flaw {
+    /// Something holds every grain back, as if there were a medium at rest.
+    Drag,
+    /// The same a million times as strong.
+    StrongDrag,
+    /// It tells left from right: in the plane velocities turn a little, in space they gain along the spin.
+    Handed,
+    /// The x axis is another one than the others.
+    Anisotropic,
+    /// The first grain in the list is treated otherwise than the rest.
+    Listed,
+    /// The end is off by the first order in the time step.
+    FirstOrder,
+    /// No run is like the one before.
+    Irreproducible,
+    /// A run that is continued is not quite the run that was interrupted.
+    Restarted,
+}
+
+impl Flaw {
+    /// The flaw in words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Drag => "every velocity held back by a billionth",
+            Self::StrongDrag => "every velocity held back by a thousandth",
+            Self::Handed => "velocities turned to one side by a billionth",
+            Self::Anisotropic => "velocities along x larger by a billionth",
+            Self::Listed => "the first grain in the list faster by a billionth",
+            Self::FirstOrder => "positions and velocities off by the first order in the step",
+            Self::Irreproducible => "a velocity that differs by a rounding from run to run",
+            Self::Restarted => "a velocity that differs by a rounding after a restart",
+        }
+    }
+
+    fn spoil(self, scene: &mut Scene, run: u64) {
+        let flat = scene.dimension == Dimension::Two;
+        for grain in &mut scene.grains {
+            match self {
+                Self::Drag => grain.velocity *= 1.0 - SIZE,
+                Self::StrongDrag => grain.velocity *= 1.0 - LARGE,
+                Self::Handed if flat => grain.velocity += SIZE * Vector3::z().cross(&grain.velocity),
+                Self::Handed => grain.velocity += SIZE * grain.radius * grain.spin,
+                Self::Anisotropic => grain.velocity.x *= 1.0 + SIZE,
+                Self::Listed | Self::FirstOrder | Self::Irreproducible | Self::Restarted => {}
+            }
+        }
+        if let Some(grain) = scene.grains.first_mut() {
+            match self {
+                Self::Listed => grain.velocity *= 1.0 + SIZE,
+                Self::Irreproducible => grain.velocity *= 1.0 + run as f64 * 4.0 * f64::EPSILON,
+                _ => {}
+            }
+        }
+    }
+}
+
+/// A solver with a flaw.
+pub struct Flawed<'a> {
+    solver: &'a dyn Solver,
+    flaw: Flaw,
+    runs: AtomicU64,
+}
+
+impl<'a> Flawed<'a> {
+    /// Builds a flaw into a solver.
+    #[must_use]
+    pub const fn new(solver: &'a dyn Solver, flaw: Flaw) -> Self {
+        Self { solver, flaw, runs: AtomicU64::new(0) }
+    }
+}
+
+impl Solver for Flawed<'_> {
+    fn name(&self) -> String {
+        self.solver.name()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let mut scene = scene.clone();
+        self.flaw.spoil(&mut scene, self.runs.fetch_add(1, Ordering::Relaxed));
+        let mut record = self.solver.run(&scene, resolution, watch)?;
+        if self.flaw == Flaw::FirstOrder
+            && let Some(last) = record.snapshots.last_mut()
+        {
+            let share = record.provenance.time_step / last.time;
+            // Positions too: a velocity may pass through zero at the end.
+            last.grains.iter_mut().for_each(|grain| {
+                grain.position *= 1.0 + share;
+                grain.velocity *= 1.0 + share;
+            });
+        }
+        Ok(record)
+    }
+
+    fn restart(
+        &self,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: &Checkpoint,
+        watch: &mut dyn Watch,
+    ) -> Result<Record, RunError> {
+        let mut record = self.solver.restart(scene, resolution, from, watch)?;
+        if self.flaw == Flaw::Restarted
+            && let Some(grain) = record.snapshots.last_mut().and_then(|last| last.grains.first_mut())
+        {
+            grain.velocity *= 1.0 + 4.0 * f64::EPSILON;
+        }
+        Ok(record)
+    }
+}

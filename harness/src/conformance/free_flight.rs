@@ -1,0 +1,44 @@
+//! What touches nothing flies straight, or along its parabola.
+
+use super::end::End;
+use super::moved::APART;
+use super::row::{Found, Rows};
+use super::{Flaw, Property, scenes};
+use crate::evidence::Evidence;
+use crate::verdict::Verdict;
+use grainbench_scene::solver::Solver;
+use grainbench_scene::terms::Terms;
+
+pub(super) const PROPERTY: Property = Property {
+    name: "free-flight",
+    claim: "grains that touch nothing keep velocity and spin, and fall as x + vt + gt²/2",
+    flaw: Flaw::Drag,
+    check,
+};
+
+fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
+    let rows = Rows {
+        solver,
+        terms,
+        property: PROPERTY.name,
+        evidence: Evidence::Analytic,
+        source: "x + vt + gt²/2, constant spin",
+        because: "every step rounds velocity and position by ε; under gravity, a solver that does not claim the second order \
+                  may be off by gΔt/2; of the fastest grain",
+    };
+    let second_order = terms.order.is_some_and(|order| order.expected >= 2.0);
+    rows.each(scenes::flights(), &terms.resolution, APART, |named| {
+        let end = End::of(solver, &named.scene, &terms.resolution)?;
+        let (time, gravity) = (end.time, named.scene.gravity);
+        let mut exact = end.clone();
+        for (grain, start) in exact.grains.iter_mut().zip(&named.scene.grains) {
+            grain.position = start.position + start.velocity * time + gravity * (0.5 * time * time);
+            grain.velocity = start.velocity + gravity * time;
+            grain.spin = start.spin;
+        }
+        let (far, fast) = exact.reach();
+        let lag = if second_order { 0.0 } else { 0.5 * gravity.norm() * end.time_step };
+        let allowed = f64::EPSILON * end.steps * (fast + far / time) + lag;
+        Ok(Found::deviation(end.apart(&exact), fast, allowed))
+    })
+}

@@ -1,0 +1,62 @@
+//! Grains that only meet one another keep their momentum; without friction their angular momentum too.
+//!
+//! With friction, angular momentum is a matter of convention: arms R on centres that are less than R₁ + R₂ apart do not
+//! keep it. The case `collision` tells the conventions apart.
+
+use super::end::End;
+use super::row::{Found, Rows};
+use super::{Flaw, Property, scenes};
+use crate::evidence::Evidence;
+use crate::verdict::Verdict;
+use grainbench_scene::solver::Solver;
+use grainbench_scene::terms::Terms;
+use nalgebra::Vector3;
+
+pub(super) const PROPERTY: Property = Property {
+    name: "momentum",
+    claim: "momentum is kept in collisions, and angular momentum where there is no friction",
+    flaw: Flaw::Drag,
+    check,
+};
+
+fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
+    let rows = Rows {
+        solver,
+        terms,
+        property: PROPERTY.name,
+        evidence: Evidence::Invariant,
+        source: "equal and opposite forces, along the line of centres without friction",
+        because: "every step rounds each grain's share by ε; of the sum of shares",
+    };
+    let linear = rows.each(scenes::collisions(), &terms.resolution, ("momentum in the end", "kg m/s"), |named| {
+        let end = End::of(solver, &named.scene, &terms.resolution)?;
+        let before: Vec<Vector3<f64>> = named.scene.grains.iter().map(|grain| grain.velocity * grain.mass).collect();
+        let after: Vec<Vector3<f64>> = end.grains.iter().map(|grain| grain.velocity * grain.mass).collect();
+        Ok(kept(&before, &after, end.steps))
+    });
+    let frictionless =
+        scenes::collisions().map(|all| all.into_iter().filter(|named| !named.frictional).collect::<Vec<_>>());
+    let quantity = ("angular momentum in the end", "kg m²/s");
+    let angular = rows.each(frictionless, &terms.resolution, quantity, |named| {
+        let end = End::of(solver, &named.scene, &terms.resolution)?;
+        let grains = &named.scene.grains;
+        let of = |position: &Vector3<f64>, velocity: &Vector3<f64>, mass: f64| position.cross(velocity) * mass;
+        let turning = |spin: &Vector3<f64>, at: usize| spin * grains[at].inertia;
+        let before = grains.iter().map(|grain| of(&grain.position, &grain.velocity, grain.mass));
+        let before =
+            before.chain(grains.iter().enumerate().map(|(at, grain)| turning(&grain.spin, at))).collect::<Vec<_>>();
+        let after = end.grains.iter().map(|grain| of(&grain.position, &grain.velocity, grain.mass));
+        let after =
+            after.chain(end.grains.iter().enumerate().map(|(at, grain)| turning(&grain.spin, at))).collect::<Vec<_>>();
+        Ok(kept(&before, &after, end.steps))
+    });
+    [linear, angular].concat()
+}
+
+/// The change of a sum, in units of the sum of what its parts were or are.
+fn kept(before: &[Vector3<f64>], after: &[Vector3<f64>], steps: f64) -> Found {
+    let change = after.iter().sum::<Vector3<f64>>() - before.iter().sum::<Vector3<f64>>();
+    let size = |parts: &[Vector3<f64>]| parts.iter().map(Vector3::norm).sum::<f64>();
+    let scale = size(before).max(size(after));
+    Found::deviation(change.norm(), scale, scale * f64::EPSILON * steps)
+}

@@ -1,0 +1,66 @@
+//! A scene seen from elsewhere: turned, mirrored or from a moving frame. What a solver makes of it must be what it makes of
+//! the scene itself, seen from there.
+
+use super::end::{End, rounding};
+use super::row::Found;
+use super::end::NoEnd;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::Solver;
+use grainbench_scene::terms::Terms;
+use nalgebra::{Matrix3, Vector3};
+
+/// Where a scene is seen from: x' = Q x + V t, v' = Q v + V, and ω' = det(Q) Q ω, since a spin is a pseudovector.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    pub(super) turn: Matrix3<f64>,
+    pub(super) speed: Vector3<f64>,
+}
+
+impl View {
+    pub(super) fn turned(turn: Matrix3<f64>) -> Self {
+        Self { turn, speed: Vector3::zeros() }
+    }
+
+    pub(super) fn moving(speed: Vector3<f64>) -> Self {
+        Self { turn: Matrix3::identity(), speed }
+    }
+
+    fn of_spin(&self) -> Matrix3<f64> {
+        self.turn * self.turn.determinant()
+    }
+
+    fn seen(&self, scene: &Scene) -> Scene {
+        let mut seen = scene.clone();
+        for grain in &mut seen.grains {
+            grain.position = self.turn * grain.position;
+            grain.velocity = self.turn * grain.velocity + self.speed;
+            grain.spin = self.of_spin() * grain.spin;
+        }
+        seen
+    }
+
+    fn undone(&self, end: &End) -> End {
+        let mut undone = end.clone();
+        let back = self.turn.transpose();
+        for grain in &mut undone.grains {
+            grain.position = back * (grain.position - self.speed * end.time);
+            grain.velocity = back * (grain.velocity - self.speed);
+            grain.spin = self.of_spin().transpose() * grain.spin;
+        }
+        undone
+    }
+
+    /// How far the run of the scene as seen, seen back, is from the run of the scene itself.
+    pub(super) fn compare(&self, solver: &dyn Solver, scene: &Scene, terms: &Terms) -> Result<Found, NoEnd> {
+        let straight = End::of(solver, scene, &terms.resolution)?;
+        let seen = End::of(solver, &self.seen(scene), &terms.resolution)?;
+        let allowed = rounding(scene, [&straight, &seen]);
+        Ok(Found::deviation(straight.apart(&self.undone(&seen)), straight.reach().1, allowed))
+    }
+}
+
+/// What the rows of every comparison of two runs say of their tolerance.
+pub(super) const ROUNDING: &str = "rounding of positions in every step, εL, worth ω²εLΔt of velocity, and of velocities, added up over the run; \
+     of the fastest grain";
+/// What they compare.
+pub(super) const APART: (&str, &str) = ("worst velocity, spin × radius or position / time apart, in the end", "m/s");

@@ -1,0 +1,37 @@
+//! A solver whose runs are done once: several properties look at the same run.
+
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use std::sync::{Mutex, PoisonError};
+
+type Known = (Scene, Resolution, Result<Record, RunError>);
+
+/// Remembers what came of every scene at every resolution. What is asked to be done again, or to be watched, is for the solver
+/// itself.
+pub(super) struct Once<'a> {
+    solver: &'a dyn Solver,
+    known: Mutex<Vec<Known>>,
+}
+
+impl<'a> Once<'a> {
+    pub(super) const fn new(solver: &'a dyn Solver) -> Self {
+        Self { solver, known: Mutex::new(Vec::new()) }
+    }
+}
+
+impl Solver for Once<'_> {
+    fn name(&self) -> String {
+        self.solver.name()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((.., record)) = known.iter().find(|(of, at, _)| of == scene && at == resolution) {
+            return record.clone();
+        }
+        let record = self.solver.run(scene, resolution, watch);
+        known.push((scene.clone(), *resolution, record.clone()));
+        record
+    }
+}

@@ -1,0 +1,43 @@
+//! Grains have no order.
+
+use super::end::{End, rounding};
+use super::moved::{APART, ROUNDING};
+use super::row::{Found, Rows};
+use super::{Flaw, Property, scenes};
+use crate::evidence::Evidence;
+use crate::verdict::Verdict;
+use grainbench_scene::solver::Solver;
+use grainbench_scene::terms::Terms;
+
+pub(super) const PROPERTY: Property = Property {
+    name: "permutation",
+    claim: "the same grains listed in another order end alike",
+    flaw: Flaw::Listed,
+    check,
+};
+
+fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
+    let rows = Rows {
+        solver,
+        terms,
+        property: PROPERTY.name,
+        evidence: Evidence::Invariant,
+        source: "a list has an order, nature has none",
+        because: ROUNDING,
+    };
+    rows.each(scenes::collisions(), &terms.resolution, APART, |named| {
+        let straight = End::of(solver, &named.scene, &terms.resolution)?;
+        let mut permuted = named.scene.clone();
+        // Neither reversed nor in order: the new place of every grain but the last is the old one's third next.
+        let count = permuted.grains.len();
+        let old_place = |place: usize| (3 * place + 2) % count;
+        permuted.grains = (0..count).map(|place| named.scene.grains[old_place(place)]).collect();
+        let end = End::of(solver, &permuted, &terms.resolution)?;
+        let mut restored = straight.clone();
+        for place in 0..count {
+            restored.grains[old_place(place)] = end.grains[place];
+        }
+        let allowed = rounding(&named.scene, [&straight, &end]);
+        Ok(Found::deviation(straight.apart(&restored), straight.reach().1, allowed))
+    })
+}

@@ -1,0 +1,79 @@
+//! A run that is continued from a checkpoint ends as the run that was never interrupted.
+
+use super::end::NoEnd;
+use super::rerun::lines;
+use super::row::{Found, Rows};
+use super::{Flaw, Property, scenes};
+use crate::evidence::Evidence;
+use crate::verdict::Verdict;
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench_scene::solver::{RunError, Solver, Watch};
+use grainbench_scene::terms::Terms;
+
+pub(super) const PROPERTY: Property = Property {
+    name: "restart",
+    claim: "a run continued from a checkpoint halfway leaves the record of the whole run, but for its times",
+    flaw: Flaw::Restarted,
+    check,
+};
+
+fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
+    let rows = Rows {
+        solver,
+        terms,
+        property: PROPERTY.name,
+        evidence: Evidence::Invariant,
+        source: "a checkpoint holds all that the next step depends on",
+        because: "bits are the same or not",
+    };
+    let quantity = ("lines of the record that differ", "1");
+    let scenes = scenes::collisions().and_then(|mut all| {
+        all.extend(scenes::held()?);
+        Ok(all)
+    });
+    rows.each(scenes, &terms.resolution, quantity, |named| {
+        let mut halfway = Halfway::default();
+        let whole = lines(solver.run(&named.scene, &terms.resolution, &mut halfway)?);
+        let checkpoint = halfway.through_a_file().map_err(NoEnd::Run)?.ok_or_else(|| no_checkpoint(solver))?;
+        let continued = lines(solver.restart(&named.scene, &terms.resolution, &checkpoint, &mut ())?);
+        let longer = whole.len().abs_diff(continued.len());
+        let differ = whole.iter().zip(&continued).filter(|(a, b)| a != b).count() + longer;
+        Ok(Found::deviation(differ as f64, 1.0, 0.0))
+    })
+}
+
+fn no_checkpoint(solver: &dyn Solver) -> RunError {
+    RunError::Unsupported { solver: solver.name(), reason: "it leaves no checkpoints to continue from".to_owned() }
+}
+
+/// Keeps the checkpoint of half the steps.
+#[derive(Default)]
+struct Halfway {
+    steps: u64,
+    checkpoint: Option<Checkpoint>,
+}
+
+impl Halfway {
+    /// The checkpoint as a reader of its file has it.
+    fn through_a_file(self) -> Result<Option<Checkpoint>, RunError> {
+        let reread = |checkpoint: Checkpoint| Checkpoint::from_bytes(&checkpoint.to_bytes()?);
+        Ok(self.checkpoint.map(reread).transpose()?)
+    }
+}
+
+impl Watch for Halfway {
+    fn begin(&mut self, _time_step: f64, steps: u64) {
+        self.steps = steps;
+    }
+
+    fn progress(&mut self, _done: u64, _total: u64) {}
+
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(self.steps.div_ceil(2))
+    }
+
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.checkpoint = Some(checkpoint);
+        Ok(())
+    }
+}

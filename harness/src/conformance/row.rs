@@ -1,0 +1,87 @@
+//! Rows of the suite: the same kind as those of gates.
+
+use super::end::NoEnd;
+use super::scenes::{Named, flat};
+use crate::evidence::Evidence;
+use crate::expect::Measured;
+use crate::tolerance::Made;
+use crate::verdict::{Outcome, Verdict};
+use grainbench_scene::error::SceneError;
+use grainbench_scene::solver::{Resolution, Solver};
+use grainbench_scene::terms::Terms;
+
+/// What the rows of one property share.
+pub(super) struct Rows<'a> {
+    pub(super) solver: &'a dyn Solver,
+    pub(super) terms: &'a Terms,
+    pub(super) property: &'static str,
+    pub(super) evidence: Evidence,
+    pub(super) source: &'static str,
+    pub(super) because: &'static str,
+}
+
+/// What a property measured on one scene, and how far it may be off.
+pub(super) struct Found {
+    pub(super) measured: Measured,
+    pub(super) allowed: f64,
+}
+
+impl Found {
+    /// A deviation that should be zero; `allowed` in the same unit.
+    pub(super) fn deviation(value: f64, scale: f64, allowed: f64) -> Self {
+        Self { measured: Measured::new(value, 0.0, scale), allowed: allowed / scale }
+    }
+}
+
+impl Rows<'_> {
+    /// A row for every scene: a quantity with its unit, and how it is found.
+    pub(super) fn each(
+        &self,
+        scenes: Result<Vec<Named>, SceneError>,
+        resolution: &Resolution,
+        (quantity, unit): (&str, &str),
+        find: impl Fn(&Named) -> Result<Found, NoEnd>,
+    ) -> Vec<Verdict> {
+        match scenes {
+            Ok(scenes) => {
+                let asked = scenes.iter().filter(|named| self.terms.in_space || flat(&named.scene));
+                asked.map(|named| self.row(named.name, resolution, (quantity, unit), find(named))).collect()
+            }
+            Err(error) => {
+                vec![self.row("scenes", resolution, (quantity, unit), Err(NoEnd::Record(error.to_string())))]
+            }
+        }
+    }
+
+    /// The row of one scene.
+    fn row(
+        &self,
+        scene: &str,
+        resolution: &Resolution,
+        (quantity, unit): (&str, &str),
+        found: Result<Found, NoEnd>,
+    ) -> Verdict {
+        let row = Verdict {
+            variant: format!("{}/{scene}", self.property),
+            solver: self.solver.name(),
+            resolution: resolution.to_string(),
+            because: self.because.to_owned(),
+            evidence: self.evidence,
+            source: self.source.to_owned(),
+            ..Verdict::open("conformance", quantity, unit)
+        };
+        match found {
+            Err(NoEnd::Run(error)) => row.ended(&error),
+            Err(NoEnd::Record(lack)) => row.left(Outcome::Fail, lack),
+            Ok(Found { measured, allowed }) => {
+                let row = Verdict { allowed, tolerance: Made::Computed, ..row }.judged(&measured);
+                match self.terms.less_of(self.property, quantity) {
+                    Some(less) if row.outcome == Outcome::Fail && measured.error().abs() <= less.at_most => {
+                        row.left(Outcome::Known, less.because)
+                    }
+                    _ => row,
+                }
+            }
+        }
+    }
+}

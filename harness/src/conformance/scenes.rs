@@ -1,0 +1,185 @@
+//! The scenes of the suite, made from text as any scene is.
+
+use grainbench_scene::error::SceneError;
+use grainbench_scene::scene::{Dimension, Scene};
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+
+/// A scene with a name for its rows.
+pub(super) struct Named {
+    pub(super) name: &'static str,
+    pub(super) scene: Scene,
+    /// Whether grains can turn one another.
+    pub(super) frictional: bool,
+}
+
+/// One grain runs into four that lie close together: some six contacts open and close within the run, none head-on.
+/// Unit masses in size, k = 1e4 N/m: a contact lasts about 20 ms, overlaps are about a hundredth of the radius. Where grains
+/// deform, their moduli are about as large (Pa).
+const COLLISION_2D: &str = r#"
+title = "A disc runs into four"
+dimension = 2
+duration = 0.3
+[materials.m]
+density = 0.3183098861837907
+bulk_modulus = 1.0e4
+shear_modulus = 6.0e3
+[grains.runner]
+material = "m"
+radius = 1.0
+position = [-2.10, 0.35]
+velocity = [1.5, 0.1]
+spin = 2.0
+[grains.near]
+material = "m"
+radius = 1.1
+position = [0.0, 0.0]
+velocity = [-0.2, 0.05]
+spin = -0.5
+[grains.high]
+material = "m"
+radius = 0.9
+position = [1.43, 1.42]
+velocity = [0.0, -0.1]
+[grains.low]
+material = "m"
+radius = 0.8
+position = [1.36, -1.36]
+velocity = [0.05, 0.0]
+spin = 1.0
+[grains.far]
+material = "m"
+radius = 1.0
+position = [2.90, 0.05]
+velocity = [-0.3, 0.02]
+"#;
+
+/// The same in space.
+const COLLISION_3D: &str = r#"
+title = "A sphere runs into four"
+dimension = 3
+duration = 0.3
+[materials.m]
+density = 0.238732414637843
+bulk_modulus = 1.0e4
+shear_modulus = 6.0e3
+[grains.runner]
+material = "m"
+radius = 1.0
+position = [-2.08, 0.35, -0.2]
+velocity = [1.5, 0.1, 0.05]
+spin = [0.5, -1.0, 2.0]
+[grains.near]
+material = "m"
+radius = 1.1
+position = [0.0, 0.0, 0.0]
+velocity = [-0.2, 0.05, -0.05]
+spin = [0.3, 0.2, -0.5]
+[grains.high]
+material = "m"
+radius = 0.9
+position = [1.41, 1.40, 0.3]
+velocity = [0.0, -0.1, 0.0]
+spin = [0.1, 0.0, 0.4]
+[grains.low]
+material = "m"
+radius = 0.8
+position = [1.34, -1.34, -0.3]
+velocity = [0.05, 0.0, 0.1]
+spin = [-0.7, 0.2, 1.0]
+[grains.far]
+material = "m"
+radius = 1.0
+position = [2.88, 0.05, 0.1]
+velocity = [-0.3, 0.02, 0.0]
+spin = [0.2, 0.6, 0.1]
+"#;
+
+const SPRINGS: &str = "\n[contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e4\n";
+const FRICTION: &str =
+    "tangential_stiffness = 5.0e3\nfriction = 0.4\nnormal_damping = 10.0\ntangential_damping = 5.0\n";
+
+/// Two grains that never meet, so that a step can be a fraction of the critical one.
+const FLIGHT_2D: &str = "title = 'Two discs fly apart'\ndimension = 2\nduration = 1.0\nmaterials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-2.0, 0.3]\nvelocity = [-1.7, 0.9]\nspin = 3.1\n\
+    [grains.b]\nmaterial = 'm'\nradius = 0.7\nposition = [2.0, -0.4]\nvelocity = [1.1, 0.3]\nspin = -1.3\n";
+const FLIGHT_3D: &str = "title = 'Two spheres fly apart'\ndimension = 3\nduration = 1.0\nmaterials.m = { density = 0.238732414637843, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-2.0, 0.3, 0.1]\nvelocity = [-1.7, 0.9, 0.4]\nspin = [1.1, 0.3, 3.1]\n\
+    [grains.b]\nmaterial = 'm'\nradius = 0.7\nposition = [2.0, -0.4, 0.2]\nvelocity = [1.1, 0.3, -0.6]\nspin = [0.0, 0.5, -1.3]\n";
+
+/// A grain held between two planes that press on it: it oscillates, turns to and fro, and never lets go.
+const HELD_2D: &str = "title = 'A disc held by two walls'\ndimension = 2\nduration = 0.2\nmaterials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.99]\nvelocity = [0.3, 0.4]\nspin = 0.5\n\
+    [walls.low]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+    [walls.high]\nmaterial = 'm'\nplane = { point = [0.0, 1.98], normal = [0.0, -1.0] }\n";
+const HELD_3D: &str = "title = 'A sphere held by two walls'\ndimension = 3\nduration = 0.2\nmaterials.m = { density = 0.238732414637843, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0, 0.99]\nvelocity = [0.3, -0.2, 0.4]\nspin = [0.1, 0.5, 0.0]\n\
+    [walls.low]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
+    [walls.high]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 1.98], normal = [0.0, 0.0, -1.0] }\n";
+/// So rough that nothing slips, and without dashpots, whose lag of half a step is of first order in every code we know.
+const ROUGH: &str = "tangential_stiffness = 5.0e3\nfriction = 100.0\n";
+
+fn scene(name: &'static str, parts: &[&str], frictional: bool) -> Result<Named, SceneError> {
+    let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), &parts.concat());
+    Ok(Named { name, scene: source.scene(&|_| Err("this scene reads no file".to_owned()))?, frictional })
+}
+
+/// Collisions in free space: in the plane and in space, frictionless and with friction and dashpots.
+pub(super) fn collisions() -> Result<Vec<Named>, SceneError> {
+    Ok(vec![
+        scene("2d", &[COLLISION_2D, SPRINGS], false)?,
+        scene("2d-friction", &[COLLISION_2D, SPRINGS, FRICTION], true)?,
+        scene("3d", &[COLLISION_3D, SPRINGS], false)?,
+        scene("3d-friction", &[COLLISION_3D, SPRINGS, FRICTION], true)?,
+    ])
+}
+
+/// Flight with and without gravity; friction in the law, so that solvers carry the spin.
+pub(super) fn flights() -> Result<Vec<Named>, SceneError> {
+    let mut all = vec![
+        scene("2d", &[FLIGHT_2D, SPRINGS], false)?,
+        scene("3d-friction", &[FLIGHT_3D, SPRINGS, FRICTION], true)?,
+        scene("2d-friction-gravity", &[FLIGHT_2D, SPRINGS, FRICTION], true)?,
+        scene("3d-gravity", &[FLIGHT_3D, SPRINGS], false)?,
+    ];
+    for named in &mut all[2..] {
+        named.scene.gravity[named.scene.dimension.count() - 1] = -9.8;
+    }
+    Ok(all)
+}
+
+/// Smooth motion for ten critical steps: along the normal, or with friction along the tangent. Not along both: where a
+/// torque arm is R − overlap/2 and the overlap changes, velocities at mid-step meet arms at its end, which is of first
+/// order, with a coefficient as small as the overlap.
+pub(super) fn held() -> Result<Vec<Named>, SceneError> {
+    let mut all = vec![
+        scene("2d", &[HELD_2D, SPRINGS], false)?,
+        scene("2d-friction", &[HELD_2D, SPRINGS, ROUGH], true)?,
+        scene("3d", &[HELD_3D, SPRINGS], false)?,
+        scene("3d-friction", &[HELD_3D, SPRINGS, ROUGH], true)?,
+    ];
+    for named in &mut all {
+        if named.frictional {
+            let normal = named.scene.dimension.count() - 1;
+            named.scene.grains[0].velocity[normal] = 0.0;
+        }
+        named.scene.duration = grainbench_scene::scene::Duration::Seconds(10.0 * named.scene.critical_time_step());
+    }
+    Ok(all)
+}
+
+/// Whether a scene is flat.
+pub(super) fn flat(scene: &Scene) -> bool {
+    scene.dimension == Dimension::Two
+}
+
+#[cfg(test)]
+mod tests {
+    /// Scenes are text that no user has seen: they must be right.
+    #[test]
+    fn every_scene_is_right() {
+        for scenes in [super::collisions(), super::flights(), super::held()] {
+            assert_eq!(scenes.unwrap().len(), 4);
+        }
+    }
+}

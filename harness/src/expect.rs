@@ -1,0 +1,210 @@
+//! What is expected of a quantity: a value, a bound, a band or an order, each printed as what it is.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What a row expects. It never holds a value of the solver that is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Expected {
+    /// This value.
+    Value(f64),
+    /// A bound, a band or an order.
+    Bound(Bound),
+}
+
+/// An expectation that is no single value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// This or more.
+    AtLeast(f64),
+    /// This or less.
+    AtMost(f64),
+    /// From the first to the second.
+    Between([f64; 2]),
+    /// An order of convergence.
+    Order(f64),
+}
+
+impl Expected {
+    /// How far a value is from what is expected, with its sign: of a bound or a band, how far it is beyond, and 0 where it
+    /// holds. What is not a number stays one.
+    #[must_use]
+    pub fn off(self, value: f64) -> f64 {
+        let beyond = |low: f64, high: f64| {
+            if value < low {
+                value - low
+            } else if value > high {
+                value - high
+            } else {
+                // 0 for what lies within; NaN for what is not a number.
+                value * 0.0
+            }
+        };
+        match self {
+            Self::Value(expected) | Self::Bound(Bound::Order(expected)) => value - expected,
+            Self::Bound(Bound::AtLeast(low)) => beyond(low, f64::INFINITY),
+            Self::Bound(Bound::AtMost(high)) => beyond(f64::NEG_INFINITY, high),
+            Self::Bound(Bound::Between([low, high])) => beyond(low, high),
+        }
+    }
+
+    /// The value, the order, or the bound nearest to `value`.
+    #[must_use]
+    pub fn nearest(self, value: f64) -> f64 {
+        match self {
+            Self::Value(at) | Self::Bound(Bound::Order(at) | Bound::AtLeast(at) | Bound::AtMost(at)) => at,
+            Self::Bound(Bound::Between([low, high])) => {
+                if value - low < high - value {
+                    low
+                } else {
+                    high
+                }
+            }
+        }
+    }
+
+    /// The value where a single one is expected.
+    #[must_use]
+    pub const fn value(self) -> Option<f64> {
+        match self {
+            Self::Value(value) => Some(value),
+            Self::Bound(_) => None,
+        }
+    }
+
+    /// Whether every number in it is finite.
+    #[must_use]
+    pub fn is_finite(self) -> bool {
+        match self {
+            Self::Bound(Bound::Between(band)) => band.iter().all(|end| end.is_finite()),
+            _ => self.nearest(0.0).is_finite(),
+        }
+    }
+
+    /// In words, with numbers as `number` writes them: `1.43`, `≥ 5`, `1.43 to 1.48`, `order 2`.
+    #[must_use]
+    pub fn words(self, number: impl Fn(f64) -> String) -> String {
+        match self {
+            Self::Value(value) => number(value),
+            Self::Bound(Bound::AtLeast(low)) => format!("≥ {}", number(low)),
+            Self::Bound(Bound::AtMost(high)) => format!("≤ {}", number(high)),
+            Self::Bound(Bound::Between([low, high])) => format!("{} to {}", number(low), number(high)),
+            Self::Bound(Bound::Order(order)) => format!("order {}", number(order)),
+        }
+    }
+}
+
+impl From<f64> for Expected {
+    fn from(value: f64) -> Self {
+        Self::Value(value)
+    }
+}
+
+impl fmt::Display for Expected {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.words(|value| value.to_string()))
+    }
+}
+
+/// What a claim measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The value.
+    pub value: f64,
+    /// What it should be.
+    pub expected: Expected,
+    /// What the difference is divided by.
+    pub scale: f64,
+    /// For a comparison over time: time (s) and signed error of every sample, so that a failure can say when it began.
+    pub course: Vec<(f64, f64)>,
+}
+
+impl Measured {
+    /// A single value.
+    #[must_use]
+    pub fn new(value: f64, expected: impl Into<Expected>, scale: f64) -> Self {
+        Self { value, expected: expected.into(), scale, course: Vec::new() }
+    }
+
+    /// The worst sample of a time series against an exact course.
+    #[must_use]
+    pub fn worst(time: &[f64], values: &[f64], exact: impl Fn(f64) -> f64, scale: f64) -> Self {
+        let expected: Vec<f64> = time.iter().map(|&t| exact(t)).collect();
+        Self::worst_of(time, values, &expected, scale)
+    }
+
+    /// The worst sample of a time series against another one. A value that is not a number is worse than any other.
+    #[must_use]
+    pub fn worst_of(time: &[f64], values: &[f64], expected: &[f64], scale: f64) -> Self {
+        let errors = values.iter().zip(expected).map(|(value, expected)| (value - expected) / scale);
+        let course: Vec<(f64, f64)> = time.iter().copied().zip(errors).collect();
+        let worst = (0..course.len()).max_by(|&a, &b| weight(course[a].1).total_cmp(&weight(course[b].1))).unwrap_or(0);
+        let pick = |list: &[f64]| list.get(worst).copied().unwrap_or(f64::NAN);
+        Self { value: pick(values), expected: Expected::Value(pick(expected)), scale, course }
+    }
+
+    /// The one with the largest error; none of none.
+    #[must_use]
+    pub fn worst_among(all: impl IntoIterator<Item = Self>) -> Option<Self> {
+        all.into_iter().reduce(|worst, found| if weight(found.error()) > weight(worst.error()) { found } else { worst })
+    }
+
+    /// When a comparison over time first left what is allowed, in words: what is not a number is called so.
+    #[must_use]
+    pub fn first_outside(&self, allowed: f64) -> Option<String> {
+        let first = self.course.iter().find(|(_, error)| error.is_nan() || error.abs() > allowed);
+        first.map(|(time, error)| {
+            let how = if error.is_nan() { "not a number (NaN) from" } else { "first outside at" };
+            format!("{how} t = {time:.6} s")
+        })
+    }
+
+    /// Signed error, (value − expected)/scale; of a bound, how far beyond it the value is.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        self.expected.off(self.value) / self.scale
+    }
+}
+
+/// How bad an error is: what is not a number is worse than anything else.
+fn weight(error: f64) -> f64 {
+    if error.is_nan() { f64::INFINITY } else { error.abs() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_is_off_by_how_far_it_is_passed() {
+        let bound = |bound| Expected::Bound(bound);
+        assert_eq!(bound(Bound::AtLeast(5.0)).off(8.2), 0.0);
+        assert_eq!(bound(Bound::AtLeast(5.0)).off(4.0), -1.0);
+        assert_eq!(bound(Bound::AtMost(1.0)).off(1.5), 0.5);
+        assert_eq!(bound(Bound::Between([1.0, 2.0])).off(1.5), 0.0);
+        assert_eq!(bound(Bound::Between([1.0, 2.0])).off(0.5), -0.5);
+        assert_eq!(bound(Bound::Order(2.0)).off(1.75), -0.25);
+        assert!(bound(Bound::Between([1.0, 2.0])).off(f64::NAN).is_nan());
+        assert!(bound(Bound::AtLeast(1.0)).off(f64::INFINITY).is_nan(), "what is not finite is never within a bound");
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_the_worst() {
+        let of = |value| Measured::new(value, 0.0, 1.0);
+        let worst = Measured::worst_among([of(1.0), of(f64::NAN), of(3.0)]);
+        assert!(worst.is_some_and(|worst| worst.value.is_nan()));
+        assert!(Measured::worst_of(&[0.0, 1.0], &[f64::NAN, 9.0], &[0.0, 0.0], 1.0).value.is_nan());
+    }
+
+    #[test]
+    fn an_expectation_is_written_as_what_it_is() {
+        let json = |expected: Expected| serde_json::to_string(&expected).unwrap_or_default();
+        assert_eq!(json(Expected::Value(1.5)), "1.5");
+        assert_eq!(json(Expected::Bound(Bound::AtLeast(5.0))), r#"{"at_least":5.0}"#);
+        assert_eq!(json(Expected::Bound(Bound::Between([1.0, 2.0]))), r#"{"between":[1.0,2.0]}"#);
+        let back: Result<Expected, _> = serde_json::from_str(r#"{"order":2.0}"#);
+        assert!(back.is_ok_and(|back| back == Expected::Bound(Bound::Order(2.0))));
+    }
+}

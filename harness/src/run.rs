@@ -1,0 +1,163 @@
+//! The runs that a claim reads: which scene, which solver, how finely.
+
+use grainbench_scene::record::{Record, Series};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::Resolution;
+use std::fmt;
+use std::sync::Arc;
+
+/// A change of a scene, by code.
+pub type Change = Arc<dyn Fn(&mut Scene) + Send + Sync>;
+
+/// One run that a claim reads.
+#[derive(Clone)]
+pub struct Run {
+    /// Variant of the scene.
+    pub variant: &'static str,
+    /// Solver, by name.
+    pub solver: &'static str,
+    /// Resolution.
+    pub resolution: Resolution,
+    /// A change of the scene that belongs to the claim, such as another stiffness in a sweep: its name, which tells
+    /// runs apart, and what it does.
+    pub adjustment: Option<(String, Change)>,
+    /// What is expected of the row.
+    pub standing: Standing,
+    /// The smallest set that it belongs to.
+    pub set: Set,
+    /// Whether it is there to judge by, and no negative control touches it.
+    pub aside: bool,
+}
+
+/// Sets of runs, each with all of those before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Set {
+    /// What the main job does: at most a few seconds a run.
+    #[default]
+    Main,
+    /// What the tests do beside it.
+    Tests,
+    /// What takes minutes.
+    Long,
+}
+
+/// What is expected of a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Standing {
+    /// It passes.
+    #[default]
+    Passes,
+    /// The solver refuses the scene, because it cannot express it.
+    Refused,
+    /// The error of a method or program that is known to be off here, with the reason: shown amber for as long as it is
+    /// outside what is allowed.
+    Known(&'static str),
+}
+
+impl Run {
+    /// A run of a variant as it stands.
+    #[must_use]
+    pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
+        Self { variant, solver, resolution, adjustment: None, standing: Standing::Passes, set: Set::Main, aside: false }
+    }
+
+    /// The run with a change of the scene.
+    #[must_use]
+    pub fn adjusted(mut self, name: &str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
+        self.adjustment = Some((name.to_owned(), Arc::new(change)));
+        self
+    }
+
+    /// The run of a method that is known to be off here.
+    #[must_use]
+    pub fn known(self, reason: &'static str) -> Self {
+        Self { standing: Standing::Known(reason), ..self }
+    }
+
+    /// The run as one that only the tests do, not the main job.
+    #[must_use]
+    pub fn slow(self) -> Self {
+        Self { set: Set::Tests, ..self }
+    }
+
+    /// The run as one of the long set.
+    #[must_use]
+    pub fn long(self) -> Self {
+        Self { set: Set::Long, ..self }
+    }
+
+    /// The run as one that judges and is not judged: negative controls leave it alone.
+    #[must_use]
+    pub fn aside(self) -> Self {
+        Self { aside: true, ..self }
+    }
+
+    /// The same run at another resolution.
+    #[must_use]
+    pub fn at(&self, resolution: Resolution) -> Self {
+        Self { resolution, ..self.clone() }
+    }
+
+    /// What tells this run from others of its case.
+    #[must_use]
+    pub fn key(&self) -> String {
+        let adjustment = self.adjustment.as_ref().map(|(name, _)| name.as_str()).unwrap_or_default();
+        format!("{}|{}|{:?}|{adjustment}", self.variant, self.solver, self.resolution)
+    }
+}
+
+/// A run that was done: what the scene was meant to be, and what the solver left.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// The scene as the case means it. In a negative control the solver was given a wrong one.
+    pub scene: Arc<Scene>,
+    /// The record.
+    pub record: Arc<Record>,
+}
+
+/// A quantity that the records do not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing(pub String);
+
+impl fmt::Display for Missing {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "the record has no {}", self.0)
+    }
+}
+
+impl Done {
+    /// The time series.
+    #[must_use]
+    pub fn series(&self) -> &Series {
+        &self.record.series
+    }
+
+    /// A column of the time series.
+    ///
+    /// # Errors
+    /// When there is no such column or it is empty.
+    pub fn column(&self, name: &str) -> Result<&[f64], Missing> {
+        match self.series().column(name) {
+            Some(values) if !values.is_empty() => Ok(values),
+            _ => Err(Missing(format!("column `{name}`"))),
+        }
+    }
+
+    /// The last value of a column.
+    ///
+    /// # Errors
+    /// When there is no such column or it is empty.
+    pub fn last(&self, name: &str) -> Result<f64, Missing> {
+        Ok(self.column(name)?[self.column(name)?.len() - 1])
+    }
+
+    /// The value of a column at a step.
+    ///
+    /// # Errors
+    /// When the column is missing or was not sampled at that step.
+    pub fn at_step(&self, name: &str, step: u64) -> Result<f64, Missing> {
+        let values = self.column(name)?;
+        let at = self.series().step.iter().position(|&sampled| sampled == step);
+        at.map(|at| values[at]).ok_or_else(|| Missing(format!("sample of `{name}` at step {step}")))
+    }
+}

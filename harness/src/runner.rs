@@ -1,0 +1,285 @@
+//! Does the runs of a case, each once, whoever asks for it, and judges its claims.
+
+use crate::case::Case;
+use crate::claim::Claim;
+use crate::control::Wrong;
+use crate::expect::Measured;
+use crate::run::{Done, Missing, Run, Standing};
+use crate::scope::Scope;
+use crate::solvers::Solvers;
+use crate::verdict::{Control, Outcome, Verdict};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Defect, Resolution, RunError, Solver};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Instant;
+
+type Slot = Arc<OnceLock<Result<Arc<grainbench_scene::record::Record>, RunError>>>;
+
+/// Does the runs of one case: with the solvers that its claims name, or with one solver in place of them all.
+pub struct Runner {
+    case: &'static Case,
+    solvers: Arc<dyn Solvers>,
+    stranger: Option<Arc<dyn Solver>>,
+    /// Whether other programs are run even where their runs are stored.
+    live: bool,
+    /// Whether figures may take as long as the finest levels do.
+    thorough: bool,
+    /// Runs of scenes as the case means them, by [`Run::key`].
+    runs: Mutex<BTreeMap<String, (Run, Result<Done, RunError>)>>,
+    /// Every run of a scene, right or wrong, by solver and resolution: claims that lead to the same scene share it.
+    done: Mutex<BTreeMap<String, Vec<(Arc<Scene>, Slot)>>>,
+}
+
+/// What does a run: a solver by name, as it is or with a defect.
+#[derive(Clone, Copy)]
+struct By<'a> {
+    solver: &'a str,
+    defect: Option<Defect>,
+    resolution: &'a Resolution,
+}
+
+impl Runner {
+    /// A runner that has done nothing yet.
+    #[must_use]
+    pub fn new(case: &'static Case, solvers: Arc<dyn Solvers>) -> Self {
+        let (runs, done) = (Mutex::default(), Mutex::default());
+        Self { case, solvers, stranger: None, live: false, thorough: false, runs, done }
+    }
+
+    /// A runner that puts one solver in the place of every solver that the claims name. It is given their resolutions, to be
+    /// read as it sees fit.
+    #[must_use]
+    pub fn with_solver(self, solver: Arc<dyn Solver>) -> Self {
+        Self { stranger: Some(solver), ..self }
+    }
+
+    /// The runner that runs other programs even where their runs are stored.
+    #[must_use]
+    pub fn live(self, live: bool) -> Self {
+        Self { live, ..self }
+    }
+
+    /// The runner whose figures are drawn from the finest runs, which take minutes.
+    #[must_use]
+    pub fn thorough(self, thorough: bool) -> Self {
+        Self { thorough, ..self }
+    }
+
+    /// Whether figures may take as long as the finest levels do.
+    #[must_use]
+    pub const fn is_thorough(&self) -> bool {
+        self.thorough
+    }
+
+    /// The claims: all of the case, or those that are fair to a stranger.
+    #[must_use]
+    pub fn claims(&self) -> Vec<Claim> {
+        let mut claims = (self.case.claims)();
+        if self.stranger.is_some() {
+            claims.retain(|claim| claim.scope == Scope::AnySolver);
+        }
+        claims
+    }
+
+    /// The case.
+    #[must_use]
+    pub const fn case(&self) -> &'static Case {
+        self.case
+    }
+
+    /// A run, done now or before.
+    ///
+    /// # Errors
+    /// When the solver cannot run the scene or breaks.
+    pub fn run(&self, run: &Run) -> Result<Done, RunError> {
+        let key = run.key();
+        if let Some((_, done)) = self.runs.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return done.clone();
+        }
+        let by = By { solver: run.solver, defect: None, resolution: &run.resolution };
+        let done = self.done_by(run, by, None);
+        let mut runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
+        runs.entry(key).or_insert_with(|| (run.clone(), done)).1.clone()
+    }
+
+    /// Every run done so far, in the order of their keys.
+    #[must_use]
+    pub fn done(&self) -> Vec<(Run, Done)> {
+        let runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
+        runs.values().filter_map(|(run, done)| Some((run.clone(), done.as_ref().ok()?.clone()))).collect()
+    }
+
+    /// Whether all runs of a claim can be had on this machine; a claim that cannot be judged has no control either.
+    #[must_use]
+    pub fn is_available(&self, claim: &Claim) -> bool {
+        let is_stored = |run: &Run| !self.live && self.solvers.is_stored(self.case, run);
+        let can_run = |run: &Run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok());
+        claim.runs.iter().all(|run| is_stored(run) || can_run(run))
+    }
+
+    /// Judges a claim.
+    #[must_use]
+    pub fn judge(&self, claim: &Claim) -> Verdict {
+        self.conclude(claim, claim.runs.iter().map(|run| self.run(run)).collect())
+    }
+
+    /// Feeds a claim with its wrong physics; the row of a known error with a solver that does not have it.
+    #[must_use]
+    pub fn control(&self, claim: &Claim) -> Control {
+        let start = Instant::now();
+        let row = self.conclude(claim, claim.runs.iter().map(|run| self.run_wrong(claim, run)).collect());
+        let (standing, outcome) = (claim.standing(), row.outcome);
+        let control = Control::of(row, claim.control.name, claim.control.red, start.elapsed().as_secs_f64());
+        match standing {
+            Standing::Known(_) => Control { turned_red: outcome == Outcome::Pass, ..control },
+            Standing::Passes | Standing::Refused => control,
+        }
+    }
+
+    /// A run of a claim under its wrong physics.
+    fn run_wrong(&self, claim: &Claim, run: &Run) -> Result<Done, RunError> {
+        let mut by = By { solver: run.solver, defect: None, resolution: &run.resolution };
+        match &claim.control.wrong {
+            _ if run.aside => self.run(run),
+            // What is made wrong is our own side.
+            Wrong::Ours(_) | Wrong::OtherSolver(_) if self.solvers.is_program(run.solver) => self.run(run),
+            Wrong::Scene(change) | Wrong::Ours(change) => self.done_by(run, by, Some(&**change)),
+            Wrong::Solver(defect) => {
+                by.defect = Some(*defect);
+                self.done_by(run, by, None)
+            }
+            Wrong::OtherSolver(solver) => {
+                by.solver = solver;
+                self.done_by(run, by, None)
+            }
+            Wrong::OtherRun(solver, resolution) => {
+                (by.solver, by.resolution) = (solver, resolution);
+                self.done_by(run, by, None)
+            }
+        }
+    }
+
+    /// A run by a solver, of the scene as the case means it or with a change.
+    fn done_by(&self, run: &Run, by: By<'_>, wrong: Option<&dyn Fn(&mut Scene)>) -> Result<Done, RunError> {
+        let scene = Arc::new(self.scene(run)?);
+        if wrong.is_none()
+            && self.stranger.is_none()
+            && !self.live
+            && by.solver == run.solver
+            && by.defect.is_none()
+            && let Some(record) = self.solvers.stored(self.case, run, &scene)
+        {
+            return Ok(Done { scene, record: Arc::new(record?) });
+        }
+        let given = match wrong {
+            None => Arc::clone(&scene),
+            Some(change) => {
+                let mut given = (*scene).clone();
+                change(&mut given);
+                Arc::new(given)
+            }
+        };
+        let slot = self.slot(by, &given);
+        let record = slot.get_or_init(|| self.simulate(run, by, &given)).clone()?;
+        Ok(Done { scene, record })
+    }
+
+    /// The place of a run's record: one for each scene, solver and resolution.
+    fn slot(&self, by: By<'_>, scene: &Arc<Scene>) -> Slot {
+        let key = format!("{}|{:?}|{:?}", by.solver, by.defect, by.resolution);
+        let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        let of_solver = done.entry(key).or_default();
+        if let Some((_, slot)) = of_solver.iter().find(|(known, _)| known == scene) {
+            return Arc::clone(slot);
+        }
+        let slot = Slot::default();
+        of_solver.push((Arc::clone(scene), Arc::clone(&slot)));
+        slot
+    }
+
+    fn simulate(
+        &self,
+        run: &Run,
+        by: By<'_>,
+        scene: &Scene,
+    ) -> Result<Arc<grainbench_scene::record::Record>, RunError> {
+        let solver = match by.defect {
+            None => self.solver(by.solver),
+            Some(defect) => self.solvers.with_defect(by.solver, defect),
+        };
+        let solver = solver.ok_or_else(|| self.unusable(run, "there is no such solver".to_owned()))?;
+        solver.run(scene, by.resolution, &mut ()).map(Arc::new)
+    }
+
+    /// The scene of a run as the case means it.
+    ///
+    /// # Errors
+    /// When the scene file is wrong.
+    pub fn scene(&self, run: &Run) -> Result<Scene, RunError> {
+        let variant = self.case.variant(run.variant);
+        let mut scene = variant.map_err(|error| self.unusable(run, error.to_string()))?;
+        if let Some((_, change)) = &run.adjustment {
+            change(&mut scene);
+        }
+        Ok(scene)
+    }
+
+    /// The solver that does the runs of a name.
+    fn solver(&self, name: &str) -> Option<Arc<dyn Solver>> {
+        self.stranger.clone().or_else(|| self.solvers.find(name))
+    }
+
+    /// What rows call the solver of a run.
+    fn solver_name(&self, run: &Run) -> String {
+        self.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
+    }
+
+    fn unusable(&self, run: &Run, reason: String) -> RunError {
+        RunError::Unsupported { solver: self.solver_name(run), reason }
+    }
+
+    /// The row of a claim, from its runs.
+    fn conclude(&self, claim: &Claim, done: Result<Vec<Done>, RunError>) -> Verdict {
+        let first = claim.runs.first();
+        let row = Verdict {
+            variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
+            solver: first.map_or_else(String::new, |run| self.solver_name(run)),
+            resolution: claim.resolution(),
+            allowed: claim.tolerance.allowed,
+            tolerance: claim.tolerance.made,
+            because: claim.tolerance.because.clone(),
+            evidence: claim.evidence(),
+            source: claim.source.words(),
+            ..Verdict::open(self.case.name, claim.quantity.clone(), claim.unit)
+        };
+        match done {
+            Err(error) => row.ended(&error),
+            Ok(done) => {
+                let row = self.with_programs(row, &done);
+                match (claim.measure)(&done) {
+                    Err(Missing(what)) => row.left(Outcome::Fail, Missing(what).to_string()),
+                    Ok(found) => known(row.judged(&found), claim.standing(), &found),
+                }
+            }
+        }
+    }
+
+    /// The row says which programs it was compared with.
+    fn with_programs(&self, mut row: Verdict, done: &[Done]) -> Verdict {
+        for run in done.iter().map(|done| &done.record.provenance).filter(|run| self.solvers.is_program(&run.solver)) {
+            row.source.push_str(&format!(": {}", run.options.join(", ")));
+        }
+        row
+    }
+}
+
+/// A method's own documented error is amber for as long as it is there and finite.
+fn known(row: Verdict, standing: Standing, found: &Measured) -> Verdict {
+    match standing {
+        Standing::Known(reason) if row.outcome == Outcome::Fail && found.error().is_finite() => {
+            row.left(Outcome::Known, reason)
+        }
+        _ => row,
+    }
+}

@@ -1,0 +1,40 @@
+//! The solvers that are handed to the harness, which knows none itself.
+
+use crate::case::Case;
+use crate::run::Run;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Defect, RunError, Solver};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Solvers by name, and the runs of other programs that are kept.
+pub trait Solvers: Send + Sync {
+    /// The solver of a name.
+    fn find(&self, name: &str) -> Option<Arc<dyn Solver>>;
+
+    /// The same with a limit to the time that a run of another program may take.
+    fn find_within(&self, name: &str, _limit: Duration) -> Option<Arc<dyn Solver>> {
+        self.find(name)
+    }
+
+    /// The same with a defect, where it can have one.
+    fn with_defect(&self, _name: &str, _defect: Defect) -> Option<Arc<dyn Solver>> {
+        None
+    }
+
+    /// Whether a name is that of another program.
+    fn is_program(&self, _name: &str) -> bool {
+        false
+    }
+
+    /// The stored record of a run of another program; none where nothing is stored.
+    fn stored(&self, _case: &Case, _run: &Run, _scene: &Scene) -> Option<Result<Record, RunError>> {
+        None
+    }
+
+    /// Whether a record is stored of a run of another program.
+    fn is_stored(&self, _case: &Case, _run: &Run) -> bool {
+        false
+    }
+}

@@ -1,0 +1,65 @@
+//! What the method claims of itself, and what it owes less than solvers without a grid, setting by setting.
+
+use crate::options::Contact;
+use crate::solver::Mpm;
+use grainbench_scene::solver::Resolution;
+use grainbench_scene::terms::{Less, Terms};
+
+const ANGULAR: &str = "mass is lumped at nodes, and what a point hands on is at its node and not where the point is: angular \
+                       momentum is kept to second order in the cell";
+const GRID_AT_REST: &str = "the grid rests: a body that moves through it meets its cells otherwise, and is resolved by two \
+                            cells a radius here";
+const GRID_HAS_AXES: &str = "the grid has axes: a body that is turned stands otherwise on its cells, of which two make a radius \
+                             here";
+const SPINNING: &str = "a spinning body is held together by stresses, which swing; at two cells a radius, and as it turns its \
+                        points pass from cell to cell";
+const NO_AFFINE_PART: &str = "points hand on a velocity and no spin: what turns within a cell is lost to the grid, a seventh of it \
+                              at two cells a radius";
+const KINK: &str = "hat functions have a kink at nodes: a point on the face between two cells is given the slope of one side, \
+                    and its mirror image that of the other";
+const OWN_NORMALS: &str = "each body is stopped along a normal of its own, so that what two bodies give each other is not \
+                           opposite: the papers' contact loses momentum where more than two meet or surfaces are coarse";
+
+const fn less(property: &'static str, quantity: &'static str, at_most: f64, because: &'static str) -> Less {
+    Less { property, quantity, at_most, because }
+}
+
+/// With spins of points and quadratic splines.
+const BEST: &[Less] = &[
+    less("momentum", "angular", 1e-3, ANGULAR),
+    less("galilean-invariance", "", 0.1, GRID_AT_REST),
+    less("rotation-invariance", "", 0.05, GRID_HAS_AXES),
+    less("free-flight", "", 1e-3, SPINNING),
+];
+
+/// With hat functions.
+const HATS: &[Less] = &[
+    less("momentum", "angular", 0.1, ANGULAR),
+    less("galilean-invariance", "", 0.8, GRID_AT_REST),
+    less("mirror-invariance", "", 0.01, KINK),
+    less("rotation-invariance", "", 0.8, GRID_HAS_AXES),
+    less("free-flight", "", 0.2, NO_AFFINE_PART),
+];
+
+/// With hat functions and the contacts of the papers.
+const PAPERS: &[Less] = &[
+    less("momentum", "momentum", 0.6, OWN_NORMALS),
+    less("momentum", "angular", 1.0, OWN_NORMALS),
+    less("galilean-invariance", "", 0.8, GRID_AT_REST),
+    less("mirror-invariance", "", 0.3, KINK),
+    less("rotation-invariance", "", 0.8, GRID_HAS_AXES),
+    less("free-flight", "", 0.2, NO_AFFINE_PART),
+];
+
+impl Mpm {
+    /// What it claims of itself at two cells a radius: no order in the time step, for the grid's error is larger.
+    #[must_use]
+    pub fn terms(&self) -> Terms {
+        let less = match self.setting.contact {
+            _ if *self == Self::BEST => BEST,
+            Contact::Kinematic | Contact::Traction => PAPERS,
+            _ => HATS,
+        };
+        Terms::at(Resolution::grid(2.0, 2)).owing_less(less)
+    }
+}

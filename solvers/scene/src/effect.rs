@@ -1,0 +1,312 @@
+//! The one list of effects: what each is called, which key of a scene turns it on, how it is switched off, and a value with
+//! which it is compiled in and does nothing. What a scene calls for is derived from it and never typed beside it.
+
+use crate::body::Constitutive;
+use crate::motion::{Moment, Phase};
+use crate::scene::{ContactLaw, Scene};
+use crate::solver::Method;
+use nalgebra::Vector3;
+
+/// An effect that a scene may call for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Effect {
+    /// Tangential forces, and the rotation that they drive.
+    Friction,
+    /// Strength of a contact without load.
+    Cohesion,
+    /// Hertz contacts in place of linear springs: another law, which is not switched off.
+    Hertz,
+    /// Dashpots at contacts, a coefficient of restitution among them.
+    ContactDamping,
+    /// Normal dashpots that give a coefficient of restitution: a kind of contact damping, switched off with it.
+    Restitution,
+    /// Moments against rolling.
+    RollingResistance,
+    /// Mass-proportional damping of every grain.
+    GlobalDamping,
+    /// Gravity.
+    Gravity,
+    /// Periodic axes.
+    PeriodicAxes,
+    /// Walls, or driven grains, that move.
+    MovingWalls,
+    /// Material that yields; of deformable grains alone.
+    Plasticity,
+}
+
+impl Effect {
+    /// Every one.
+    pub const ALL: [Self; 11] = [
+        Self::Friction,
+        Self::Cohesion,
+        Self::Hertz,
+        Self::ContactDamping,
+        Self::Restitution,
+        Self::RollingResistance,
+        Self::GlobalDamping,
+        Self::Gravity,
+        Self::PeriodicAxes,
+        Self::MovingWalls,
+        Self::Plasticity,
+    ];
+
+    /// Those that can be switched off by themselves.
+    pub fn switches() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|effect| !matches!(effect, Self::Hertz | Self::Restitution))
+    }
+
+    /// Its name.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Friction => "friction and rotation",
+            Self::Cohesion => "cohesion",
+            Self::Hertz => "Hertz contacts",
+            Self::ContactDamping => "contact damping",
+            Self::Restitution => "restitution",
+            Self::RollingResistance => "rolling resistance",
+            Self::GlobalDamping => "global damping",
+            Self::Gravity => "gravity",
+            Self::PeriodicAxes => "periodic axes",
+            Self::MovingWalls => "moving walls",
+            Self::Plasticity => "plasticity",
+        }
+    }
+
+    /// What a negative control says that leaves it out.
+    #[must_use]
+    pub const fn absence(self) -> &'static str {
+        match self {
+            Self::Friction => "without friction and rotation",
+            Self::Cohesion => "without cohesion",
+            Self::Hertz => "with linear springs",
+            Self::ContactDamping => "without contact damping",
+            Self::Restitution => "without restitution",
+            Self::RollingResistance => "without rolling resistance",
+            Self::GlobalDamping => "without global damping",
+            Self::Gravity => "without gravity",
+            Self::PeriodicAxes => "without periodic axes",
+            Self::MovingWalls => "with walls that stand still",
+            Self::Plasticity => "without plasticity",
+        }
+    }
+
+    /// The key of the scene that turned it on, with its value; none where it is off.
+    #[must_use]
+    pub fn key(self, scene: &Scene) -> Option<String> {
+        match self {
+            Self::Friction => of_law(scene, "friction", |law| law.friction),
+            Self::Cohesion => of_law(scene, "cohesion", |law| law.cohesion),
+            Self::Hertz => of_law(scene, "youngs_modulus", |law| if law.is_hertz() { law.effective_modulus } else { 0.0 }),
+            Self::Restitution => of_law(scene, "restitution", |law| law.damping_ratio),
+            Self::RollingResistance => of_law(scene, "rolling_friction", |law| law.rolling_friction),
+            Self::ContactDamping => [
+                ("normal_damping", (|law| law.normal_damping) as fn(&ContactLaw) -> f64),
+                ("stiffness_damping", |law| law.stiffness_damping),
+                ("restitution", |law| law.damping_ratio),
+                ("tangential_damping", |law| if law.has_friction() { law.tangential_damping } else { 0.0 }),
+            ]
+            .into_iter()
+            .find_map(|(key, value)| of_law(scene, key, value)),
+            Self::GlobalDamping => {
+                (scene.global_damping != 0.0).then(|| format!("global_damping = {}", scene.global_damping))
+            }
+            Self::Gravity => (scene.gravity != Vector3::zeros()).then(|| {
+                let gravity: Vec<String> = scene.gravity.iter().map(|part| format!("{part:.4}")).collect();
+                format!("gravity = [{}]", gravity[..scene.dimension.count()].join(", "))
+            }),
+            Self::PeriodicAxes => scene.is_periodic().then(|| "domain.periodic".to_owned()),
+            Self::MovingWalls => {
+                let wall = scene.walls.iter().find(|wall| wall.motion.is_moving());
+                let driven = || scene.driven.iter().find(|driven| driven.velocity.norm() > 0.0);
+                let of_wall = wall.map(|wall| format!("walls.{}.motion", wall.name));
+                of_wall.or_else(|| Some(format!("driven.{}.velocity", driven()?.name)))
+            }
+            Self::Plasticity => {
+                scene.deformable.iter().zip(&scene.materials).find_map(|(material, name)| {
+                    match material.as_ref()?.constitutive {
+                        Constitutive::VonMises { yield_stress, .. } => {
+                            Some(format!("materials.{name}.yield_stress = {yield_stress}"))
+                        }
+                        _ => None,
+                    }
+                })
+            }
+        }
+    }
+
+    /// Whether a solver of this kind knows it: only deformable grains yield.
+    #[must_use]
+    pub fn concerns(self, method: Method) -> bool {
+        self != Self::Plasticity || method == Method::Grid
+    }
+
+    /// The kind of solver that it is tried with where it is absent.
+    #[must_use]
+    pub const fn tried_with(self) -> Method {
+        match self {
+            Self::Plasticity => Method::Grid,
+            _ => Method::Dem,
+        }
+    }
+
+    /// Whether the scene calls for it.
+    #[must_use]
+    pub fn is_on(self, scene: &Scene) -> bool {
+        self.key(scene).is_some()
+    }
+
+    /// Switches it off.
+    pub fn switch_off(self, scene: &mut Scene) {
+        match self {
+            Self::Friction => scene.change_laws(|law| {
+                (law.friction, law.cohesion, law.rolling_friction) = (0.0, 0.0, 0.0);
+            }),
+            Self::Cohesion => scene.change_laws(|law| law.cohesion = 0.0),
+            // Another law is no switch.
+            Self::Hertz => {}
+            Self::Restitution => scene.change_laws(|law| law.damping_ratio = 0.0),
+            Self::RollingResistance => scene.change_laws(|law| law.rolling_friction = 0.0),
+            Self::ContactDamping => scene.change_laws(|law| {
+                (law.normal_damping, law.stiffness_damping) = (0.0, 0.0);
+                (law.tangential_damping, law.damping_ratio) = (0.0, 0.0);
+            }),
+            Self::GlobalDamping => scene.global_damping = 0.0,
+            Self::Gravity => scene.gravity = Vector3::zeros(),
+            Self::PeriodicAxes => {
+                if let Some(domain) = &mut scene.domain {
+                    domain.periodic = [false; 3];
+                }
+            }
+            Self::MovingWalls => {
+                scene.walls.iter_mut().for_each(|wall| wall.motion.phases.clear());
+                for driven in &mut scene.driven {
+                    driven.velocity = Vector3::zeros();
+                    driven.grains.iter().for_each(|&grain| scene.grains[grain].velocity = Vector3::zeros());
+                }
+            }
+            Self::Plasticity => {
+                for material in scene.deformable.iter_mut().flatten() {
+                    if matches!(material.constitutive, Constitutive::VonMises { .. }) {
+                        material.constitutive = Constitutive::Hypoelastic;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Switches it on with a value that does nothing: a law between grains of a material that nobody has, a rate that is lost
+    /// when it is added to one, gravity that a step shorter than half a second rounds to nothing, a motion that starts after
+    /// the end. Whether there is such a value.
+    #[must_use]
+    pub fn switch_on_idly(self, scene: &mut Scene) -> bool {
+        match self {
+            Self::Friction => idle_law(scene, |law| {
+                law.friction = 0.5;
+                law.tangential_stiffness = law.normal_stiffness;
+            }),
+            Self::Cohesion => idle_law(scene, |law| {
+                law.cohesion = 1.0;
+                law.tangential_stiffness = law.normal_stiffness;
+            }),
+            Self::RollingResistance => idle_law(scene, |law| {
+                law.friction = 0.5;
+                law.tangential_stiffness = law.normal_stiffness;
+                law.rolling_friction = 0.1;
+            }),
+            Self::ContactDamping => idle_law(scene, |law| law.normal_damping = 1.0),
+            Self::GlobalDamping => {
+                scene.global_damping = f64::MIN_POSITIVE;
+                true
+            }
+            Self::Gravity => {
+                scene.gravity[0] = SMALLEST;
+                true
+            }
+            Self::MovingWalls => match scene.walls.first_mut() {
+                Some(wall) => {
+                    // It would move, long after the run.
+                    let velocity = Vector3::new(1.0, 0.0, 0.0);
+                    let (start, stop) = (Moment::Seconds(f64::MAX), Moment::Never);
+                    wall.motion.phases.push(Phase { velocity, spin: Vector3::zeros(), start, stop });
+                    true
+                }
+                None => false,
+            },
+            // A yield stress that nothing reaches.
+            Self::Plasticity => {
+                let elastic = scene
+                    .deformable
+                    .iter_mut()
+                    .flatten()
+                    .filter(|material| material.constitutive == Constitutive::Hypoelastic);
+                let never = Constitutive::VonMises { yield_stress: f64::MAX, hardening_modulus: 0.0 };
+                elastic.map(|material| material.constitutive = never).count() > 0
+            }
+            // A periodic box changes where grains are, however large it is; another law is another answer.
+            Self::PeriodicAxes | Self::Hertz | Self::Restitution => false,
+        }
+    }
+}
+
+/// The smallest positive number (m/s² where it is gravity): times a step below half a second it is zero.
+const SMALLEST: f64 = f64::from_bits(1);
+
+/// The first law in which a value is not zero.
+fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Option<String> {
+    let count = scene.materials.len();
+    scene.laws.iter().enumerate().find_map(|(at, law)| {
+        let value = value(law.as_ref()?);
+        let (a, b) = (&scene.materials[at / count], &scene.materials[at % count]);
+        (value != 0.0).then(|| format!("contacts of {a} and {b}: {key} = {value}"))
+    })
+}
+
+/// Adds a material that no grain has, with a law of its own.
+fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
+    let Some(mut law) = scene.laws.iter().flatten().next().copied() else { return false };
+    change(&mut law);
+    let count = scene.materials.len();
+    let mut laws = vec![None; (count + 1) * (count + 1)];
+    for a in 0..count {
+        for b in 0..count {
+            laws[a * (count + 1) + b] = scene.laws[a * count + b];
+        }
+    }
+    laws[(count + 1) * (count + 1) - 1] = Some(law);
+    scene.laws = laws;
+    scene.materials.push("idle".to_owned());
+    if !scene.deformable.is_empty() {
+        scene.deformable.push(None);
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use crate::source::SceneSource;
+    use std::path::Path;
+
+    /// A value that does nothing turns its effect on, or it would be tried with the kernel that lacks it.
+    #[test]
+    fn what_is_switched_on_idly_is_on() {
+        let text = "title = 'two discs'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 1.0\n\
+                    contacts.all = { between = ['disc', 'disc'], normal_stiffness = 1.0 }\n\
+                    grains.a = { material = 'disc', radius = 1.0, position = [0.0, 1.0] }\n\
+                    walls.floor = { material = 'disc', plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }\n";
+        let source = SceneSource::from_text("two-discs", Path::new(""), text);
+        let scene = source.scene(&|_| Err("no data files here".to_owned())).unwrap();
+        for effect in Effect::ALL {
+            let mut idle = scene.clone();
+            assert!(!effect.is_on(&scene), "{effect:?}");
+            if effect.switch_on_idly(&mut idle) {
+                assert!(effect.is_on(&idle), "{effect:?}");
+                effect.switch_off(&mut idle);
+                assert!(!effect.is_on(&idle), "{effect:?}");
+            }
+        }
+    }
+}
