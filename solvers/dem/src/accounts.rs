@@ -1,18 +1,17 @@
-//! What a run that asks for its energy budget adds up from step to step.
+//! The energy budget of a run: what it adds up from step to step.
+//!
+//! Over a step a driven grain or a wall moves by V Δt while the force on it goes from F to F': its work is −½ (F + F')·V Δt, which
+//! is to second order what positions and velocities half a step apart take from it. The work of friction is that of
+//! [`Tangential::rubbed`](crate::contact::tangential::Tangential::rubbed).
 
-use crate::contact::normal::Normal;
-use crate::contact::rolling::Rolling;
-use crate::contact::tangential::Tangential;
-use crate::simulation::Kernel;
 use grainbench_scene::budget::Budget;
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::GrainState;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::space::Space;
+use grainbench_scene::scene::{Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Sums since the start, and what the next step adds to them.
+/// Sums since the start, and the forces from which the next step adds to them.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Accounts {
     /// Work of walls and driven grains (J).
@@ -25,7 +24,7 @@ pub(crate) struct Accounts {
     forces: Vec<Vector3<f64>>,
 }
 
-/// Why the budget of a scene cannot be told, if it cannot.
+/// Why the energy budget of a scene cannot be computed, if it cannot.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let effects = Effects::of(scene);
     let lossy = effects.contact_damping || effects.global_damping || effects.rolling_resistance;
@@ -40,48 +39,48 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     Some(format!("a probe asks for its energy budget, and what {what} take or give is not added up"))
 }
 
-impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
-    /// Force of the others on each group of driven grains (N).
-    pub(crate) fn forces_on_driven(&self) -> Vec<Vector3<f64>> {
-        let of = |&grain: &usize| S::embed(self.grains.force[self.grains.slot[grain] as usize]);
-        self.scene.driven.iter().map(|driven| driven.grains.iter().map(of).sum()).collect()
-    }
+/// What a step did, from the forces that were found at its end.
+pub(crate) struct Step {
+    /// Forces on driven groups, then on walls (N).
+    pub(crate) forces: Vec<Vector3<f64>>,
+    /// Velocities of driven groups, then of walls (m/s).
+    pub(crate) velocities: Vec<Vector3<f64>>,
+    /// Gravity g (m/s²).
+    pub(crate) gravity: Vector3<f64>,
+    /// Mass of the grains that are not driven (kg).
+    pub(crate) free_mass: f64,
+    /// Work of friction (J).
+    pub(crate) friction: f64,
+    /// Time step Δt (s).
+    pub(crate) time_step: f64,
+}
 
-    /// Adds up what the step did whose forces have just been found.
-    ///
-    /// Over a step a driven grain moves by V Δt while the force on it goes from F to F': its work is −½ (F + F')·V Δt, which
-    /// is to second order what positions and velocities half a step apart take from it. Friction: see
-    /// [`Tangential::rubbed`].
-    pub(crate) fn account(&mut self) {
-        let walls = self.walls.iter().map(|wall| S::embed(wall.force));
-        let now: Vec<Vector3<f64>> = self.forces_on_driven().into_iter().chain(walls).collect();
-        let driven = self.scene.driven.iter().map(|driven| driven.velocity);
-        let velocities = driven.chain(self.walls.iter().map(|wall| wall.velocity()));
-        let accounts = &mut self.accounts;
-        for ((before, now), velocity) in accounts.forces.iter().zip(&now).zip(velocities) {
-            let impulse = (before + now) * (-0.5 * self.time_step);
-            accounts.impulse += impulse;
-            accounts.work += impulse.dot(&velocity);
+impl Accounts {
+    /// Adds up what a step did.
+    pub(crate) fn add(&mut self, step: Step) {
+        for ((before, now), velocity) in self.forces.iter().zip(&step.forces).zip(&step.velocities) {
+            let impulse = (before + now) * (-0.5 * step.time_step);
+            self.impulse += impulse;
+            self.work += impulse.dot(velocity);
         }
-        accounts.impulse += self.scene.gravity * (self.free_mass * self.time_step);
-        accounts.friction += self.seen.iter().map(|seen| seen.rubbed).sum::<f64>();
-        accounts.forces = now;
+        self.impulse += step.gravity * (step.free_mass * step.time_step);
+        self.friction += step.friction;
+        self.forces = step.forces;
     }
 
-    /// The budget at the time of the positions.
-    pub(crate) fn budget(&self, grains: &[GrainState]) -> Budget {
-        let scene = &self.scene;
-        let kinetic = |(state, grain): (&GrainState, &grainbench_scene::scene::Grain)| {
+    /// The budget at the time of the positions, from the grains then and the energy in the springs (J).
+    pub(crate) fn budget(&self, scene: &Scene, grains: &[GrainState], springs: f64) -> Budget {
+        let kinetic = |(state, grain): (&GrainState, &Grain)| {
             0.5 * (state.mass * state.velocity.norm_squared() + grain.inertia * state.spin.norm_squared())
         };
         Budget {
             kinetic: grains.iter().zip(&scene.grains).map(kinetic).sum(),
-            springs: self.seen.iter().map(|seen| seen.elastic_energy).sum(),
+            springs,
             gravitational: grains.iter().map(|grain| -grain.mass * scene.gravity.dot(&grain.position)).sum(),
-            work: self.accounts.work,
-            friction: self.accounts.friction,
+            work: self.work,
+            friction: self.friction,
             momentum: grains.iter().map(|grain| grain.velocity * grain.mass).sum(),
-            impulse: self.accounts.impulse,
+            impulse: self.impulse,
             ..Budget::default()
         }
     }

@@ -1,11 +1,12 @@
 //! The grains in memory: arrays in the order of the cells they lie in, so that neighbours in space are neighbours there.
 
-use crate::contact::tangential::Rotation;
+use crate::rotation::Rotation;
 use grainbench_scene::scene::{Grain, Scene};
 use grainbench_scene::space::Space;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Where a grain is: read for every pair that is tested.
+/// Position (m) and radius (m) of a grain: what is read for every pair that is tested.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Place<S: Space> {
@@ -13,7 +14,7 @@ pub(crate) struct Place<S: Space> {
     pub(crate) radius: f64,
 }
 
-/// How it moves: read for every pair that touches.
+/// Velocity (m/s) and inverse mass (1/kg) of a grain: what is read for every pair that touches.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Movement<S: Space> {
@@ -21,15 +22,18 @@ pub(crate) struct Movement<S: Space> {
     pub(crate) inverse_mass: f64,
 }
 
-/// All grains. Index: slot; slots change when the grains are sorted, ids never.
+/// All grains, by slot. The slot of a grain changes when the grains are sorted, its place in the scene never.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Grains<S: Space, R: Rotation<S>> {
     pub(crate) place: Vec<Place<S>>,
     pub(crate) movement: Vec<Movement<S>>,
     pub(crate) rotation: Vec<R>,
+    /// Force F (N), the sum over contacts; the weight is not in it.
     pub(crate) force: Vec<S::Vector>,
+    /// Torque M (N m), the sum over contacts.
     pub(crate) torque: Vec<R::Torque>,
+    /// Number of the material.
     pub(crate) material: Vec<u16>,
     /// Place of the grain in the scene.
     pub(crate) id: Vec<u32>,
@@ -38,6 +42,7 @@ pub(crate) struct Grains<S: Space, R: Rotation<S>> {
 }
 
 impl<S: Space, R: Rotation<S>> Grains<S, R> {
+    /// The grains as the scene has them at the start, without forces.
     pub(crate) fn new(scene: &Scene) -> Self {
         let all = &scene.grains;
         let place = |grain: &Grain| Place { position: S::restrict(grain.position), radius: grain.radius };
@@ -56,8 +61,14 @@ impl<S: Space, R: Rotation<S>> Grains<S, R> {
         }
     }
 
+    /// Number of grains.
     pub(crate) fn len(&self) -> usize {
         self.place.len()
+    }
+
+    /// Force on a group of grains together (N); `group` holds their places in the scene.
+    pub(crate) fn force_on(&self, group: &[usize]) -> Vector3<f64> {
+        group.iter().map(|&id| S::embed(self.force[self.slot[id] as usize])).sum()
     }
 
     /// Sorts: slot `k` gets what was in slot `order[k]`.

@@ -1,25 +1,25 @@
-//! Pairs that may touch: a list with a skin, rebuilt only when something has moved half of the skin.
+//! The neighbour list: pairs that may touch, with a skin, built anew only when something has moved by half of the skin.
 //!
-//! The list is in rows, one for each grain, each pair once; the history of a contact stands beside its pair. Pairs
-//! across a periodic face stand in a list of their own with their shift, so that the other loop knows nothing of
+//! The list has a row for each grain, and each pair is in it once. The history of a contact stands beside its pair. Pairs
+//! across a periodic face have a list of their own, with their shift, so that the loop over the others knows nothing of
 //! periodic axes.
 
 use crate::cells::Cells;
-use crate::contact::tangential::Rotation;
 use crate::grains::{Grains, Place};
+use crate::rotation::Rotation;
 use grainbench_scene::scene::Domain;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Rows of pairs.
+/// Pairs of grains, in rows: a row holds the partners of one grain.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Pairs<H> {
-    /// First pair of every row, and the number of pairs at the end.
+    /// Number of the first pair of every row, and of all pairs at the end.
     pub(crate) start: Vec<u32>,
-    /// Slot of the partner.
+    /// Slot of the partner of each pair.
     pub(crate) partner: Vec<u32>,
-    /// History of the contact, the default while there is none.
+    /// History of the contact of each pair, the default while it does not touch.
     pub(crate) history: Vec<H>,
 }
 
@@ -49,15 +49,15 @@ impl<H: Copy + Default> Pairs<H> {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound(serialize = "H: Serialize", deserialize = "H: Deserialize<'de>"))]
 pub(crate) struct Neighbours<S: Space, H> {
-    /// Pairs that are near as they stand.
+    /// Pairs that are near in the domain itself.
     pub(crate) near: Pairs<H>,
     /// Pairs that are near across a periodic face.
     pub(crate) across: Pairs<H>,
-    /// For each pair across: what is added to the position of the row's grain (m).
+    /// Shift of each pair across a periodic face: what is added to the position of the first grain (m).
     pub(crate) shift: Vec<S::Vector>,
-    /// Positions when the list was built (m).
+    /// Positions of the grains when the list was built (m).
     pub(crate) reference: Vec<S::Vector>,
-    /// Skin (m).
+    /// Skin: pairs are listed whose surfaces are nearer than this (m).
     pub(crate) skin: f64,
     /// How often the list was built.
     pub(crate) builds: u64,
@@ -68,8 +68,8 @@ impl<S: Space, H: Copy + Default> Neighbours<S, H> {
         Self { near: Pairs::empty(), across: Pairs::empty(), shift: Vec::new(), reference: Vec::new(), skin, builds: 0 }
     }
 
-    /// Wraps positions into the domain, sorts the grains and lists the pairs again; contacts keep their history.
-    /// `exchange` gives a history with the roles of both grains exchanged.
+    /// Wraps the positions into the domain, sorts the grains and lists the pairs anew. Contacts keep their history;
+    /// `exchange` gives a history with the roles of first and second grain exchanged.
     pub(crate) fn rebuild<R: Rotation<S>>(
         &mut self,
         grains: &mut Grains<S, R>,
@@ -117,7 +117,7 @@ impl<S: Space, H: Copy + Default> Neighbours<S, H> {
     }
 }
 
-/// The image of a position that lies inside the domain.
+/// The periodic image of a position (m) that lies inside the domain.
 pub(crate) fn wrapped<S: Space>(position: S::Vector, domain: &Domain) -> S::Vector {
     let mut full = S::embed(position);
     for axis in 0..S::DIMENSION {
@@ -129,12 +129,13 @@ pub(crate) fn wrapped<S: Space>(position: S::Vector, domain: &Domain) -> S::Vect
     S::restrict(full)
 }
 
+/// Whether a grain's centre is nearer to the position `a` than `reach` (m).
 fn is_near<S: Space>(a: S::Vector, b: &Place<S>, reach: f64) -> bool {
     let between = b.position - a;
     S::dot(between, between) < reach * reach
 }
 
-/// Every pair of one row of cells with the rows after it, once.
+/// Every pair that is near in the domain itself, once: each grain with those after it in its own cells and in the next.
 fn near_pairs<S: Space, H: Copy + Default>(place: &[Place<S>], cells: &Cells, skin: f64) -> Pairs<H> {
     let mut pairs = Pairs::empty();
     for (slot, grain) in place.iter().enumerate() {
@@ -178,6 +179,7 @@ fn half_of_the_shifts(domain: &Domain) -> Vec<Vector3<f64>> {
     shifts
 }
 
+/// Every pair that is near across a periodic face, once, with its shift (m).
 fn pairs_across<S: Space, H: Copy + Default>(
     place: &[Place<S>],
     cells: &Cells,
@@ -217,6 +219,7 @@ fn pairs_across<S: Space, H: Copy + Default>(
     (pairs, shift_of)
 }
 
+/// Lowest and highest coordinates of the grains' centres (m).
 fn bounds<S: Space>(place: &[Place<S>]) -> (Vector3<f64>, Vector3<f64>) {
     let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     place.iter().map(|grain| S::embed(grain.position)).fold(start, |(low, high), at| (low.inf(&at), high.sup(&at)))
@@ -225,6 +228,7 @@ fn bounds<S: Space>(place: &[Place<S>]) -> (Vector3<f64>, Vector3<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rotation::Rigid;
     use grainbench_scene::scene::Domain;
     use grainbench_scene::space::{Plane, Solid};
     use std::collections::BTreeSet;
@@ -243,10 +247,10 @@ mod tests {
         let (size, radius, skin) = (10.0, 0.5, 0.3);
         let points = scatter(300, S::DIMENSION, size);
         let domain = Domain { low: Vector3::zeros(), high: Vector3::repeat(size), periodic };
-        let mut grains: Grains<S, crate::contact::tangential::Rigid> = Grains {
+        let mut grains: Grains<S, Rigid> = Grains {
             place: points.iter().map(|&at| Place { position: S::restrict(at), radius }).collect(),
             movement: vec![crate::grains::Movement { velocity: S::ORIGIN, inverse_mass: 1.0 }; points.len()],
-            rotation: vec![crate::contact::tangential::Rigid; points.len()],
+            rotation: vec![Rigid; points.len()],
             force: vec![S::ORIGIN; points.len()],
             torque: vec![Default::default(); points.len()],
             material: vec![0; points.len()],

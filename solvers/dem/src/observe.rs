@@ -1,15 +1,17 @@
-//! What a simulation shows at a step: grains with velocities at that very time, contacts, walls, energies.
+//! What a simulation shows at a step: grains with their velocities at the time of the positions, contacts, walls and energies.
 
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
-use crate::contact::tangential::{Rotation, Tangential};
+use crate::contact::tangential::Tangential;
 use crate::neighbours::wrapped;
+use crate::rotation::Rotation;
 use crate::simulation::Kernel;
 use grainbench_scene::record::{self, ContactState, GrainState, Look, Snapshot, WallState};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
+/// The state at this step: grains, contacts, walls and energies.
 pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel: &Kernel<S, N, T, R>) -> Look {
     let scene = &kernel.scene;
     let mut grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(kernel, id)).collect();
@@ -18,7 +20,8 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
             (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
         }
     }
-    let budget = kernel.accounting.then(|| kernel.budget(&grains));
+    let elastic_energy = kernel.seen.iter().map(|seen| seen.elastic_energy).sum();
+    let budget = kernel.accounting.then(|| kernel.accounts.budget(scene, &grains, elastic_energy));
     let mut contacts: Vec<ContactState> = kernel
         .seen
         .iter()
@@ -44,7 +47,7 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
         .collect();
     let snapshot = Snapshot {
         step: kernel.step,
-        time: kernel.step as f64 * kernel.time_step,
+        time: kernel.step as f64 * kernel.motion.time_step,
         bounds: record::bounds(scene, &grains),
         periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
         grains,
@@ -53,11 +56,10 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
         bodies: Vec::new(),
         points: Vec::new(),
     };
-    let elastic_energy = kernel.seen.iter().map(|seen| seen.elastic_energy).sum();
     Look { driven: kernel.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
 }
 
-/// A grain with its velocity brought from half a step before to this step.
+/// A grain, with its velocity (m/s) and spin (rad/s) brought from half a step before to the time of the positions.
 fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     kernel: &Kernel<S, N, T, R>,
     id: usize,
@@ -65,7 +67,7 @@ fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     let (scene, grains) = (&kernel.scene, &kernel.grains);
     let slot = grains.slot[id] as usize;
     let start = &scene.grains[id];
-    let half = 0.5 * kernel.time_step;
+    let half = 0.5 * kernel.motion.time_step;
     let drag = 1.0 / (1.0 + scene.global_damping * half);
     let movement = &grains.movement[slot];
     let acceleration = S::embed(grains.force[slot]) * movement.inverse_mass + scene.gravity;
@@ -75,14 +77,14 @@ fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
             let acceleration = rotation.acceleration(grains.torque[slot]);
             S::embed_spin(spin * drag + acceleration * (half * drag))
         }
-        None => free_spin(scene, start.spin, kernel.time_step, kernel.step),
+        None => free_spin(scene, start.spin, kernel.motion.time_step, kernel.step),
     };
     let domain = scene.domain.filter(|_| scene.is_periodic());
     let position = grains.place[slot].position;
     let angle = if rotation.spin().is_some() {
         rotation.angle()
     } else {
-        start.spin.z * kernel.step as f64 * kernel.time_step * f64::from(u8::from(S::DIMENSION == 2))
+        start.spin.z * kernel.step as f64 * kernel.motion.time_step * f64::from(u8::from(S::DIMENSION == 2))
     };
     GrainState {
         position: S::embed(domain.map_or(position, |domain| wrapped::<S>(position, &domain))),
@@ -95,7 +97,8 @@ fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     }
 }
 
-/// The spin of a grain on which nothing exerts a torque: only global damping acts, once a step (eq. 36).
+/// The angular velocity (rad/s) of a grain on which nothing exerts a torque: only global damping acts, once a step (Cundall &
+/// Strack 1979, eq. 36).
 fn free_spin(scene: &Scene, start: Vector3<f64>, time_step: f64, step: u64) -> Vector3<f64> {
     let half = 0.5 * scene.global_damping * time_step;
     start * ((1.0 - half) / (1.0 + half)).powf(step as f64)

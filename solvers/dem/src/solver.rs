@@ -1,11 +1,12 @@
-//! The discrete element method as a solver: picks the kernel once, at the edge, and keeps the record.
+//! The discrete element method as a solver: it picks the kernel once, before the first step, and keeps the record.
 
 use crate::contact::Options;
 use crate::contact::normal::{Hertz, HertzDashpot, Spring, SpringDashpot, SpringRestitution};
 use crate::contact::rolling::{ElasticPlastic, FreeRolling};
 use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
 use crate::convention::{Convention, CoulombCap, History};
-use crate::simulation::{Kernel, Simulation};
+use crate::edge::Simulation;
+use crate::simulation::Kernel;
 use crate::stability::damped_step;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::drive::{Course, Driven, Stepper};
@@ -42,7 +43,7 @@ impl Dem {
         Self { defect: Some(defect), ..self }
     }
 
-    /// Sets up a scene with a time step (s), for callers who want to step themselves.
+    /// Sets up a scene with a time step (s), for callers who advance the simulation themselves.
     ///
     /// # Errors
     /// When the scene cannot be expressed or is broken from the start.
@@ -106,13 +107,13 @@ impl Dem {
         Ok(simulation)
     }
 
-    /// Which run a checkpoint belongs to.
+    /// The run that a checkpoint belongs to.
     fn identity(&self, scene: &Scene, time_step: f64, steps: u64, layout: &str) -> RunIdentity {
         let solver = format!("{} ({})", self.name(), self.convention.words().join(", "));
         RunIdentity::new(solver, scene, time_step, steps, layout)
     }
 
-    /// What grains that are rigid, on springs, cannot express.
+    /// Refuses a scene that rigid grains on springs cannot express.
     fn refuse(&self, scene: &Scene) -> Result<(), RunError> {
         let unsupported = |reason: String| Err(RunError::Unsupported { solver: self.name(), reason });
         if let Some(what) = scene.needs_deformable() {
@@ -127,8 +128,8 @@ impl Dem {
         Ok(())
     }
 
-    /// A dashpot near or above critical damping takes energy in at steps that springs alone would bear, and the run would go
-    /// on as if nothing were wrong.
+    /// Refuses a time step (s) at which springs alone are stable and dashpots are not. A dashpot near or above critical damping
+    /// then brings energy in, and the run would go on as if nothing were wrong.
     fn refuse_lagging_dashpots(&self, scene: &Scene, time_step: f64) -> Result<(), RunError> {
         let (damped, undamped) = damped_step(scene);
         if time_step > damped && time_step <= undamped {
@@ -170,7 +171,7 @@ impl Solver for Dem {
 }
 
 impl Dem {
-    /// Runs from the start or from a checkpoint to the end.
+    /// Runs a scene to its end, from the start or from a checkpoint.
     fn go(
         &self,
         scene: &Scene,
@@ -243,5 +244,5 @@ impl Stepper for Running {
     }
 }
 
-/// Steps after which a watcher hears of progress at the latest.
+/// Largest number of steps between two reports of progress.
 const STEPS_BETWEEN_PROGRESS: u64 = 20_000;

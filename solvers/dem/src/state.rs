@@ -1,14 +1,15 @@
-//! What a simulation must remember between two steps, to go on to the same bits.
+//! What a simulation must remember between two steps so that it goes on to the same bits.
 //!
-//! Not the neighbour list's pairs alone but their order too: sums of forces depend on it in their last bit.
+//! The order of the pairs in the neighbour list is stored too: the sums of forces depend on it in their last bit.
 
 use crate::accounts::Accounts;
+use crate::contact::chain::Memory;
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
 use crate::grains::Grains;
 use crate::neighbours::Neighbours;
-use crate::simulation::{Kernel, Memory};
+use crate::simulation::Kernel;
 use crate::walls::WallMemory;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::record::Cost;
@@ -16,6 +17,7 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
 
+/// What is stored. The order of the fields is that of the bytes in a checkpoint.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 struct State<S: Space, T: Tangential<S>, R: Rolling<S>> {
@@ -30,7 +32,7 @@ struct State<S: Space, T: Tangential<S>, R: Rolling<S>> {
 }
 
 impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
-    /// The state after the last step, with the record so far.
+    /// A checkpoint of the state after the last step, with the record so far.
     pub(crate) fn kept(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
         let state = State::<S, T, R> {
             grains: self.grains.clone(),
@@ -45,7 +47,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         Checkpoint::keep(identity, self.step, &state)
     }
 
-    /// Goes to a state that was kept; the record so far.
+    /// Goes to the state of a checkpoint, and gives the record so far.
     pub(crate) fn recalled(
         &mut self,
         identity: &RunIdentity,

@@ -1,10 +1,15 @@
 //! The contact law as a chain of stages: normal, then tangential, then rolling.
 //!
 //! A stage that a scene does not call for is another type, of zero size, so that its branch, its memory and its
-//! arithmetic are not compiled into the loop over contacts. Adding a stage touches one file here.
+//! arithmetic are not compiled into the loop over contacts. The stages stand in `normal`, `tangential` and `rolling`, each with its
+//! laws; `chain` takes one contact through them, and `pair` and `at_wall` make a contact ready for it.
 
+pub(crate) mod at_wall;
+pub(crate) mod chain;
 pub mod normal;
+pub(crate) mod pair;
 pub mod rolling;
+pub(crate) mod seen;
 pub mod tangential;
 
 use crate::convention::{CapNormal, Convention, Tension, TorqueArm, WallRolling};
@@ -16,12 +21,12 @@ use grainbench_scene::space::Space;
 pub struct Touch<'a, S: Space> {
     /// The law between their materials.
     pub law: &'a ContactLaw,
-    /// A vector from the first body towards the second, of any length: centre to centre, or `e` at a wall (m).
+    /// Vector from the first centre to the second (m); at a wall the unit vector `e` from the centre to the wall.
     pub between: S::Vector,
-    /// One over its length (1/m).
+    /// The inverse of the length of `between` (1/m).
     pub inverse_distance: f64,
-    /// Unit vector `e = between · inverse_distance`. The normal force is taken along `between`, so that nothing needs `e` where no
-    /// dashpot and no tangential stage read it.
+    /// Unit vector `e = between · inverse_distance`. Only dashpots, the tangential and the rolling stage read it: the normal force is
+    /// taken along `between`.
     pub normal: S::Vector,
     /// Overlap δ (m), positive.
     pub overlap: f64,

@@ -1,138 +1,21 @@
-//! Second stage: the force along the tangent, with what the contact and its grains must remember for it.
+//! Second stage: the force along the tangent, a spring and a dashpot under Coulomb's limit.
+//!
+//! The spring's stretch s (m) is what the contact remembers. It grows by the slip velocity times the time step, and it is carried
+//! along with a contact that turns ([`Carrying`]). Coulomb's limit cuts it back ([`Cap`]).
 
 use super::Touch;
 use super::normal::{Normal, NormalForce};
+use crate::rotation::{Rigid, Rotating, Rotation};
 use grainbench_scene::space::{Linear, Space};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-/// The rotation of a grain, or its absence.
-pub trait Rotation<S: Space>: Copy + Debug + Send + Serialize + DeserializeOwned {
-    /// Torque on a grain, or its absence.
-    type Torque: Copy + Debug + Default + Send + Serialize + DeserializeOwned;
-
-    /// At the start: angular velocity (rad/s) and 1/I.
-    fn new(spin: S::Spin, inverse_inertia: f64) -> Self;
-    /// Angular velocity (rad/s); `None` when grains do not rotate.
-    fn spin(&self) -> Option<S::Spin>;
-    /// Rotation since the start about z (rad).
-    fn angle(&self) -> f64;
-    /// One step of angular velocity and angle: ω ← keep·ω + gain·M/I, θ ← θ + ω Δt.
-    fn advance(&mut self, torque: Self::Torque, keep: f64, gain: f64, time_step: f64);
-    /// Moment of inertia I (kg m²); infinite when grains do not rotate.
-    fn inertia(&self) -> f64;
-    /// Angular acceleration M/I (rad/s²).
-    fn acceleration(&self, torque: Self::Torque) -> S::Spin;
-    /// Replaces the angular velocity.
-    fn set_spin(&mut self, spin: S::Spin);
-    /// Adds a torque `r × F` to a sum.
-    fn add(sum: &mut Self::Torque, torque: S::Spin);
-    /// The torque as a spin-like quantity (N m).
-    fn torque(torque: Self::Torque) -> S::Spin;
-}
-
-/// A grain that cannot rotate: no memory, no arithmetic.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Rigid;
-
-/// No torque.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct NoTorque;
-
-impl<S: Space> Rotation<S> for Rigid {
-    type Torque = NoTorque;
-
-    fn new(_spin: S::Spin, _inverse_inertia: f64) -> Self {
-        Self
-    }
-    fn spin(&self) -> Option<S::Spin> {
-        None
-    }
-    fn angle(&self) -> f64 {
-        0.0
-    }
-    #[inline(always)]
-    fn advance(&mut self, _torque: NoTorque, _keep: f64, _gain: f64, _time_step: f64) {}
-    fn inertia(&self) -> f64 {
-        f64::INFINITY
-    }
-    fn acceleration(&self, _torque: NoTorque) -> S::Spin {
-        S::NO_SPIN
-    }
-    fn set_spin(&mut self, _spin: S::Spin) {}
-    #[inline(always)]
-    fn add(_sum: &mut NoTorque, _torque: S::Spin) {}
-    fn torque(_torque: NoTorque) -> S::Spin {
-        S::NO_SPIN
-    }
-}
-
-/// A grain that rotates.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Rotating<S: Space> {
-    spin: S::Spin,
-    inverse_inertia: f64,
-    angle: f64,
-}
-
-/// Torque on a rotating grain (N m).
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Torque<S: Space>(S::Spin);
-
-impl<S: Space> Default for Torque<S> {
-    #[inline(always)]
-    fn default() -> Self {
-        Self(S::NO_SPIN)
-    }
-}
-
-impl<S: Space> Rotation<S> for Rotating<S> {
-    type Torque = Torque<S>;
-
-    fn new(spin: S::Spin, inverse_inertia: f64) -> Self {
-        Self { spin, inverse_inertia, angle: 0.0 }
-    }
-    #[inline(always)]
-    fn spin(&self) -> Option<S::Spin> {
-        Some(self.spin)
-    }
-    fn angle(&self) -> f64 {
-        self.angle
-    }
-    #[inline(always)]
-    fn advance(&mut self, torque: Torque<S>, keep: f64, gain: f64, time_step: f64) {
-        self.spin = self.spin * keep + torque.0 * (gain * self.inverse_inertia);
-        if S::DIMENSION == 2 {
-            self.angle += S::embed_spin(self.spin).z * time_step;
-        }
-    }
-    #[inline(always)]
-    fn inertia(&self) -> f64 {
-        1.0 / self.inverse_inertia
-    }
-    fn acceleration(&self, torque: Torque<S>) -> S::Spin {
-        torque.0 * self.inverse_inertia
-    }
-    fn set_spin(&mut self, spin: S::Spin) {
-        self.spin = spin;
-    }
-    #[inline(always)]
-    fn add(sum: &mut Torque<S>, torque: S::Spin) {
-        sum.0 += torque;
-    }
-    fn torque(torque: Torque<S>) -> S::Spin {
-        torque.0
-    }
-}
-
 /// What the tangential stage answers.
 #[derive(Clone, Copy, Debug)]
 pub struct Shear<S: Space> {
-    /// Force on the first body along the tangent (N).
+    /// Force F_s on the first body along the tangent (N).
     pub force: S::Tangent,
     /// Whether Coulomb's limit was reached.
     pub slipping: bool,
@@ -144,10 +27,10 @@ pub trait Tangential<S: Space>: Copy + Send + 'static {
     const ACTIVE: bool;
     /// What a contact remembers from step to step: the stretch of its tangential spring (m).
     type History: Copy + Debug + Default + Send + Serialize + DeserializeOwned;
-    /// The rotation of a grain.
+    /// The rotation of a grain: only tangential forces and rolling moments drive it.
     type Rotation: Rotation<S>;
 
-    /// The tangential force, from the slip velocity (m/s) and the time that has passed since the last one (s).
+    /// The tangential force, from the slip velocity (m/s) and the time `elapsed` since the last evaluation (s).
     fn respond<N: Normal>(
         touch: &Touch<'_, S>,
         normal: NormalForce,
@@ -156,8 +39,9 @@ pub trait Tangential<S: Space>: Copy + Send + 'static {
         history: &mut Self::History,
     ) -> Shear<S>;
 
-    /// Work of friction in a step (J) that began with a history and ended with another: the mean force of the spring times
-    /// what its end slid, ½ k (s + s')·(s + ṡ Δt − s') with s the stretch carried to the normal of now, ṡ the slip velocity.
+    /// Work of friction in a step (J), ½ k_s (s + s')·(s + ṡ Δt − s'): the mean force of the spring times the distance that its
+    /// end slid. Here s is the stretch before the step, carried to the normal of now, s' the stretch after it, and ṡ the slip
+    /// velocity.
     fn rubbed<N: Normal>(
         touch: &Touch<'_, S>,
         slip: S::Tangent,
@@ -168,11 +52,11 @@ pub trait Tangential<S: Space>: Copy + Send + 'static {
 
     /// The history with the roles of first and second grain exchanged.
     fn exchange(history: Self::History) -> Self::History;
-    /// Energy in the tangential spring (J).
+    /// Energy ½ k_s s² in the tangential spring (J), from the stiffness k_s (N/m).
     fn energy(history: Self::History, stiffness: f64) -> f64;
 }
 
-/// No friction: no history, no rotation, no force.
+/// No friction: no tangential force, no history and no rotation.
 #[derive(Clone, Copy, Debug)]
 pub struct Frictionless;
 
@@ -200,10 +84,10 @@ impl<S: Space> Tangential<S> for Frictionless {
     }
 }
 
-/// How Coulomb's limit is applied to spring and dashpot.
+/// How Coulomb's limit is applied to the spring and the dashpot.
 pub trait Cap: Copy + Debug + Send + 'static {
-    /// Force along the tangent and whether it slips, from the stretch of the spring, the slip velocity, stiffness k_s,
-    /// viscosity c_s and the limit; the stretch is cut back when it slips.
+    /// The tangential force and whether the contact slips, from the stretch of the spring s (m), the slip velocity (m/s), the
+    /// stiffness k_s (N/m), the viscosity c_s (N s/m) and the limit (N). The stretch is cut back when the contact slips.
     fn limit<S: Space, const DAMPED: bool>(
         stretch: &mut S::Tangent,
         slip: S::Tangent,
@@ -272,22 +156,22 @@ impl Cap for CapOnTotal {
 
 /// How the stretch of a tangential spring is carried along with a contact that turns.
 pub trait Carrying<S: Space>: Copy + Debug + Send + 'static {
-    /// What is stored.
+    /// The stretch as it is stored (m).
     type Stored: Linear;
     /// No stretch.
     const NONE: Self::Stored;
-    /// The stretch at a contact that has turned to `normal`.
+    /// The stretch (m) at a contact that has turned to `normal`, from what is stored.
     fn carried(stored: Self::Stored, normal: S::Vector) -> S::Tangent;
-    /// The stretch as it is stored.
+    /// What is stored of the stretch (m) at a contact with `normal`.
     fn stored(stretch: S::Tangent, normal: S::Vector) -> Self::Stored;
-    /// What is stored, with the roles of first and second grain exchanged.
+    /// The stored stretch with the roles of first and second grain exchanged.
     fn exchange(stored: Self::Stored) -> Self::Stored;
-    /// Squared length.
+    /// Squared length of the stored stretch (m²).
     fn squared(stored: Self::Stored) -> f64;
 }
 
-/// It turns with the contact: in the plane a scalar along the tangent (Cundall & Strack 1979), in space its normal part is
-/// taken off.
+/// The stretch turns with the contact: in the plane it is a scalar along the tangent (Cundall & Strack 1979), in three dimensions
+/// its normal part is taken off.
 #[derive(Clone, Copy, Debug)]
 pub struct Turned;
 
@@ -311,8 +195,8 @@ impl<S: Space> Carrying<S> for Turned {
     }
 }
 
-/// A vector that keeps its direction and loses its normal part, in the plane too (LAMMPS, LIGGGHTS): it shrinks a little
-/// as the contact turns.
+/// The stretch is a vector that keeps its direction and loses its normal part, in the plane too (LAMMPS, LIGGGHTS): it shrinks a
+/// little as the contact turns.
 #[derive(Clone, Copy, Debug)]
 pub struct Projected;
 
@@ -336,7 +220,8 @@ impl<S: Space> Carrying<S> for Projected {
     }
 }
 
-/// An incremental spring with Coulomb's limit, |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19).
+/// An incremental spring F_s = −k_s s with Coulomb's limit |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19), and a dashpot
+/// c_s = β k_s + γ_t m_eff where contacts are damped.
 #[derive(Clone, Copy, Debug)]
 pub struct Coulomb<C: Cap, H>(PhantomData<(C, H)>);
 
@@ -421,6 +306,5 @@ mod tests {
     fn absent_stages_take_no_room() {
         assert_eq!(size_of::<<Frictionless as Tangential<Plane>>::History>(), 0);
         assert_eq!(size_of::<<Frictionless as Tangential<Plane>>::Rotation>(), 0);
-        assert_eq!(size_of::<NoTorque>(), 0);
     }
 }

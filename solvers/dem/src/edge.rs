@@ -1,0 +1,74 @@
+//! A simulation as the solver holds it, whatever it was compiled for.
+
+use crate::contact::normal::Normal;
+use crate::contact::rolling::Rolling;
+use crate::contact::tangential::Tangential;
+use crate::simulation::Kernel;
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::record::{Cost, Look};
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::solver::Broken;
+use grainbench_scene::space::Space;
+
+/// A simulation as the solver holds it, whatever it was compiled for.
+pub trait Simulation: Send {
+    /// Takes `steps` cycles.
+    ///
+    /// # Errors
+    /// When the state of a grain is no longer finite, or a grain moves by more than its radius in a step.
+    fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>>;
+    /// Forgets the history of every contact, as a restart that does not store it would.
+    fn forget_history(&mut self);
+    /// A checkpoint of the state after the last step, with the record so far.
+    ///
+    /// # Errors
+    /// When it cannot be stored.
+    fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError>;
+    /// Goes to the state that a run of the same identity left, and gives the record so far.
+    ///
+    /// # Errors
+    /// When the checkpoint is of another run or damaged.
+    fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Recorder, CheckpointError>;
+    /// The kernel in words: the space and the stages that it was compiled for.
+    fn layout(&self) -> &'static str;
+    /// Steps, pairs and contacts counted so far; no times.
+    fn cost(&self) -> Cost;
+    /// Cycles taken.
+    fn step(&self) -> u64;
+    /// The state at this step: grains, contacts, walls and energies.
+    fn look(&self) -> Look;
+}
+
+impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Simulation for Kernel<S, N, T, R> {
+    fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>> {
+        self.take_cycles(steps)
+    }
+
+    fn forget_history(&mut self) {
+        self.forget();
+    }
+
+    fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
+        self.kept(identity, recorder)
+    }
+
+    fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Recorder, CheckpointError> {
+        self.recalled(identity, checkpoint)
+    }
+
+    fn layout(&self) -> &'static str {
+        std::any::type_name::<Self>()
+    }
+
+    fn cost(&self) -> Cost {
+        self.cost
+    }
+
+    fn step(&self) -> u64 {
+        self.step
+    }
+
+    fn look(&self) -> Look {
+        crate::observe::look(self)
+    }
+}

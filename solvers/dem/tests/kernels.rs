@@ -1,0 +1,155 @@
+//! How many kernels are compiled, and that each holds only the stages that its scene calls for.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use grainbench_dem::convention::{CapNormal, Convention, CoulombCap, History, Tension, TorqueArm, WallRolling};
+use grainbench_dem::solver::Dem;
+use grainbench_scene::effect::Effect;
+use grainbench_scene::effects::Effects;
+use grainbench_scene::scene::{ContactLaw, Scene};
+use grainbench_scene::solver::Method;
+use grainbench_scene::source::SceneSource;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Kernels compiled today, in two and three dimensions together: 37 each. Five normal stages stand without friction (5). With it
+/// the two undamped ones meet 2 tangential and 2 rolling stages (8), and the three damped ones 4 tangential and 2 rolling
+/// stages (24).
+///
+/// This is the bound until the loops over contacts are rewritten for speed: a new effect or option that multiplies kernels is
+/// seen here, and so is one that saves some.
+const KERNELS: usize = 74;
+
+/// A contact law in which every effect is on; Hertz's in place of linear springs where that is asked for.
+fn law_with_everything(hertz: bool) -> ContactLaw {
+    let law = ContactLaw {
+        friction: 0.5,
+        cohesion: 1.0,
+        stiffness_damping: 1e-6,
+        normal_damping: 1.0,
+        tangential_damping: 1.0,
+        damping_ratio: 0.1,
+        rolling_friction: 0.1,
+        rolling_damping: 0.1,
+        ..ContactLaw::default()
+    };
+    if hertz {
+        ContactLaw { effective_modulus: 1e9, effective_shear_modulus: 3e8, ..law }
+    } else {
+        ContactLaw { normal_stiffness: 1e6, tangential_stiffness: 5e5, ..law }
+    }
+}
+
+/// Two grains and a wall in motion, with every effect on.
+fn scene_with_everything(dimension: usize, hertz: bool) -> Scene {
+    let vector = |value: &str| vec![value; dimension].join(", ");
+    let (high, gravity) = (vector("10.0"), vector("1.0"));
+    let periodic = if dimension == 2 { "true, false" } else { "true, false, false" };
+    let text = format!(
+        "title = 'everything'\ndimension = {dimension}\nduration = 1.0\ngravity = [{gravity}]\nglobal_damping = 0.1\n\
+         domain = {{ low = [{}], high = [{high}], periodic = [{periodic}] }}\n\
+         materials.m.density = 1000.0\ncontacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0e6 }}\n\
+         [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [{}]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [{}]\n\
+         [walls.w]\nmaterial = 'm'\nplane = {{ point = [{}], normal = [{}] }}\nmotion = [{{ velocity = [{}] }}]\n",
+        vector("0.0"),
+        vector("4.0"),
+        vector("6.0"),
+        vector("1.0"),
+        if dimension == 2 { "0.0, 1.0" } else { "0.0, 1.0, 0.0" },
+        if dimension == 2 { "0.1, 0.0" } else { "0.1, 0.0, 0.0" },
+    );
+    let source = SceneSource::from_text("everything", Path::new(""), &text);
+    let mut scene = source.scene(&|_| Err("no data files here".to_owned())).unwrap();
+    scene.change_laws(|law| *law = law_with_everything(hertz));
+    let off: Vec<Effect> = effects().filter(|effect| !effect.is_on(&scene)).collect();
+    assert!(off == if hertz { vec![] } else { vec![Effect::Hertz] }, "{off:?} are off");
+    scene
+}
+
+/// The effects that a solver for rigid grains knows.
+fn effects() -> impl Iterator<Item = Effect> {
+    Effect::ALL.into_iter().filter(|effect| effect.concerns(Method::Dem))
+}
+
+/// Every combination of effects, in two and three dimensions, with linear springs and with Hertz contacts.
+fn scenes() -> Vec<Scene> {
+    let switches: Vec<Effect> = effects().filter(|effect| *effect != Effect::Hertz).collect();
+    let mut scenes = Vec::new();
+    for (dimension, hertz) in [(2, false), (2, true), (3, false), (3, true)] {
+        let everything = scene_with_everything(dimension, hertz);
+        for off in 0..1_usize << switches.len() {
+            let mut scene = everything.clone();
+            let switched_off = switches.iter().enumerate().filter(|(bit, _)| off >> bit & 1 == 1);
+            switched_off.for_each(|(_, effect)| effect.switch_off(&mut scene));
+            scenes.push(scene);
+        }
+    }
+    scenes
+}
+
+/// Every combination of the options of a convention.
+fn conventions() -> Vec<Convention> {
+    let mut conventions = vec![Convention::CUNDALL_STRACK];
+    let mut vary = |options: [fn(&mut Convention); 2]| {
+        conventions = conventions
+            .iter()
+            .flat_map(|convention| {
+                options.map(|set| {
+                    let mut varied = *convention;
+                    set(&mut varied);
+                    varied
+                })
+            })
+            .collect();
+    };
+    vary([|to| to.coulomb_cap = CoulombCap::Spring, |to| to.coulomb_cap = CoulombCap::SpringAndDashpot]);
+    vary([|to| to.cap_normal = CapNormal::Spring, |to| to.cap_normal = CapNormal::Total]);
+    vary([|to| to.torque_arm = TorqueArm::Radius, |to| to.torque_arm = TorqueArm::ContactPoint]);
+    vary([|to| to.tension = Tension::Allowed, |to| to.tension = Tension::Clipped]);
+    vary([|to| to.history = History::Turned, |to| to.history = History::Projected]);
+    vary([|to| to.wall_rolling = WallRolling::Spin, |to| to.wall_rolling = WallRolling::Surface]);
+    conventions
+}
+
+/// The kernel that a scene gets in a convention, in words.
+fn kernel(scene: &Scene, convention: Convention) -> &'static str {
+    Dem::new(convention).start(scene, 1e-6).unwrap().layout()
+}
+
+/// Every kernel that the solver can pick is counted: for all combinations of effects, conventions and dimension.
+#[test]
+fn no_more_kernels_are_compiled_than_today() {
+    let (scenes, conventions) = (scenes(), conventions());
+    let mut kernels = BTreeSet::new();
+    for scene in &scenes {
+        kernels.extend(conventions.iter().map(|&convention| kernel(scene, convention)));
+    }
+    let listed: Vec<&str> = kernels.iter().copied().collect();
+    assert_eq!(kernels.len(), KERNELS, "{}", listed.join("\n"));
+}
+
+/// The stage of an effect that is absent is no part of the kernel's name, and that of one that is present is.
+#[test]
+fn a_kernel_has_no_stage_for_what_is_absent() {
+    for scene in scenes() {
+        let effects = Effects::of(&scene);
+        for convention in Convention::ALL {
+            let kernel = kernel(&scene, convention);
+            let stages = [
+                (effects.friction, "::Coulomb<"),
+                (!effects.friction, "::Frictionless"),
+                (effects.rolling_resistance, "::ElasticPlastic"),
+                (!effects.rolling_resistance, "::FreeRolling"),
+                (effects.hertz, "::Hertz"),
+                (!effects.hertz, "::Spring"),
+                (effects.hertz && effects.contact_damping, "::HertzDashpot"),
+                (!effects.hertz && effects.contact_damping && !effects.restitution, "::SpringDashpot"),
+                (!effects.hertz && effects.restitution, "::SpringRestitution"),
+            ];
+            for (present, stage) in stages {
+                assert_eq!(kernel.contains(stage), present, "`{stage}` in {kernel} of {effects:?}");
+            }
+        }
+    }
+}
