@@ -10,9 +10,9 @@ pub mod verify;
 pub use own::{Judgement, conform, judge};
 
 pub use grainbench_cases as cases;
+pub use grainbench_dem as dem;
 pub use grainbench_fields as fields;
 pub use grainbench_harness as harness;
-pub use grainbench_dem as dem;
 pub use grainbench_mpm as mpm;
 pub use grainbench_reference as reference;
 pub use grainbench_reports as reports;

@@ -8,8 +8,8 @@
 //! # }
 //! ```
 
-use grainbench_harness::conformance;
 use grainbench_cases::registry;
+use grainbench_harness::conformance;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 use grainbench_reports::line;
 use grainbench_scene::solver::Solver;

@@ -3,10 +3,10 @@
 use grainbench_cases::stored::Reference;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Measured;
+use grainbench_harness::statistics::{BLOCKS, Estimate, difference};
 use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::live::Live;
-use grainbench_harness::statistics::{BLOCKS, Estimate, difference};
 use grainbench_reference::stored::{Drift, StoredRun, drift, folder, unusable};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::Series;
@@ -78,10 +78,8 @@ fn weight(drift: &Drift) -> f64 {
 
 fn pointwise(row: &Verdict, worst: &Drift, last: u64) -> Verdict {
     let until = if last == u64::MAX { String::new() } else { format!(" to step {last}") };
-    let found = Measured {
-        course: vec![(worst.time, worst.error())],
-        ..Measured::new(worst.rerun, worst.stored, worst.scale)
-    };
+    let found =
+        Measured { course: vec![(worst.time, worst.error())], ..Measured::new(worst.rerun, worst.stored, worst.scale) };
     let row = Verdict {
         quantity: format!("the stored run, run again{until}: worst in {}", worst.name),
         unit: worst.unit.clone(),

@@ -7,10 +7,10 @@
 #[path = "../benches/minimal/mod.rs"]
 mod minimal;
 
-use grainbench::scene::effect::Effect;
 use grainbench::cases::registry;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
+use grainbench::scene::effect::Effect;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::source::SceneSource;
 use minimal::Minimal;

@@ -327,7 +327,7 @@ fn unknown_solver_of_a_run() {
 #[test]
 fn unknown_rung() {
     let directory = tempfile::tempdir().unwrap();
-    insta::assert_snapshot!(refusal(directory.path(), &["run", "squash", "--rungs", "dt=.06"]));
+    insta::assert_snapshot!(refusal(directory.path(), &["run", "squash", "--levels", "dt=.06"]));
 }
 
 #[test]
@@ -340,7 +340,7 @@ fn nothing_selected() {
 fn unknown_command_and_option() {
     let directory = tempfile::tempdir().unwrap();
     insta::assert_snapshot!(refusal(directory.path(), &["simulat"]));
-    insta::assert_snapshot!(refusal(directory.path(), &["run", "--rung", "all"]));
+    insta::assert_snapshot!(refusal(directory.path(), &["run", "--level", "all"]));
 }
 
 #[test]

@@ -89,7 +89,7 @@ fn list_tells_of_every_case() {
     let entries = json(&printed(directory.path(), &["list", "--json"]));
     assert_eq!(entries.as_array().unwrap().len(), CASES.len());
     for entry in entries.as_array().unwrap() {
-        for key in ["name", "title", "claim", "variants", "gates", "default_rung", "rungs", "solvers"] {
+        for key in ["name", "title", "claim", "variants", "gates", "default_level", "levels", "solvers"] {
             assert!(!entry[key].is_null() && entry[key] != "", "{key} of {entry}");
         }
     }
@@ -189,7 +189,7 @@ fn without_worst(line: &str) -> String {
 #[test]
 fn run_prints_what_it_writes_as_json() {
     let directory = tempfile::tempdir().unwrap();
-    let text = printed(directory.path(), &["run", "squash/plain", "--rungs", "dt=0.05", "--no-controls", "--json"]);
+    let text = printed(directory.path(), &["run", "squash/plain", "--levels", "dt=0.05", "--no-controls", "--json"]);
     assert_eq!(text, std::fs::read_to_string(directory.path().join("grainbench-out/results.json")).unwrap());
     let results = json(&text);
     assert!(results["verdicts"].as_array().unwrap().iter().all(|row| row["verdict"] == "pass"));

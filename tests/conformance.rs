@@ -1,8 +1,8 @@
 //! The suite of what every solver owes: it sees what it must, and believes nothing that was not shown. Solvers are held to it in
 //! their own crates.
 
-use grainbench::harness::conformance::ALL;
 use grainbench::cases::solvers;
+use grainbench::harness::conformance::ALL;
 use grainbench::harness::verdict::Outcome;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;

@@ -22,7 +22,7 @@ fn shown_of(case: &str, variant: &str, program: Program, change: impl Fn(&mut Sc
     let case = by_name(case).unwrap();
     let mut scene = case.variant(variant).unwrap();
     change(&mut scene);
-    let deck = write_deck(&scene, &case.default_rung.resolution, program).unwrap();
+    let deck = write_deck(&scene, &case.default_level.resolution, program).unwrap();
     deck.files.iter().map(|(name, text)| format!("==> {name} <==\n{text}\n")).collect()
 }
 
@@ -105,7 +105,7 @@ fn every_case_has_a_deck_or_a_reason() {
         for variant in case.variants().unwrap() {
             let scene = case.variant(&variant).unwrap();
             for program in Program::ALL {
-                match write_deck(&scene, &case.default_rung.resolution, program) {
+                match write_deck(&scene, &case.default_level.resolution, program) {
                     Ok(deck) => {
                         assert!(deck.files.iter().all(|(_, text)| text.is_ascii()), "{}/{variant}", case.name);
                         written += 1;
@@ -125,7 +125,7 @@ fn refusal(case: &str, variant: &str, program: Program, change: impl Fn(&mut Sce
     let case = by_name(case).unwrap();
     let mut scene = case.variant(variant).unwrap();
     change(&mut scene);
-    write_deck(&scene, &case.default_rung.resolution, program).unwrap_err().to_string()
+    write_deck(&scene, &case.default_level.resolution, program).unwrap_err().to_string()
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn a_title_is_no_part_of_the_script() {
     let case = by_name("squash").unwrap();
     let mut scene = case.variant(&case.variants().unwrap()[0]).unwrap();
     scene.title = "mean\nshell rm &\n${x} \"".to_owned();
-    let deck = write_deck(&scene, &case.default_rung.resolution, Program::Lammps).unwrap();
+    let deck = write_deck(&scene, &case.default_level.resolution, Program::Lammps).unwrap();
     assert!(deck.files[0].1.starts_with("# mean_shell rm ____x_ _\nunits si\n"), "{}", deck.files[0].1);
 }
 

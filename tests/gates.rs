@@ -19,7 +19,8 @@ fn main() -> std::process::ExitCode {
         for claim in (case.claims)().into_iter().filter(|claim| claim.set() <= set) {
             let claim = Arc::new(claim);
             let run = &claim.runs[0];
-            let name = format!("{}/{} {} {}: {}", case.name, run.variant, run.solver, claim.resolution(), claim.quantity);
+            let name =
+                format!("{}/{} {} {}: {}", case.name, run.variant, run.solver, claim.resolution(), claim.quantity);
             trials.push(trial(&name, &runner, &claim, accept));
             trials.push(trial(&format!("{name} [control: {}]", claim.control.name), &runner, &claim, refuse));
         }

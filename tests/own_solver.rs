@@ -1,12 +1,12 @@
 //! Gates for solvers that the cases do not name: fair, felt, and red where the physics is wrong.
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 
-use grainbench::harness::control::Wrong;
 use grainbench::cases::registry::CASES;
-use grainbench::harness::scope::Scope;
 use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
+use grainbench::harness::control::Wrong;
+use grainbench::harness::scope::Scope;
 use grainbench::own::NotJudged;
 use std::collections::BTreeSet;
 use std::fs;

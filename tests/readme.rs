@@ -4,10 +4,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench::harness::case::PLAIN;
 use grainbench::cases::registry::{self, CASES, read_grains};
 use grainbench::cases::runner;
 use grainbench::dem::convention::Convention;
+use grainbench::harness::case::PLAIN;
 use grainbench::mpm::solver::Mpm;
 use grainbench::reports::plot;
 use grainbench::scene::solver::{Resolution, Solver};

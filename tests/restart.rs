@@ -5,9 +5,9 @@
 mod common;
 
 use common::{files, grainbench};
-use grainbench::harness::case::Case;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
+use grainbench::harness::case::Case;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::{Cost, Record};
 use grainbench::scene::scene::{Duration, Sampling, Scene};

@@ -5,10 +5,10 @@
 mod common;
 
 use common::grainbench;
-use grainbench::scene::effect::Effect;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::study::stability::Hardness;
+use grainbench::scene::effect::Effect;
 use grainbench::studies::effects::ledger::Ledger;
 use grainbench::studies::shelf::Shelf;
 use grainbench::studies::stability::assembly;
@@ -186,7 +186,7 @@ fn bad_input_is_refused() {
         &["cost", "squash", "--solver", "nobody"],
         &["cost", "squash", "--against", "missing.json"],
         &["cost", "squash", "--against", "damaged.json"],
-        &["cost", "squash", "--rungs", "some"],
+        &["cost", "squash", "--levels", "some"],
         &["cost", "squash", "--out", "file"],
         &["stability", "no-such-case"],
         &["stability", ""],

@@ -260,7 +260,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
     for case in CASES {
         let words = [case.title, case.claim, case.derivation, case.weakness];
         assert!(words.iter().all(|text| !text.trim().is_empty()), "{}: title, claim, derivation, weakness", case.name);
-        assert!(!case.ladder.is_empty(), "{} has no ladder", case.name);
+        assert!(!case.levels.is_empty(), "{} has no level", case.name);
         let mut variants = case.variants().unwrap();
         for variant in &variants {
             case.variant(variant).unwrap_or_else(|error| panic!("{error}"));

@@ -9,7 +9,7 @@ use crate::program_rows;
 use crate::rigid_rows::{self, Row};
 use grainbench_harness::prelude::*;
 
-const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const VARIANTS: [&str; 2] = ["disc", "sphere"];
 const RIGID: &[Row] = &[
     Row { variant: "disc", rolls: true, x: 2e-3, v: 5e-5, omega: 1.5e-4 },
@@ -25,8 +25,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "The final velocity does not depend on μ, on stiffness or on damping: alone it would pass a solver with \
                a wrong friction law. Displacement does depend on μ. One contact, constant load.",
-    ladder: LADDER,
-    default_rung: LADDER[2],
+    levels: LEVELS,
+    default_level: LEVELS[2],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -92,7 +92,7 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
             .fair_to_any()
     };
     let slides = |allowed| {
-        judged(allowed, "the contact is elastic before it slides and rings when it rolls: ∝ √(overlap/R), here 1e-5")
+        estimated(allowed, "the contact is elastic before it slides and rings when it rolls: ∝ √(overlap/R), here 1e-5")
     };
     let arm = || computed(NEARLY_RIGID, "a torque arm between R and R − overlap/2, at overlap/R = 1e-5");
     vec![

@@ -4,7 +4,7 @@ use crate::elastic::stiffen;
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
 
-const LADDER: &[Rung] = &[cells("L/20", 20.0, 2), cells("L/40", 40.0, 2), cells("L/80", 80.0, 2)];
+const LEVELS: &[Level] = &[cells("L/20", 20.0, 2), cells("L/40", 40.0, 2), cells("L/80", 80.0, 2)];
 const SOURCE: Source = Source::Derived("waves in a line of material (derivation)");
 
 pub(crate) static CASE: Case = Case {
@@ -16,8 +16,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "Flat faces that meet along the grid: a contact that acts at a distance of a cell is late by that over \
                v, and is not seen otherwise.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -73,10 +73,10 @@ fn softer() -> Control {
 
 fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
-    for (rung, course, end) in [(LADDER[0], 0.042, 0.034), (LADDER[1], 0.03, 0.018), (LADDER[2], 0.017, 0.013)] {
-        let run = || Run::new(PLAIN, "mpm", rung.resolution);
+    for (level, course, end) in [(LEVELS[0], 0.042, 0.034), (LEVELS[1], 0.03, 0.018), (LEVELS[2], 0.017, 0.013)] {
+        let run = || Run::new(PLAIN, "mpm", level.resolution);
         claims.push(
-            claim(format!("velocity of the right bar, worst, {} cells", rung.name), "m/s")
+            claim(format!("velocity of the right bar, worst, {} cells", level.name), "m/s")
                 .of(run())
                 .equals(SOURCE, |done| {
                     let impact = Impact::of(&done[0].scene);
@@ -90,7 +90,7 @@ fn claims() -> Vec<Claim> {
                 .refuses(softer()),
         );
         claims.push(
-            claim(format!("velocity of the left bar in the end, {} cells", rung.name), "m/s")
+            claim(format!("velocity of the left bar in the end, {} cells", level.name), "m/s")
                 .of(run())
                 .equals(SOURCE, |done| {
                     Ok(Measured::new(done[0].last("left.vx")?, 0.0, Impact::of(&done[0].scene).speed))
@@ -101,7 +101,7 @@ fn claims() -> Vec<Claim> {
     }
     claims.push(
         claim("stress in the middle of the right bar, mean over .6 L/c", "Pa")
-            .of(Run::new(PLAIN, "mpm", LADDER[1].resolution))
+            .of(Run::new(PLAIN, "mpm", LEVELS[1].resolution))
             .equals(Source::Derived("σ = ρ c v/2 (derivation)"), |done| {
                 let exact = -Impact::of(&done[0].scene).stress();
                 Ok(Measured::new(plateau(&done[0])?, exact, -exact))
@@ -114,16 +114,16 @@ fn claims() -> Vec<Claim> {
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let (mut velocities, mut stresses, mut exact) = (Vec::new(), Vec::new(), Vec::new());
-    for (solver, rung) in [("mpm", LADDER[0]), ("mpm", LADDER[1]), ("mpm:gap", LADDER[1])] {
-        let done = runner.run(&Run::new(PLAIN, solver, rung.resolution))?;
+    for (solver, level) in [("mpm", LEVELS[0]), ("mpm", LEVELS[1]), ("mpm:gap", LEVELS[1])] {
+        let done = runner.run(&Run::new(PLAIN, solver, level.resolution))?;
         let impact = Impact::of(&done.scene);
         let series = |name: &str, scale: f64| -> Vec<(f64, f64)> {
             let values = done.series().column(name).unwrap_or_default();
             done.series().time.iter().zip(values).map(|(&time, &value)| (time, value / scale)).collect()
         };
-        velocities.push(Curve::new(format!("{solver}, {}", rung.name), Stroke::Line, series("right.vx", impact.speed)));
+        velocities.push(Curve::new(format!("{solver}, {}", level.name), Stroke::Line, series("right.vx", impact.speed)));
         stresses.push(Curve::new(
-            format!("{solver}, {}", rung.name),
+            format!("{solver}, {}", level.name),
             Stroke::Line,
             series("middle.sigma_xx", impact.stress()),
         ));

@@ -8,9 +8,9 @@ use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
-const LADDER: &[Rung] =
+const LEVELS: &[Level] =
     &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025), fraction("dt=.0125", 0.0125)];
-const FINEST: Rung = LADDER[3];
+const FINEST: Level = LEVELS[3];
 const BEADS: [(usize, &str); 6] =
     [(5, "v5.vx"), (10, "v10.vx"), (15, "v15.vx"), (18, "v18.vx"), (20, "v20.vx"), (22, "v22.vx")];
 const BESSEL: Source = Source::Derived("v_n = V∫(2n/s)J_2n(s)ds over 0 to 2ω₀t (derivation)");
@@ -24,15 +24,15 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "One dimension, frictionless, linear: contacts never open and grains never turn. It tests transport along many \
                contacts, not their law.",
-    ladder: LADDER,
-    default_rung: LADDER[3],
+    levels: LEVELS,
+    default_level: LEVELS[3],
     claims,
     figures,
     home: &crate::registry::HOME,
 };
 
-fn run(rung: Rung) -> Run {
-    Run::new(PLAIN, "dem", rung.resolution)
+fn run(level: Level) -> Run {
+    Run::new(PLAIN, "dem", level.resolution)
 }
 
 /// Driving speed V (m/s), ω₀ (rad/s) and impedance √(km) (N s/m).
@@ -58,12 +58,12 @@ fn claims() -> Vec<Claim> {
         claim(format!("velocity of bead {n} at 20/ω₀"), "m/s")
             .of(run(FINEST))
             .equals(BESSEL, move |done| bead(&done[0], n, column))
-            .within(judged(4e-4, "numerical dispersion of central differences at this step, in units of V"))
+            .within(estimated(4e-4, "numerical dispersion of central differences at this step, in units of V"))
             .refuses(heavier())
             .fair_to_any()
     };
     let order = claim("order in Δt, rms over the six beads", "1")
-        .of_all(LADDER.iter().map(|&rung| run(rung)))
+        .of_all(LEVELS.iter().map(|&level| run(level)))
         .converges(2.0, Source::Derived("central differences are of second order"), |done| {
             let points: Result<Vec<(f64, f64)>, Missing> =
                 done.iter().map(|done| Ok((done.record.provenance.time_step, rms(done)?))).collect();
@@ -124,8 +124,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         profiles.push(Curve::new(label, Stroke::Dashed, points));
     }
     let mut errors = Vec::new();
-    for &rung in LADDER {
-        let done = runner.run(&run(rung))?;
+    for &level in LEVELS {
+        let done = runner.run(&run(level))?;
         if let (Ok(rms), Some(critical)) = (rms(&done), done.record.provenance.critical_time_step) {
             errors.push((done.record.provenance.time_step / critical, rms));
         }

@@ -7,8 +7,8 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::scene::ContactLaw;
 use std::f64::consts::PI;
 
-const LADDER: &[Rung] = &[fraction("dt=.01", 0.01), fraction("dt=.003", 0.003), fraction("dt=.001", 0.001)];
-const STEP: Rung = LADDER[2];
+const LEVELS: &[Level] = &[fraction("dt=.01", 0.01), fraction("dt=.003", 0.003), fraction("dt=.001", 0.001)];
+const STEP: Level = LEVELS[2];
 const ELASTIC: [&str; 4] = ["1-glass", "1-limestone", "2-aluminium-alloy", "2-magnesium-alloy"];
 const DAMPED: [&str; 2] = ["3-aluminium-oxide", "3-cast-iron"];
 const OBLIQUE: [&str; 2] = ["4-aluminium-oxide", "4-aluminium-alloy"];
@@ -28,8 +28,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "Impacts of one contact. The sliding branch is felt by μ and e alone: any tangential spring that reaches the \
                limit soon passes, so Mindlin's stiffness is not gated here, only drawn.",
-    ladder: LADDER,
-    default_rung: STEP,
+    levels: LEVELS,
+    default_level: STEP,
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -103,7 +103,7 @@ fn elastic() -> Vec<Claim> {
                 let exact = exact(&done[0].scene);
                 Ok(Measured::new(read(&done[0])?, exact, exact))
             })
-            .within(judged(1e-6, "discretisation of the impact by some thousand steps"))
+            .within(estimated(1e-6, "discretisation of the impact by some thousand steps"))
             .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.effective_modulus *= 1.01)))
     };
     let mut claims = Vec::new();
@@ -202,7 +202,7 @@ fn oblique() -> Vec<Claim> {
                 claim(format!("tangential restitution at {degrees}°"), "1")
                     .of(at_angle(variant, degrees))
                     .equals(SLIDING, |done| Ok(Measured::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
-                    .within(judged(2e-5, ENDS))
+                    .within(estimated(2e-5, ENDS))
                     .refuses(more_friction()),
             );
             claims.push(
@@ -212,7 +212,7 @@ fn oblique() -> Vec<Claim> {
                         let exact = sliding(&done[0].scene).1;
                         Ok(Measured::new(done[0].last("a.omega_y")?, exact, exact))
                     })
-                    .within(judged(2e-5, ENDS))
+                    .within(estimated(2e-5, ENDS))
                     .refuses(Control::scene("a disc's inertia in a sphere", |scene| {
                         scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.5 / 0.4);
                     })),

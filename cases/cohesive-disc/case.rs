@@ -4,8 +4,8 @@ use crate::one_grain::{OneGrain, State, course};
 use crate::rigid_rows;
 use grainbench_harness::prelude::*;
 
-const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
-const STEP: Rung = LADDER[2];
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const STEP: Level = LEVELS[2];
 const STRENGTH: Source = Source::Derived(
     "rolls iff m g sin θ/3 ≤ μ m g cos θ + c (derivation; the strength is Cundall & Strack 1979, eq. 19)",
 );
@@ -19,8 +19,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "Cohesion here is shear strength that needs no load, and only while grains overlap: nothing is said about \
                tension, which this law does not have.",
-    ladder: LADDER,
-    default_rung: STEP,
+    levels: LEVELS,
+    default_level: STEP,
     claims,
     figures,
     home: &crate::registry::HOME,

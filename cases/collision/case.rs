@@ -6,9 +6,9 @@ use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
-const LADDER: &[Rung] =
+const LEVELS: &[Level] =
     &[fraction("dt=.02", 0.02), fraction("dt=.006", 0.006), fraction("dt=.002", 0.002), fraction("dt=.0006", 0.0006)];
-const FINEST: Rung = LADDER[3];
+const FINEST: Level = LEVELS[3];
 const DAMPED: [&str; 4] = ["gamma-zeta.1", "gamma-zeta.2", "beta-zeta.1", "beta-zeta.2"];
 
 pub(crate) static CASE: Case = Case {
@@ -20,8 +20,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "Restitution is one number of a head-on impact: damping that depends on the overlap could give the same e at \
                this speed. Two grains of similar mass; no wall.",
-    ladder: LADDER,
-    default_rung: LADDER[3],
+    levels: LEVELS,
+    default_level: LEVELS[3],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -40,7 +40,7 @@ fn claims() -> Vec<Claim> {
     claims
         .extend(AXES.map(|axis| rigid_rows::momentum("oblique", along(axis), move |done| worst_momentum(done, axis))));
     claims.push(rigid_rows::angular_momentum("oblique", worst_angular_momentum));
-    claims.extend(program_rows::restitution(&DAMPED, LADDER[1].resolution));
+    claims.extend(program_rows::restitution(&DAMPED, LEVELS[1].resolution));
     claims
 }
 
@@ -112,7 +112,7 @@ fn restitution(variant: &'static str, solver: &'static str) -> Claim {
             let exact = exact_restitution(pair(&done[0].scene).2, solver == "dem");
             Ok(Measured::new(measured_restitution(&done[0])?.value, exact, 1.0))
         })
-        .within(judged(3e-4, "release falls within a step and the dashpot is half a step late: first order in Δt"))
+        .within(estimated(3e-4, "release falls within a step and the dashpot is half a step late: first order in Δt"))
         .refuses(other(solver))
 }
 
@@ -143,14 +143,14 @@ fn convergence(variant: &'static str, solver: &'static str) -> Claim {
 
 /// Rounding over the oblique impact, `count` times ε in every step.
 fn rounding(count: f64, because: &str) -> Tolerance {
-    let steps = CASE.variant("oblique").ok().and_then(|scene| LADDER[1].resolution.steps(&scene).ok());
+    let steps = CASE.variant("oblique").ok().and_then(|scene| LEVELS[1].resolution.steps(&scene).ok());
     computed(count * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64), because)
 }
 
 fn momentum() -> Vec<Claim> {
     let of = |axis: (&'static str, usize)| {
         claim(along(axis), "kg m/s")
-            .of(Run::new("oblique", "dem", LADDER[1].resolution))
+            .of(Run::new("oblique", "dem", LEVELS[1].resolution))
             .holds("equal and opposite forces", move |done| worst_momentum(&done[0], axis))
             .within(rounding(2.0, "two velocities round by ε in every step; in units of one grain's momentum"))
             .refuses(Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9))
@@ -168,7 +168,7 @@ fn initial_angular_momentum(scene: &Scene) -> f64 {
 
 fn angular_momentum() -> Vec<Claim> {
     const ROUNDING: &str = "two positions, two velocities and two spins round by ε in every step; in units of m v R";
-    let of = |quantity: &str, solver| claim(quantity, "kg m²/s").of(Run::new("oblique", solver, LADDER[1].resolution));
+    let of = |quantity: &str, solver| claim(quantity, "kg m²/s").of(Run::new("oblique", solver, LEVELS[1].resolution));
     vec![
         of("angular momentum, arm R − overlap/2, worst", "dem:liggghts")
             .holds("tangential forces act at one point (derivation)", |done| worst_angular_momentum(&done[0]))
@@ -194,7 +194,7 @@ fn angular_momentum() -> Vec<Claim> {
 /// In the oblique impact the tangential spring is at Coulomb's limit at every step: the spin of the first disc.
 fn at_the_limit() -> Claim {
     claim("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s")
-        .of(Run::new("oblique", "dem", LADDER[1].resolution))
+        .of(Run::new("oblique", "dem", LEVELS[1].resolution))
         .equals(Source::Derived("Coulomb's limit at every step (derivation)"), |done| {
             let grain = &done[0].scene.grains[0];
             let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
@@ -214,8 +214,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     for (solver, release) in [("dem", "may pull"), ("dem:no-tension", "may not pull")] {
         for variant in ["gamma-zeta.1", "gamma-zeta.2"] {
             let mut points = Vec::new();
-            for rung in LADDER {
-                let done = runner.run(&Run::new(variant, solver, rung.resolution))?;
+            for level in LEVELS {
+                let done = runner.run(&Run::new(variant, solver, level.resolution))?;
                 if let (Ok(measured), Some(critical)) =
                     (measured_restitution(&done), done.record.provenance.critical_time_step)
                 {
@@ -224,7 +224,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             }
             errors.push(Curve::new(format!("{variant}, {release}"), Stroke::MarkedLine, points));
         }
-        let done = runner.run(&Run::new("gamma-zeta.2", solver, LADDER[1].resolution))?;
+        let done = runner.run(&Run::new("gamma-zeta.2", solver, LEVELS[1].resolution))?;
         let force = done.series().column("contact.normal_force").unwrap_or_default();
         let points =
             done.series().time.iter().zip(force).map(|(t, force)| (t * 1e3, *force)).take_while(|(t, _)| *t < 30.0);

@@ -4,7 +4,7 @@ use crate::rigid_rows;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 
-const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", FINEST)];
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", FINEST)];
 
 pub(crate) static CASE: Case = Case {
     name: "disc-gas",
@@ -15,8 +15,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "A wrong but conservative force would pass, and so would a grain that passes through another. Few discs \
                touch at a time.",
-    ladder: LADDER,
-    default_rung: LADDER[2],
+    levels: LEVELS,
+    default_level: LEVELS[2],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -43,7 +43,7 @@ fn claims() -> Vec<Claim> {
     let conserved = claim("total energy over 10⁵ steps, worst", "J")
         .of(run(FINEST))
         .holds("conservation of energy", |done| energy(&done[0]))
-        .within(judged(1e-4, "the kink of the force where contacts begin and end, at a hundredth of the critical step"))
+        .within(estimated(1e-4, "the kink of the force where contacts begin and end, at a hundredth of the critical step"))
         .refuses(Control::scene("dashpots of 1e-3 of critical", |scene| {
             let law = scene.laws[0].unwrap_or_default();
             let rate = 2e-3 * (law.normal_stiffness / scene.grains[0].mass).sqrt();

@@ -13,8 +13,8 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 use modal::Modes;
 
-const LADDER: &[Rung] = &[fraction("dt=.02", 0.02), fraction("dt=.01", 0.01), fraction("dt=.005", 0.005)];
-const STEP: Rung = LADDER[2];
+const LEVELS: &[Level] = &[fraction("dt=.02", 0.02), fraction("dt=.01", 0.01), fraction("dt=.005", 0.005)];
+const STEP: Level = LEVELS[2];
 /// Force that counts as arrived, as a fraction of the impedance force V√(k m).
 const ARRIVED: f64 = 0.1;
 /// Longitudinal wave speed of the paper's material (m/s): the unit of time is the transit of one disc, d/c.
@@ -39,8 +39,8 @@ pub(crate) static CASE: Case = Case {
     weakness: "To DEM a disc is one mass on springs: no stress wave inside, and no fringes that run. When a contact is \
                first felt is a matter of the stiffness that was put in. The paper states its order of speeds for \
                fringes, and prints no arrival times.",
-    ladder: LADDER,
-    default_rung: STEP,
+    levels: LEVELS,
+    default_level: STEP,
     claims,
     figures,
     home: &crate::registry::HOME,

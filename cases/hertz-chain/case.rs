@@ -7,7 +7,7 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::scene::{Duration, Sampling};
 use std::f64::consts::PI;
 
-const LADDER: &[Rung] = &[fraction("dt=.04", 0.04), fraction("dt=.02", 0.02)];
+const LEVELS: &[Level] = &[fraction("dt=.04", 0.04), fraction("dt=.02", 0.02)];
 /// The discrete chain's coefficient, from its travelling wave: the test solves for it.
 const COEFFICIENT: f64 = 0.688_67;
 /// Speeds of the striker (m/s).
@@ -24,8 +24,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "One dimension, no friction, no damping. A wrong E* changes speed and force together and is seen in the \
                coefficient only by its cube root.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,

@@ -6,7 +6,7 @@ use grainbench_scene::record::{Owner, PointState, Snapshot};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::PI;
 
-const LADDER: &[Rung] =
+const LEVELS: &[Level] =
     &[cells("b", 1.0, POINTS), cells("b/2", 2.0, POINTS), cells("b/4", 4.0, POINTS), cells("b/8", 8.0, POINTS)];
 /// Allowed errors of half-width and peak pressure with cells as wide as the half-width b.
 const COARSEST: [f64; 2] = [0.15, 0.12];
@@ -29,8 +29,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "Hertz speaks of half-spaces and small strains: bodies of 8 b and strains of 5 % leave a per cent or \
                two, and stresses of material points a cell below the surface are not the traction on it.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -136,8 +136,8 @@ fn tolerance(coarsest: f64, cells: f64) -> Tolerance {
 
 fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
-    for (rung, cells) in LADDER.iter().zip([1.0, 2.0, 4.0, 8.0]) {
-        let run = Run::new(PLAIN, SOLVER, rung.resolution);
+    for (level, cells) in LEVELS.iter().zip([1.0, 2.0, 4.0, 8.0]) {
+        let run = Run::new(PLAIN, SOLVER, level.resolution);
         // b/2 and b/4 take seconds, b/8 a minute.
         let run = match cells {
             1.0 => run,
@@ -145,7 +145,7 @@ fn claims() -> Vec<Claim> {
             _ => run.long(),
         };
         claims.push(
-            claim(format!("half-width of the contact, cells of {}", rung.name), "m")
+            claim(format!("half-width of the contact, cells of {}", level.name), "m")
                 .of(run.clone())
                 .equals(SOURCE, |done| {
                     let exact = Hertz::of(&done[0].scene).half_width;
@@ -155,7 +155,7 @@ fn claims() -> Vec<Claim> {
                 .refuses(as_stiff()),
         );
         claims.push(
-            claim(format!("peak pressure, cells of {}", rung.name), "Pa")
+            claim(format!("peak pressure, cells of {}", level.name), "Pa")
                 .of(run)
                 .equals(SOURCE, |done| {
                     let exact = Hertz::of(&done[0].scene).peak;
@@ -167,7 +167,7 @@ fn claims() -> Vec<Claim> {
     }
     claims.push(
         claim("order in the cell of the error of the half-width, 1 and 2 cells a half-width", "1")
-            .of_all(LADDER[..2].iter().map(|rung| Run::new(PLAIN, SOLVER, rung.resolution).slow()))
+            .of_all(LEVELS[..2].iter().map(|level| Run::new(PLAIN, SOLVER, level.resolution).slow()))
             .converges_at_least(1.0, SOURCE, |done| {
                 let error = |done: &Done| -> Result<f64, Missing> {
                     Ok((measured(done)?.half_width / Hertz::of(&done.scene).half_width - 1.0).abs())
@@ -179,7 +179,7 @@ fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("contact force at rest", "N/m")
-            .of(Run::new(PLAIN, SOLVER, LADDER[1].resolution).slow())
+            .of(Run::new(PLAIN, SOLVER, LEVELS[1].resolution).slow())
             .holds("equilibrium: the cylinder's weight", |done| {
                 let last = done[0].record.snapshots.last();
                 let force = last.and_then(|snapshot| snapshot.contacts.first()).map(|contact| contact.normal_force);
@@ -198,17 +198,17 @@ fn as_stiff() -> Control {
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
-    for rung in &LADDER[..if runner.is_thorough() { 2 } else { 1 }] {
-        let done = runner.run(&Run::new(PLAIN, SOLVER, rung.resolution))?;
+    for level in &LEVELS[..if runner.is_thorough() { 2 } else { 1 }] {
+        let done = runner.run(&Run::new(PLAIN, SOLVER, level.resolution))?;
         let exact = Hertz::of(&done.scene);
-        let cell = done.scene.reference_length / if *rung == LADDER[0] { 1.0 } else { 2.0 };
+        let cell = done.scene.reference_length / if *level == LEVELS[0] { 1.0 } else { 2.0 };
         let mut points = pressed(&done, 1.0, 1.5).unwrap_or_default();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         let seen = points.iter().map(|point| (point.x / exact.half_width, point.pressure / exact.peak));
-        curves.push(Curve::new(format!("mpm+apic, {}", rung.name), Stroke::MarkedLine, seen.collect()));
+        curves.push(Curve::new(format!("mpm+apic, {}", level.name), Stroke::MarkedLine, seen.collect()));
         let way = (-60..=60).map(|at| f64::from(at) * exact.half_width / 40.0);
         let below = way.map(|x| (x / exact.half_width, exact.pressure_below(x, 1.25 * cell) / exact.peak));
-        curves.push(Curve::new(format!("Hertz there, {}", rung.name), Stroke::Dashed, below.collect()));
+        curves.push(Curve::new(format!("Hertz there, {}", level.name), Stroke::Dashed, below.collect()));
     }
     Ok(vec![Figure::graph(
         "pressure",

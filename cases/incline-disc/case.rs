@@ -9,7 +9,7 @@ use crate::program_rows;
 use crate::rigid_rows::{self, Row};
 use grainbench_harness::prelude::*;
 
-const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 
 const SLOPES: &[Slope] = &[
     Slope { variant: "60deg-mu.3", sticks: false, rigid_allowed: 1e-3 },
@@ -35,8 +35,8 @@ pub(crate) static CASE: Case = Case {
     weakness: "One contact that never opens and whose normal never turns, started at its static overlap: nothing is \
                said about impact, about history on a turning contact, or about grains against grains. A wrong μ is \
                felt only where the disc slips, a wrong inertia mostly where it rolls: read the four together.",
-    ladder: LADDER,
-    default_rung: LADDER[2],
+    levels: LEVELS,
+    default_level: LEVELS[2],
     claims,
     figures,
     home: &crate::registry::HOME,

@@ -73,7 +73,7 @@ const SLOPES: [Elastic; 4] = [
 const REST: Rest = Rest { duration: 0.3, damping: 100.0 };
 /// Points per cell and axis, as in the paper.
 const POINTS: u32 = 3;
-const LADDER: [f64; 3] = [2.0, 4.0, 8.0];
+const LEVELS: [f64; 3] = [2.0, 4.0, 8.0];
 const FINEST: f64 = 16.0;
 
 fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
@@ -155,10 +155,10 @@ fn excess_words(slope: Elastic, cells: f64) -> String {
 /// How fast the deviation from the elastic disc falls with the cell.
 fn order(slope: Elastic) -> Claim {
     claim("order in the cell of the deviation from the elastic disc, 2 to 8 cells a radius", "1")
-        .of_all(LADDER.map(|cells| run(slope, "mpm", cells)))
+        .of_all(LEVELS.map(|cells| run(slope, "mpm", cells)))
         .converges_at_least(1.5, slope.reference.source(), move |done| {
             let off = |(done, cells): (&Done, f64)| Ok((1.0 / cells, excess(done)? - slope.reference.value));
-            let points: Result<Vec<(f64, f64)>, Missing> = done.iter().zip(LADDER).map(off).collect();
+            let points: Result<Vec<(f64, f64)>, Missing> = done.iter().zip(LEVELS).map(off).collect();
             Ok(fitted(&points?))
         })
         .within(exactly(
@@ -249,13 +249,13 @@ fn extrapolated(slope: Elastic) -> Claim {
     })
     .within(judged(
         0.004 + slope.reference.uncertainty,
-        "three rungs fix the order only roughly, and the last step is multiplied by it; and the reference's own \
+        "three levels fix the order only roughly, and the last step is multiplied by it; and the reference's own \
          uncertainty",
     ))
     .refuses(telling(slope))
 }
 
-/// ΩR/v at 8 cells a radius against the finest rung.
+/// ΩR/v at 8 cells a radius against the finest level.
 fn turns_as_it_goes(slope: Elastic) -> Claim {
     claim("mean ΩR over mean v at the end, 8 cells a radius against 16", "1")
         .of_all([8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))
@@ -271,7 +271,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     for slope in SLOPES {
         for (solver, stroke) in [("mpm", Stroke::MarkedLine), ("mpm:2000", Stroke::Dashed)] {
             let mut points = Vec::new();
-            for cells in LADDER {
+            for cells in LEVELS {
                 if let Ok(excess) = excess(&runner.run(&run(slope, solver, cells))?) {
                     points.push((cells, (excess - slope.reference.value).abs()));
                 }

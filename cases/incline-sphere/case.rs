@@ -9,7 +9,7 @@ use crate::program_rows;
 use crate::rigid_rows::{self, Row};
 use grainbench_harness::prelude::*;
 
-const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 
 const SLOPES: &[Slope] = &[
     Slope { variant: "45deg-mu.495", sticks: true, rigid_allowed: 3e-4 },
@@ -32,8 +32,8 @@ pub(crate) static CASE: Case = Case {
     weakness: "One contact that never opens and whose normal never turns, started at its static overlap: nothing is \
                said about impact, about history on a turning contact, or about grains against grains. A wrong μ is \
                felt only where the sphere slips, a wrong inertia mostly where it rolls: read the two together.",
-    ladder: LADDER,
-    default_rung: LADDER[2],
+    levels: LEVELS,
+    default_level: LEVELS[2],
     claims,
     figures,
     home: &crate::registry::HOME,

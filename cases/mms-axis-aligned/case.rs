@@ -4,7 +4,7 @@ use crate::manufactured::error;
 use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 
-const LADDER: &[Rung] = &[cells("1/16", 16.0, 2), cells("1/32", 32.0, 2), cells("1/64", 64.0, 2)];
+const LEVELS: &[Level] = &[cells("1/16", 16.0, 2), cells("1/32", 32.0, 2), cells("1/64", 64.0, 2)];
 const GIMP: &str = "mpm+gimp+flip";
 const SPLINES: &str = "mpm+flip";
 const HATS: &str = "mpm+linear+flip";
@@ -20,8 +20,8 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Periodic and along the grid: no boundary, no shear, no rotation.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -64,7 +64,7 @@ fn claims() -> Vec<Claim> {
             .within(exactly("less than half an order, or the error grows"))
             .refuses(Control::solver("uGIMP in their place", GIMP)),
         claim("root mean square error of the displacement, 64 cells, uGIMP", "m")
-            .of(Run::new(PLAIN, GIMP, LADDER[2].resolution))
+            .of(Run::new(PLAIN, GIMP, LEVELS[2].resolution))
             .equals(SOURCE, |done| Ok(Measured::new(error(&done[0])?, 0.0, 0.05)))
             .within(judged(1.2e-3, "discretisation; in units of the amplitude"))
             .refuses(wrong()),

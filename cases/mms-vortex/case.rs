@@ -5,7 +5,7 @@ use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 
-const LADDER: &[Rung] = &[rung("1/16", 16.0), rung("1/32", 32.0), rung("1/64", 64.0)];
+const LEVELS: &[Level] = &[level("1/16", 16.0), level("1/32", 32.0), level("1/64", 64.0)];
 const SOLVERS: [(&str, &str); 3] = [
     ("quadratic B-splines, FLIP with spin", "mpm"),
     ("uGIMP, FLIP", "mpm+gimp+flip"),
@@ -15,8 +15,8 @@ const KEEPS_NO_NOISE: &str = "mpm+apic";
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
 /// Small steps: the error in time must stay below that of the grid.
-const fn rung(name: &'static str, cells: f64) -> Rung {
-    Rung { name, resolution: Resolution::Grid { cells, points: 3, courant: 0.1 } }
+const fn level(name: &'static str, cells: f64) -> Level {
+    Level { name, resolution: Resolution::Grid { cells, points: 3, courant: 0.1 } }
 }
 
 pub(crate) static CASE: Case = Case {
@@ -27,8 +27,8 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "One material law, no contact, and edges at which nothing happens.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -39,8 +39,8 @@ fn half(scene: &mut Scene) {
     scene.duration = Duration::Seconds(0.5);
 }
 
-fn run(solver: &'static str, rung: Rung) -> Run {
-    Run::new(PLAIN, solver, rung.resolution).adjusted("to .5 s", half)
+fn run(solver: &'static str, level: Level) -> Run {
+    Run::new(PLAIN, solver, level.resolution).adjusted("to .5 s", half)
 }
 
 fn order(done: &[Done]) -> Result<f64, Missing> {
@@ -62,15 +62,15 @@ fn claims() -> Vec<Claim> {
     for (solver, allowed) in [("mpm", 0.1), ("mpm+gimp+flip", 0.2)] {
         claims.push(
             claim("order in the cell at the largest turn, 16 to 32 cells", "1")
-                .of_all(LADDER[..2].iter().map(|&rung| run(solver, rung).slow()))
+                .of_all(LEVELS[..2].iter().map(|&level| run(solver, level).slow()))
                 .converges(2.0, SOURCE, order)
-                .within(judged(allowed, "two rungs, and a force that jumps at the edges"))
+                .within(judged(allowed, "two levels, and a force that jumps at the edges"))
                 .refuses(damped()),
         );
-        for (rung, allowed) in LADDER.iter().zip([0.036, 9.5e-3]) {
+        for (level, allowed) in LEVELS.iter().zip([0.036, 9.5e-3]) {
             claims.push(off(
-                format!("root mean square error of the displacement at the largest turn, {} cells", rung.name),
-                if *rung == LADDER[0] { run(solver, *rung) } else { run(solver, *rung).slow() },
+                format!("root mean square error of the displacement at the largest turn, {} cells", level.name),
+                if *level == LEVELS[0] { run(solver, *level) } else { run(solver, *level).slow() },
                 judged(
                     allowed,
                     "discretisation, of second order; in units of 1 m, the radius of the ring and nearly the largest \
@@ -84,7 +84,7 @@ fn claims() -> Vec<Claim> {
         let quantity = "root mean square error of the displacement when all is back, t = 1 s, 1/32 cells";
         off(quantity.to_owned(), run, tolerance, control)
     };
-    let full = |solver| Run::new(PLAIN, solver, LADDER[1].resolution).slow();
+    let full = |solver| Run::new(PLAIN, solver, LEVELS[1].resolution).slow();
     claims.push(back(full(KEEPS_NO_NOISE), judged(7e-3, "discretisation; in units of 1 m"), damped()));
     claims.push(back(
         full("mpm").known(
@@ -92,7 +92,7 @@ fn claims() -> Vec<Claim> {
              transfer that drops it converges, and loses the energy of rolling grains instead",
         ),
         judged(1.2e-2, "what APIC reaches"),
-        Control::without_the_error("APIC", KEEPS_NO_NOISE, LADDER[1].resolution),
+        Control::without_the_error("APIC", KEEPS_NO_NOISE, LEVELS[1].resolution),
     ));
     claims
 }
@@ -101,9 +101,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (label, solver) in SOLVERS {
         let mut measured = Vec::new();
-        for rung in [rung("1/8", 8.0), LADDER[0]] {
-            let run = run(solver, rung);
-            if let (Resolution::Grid { cells, .. }, Ok(done)) = (rung.resolution, runner.run(&run)) {
+        for level in [level("1/8", 8.0), LEVELS[0]] {
+            let run = run(solver, level);
+            if let (Resolution::Grid { cells, .. }, Ok(done)) = (level.resolution, runner.run(&run)) {
                 measured.extend(error(&done).ok().map(|error| (1.0 / cells, error)));
             }
         }

@@ -18,7 +18,7 @@ use grainbench_scene::scene::Duration;
 use modal::{Inward, Modal, law};
 use std::f64::consts::{SQRT_2, TAU};
 
-const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025)];
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025)];
 /// A step at which the residual oscillation of the paper's Fig. 6, .15 F_eq, is met with 40 cycles at κ = 1.
 const FIGURE_STEP: Resolution = Resolution::CriticalFraction(0.0854);
 /// Cycles of the ramp in the plain scene.
@@ -38,15 +38,15 @@ pub(crate) static CASE: Case = Case {
     weakness: "By symmetry no disc rotates, so neither inertia nor torque arm is felt before the distortion, whose curves \
                are only compared with words. Contacts never open. A code that treats every disc alike but finds contacts \
                wrongly in less regular packings would pass.",
-    ladder: LADDER,
-    default_rung: LADDER[0],
+    levels: LEVELS,
+    default_level: LEVELS[0],
     claims,
     figures: figures::figures,
     home: &crate::registry::HOME,
 };
 
 fn claims() -> Vec<Claim> {
-    let step = LADDER[0].resolution;
+    let step = LEVELS[0].resolution;
     [
         static_forces(),
         discrete(),
@@ -86,7 +86,7 @@ fn static_forces() -> Vec<Claim> {
         let frictionless = variant == "static-0";
         for (contact, kind, force) in contacts.into_iter().filter(|contact| !frictionless || contact.1 == "normal") {
             let row = claim(format!("{kind} force at rest, {contact}"), "N")
-                .of(Run::new(variant, "dem", LADDER[0].resolution))
+                .of(Run::new(variant, "dem", LEVELS[0].resolution))
                 .equals(MODES, move |done| {
                     let scene = &done[0].scene;
                     let unit = law(scene).normal_stiffness * travel(&done[0]);
@@ -158,7 +158,7 @@ fn exact_cycles(done: &Done) -> Vec<Inward> {
 
 /// A run of a modal variant with the walls' speed multiplied.
 fn at_speed(variant: &'static str, factor: f64) -> Run {
-    Run::new(variant, "dem", LADDER[0].resolution).adjusted(&format!("wall speed × {factor}"), move |scene| {
+    Run::new(variant, "dem", LEVELS[0].resolution).adjusted(&format!("wall speed × {factor}"), move |scene| {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= factor);
     })
 }
@@ -171,7 +171,7 @@ fn discrete() -> Vec<Claim> {
                 scene.change_laws(|law| law.normal_stiffness *= 1.0 + 1e-8);
             });
             let rounding = judged(1e-11, "rounding of positions, as it adds up over 400 cycles, against δ/R = 1.5e-3");
-            (vec![Run::new(variant, "dem", LADDER[0].resolution)], rounding, control)
+            (vec![Run::new(variant, "dem", LEVELS[0].resolution)], rounding, control)
         } else {
             let control = Control::scene("tangential stiffness off by 1e-7", |scene| {
                 scene.change_laws(|law| law.tangential_stiffness *= 1.0 + 1e-7);
@@ -227,8 +227,8 @@ fn fixed_ramp(scene: &mut Scene) {
     scene.duration = Duration::Seconds(ramp + 10.0 * TAU / modal.frequencies()[0]);
 }
 
-fn modal_run(variant: &'static str, rung: Rung) -> Run {
-    Run::new(variant, "dem", rung.resolution).adjusted("ramp of fixed time", fixed_ramp)
+fn modal_run(variant: &'static str, level: Level) -> Run {
+    Run::new(variant, "dem", level.resolution).adjusted("ramp of fixed time", fixed_ramp)
 }
 
 /// The worst deviation from the continuous answer over ten periods.
@@ -247,9 +247,9 @@ fn continuous() -> Vec<Claim> {
     };
     let mut claims = Vec::new();
     for variant in MODAL {
-        for (rung, allowed) in LADDER.iter().copied().zip([1.2e-2, 3e-3, 8e-4]) {
+        for (level, allowed) in LEVELS.iter().copied().zip([1.2e-2, 3e-3, 8e-4]) {
             let row = claim("displacement over ten periods against the continuous answer, worst", "wall travel")
-                .of(modal_run(variant, rung))
+                .of(modal_run(variant, level))
                 .equals(MODES, |done| modal_error(&done[0]))
                 .within(judged(
                     allowed,
@@ -257,11 +257,11 @@ fn continuous() -> Vec<Claim> {
                 ))
                 .refuses(lighter());
             // Coarser steps tell the phase error of central differences and no other's.
-            claims.push(if rung == LADDER[2] { row.fair_to_any() } else { row });
+            claims.push(if level == LEVELS[2] { row.fair_to_any() } else { row });
         }
         claims.push(
             claim("order in Δt of that deviation", "1")
-                .of_all(LADDER.iter().map(|&rung| modal_run(variant, rung)))
+                .of_all(LEVELS.iter().map(|&level| modal_run(variant, level)))
                 .converges(2.0, Source::Derived("central differences are of second order"), |done| {
                     let points: Result<Vec<(f64, f64)>, Missing> = done
                         .iter()
@@ -441,7 +441,7 @@ fn slip_in_compression() -> Vec<Claim> {
             (0.0, Control::scene("friction halved", |scene| scene.change_laws(|law| law.friction *= 0.5)))
         };
         claim("most contacts slipping at once in slow compression", "1")
-            .of(Run::new(variant, "dem", LADDER[0].resolution))
+            .of(Run::new(variant, "dem", LEVELS[0].resolution))
             .equals(
                 Source::Derived("tan φ against κb/(δ − b): .4286 at κ = 2/3, .5556 at κ = 1 (derivation)"),
                 move |done| {
@@ -473,7 +473,7 @@ fn apart(a: &Done, b: &Done) -> Result<f64, Missing> {
 
 fn distortion() -> Vec<Claim> {
     let runs = |variants: &[usize]| -> Vec<Run> {
-        variants.iter().map(|&at| Run::new(DISTORTION[at], "dem", LADDER[0].resolution)).collect()
+        variants.iter().map(|&at| Run::new(DISTORTION[at], "dem", LEVELS[0].resolution)).collect()
     };
     vec![
         claim("30°: F_n after compression, κ = 1 over κ = 2/3", "1")

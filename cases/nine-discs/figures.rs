@@ -1,7 +1,7 @@
 //! Figures of the nine discs, after Figs 5-9 of the paper.
 
 use super::modal::{Modal, law};
-use super::{DISTORTION, FIGURE_STEP, LADDER, MODAL, TURN, modal_error, modal_run};
+use super::{DISTORTION, FIGURE_STEP, LEVELS, MODAL, TURN, modal_error, modal_run};
 use crate::sources::literature::cundall_strack_1979::RESIDUAL_AMPLITUDE;
 use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
@@ -24,7 +24,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
              corners and at the centre, and the corners of the other diagonal have come off the walls, as in Fig. 8(b).",
         ),
     ] {
-        let done = runner.run(&Run::new(variant, "dem", LADDER[0].resolution))?;
+        let done = runner.run(&Run::new(variant, "dem", LEVELS[0].resolution))?;
         if let Some(snapshot) = done.record.snapshots.last() {
             all.push(Figure::forces(name, title, caption, force_plot(snapshot)));
         }
@@ -124,7 +124,7 @@ fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
 fn distortion(runner: &Runner, name: &str, angle: &str, variants: [&'static str; 2]) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for (variant, kappa) in variants.into_iter().zip(["2/3", "1"]) {
-        let done = runner.run(&Run::new(variant, "dem", LADDER[0].resolution))?;
+        let done = runner.run(&Run::new(variant, "dem", LEVELS[0].resolution))?;
         for (column, force) in [("centre-edge.normal_force", "F_n"), ("centre-edge.shear_force", "F_s")] {
             let values = done.series().column(column).unwrap_or_default();
             let points =
@@ -145,8 +145,8 @@ fn convergence(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for variant in MODAL {
         let mut points = Vec::new();
-        for &rung in LADDER {
-            let done = runner.run(&modal_run(variant, rung))?;
+        for &level in LEVELS {
+            let done = runner.run(&modal_run(variant, level))?;
             if let (Ok(worst), Some(critical)) = (modal_error(&done), done.record.provenance.critical_time_step) {
                 points.push((done.record.provenance.time_step / critical, worst.error().abs()));
             }

@@ -4,7 +4,7 @@ use crate::incline::more_friction;
 use crate::program_rows;
 use grainbench_harness::prelude::*;
 
-const LADDER: &[Rung] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), fraction("dt=.002", 0.002)];
+const LEVELS: &[Level] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), fraction("dt=.002", 0.002)];
 const VARIANTS: [&str; 2] = ["elastic", "damped"];
 
 pub(crate) static CASE: Case = Case {
@@ -16,8 +16,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "The disc slips all the time, so that the tangential spring's stiffness is not felt, nor what sticking would \
                remember. One plane wall, one angle.",
-    ladder: LADDER,
-    default_rung: LADDER[2],
+    levels: LEVELS,
+    default_level: LEVELS[2],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -108,7 +108,7 @@ fn claims() -> Vec<Claim> {
             let (read, of) = (*read, *of);
             for solver in ["dem:lammps", "dem:liggghts"] {
                 let row = claim(*quantity, unit)
-                    .of(Run::new(variant, solver, LADDER[2].resolution))
+                    .of(Run::new(variant, solver, LEVELS[2].resolution))
                     .equals(Source::Derived("momentum and Coulomb's limit, by quadrature (derivation)"), move |done| {
                         let expected = of(&exact(&done[0].scene));
                         Ok(Measured::new(read(&done[0])?, expected, expected))
@@ -120,14 +120,14 @@ fn claims() -> Vec<Claim> {
             }
         }
     }
-    claims.extend(program_rows::impact(&VARIANTS, LADDER[1].resolution));
+    claims.extend(program_rows::impact(&VARIANTS, LEVELS[1].resolution));
     claims
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for variant in VARIANTS {
-        let done = runner.run(&Run::new(variant, "dem:lammps", LADDER[2].resolution))?;
+        let done = runner.run(&Run::new(variant, "dem:lammps", LEVELS[2].resolution))?;
         let (time, speed) = (&done.series().time, done.series().column("grain.vx").unwrap_or_default());
         let end = time.last().copied().unwrap_or_default();
         let after = exact(&done.scene).along;

@@ -16,7 +16,7 @@ use grainbench_harness::statistics::{next_value, spread};
 use grainbench_scene::motion::Moment;
 use nalgebra::Vector3;
 
-const LADDER: &[Rung] = &[fraction("dt=.2", 0.2), fraction("dt=.1", 0.1), cells("R/2", 2.0, 3)];
+const LEVELS: &[Level] = &[fraction("dt=.2", 0.2), fraction("dt=.1", 0.1), cells("R/2", 2.0, 3)];
 /// The time step of the programs (s): the walls stop between no two steps.
 const STEP: Resolution = Resolution::TimeStep(5e-3);
 
@@ -31,8 +31,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "The photographed packing is lost: packings from a seed have its sizes, not its places, and single \
                forces cannot be compared. The range of F_H/F_V is wide, and stage A fixes much of it.",
-    ladder: LADDER,
-    default_rung: LADDER[0],
+    levels: LEVELS,
+    default_level: LEVELS[0],
     claims,
     figures: figures::figures,
     home: &crate::registry::HOME,
@@ -63,7 +63,7 @@ const IMPOSED: &str = "imposed by the motion of the walls (derivation)";
 const FOUND: &str = "how near the search for the motion of the walls ends";
 
 fn run(variant: &'static str) -> Run {
-    Run::new(variant, "dem", LADDER[0].resolution)
+    Run::new(variant, "dem", LEVELS[0].resolution)
 }
 
 /// Stages A and B.
@@ -199,7 +199,7 @@ fn as_printed(packings: Vec<Run>, words: &str, printed: Cited) -> Claim {
 /// Half the time step leads to the same stage B.
 fn step() -> Claim {
     claim("F_H/F_V at stage B, against half the step", "1")
-        .of_all([run(PLAIN).slow(), run(PLAIN).at(LADDER[1].resolution).aside()])
+        .of_all([run(PLAIN).slow(), run(PLAIN).at(LEVELS[1].resolution).aside()])
         .agrees(Source::Finer("the same at half the time step"), |done| {
             Ok(Measured::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0))
         })

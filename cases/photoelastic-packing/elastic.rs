@@ -1,6 +1,6 @@
 //! Fifty of the discs as elastic bodies, whose contacts have no stiffness of their own.
 
-use super::{FOUND, IMPOSED, LADDER, equilibrium, experiment, further_to_b, ratio_at_b, run, stages};
+use super::{FOUND, IMPOSED, LEVELS, equilibrium, experiment, further_to_b, ratio_at_b, run, stages};
 use grainbench_harness::prelude::*;
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ const HALF: usize = 2;
 
 /// The elastic discs.
 pub(super) fn discs() -> Run {
-    Run::new(VARIANT, "mpm", LADDER[HALF].resolution).long()
+    Run::new(VARIANT, "mpm", LEVELS[HALF].resolution).long()
 }
 
 /// The same, left alone from stage A on.
@@ -45,7 +45,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 Ok(Measured::new(b / a, 1.0, 1.0))
             })
             .within(judged(1e-4, "discs on springs lose 1e-5"))
-            .refuses(Control::without_the_error("discs on springs", "dem", LADDER[0].resolution)),
+            .refuses(Control::without_the_error("discs on springs", "dem", LEVELS[0].resolution)),
         // Two methods of ours, so that it is no evidence from outside.
         claim("F_H/F_V at stage B, 50 elastic discs against discs on springs", "1")
             .of_all([discs(), run("fifty").aside()])

@@ -8,9 +8,9 @@ use grainbench_harness::compare::twins::{self, Parting, Sum, TWIN};
 use grainbench_harness::prelude::*;
 use grainbench_scene::twin::move_one;
 
-const LADDER: &[Rung] = &[
-    Rung { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
-    Rung { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
+const LEVELS: &[Level] = &[
+    Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
+    Level { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
 ];
 
 pub(crate) static CASE: Case = Case {
@@ -24,8 +24,8 @@ pub(crate) static CASE: Case = Case {
     weakness: "Other programs, not an exact answer: an error that all share is not seen. After the horizon the \
                packing is still being set in motion, so that only differences between runs are statistics, not the \
                means themselves.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -54,17 +54,17 @@ const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 keeps the tangential stretch of a co
 
 /// The run of the beginning, at a fine step.
 fn short(solver: &'static str) -> Run {
-    Run::new(PLAIN, solver, LADDER[1].resolution)
+    Run::new(PLAIN, solver, LEVELS[1].resolution)
 }
 
 /// The run up to the first contact that closes again, sampled often.
 fn first(solver: &'static str) -> Run {
-    Run::new("first", solver, LADDER[1].resolution)
+    Run::new("first", solver, LEVELS[1].resolution)
 }
 
 /// The run that goes on until it cannot be foretold.
 fn long(solver: &'static str) -> Run {
-    Run::new("long", solver, LADDER[0].resolution)
+    Run::new("long", solver, LEVELS[0].resolution)
 }
 
 /// How twins part: of our solver in LAMMPS' convention.
@@ -74,7 +74,7 @@ fn claims() -> Vec<Claim> {
     let friction = Control::ours("friction .1 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
     let [lammps, liggghts] = PAIRS;
     let other = |solver| Control::solver("ours in the convention of the other program", solver);
-    let without = Control::without_the_error("our solver, which forgets", liggghts[0], LADDER[0].resolution);
+    let without = Control::without_the_error("our solver, which forgets", liggghts[0], LEVELS[0].resolution);
     let with_twins = |runs: [Run; 2]| {
         let twins = [long(lammps[0]).aside(), long(lammps[0]).adjusted(TWIN, move_one).aside()];
         [runs, twins].concat()

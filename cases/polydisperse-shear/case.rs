@@ -27,11 +27,11 @@ const fn grid(cells: f64) -> Resolution {
     Resolution::Grid { cells, points: 2, courant: 0.4 }
 }
 
-const LADDER: &[Rung] = &[
-    Rung { name: "dt=.05", resolution: Resolution::CriticalFraction(0.05) },
-    Rung { name: "L/75", resolution: grid(75.0) },
-    Rung { name: "L/150", resolution: grid(150.0) },
-    Rung { name: "L/300", resolution: grid(300.0) },
+const LEVELS: &[Level] = &[
+    Level { name: "dt=.05", resolution: Resolution::CriticalFraction(0.05) },
+    Level { name: "L/75", resolution: grid(75.0) },
+    Level { name: "L/150", resolution: grid(150.0) },
+    Level { name: "L/300", resolution: grid(300.0) },
 ];
 
 pub(crate) static CASE: Case = Case {
@@ -45,8 +45,8 @@ pub(crate) static CASE: Case = Case {
     weakness: "The paper's packing is not printed: ours has its sizes, and packings differ by factors of two to \
                three, so that ratios are compared. Findings of the paper are looked at on half of its grid and over \
                five packings in the long set; grains of two cells across do not resolve the stress inside them.",
-    ladder: LADDER,
-    default_rung: LADDER[0],
+    levels: LEVELS,
+    default_level: LEVELS[0],
     claims,
     figures: figures::figures,
     home: &crate::registry::HOME,

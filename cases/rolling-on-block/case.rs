@@ -4,7 +4,7 @@ use crate::sources::prototype::elastic_disc;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 
-const LADDER: &[Rung] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
+const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
 
 pub(crate) static CASE: Case = Case {
     name: "rolling-on-block",
@@ -14,8 +14,8 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The elastic answer comes from a prototype of the same family of methods, not in closed form.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -27,7 +27,7 @@ struct Slope {
     variant: &'static str,
     /// Displacement over the rigid one, less one, of the converged elastic disc on a rigid plane.
     reference: Cited,
-    /// Deviation by rung that was asked for before the solver existed.
+    /// Deviation by level that was asked for before the solver existed.
     allowed: [f64; 3],
 }
 
@@ -47,11 +47,11 @@ fn claims() -> Vec<Claim> {
     const ASKED: &str = "asked for at this resolution before the solver existed, and the reference's own uncertainty";
     let mut claims = Vec::new();
     for slope in SLOPES {
-        for (rung, allowed) in LADDER.iter().zip(slope.allowed) {
-            let run = Run::new(slope.variant, "mpm", rung.resolution);
+        for (level, allowed) in LEVELS.iter().zip(slope.allowed) {
+            let run = Run::new(slope.variant, "mpm", level.resolution);
             claims.push(
-                claim(format!("displacement over the rigid one, less 1, {}", rung.name), "1")
-                    .of(if *rung == LADDER[2] { run.long() } else { run })
+                claim(format!("displacement over the rigid one, less 1, {}", level.name), "1")
+                    .of(if *level == LEVELS[2] { run.long() } else { run })
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(required(allowed + slope.reference.uncertainty, ASKED))
                     .refuses(Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000")),
@@ -59,7 +59,7 @@ fn claims() -> Vec<Claim> {
         }
         claims.push(
             claim("displacement over the rigid one, less 1", "1")
-                .of(Run::new(slope.variant, "mpm:2000", LADDER[1].resolution).known(
+                .of(Run::new(slope.variant, "mpm:2000", LEVELS[1].resolution).known(
                     "nodal contact holds the disc up over a patch of about √(2Rh), as if it had a flat side: it rolls \
                      too little",
                 ))
@@ -68,7 +68,7 @@ fn claims() -> Vec<Claim> {
                     slope.allowed[1] + slope.reference.uncertainty,
                     "what a contact that acts at the surface reaches at this resolution",
                 ))
-                .refuses(Control::without_the_error("springs at the surface", "mpm", LADDER[1].resolution)),
+                .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[1].resolution)),
         );
     }
     claims
@@ -81,8 +81,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             [("mpm", Stroke::MarkedLine), ("mpm:gap", Stroke::MarkedLine), ("mpm:2000", Stroke::Dashed)]
         {
             let mut points = Vec::new();
-            for (cells, rung) in [4.0, 8.0].into_iter().zip(LADDER) {
-                if let Ok(excess) = excess(&runner.run(&Run::new(slope.variant, solver, rung.resolution))?) {
+            for (cells, level) in [4.0, 8.0].into_iter().zip(LEVELS) {
+                if let Ok(excess) = excess(&runner.run(&Run::new(slope.variant, solver, level.resolution))?) {
                     points.push((cells, (excess - slope.reference.value).abs()));
                 }
             }

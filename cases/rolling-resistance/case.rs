@@ -6,8 +6,8 @@ use crate::program_rows;
 use crate::rigid_rows;
 use grainbench_harness::prelude::*;
 
-const LADDER: &[Rung] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
-const STEP: Rung = LADDER[2];
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const STEP: Level = LEVELS[2];
 const FLAT: [&str; 2] = ["sphere", "disc"];
 const SLOPE: [&str; 2] = ["sphere-slope", "disc-slope"];
 
@@ -19,8 +19,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "Only the limit of the moment is felt: the stiffness of the rolling spring, which LIGGGHTS and others choose \
                differently, changes how a grain comes to rest and nothing that is gated here.",
-    ladder: LADDER,
-    default_rung: STEP,
+    levels: LEVELS,
+    default_level: STEP,
     claims,
     figures,
     home: &crate::registry::HOME,

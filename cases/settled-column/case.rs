@@ -5,7 +5,7 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::spread;
 use grainbench_scene::scene::Duration;
 
-const LADDER: &[Rung] = &[fraction("dt=.2", 0.2)];
+const LEVELS: &[Level] = &[fraction("dt=.2", 0.2)];
 
 pub(crate) static CASE: Case = Case {
     name: "settled-column",
@@ -17,8 +17,8 @@ pub(crate) static CASE: Case = Case {
     weakness: "Sums over one column: what is smaller than the spread from column to column is not seen. The load on \
                the floor and the ratio of stresses have no rows: they spread by a tenth, and friction hardly moves \
                them in so short a column. The height is that of the centre of mass.",
-    ladder: LADDER,
-    default_rung: LADDER[0],
+    levels: LEVELS,
+    default_level: LEVELS[0],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -28,7 +28,7 @@ pub(crate) static CASE: Case = Case {
 const COLUMNS: [&str; 4] = [PLAIN, "seed-12", "seed-13", "seed-14"];
 
 fn run(solver: &'static str) -> Run {
-    Run::new(PLAIN, solver, LADDER[0].resolution)
+    Run::new(PLAIN, solver, LEVELS[0].resolution)
 }
 
 /// The mean of a column over the last fifth of the run.

@@ -1,6 +1,6 @@
 //! The 2001 paper's sphere set down on the deformable plane with backspin: it slides, is spun down, and rolls on.
 
-use super::{FLAT, LADDER, set_down};
+use super::{FLAT, LEVELS, set_down};
 use crate::one_grain::{OneGrain, course, last};
 use crate::sources::prototype::elastic_sphere;
 use grainbench_harness::prelude::*;
@@ -34,10 +34,10 @@ fn slippery() -> Control {
 pub(super) fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
     // Deviations at R/4 and R/8 that were asked for before the solver existed.
-    for (rung, asked) in LADDER[1..].iter().zip([0.03, 0.01]) {
-        let run = || Run::new(VARIANT, "mpm", rung.resolution).long();
+    for (level, asked) in LEVELS[1..].iter().zip([0.03, 0.01]) {
+        let run = || Run::new(VARIANT, "mpm", level.resolution).long();
         claims.push(
-            claim(format!("displacement at .8 s over the rigid one, less 1, {}", rung.name), "1")
+            claim(format!("displacement at .8 s over the rigid one, less 1, {}", level.name), "1")
                 .of(run())
                 .equals_cited(elastic_sphere::BACKSPIN, 1.0, |done| excess(&done[0]))
                 .within(required(
@@ -47,7 +47,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 .refuses(slippery()),
         );
         claims.push(
-            claim(format!("mean velocity of rolling, {}", rung.name), "m/s")
+            claim(format!("mean velocity of rolling, {}", level.name), "m/s")
                 .of(run())
                 .between([1.43, 1.48], Source::Printed(&elastic_sphere::WORK, SPEED), |done| speed(&done[0]))
                 .within(exactly("the band was asked for before the solver existed"))
@@ -62,7 +62,7 @@ pub(super) fn claims() -> Vec<Claim> {
                     Ok(Measured::new(excess(&done[0])?, 0.0, 1.0))
                 })
                 .within(judged(0.035, "what a contact that acts at the surface reaches at this resolution"))
-                .refuses(Control::without_the_error("springs at the surface", "mpm", LADDER[1].resolution)),
+                .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[1].resolution)),
         );
     }
     claims

@@ -8,7 +8,7 @@ use crate::sources::prototype::{elastic_sphere, nodal_contact_2000, nodal_contac
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 
-const LADDER: &[Rung] = &[cells("R/2", 2.0, 2), cells("R/4", 4.0, 2), cells("R/8", 8.0, 2)];
+const LEVELS: &[Level] = &[cells("R/2", 2.0, 2), cells("R/4", 4.0, 2), cells("R/8", 8.0, 2)];
 const FLAT: &str = "nodal contact acts before surfaces meet and holds the sphere up over a patch of about √(2Rh), \
                     along normals of its own";
 
@@ -21,8 +21,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "The elastic answer comes from a prototype of the same family of methods, on a rigid plane, not in \
                closed form.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -63,7 +63,7 @@ fn excess(done: &Done) -> Result<f64, Missing> {
 
 /// Touching at the start and let go, as in the paper.
 fn set_down(variant: &'static str, solver: &'static str) -> Run {
-    Run::new(variant, solver, LADDER[1].resolution).adjusted("set down", |scene| scene.start.settle = None)
+    Run::new(variant, solver, LEVELS[1].resolution).adjusted("set down", |scene| scene.start.settle = None)
 }
 
 /// A few rows take seconds; the others are for the long set.
@@ -75,11 +75,11 @@ fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
     for slope in SLOPES {
         let rolls = slope.variant == SLOPES[0].variant;
-        for (rung, allowed) in LADDER[1..].iter().zip(slope.allowed) {
-            let run = Run::new(slope.variant, "mpm", rung.resolution);
+        for (level, allowed) in LEVELS[1..].iter().zip(slope.allowed) {
+            let run = Run::new(slope.variant, "mpm", level.resolution);
             claims.push(
-                claim(format!("displacement at 1 s over the rigid one, less 1, {}", rung.name), "1")
-                    .of(in_set(run, rolls && *rung == LADDER[1]))
+                claim(format!("displacement at 1 s over the rigid one, less 1, {}", level.name), "1")
+                    .of(in_set(run, rolls && *level == LEVELS[1]))
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(judged(
                         allowed + slope.reference.uncertainty,
@@ -101,13 +101,13 @@ fn claims() -> Vec<Claim> {
             );
             claims.push(
                 claim("displacement at 1 s over the rigid one, less 1, against the elastic sphere, R/4", "1")
-                    .of(in_set(Run::new(slope.variant, solver, LADDER[1].resolution).known(FLAT), false))
+                    .of(in_set(Run::new(slope.variant, solver, LEVELS[1].resolution).known(FLAT), false))
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(judged(
                         slope.allowed[0] + slope.reference.uncertainty,
                         "what a contact that acts at the surface reaches at this resolution",
                     ))
-                    .refuses(Control::without_the_error("springs at the surface", "mpm", LADDER[1].resolution)),
+                    .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[1].resolution)),
             );
         }
     }
@@ -118,7 +118,7 @@ fn claims() -> Vec<Claim> {
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (solver, stroke) in [("mpm", Stroke::Line), ("mpm:2000", Stroke::Dashed)] {
-        let done = runner.run(&Run::new(SLOPES[0].variant, solver, LADDER[0].resolution))?;
+        let done = runner.run(&Run::new(SLOPES[0].variant, solver, LEVELS[0].resolution))?;
         let rigid = OneGrain::of(&done.scene);
         let x = done.series().column("grain.x").unwrap_or_default();
         let points = done.series().time.iter().zip(x).map(|(&t, x)| (t, x - rigid.rigid_incline(t).x)).collect();

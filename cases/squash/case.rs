@@ -7,7 +7,7 @@ use crate::rigid_rows;
 use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
 
-const LADDER: &[Rung] = &[fraction("dt=.05", 0.05)];
+const LEVELS: &[Level] = &[fraction("dt=.05", 0.05)];
 /// By how much positions up to 4 R round (R) over the way of a wall in a step (R): forces, in units of k v Δt.
 const ROUNDING: f64 = 4.0 * f64::EPSILON / 1e-3;
 
@@ -20,15 +20,15 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "One dimension, no friction, no rotation and no contact that opens. It tells the order of operations in \
                a cycle and nothing about contact detection: a code may pass and still find contacts one step late.",
-    ladder: LADDER,
-    default_rung: LADDER[0],
+    levels: LEVELS,
+    default_level: LEVELS[0],
     claims,
     figures,
     home: &crate::registry::HOME,
 };
 
 fn run() -> Run {
-    Run::new(PLAIN, "dem", LADDER[0].resolution)
+    Run::new(PLAIN, "dem", LEVELS[0].resolution)
 }
 
 /// q = kΔt²/m and the unit of force k v Δt, from the scene and the step that was run.

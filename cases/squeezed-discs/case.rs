@@ -6,7 +6,7 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
 use std::collections::BTreeMap;
 
-const LADDER: &[Rung] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
+const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
 const WALLS: [&str; 4] = ["left.force_x", "right.force_x", "bottom.force_y", "top.force_y"];
 /// The grid shifted by none, a quarter and a half of a cell.
 const PHASES: [&str; 3] = ["mpm", "mpm+phase=0.25", "mpm+phase=0.5"];
@@ -23,8 +23,8 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "At the squeeze of .01 R patches are narrower than cells, and the force hangs on how the grid lies.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -71,8 +71,8 @@ fn spread(done: &Done) -> Result<(usize, f64), Missing> {
     Ok((forces.len(), forces.values().map(|force| (force / mean - 1.0).abs()).fold(0.0, f64::max)))
 }
 
-fn phases(rung: Rung) -> [Run; 3] {
-    PHASES.map(|solver| Run::new(PLAIN, solver, rung.resolution))
+fn phases(level: Level) -> [Run; 3] {
+    PHASES.map(|solver| Run::new(PLAIN, solver, level.resolution))
 }
 
 /// Mean over the phases of the grid.
@@ -84,7 +84,7 @@ fn over_phases(done: &[Done]) -> Result<f64, Missing> {
 fn claims() -> Vec<Claim> {
     let mut claims = vec![
         claim("largest deviation of the 24 contact forces from their mean", "1")
-            .of(Run::new(PLAIN, "mpm", LADDER[1].resolution).slow())
+            .of(Run::new(PLAIN, "mpm", LEVELS[1].resolution).slow())
             .holds("equilibrium and symmetry: all are equal (derivation)", |done| match spread(&done[0])? {
                 (24, spread) => Ok(Measured::new(spread, 0.0, 1.0)),
                 (count, _) => Err(Missing(format!("24 contacts, but {count}"))),
@@ -94,16 +94,16 @@ fn claims() -> Vec<Claim> {
                 scene.walls[0].motion.phases[0].velocity *= 2.0;
             })),
     ];
-    for (rung, tolerance) in [
+    for (level, tolerance) in [
         (
-            LADDER[1],
+            LEVELS[1],
             required(0.1, "springs are as soft as .4 cells of material, and the patch is a quarter of a cell wide"),
         ),
-        (LADDER[2], judged(0.08, "the same with a patch of half a cell")),
+        (LEVELS[2], judged(0.08, "the same with a patch of half a cell")),
     ] {
-        let runs = phases(rung).map(|run| if rung.name == "R/12" { run.long() } else { run.slow() });
+        let runs = phases(level).map(|run| if level.name == "R/12" { run.long() } else { run.slow() });
         claims.push(
-            claim(format!("contact force, mean over three positions of the grid, {}", rung.name), "N/m")
+            claim(format!("contact force, mean over three positions of the grid, {}", level.name), "N/m")
                 .of_all(runs)
                 .equals(SOURCE, |done| {
                     let exact = exact(&done[0].scene);
@@ -115,7 +115,7 @@ fn claims() -> Vec<Claim> {
     }
     claims.push(
         claim("contact force over the exact one, R/6", "1")
-            .of(Run::new(PLAIN, "mpm:gap", LADDER[1].resolution).slow())
+            .of(Run::new(PLAIN, "mpm:gap", LEVELS[1].resolution).slow())
             .between([LEAST_NODAL_FORCE.value, MOST_NODAL_FORCE.value], MOST_NODAL_FORCE.source(), |done| {
                 Ok(mean_force(&done[0])? / exact(&done[0].scene))
             })
@@ -124,14 +124,14 @@ fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("contact force, R/4", "N/m")
-            .of(Run::new(PLAIN, "mpm:gap", LADDER[0].resolution)
+            .of(Run::new(PLAIN, "mpm:gap", LEVELS[0].resolution)
                 .known("a node in contact stops a whole cell of surface at once: contacts are about twice too stiff"))
             .equals(SOURCE, |done| {
                 let exact = exact(&done[0].scene);
                 Ok(Measured::new(mean_force(&done[0])?, exact, exact))
             })
             .within(judged(0.2, "what springs at the surface reach at any position of the grid"))
-            .refuses(Control::without_the_error("springs at the surface", "mpm", LADDER[0].resolution)),
+            .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[0].resolution)),
     );
     claims
 }

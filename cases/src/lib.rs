@@ -1,4 +1,4 @@
-//! Benchmark cases: scenes, ladders of resolution, claims and their negative controls.
+//! Benchmark cases: scenes, levels of resolution, claims and their negative controls.
 //!
 //! A case is a folder beside `src`: `scene.toml`, `case.rs` with claims and figures, and `derivation.md`. A folder that
 //! has a `scene.toml` is in the registry.
@@ -17,6 +17,7 @@ pub mod solvers;
 pub mod sources;
 pub mod stage;
 pub mod stored;
+pub mod uncertainty;
 mod varied;
 
 pub use grainbench_harness::case::Case;

@@ -27,8 +27,8 @@ use std::f64::consts::TAU;
 const RIGID: &str = "rigid";
 /// The resolution of rows.
 pub const DEFAULT: Resolution = Resolution::substeps(8);
-/// Substeps of the ladder.
-const LADDER: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
+/// Substeps of the sequence of levels.
+const LEVELS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
 /// Substeps over which the order is fitted: so many that turning grains no longer lift off, so few that the overlap is
 /// reached early in the run.
 const FITTED: [u32; 4] = [16, 20, 24, 32];
@@ -173,7 +173,7 @@ fn backspin(row: Row) -> Vec<Claim> {
     against(row, OneGrain::rigid_backspin, friction, [X, V, V])
 }
 
-/// The error against the rigid answer over the ladder of substeps.
+/// The error against the rigid answer over the number of substeps.
 ///
 /// # Errors
 /// When a run fails otherwise than by breaking.
@@ -181,7 +181,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
     let mut curves = Vec::new();
     for row in rows {
         let mut points = Vec::new();
-        for substeps in LADDER {
+        for substeps in LEVELS {
             let done = match runner.run(&run(row.variant, Resolution::substeps(substeps))) {
                 // Too coarse for what turns as fast: it has no point.
                 Err(RunError::Broken(_)) => continue,
@@ -194,7 +194,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
         }
         curves.push(Curve { label: row.variant.to_owned(), stroke: Stroke::MarkedLine, points });
     }
-    let ends = [LADDER[0], LADDER[LADDER.len() - 1]].map(f64::from);
+    let ends = [LEVELS[0], LEVELS[LEVELS.len() - 1]].map(f64::from);
     let small = Resolution::RIGID_STEP / f64::from(Resolution::RIGID_ITERATIONS);
     curves.push(Curve {
         label: "h/t".to_owned(),

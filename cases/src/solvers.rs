@@ -1,9 +1,10 @@
 //! The registry of solvers: a line each.
 
-use crate::{stored, varied};
+use crate::{stored, uncertainty, varied};
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::case::Case;
+use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
 use grainbench_harness::solvers::Solvers;
 use grainbench_mpm::solver::Mpm;
@@ -47,7 +48,8 @@ pub fn by_name(name: &str) -> Option<Box<dyn Solver>> {
 /// Every solver of ours with what it claims of itself, in scenes that take a moment.
 #[must_use]
 pub fn with_terms() -> Vec<(Box<dyn Solver>, Terms)> {
-    let dem = Convention::ALL.into_iter().map(|convention| (Box::new(Dem::new(convention)) as Box<dyn Solver>, Dem::TERMS));
+    let dem =
+        Convention::ALL.into_iter().map(|convention| (Box::new(Dem::new(convention)) as Box<dyn Solver>, Dem::TERMS));
     let mpm = Mpm::ALL.into_iter().map(|mpm| (Box::new(mpm) as Box<dyn Solver>, mpm.terms().in_the_plane()));
     dem.chain([(Box::new(Rigid::new()) as Box<dyn Solver>, Rigid::TERMS)]).chain(mpm).collect()
 }
@@ -79,6 +81,10 @@ impl Solvers for Registry {
 
     fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
         stored::record(case, run, scene)
+    }
+
+    fn uncertainty(&self, case: &Case, claim: &Claim) -> Option<f64> {
+        uncertainty::find(case, claim).map(|found| found.uncertainty)
     }
 
     fn is_stored(&self, case: &Case, run: &Run) -> bool {

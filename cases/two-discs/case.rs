@@ -3,7 +3,7 @@
 use crate::sources::prototype::two_elastic_discs::{ENERGY_OF_2000, OBLIQUE_SPIN, RESTITUTION};
 use grainbench_harness::prelude::*;
 
-const LADDER: &[Rung] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
+const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
 /// When the discs of the Sulsky variant touch (s): 3 − √2.
 const TOUCH: f64 = 3.0 - std::f64::consts::SQRT_2;
 
@@ -16,8 +16,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "Restitution and spin are known from an independent prototype of the same family of methods, not in \
                closed form.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,

@@ -4,7 +4,7 @@ use crate::elastic::stiffen;
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
-const LADDER: &[Rung] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
+const LEVELS: &[Level] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
 const SOURCE: Source = Source::Derived("u_tt = (E/ρ) u_xx, fixed-free (derivation)");
 
 pub(crate) static CASE: Case = Case {
@@ -14,8 +14,8 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Small strain, one direction, no contact.",
-    ladder: LADDER,
-    default_rung: LADDER[1],
+    levels: LEVELS,
+    default_level: LEVELS[1],
     claims,
     figures,
     home: &crate::registry::HOME,
@@ -63,13 +63,13 @@ fn period(done: &Done) -> Result<f64, Missing> {
 
 fn claims() -> Vec<Claim> {
     let softer = || Control::scene("two per cent softer", |scene| stiffen(scene, 0.98));
-    let run = |rung: Rung| Run::new(PLAIN, "mpm", rung.resolution);
-    let mut claims: Vec<Claim> = LADDER
+    let run = |level: Level| Run::new(PLAIN, "mpm", level.resolution);
+    let mut claims: Vec<Claim> = LEVELS
         .iter()
-        .map(|&rung| {
-            let (squared, strain) = small(rung.resolution);
-            claim(format!("period, {} cells", rung.name), "s")
-                .of(run(rung))
+        .map(|&level| {
+            let (squared, strain) = small(level.resolution);
+            claim(format!("period, {} cells", level.name), "s")
+                .of(run(level))
                 .equals(SOURCE, |done| {
                     let exact = 2.0 * PI / mode(&done[0].scene).0;
                     Ok(Measured::new(period(&done[0])?, exact, exact))
@@ -82,10 +82,10 @@ fn claims() -> Vec<Claim> {
                 .refuses(softer())
         })
         .collect();
-    let (squared, strain) = small(LADDER[1].resolution);
+    let (squared, strain) = small(LEVELS[1].resolution);
     claims.push(
         claim("mean velocity over two periods, worst", "m/s")
-            .of(run(LADDER[1]))
+            .of(run(LEVELS[1]))
             .equals(SOURCE, |done| {
                 let (frequency, amplitude) = mode(&done[0].scene);
                 let exact = |time: f64| amplitude * (frequency * time).cos();
@@ -100,7 +100,7 @@ fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("total energy over two periods, worst", "J")
-            .of(run(LADDER[1]))
+            .of(run(LEVELS[1]))
             .holds("conservation of energy", |done| {
                 let energy = done[0].column("all.total_energy")?;
                 Ok(Measured::worst(&done[0].series().time, energy, |_| energy[0], energy[0]))
@@ -118,12 +118,12 @@ fn claims() -> Vec<Claim> {
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     let mut exact = Vec::new();
-    for rung in LADDER {
-        let done = runner.run(&Run::new(PLAIN, "mpm", rung.resolution))?;
+    for level in LEVELS {
+        let done = runner.run(&Run::new(PLAIN, "mpm", level.resolution))?;
         let (frequency, amplitude) = mode(&done.scene);
         let velocity = done.series().column("bar.vx").unwrap_or_default();
         let samples = done.series().time.iter().zip(velocity).step_by(4);
-        curves.push(Curve::new(rung.name, Stroke::Line, samples.map(|(&time, &velocity)| (time, velocity)).collect()));
+        curves.push(Curve::new(level.name, Stroke::Line, samples.map(|(&time, &velocity)| (time, velocity)).collect()));
         exact =
             (0..=200).map(|k| f64::from(k) / 10.0).map(|time| (time, amplitude * (frequency * time).cos())).collect();
     }

@@ -9,9 +9,9 @@ mod prepare;
 mod search;
 mod walls;
 
+use grainbench::cases::registry;
 use grainbench::cases::registry::read_grains;
 use grainbench::harness::case::PLAIN;
-use grainbench::cases::registry;
 use grainbench::scene::scene::{Scene, WallShape};
 use grainbench::scene::source::SceneSource;
 use search::Search;

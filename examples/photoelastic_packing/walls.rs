@@ -11,9 +11,9 @@ use grainbench::scene::scene::{Duration, Scene, WallShape};
 use grainbench::scene::solver::{Resolution, Solver};
 use std::error::Error;
 
-/// The time step of discs on springs: the default rung of the case.
+/// The time step of discs on springs: the default level of the case.
 const RUNG: Resolution = Resolution::CriticalFraction(0.2);
-/// The grid of elastic discs: the rung of the case.
+/// The grid of elastic discs: the level of the case.
 const GRID: Resolution = Resolution::grid(2.0, 3);
 
 /// Speeds between two times (s): of the sides outwards and of top and bottom inwards (m/s).

@@ -1,7 +1,7 @@
 //! Means over the cells of a grid as pictures: the same definition for grains and for material points, side by side.
 
-use grainbench_harness::figure::{Field, Panel, Shades};
 use crate::coarse::{Element, Grid, elements};
+use grainbench_harness::figure::{Field, Panel, Shades};
 use grainbench_harness::raster::{Raster, level};
 use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Scene;

@@ -1,8 +1,8 @@
 //! Snapshots as pictures of a field: panels beside one another on one scale, or films.
 
-use grainbench_harness::figure::{Field, Panel, Shades};
 use crate::paint::{Painting, View};
 use crate::quantity::Quantity;
+use grainbench_harness::figure::{Field, Panel, Shades};
 use grainbench_harness::raster::{HIGH, LOW, Raster};
 use grainbench_scene::record::Snapshot;
 

@@ -1,4 +1,4 @@
-//! A case: scenes, a ladder of resolutions, claims.
+//! A case: scenes, a sequence of resolution levels, claims.
 
 use crate::claim::Claim;
 use crate::figure::Figure;
@@ -10,9 +10,9 @@ use grainbench_scene::solver::{Resolution, RunError};
 use grainbench_scene::source::SceneSource;
 use std::path::{Path, PathBuf};
 
-/// One rung of a ladder.
+/// One resolution level.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rung {
+pub struct Level {
     /// Name, such as `dt=.1`.
     pub name: &'static str,
     /// The resolution.
@@ -21,14 +21,14 @@ pub struct Rung {
 
 /// A time step as a fraction of the critical one.
 #[must_use]
-pub const fn fraction(name: &'static str, fraction: f64) -> Rung {
-    Rung { name, resolution: Resolution::CriticalFraction(fraction) }
+pub const fn fraction(name: &'static str, fraction: f64) -> Level {
+    Level { name, resolution: Resolution::CriticalFraction(fraction) }
 }
 
 /// Cells per reference length and material points per cell and axis, of a method with a grid.
 #[must_use]
-pub const fn cells(name: &'static str, cells: f64, points: u32) -> Rung {
-    Rung { name, resolution: Resolution::grid(cells, points) }
+pub const fn cells(name: &'static str, cells: f64, points: u32) -> Level {
+    Level { name, resolution: Resolution::grid(cells, points) }
 }
 
 /// A benchmark case. Its folder holds scene, claims and derivation.
@@ -46,9 +46,9 @@ pub struct Case {
     /// Where this test is weak.
     pub weakness: &'static str,
     /// Resolutions, coarse to fine.
-    pub ladder: &'static [Rung],
-    /// The rung of the ladder that most claims take.
-    pub default_rung: Rung,
+    pub levels: &'static [Level],
+    /// The level that most claims take.
+    pub default_level: Level,
     /// The claims.
     pub claims: fn() -> Vec<Claim>,
     /// The figures, from runs of the case.

@@ -35,7 +35,7 @@ pub enum Stroke {
     Dashed,
     /// Separate markers: measured points.
     Markers,
-    /// Markers joined by a line: ladders of resolution.
+    /// Markers joined by a line: levels of resolution.
     MarkedLine,
     /// Small hollow markers in the look of the curve before it: points that its line passes by.
     Beside,

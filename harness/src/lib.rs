@@ -25,4 +25,5 @@ pub mod statistics;
 pub mod study;
 pub mod subject;
 pub mod tolerance;
+pub mod uncertainty;
 pub mod verdict;

@@ -1,6 +1,6 @@
 //! The words in which a case is said.
 
-pub use crate::case::{Case, Home, PLAIN, Rung, cells, fraction};
+pub use crate::case::{Case, Home, PLAIN, Level, cells, fraction};
 pub use crate::claim::{Claim, Measure, claim};
 pub use crate::control::Control;
 pub use crate::expect::{Bound, Expected, Measured};
@@ -8,7 +8,7 @@ pub use crate::figure::{Axis, Curve, Figure, Stroke};
 pub use crate::run::{Change, Done, Missing, Run};
 pub use crate::runner::Runner;
 pub use crate::source::Source;
-pub use crate::tolerance::{Tolerance, computed, exactly, judged, one_interval, required};
+pub use crate::tolerance::{Tolerance, computed, estimated, exactly, judged, one_interval, required};
 pub use grainbench_scene::effect::Effect;
 pub use grainbench_scene::scene::Scene;
 pub use grainbench_scene::solver::{Resolution, RunError};

@@ -98,6 +98,15 @@ impl Run {
         Self { resolution, ..self.clone() }
     }
 
+    /// Variant and adjustment in words.
+    #[must_use]
+    pub fn scene_words(&self) -> String {
+        match &self.adjustment {
+            Some((name, _)) => format!("{}, {name}", self.variant),
+            None => self.variant.to_owned(),
+        }
+    }
+
     /// What tells this run from others of its case.
     #[must_use]
     pub fn key(&self) -> String {

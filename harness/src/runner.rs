@@ -7,9 +7,11 @@ use crate::expect::Measured;
 use crate::run::{Done, Missing, Run, Standing};
 use crate::scope::Scope;
 use crate::solvers::Solvers;
+use crate::tolerance::Made;
+use crate::uncertainty::{Estimate, of_finest};
 use crate::verdict::{Control, Outcome, Verdict};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Defect, Resolution, RunError, Solver};
+use grainbench_scene::solver::{Defect, Method, Resolution, RunError, Solver};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
@@ -239,14 +241,68 @@ impl Runner {
         RunError::Unsupported { solver: self.solver_name(run), reason }
     }
 
+    /// What three levels of resolution tell of a claim of one run: at its own, and at two coarser ones, or at its own and two
+    /// finer ones where there is nothing coarser.
+    ///
+    /// # Errors
+    /// Says why there is no estimate.
+    pub fn estimate(&self, claim: &Claim) -> Result<Estimate, String> {
+        let [run] = &claim.runs[..] else { return Err("it reads more than one run".to_owned()) };
+        let formal = if Method::of(run.solver) == Some(Method::Rigid) { 1.0 } else { 2.0 };
+        let value = |factor: f64| -> Result<(String, f64), String> {
+            let resolution = run.resolution.coarser(factor).ok_or("there is no coarser level")?;
+            let done = self.run(&run.at(resolution)).map_err(|error| error.to_string())?;
+            let found = (claim.measure)(&[done]).map_err(|missing| missing.to_string())?.error();
+            if found.is_finite() { Ok((resolution.to_string(), found)) } else { Err("a value is not finite".to_owned()) }
+        };
+        let levels = |factors: [f64; 3]| -> Result<[(String, f64); 3], String> {
+            let [a, b, c] = factors.map(value);
+            Ok([a?, b?, c?])
+        };
+        let (found, at_coarsest) = match levels([1.0, 2.0, 4.0]) {
+            Ok(found) => (found, false),
+            Err(_) => (levels([0.25, 0.5, 1.0])?, true),
+        };
+        let values = [found[0].1, found[1].1, found[2].1];
+        let (order, safety, mut uncertainty) = of_finest(values, formal);
+        if at_coarsest {
+            // Of the coarsest level: how far it is from the finest, and what that one is uncertain by.
+            uncertainty += (values[2] - values[0]).abs();
+        }
+        let [a, b, c] = found.map(|(level, _)| level);
+        Ok(Estimate {
+            variant: run.scene_words(),
+            solver: run.solver.to_owned(),
+            resolution: run.resolution.to_string(),
+            quantity: claim.quantity.clone(),
+            levels: [a, b, c],
+            values,
+            order,
+            safety,
+            uncertainty,
+        })
+    }
+
+    /// How far a claim may be off: what it says, or what is stored of it; none where an estimate should be stored and is not.
+    fn allowed(&self, claim: &Claim) -> Option<f64> {
+        let most = claim.tolerance.allowed;
+        match claim.tolerance.made {
+            Made::Estimated if self.stranger.is_none() => {
+                self.solvers.uncertainty(self.case, claim).map(|found| found.min(most))
+            }
+            _ => Some(most),
+        }
+    }
+
     /// The row of a claim, from its runs.
     fn conclude(&self, claim: &Claim, done: Result<Vec<Done>, RunError>) -> Verdict {
         let first = claim.runs.first();
+        let allowed = self.allowed(claim);
         let row = Verdict {
             variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
             solver: first.map_or_else(String::new, |run| self.solver_name(run)),
             resolution: claim.resolution(),
-            allowed: claim.tolerance.allowed,
+            allowed: allowed.unwrap_or(0.0),
             tolerance: claim.tolerance.made,
             because: claim.tolerance.because.clone(),
             evidence: claim.evidence(),
@@ -255,6 +311,9 @@ impl Runner {
         };
         match done {
             Err(error) => row.ended(&error),
+            Ok(_) if allowed.is_none() => {
+                row.left(Outcome::NoReference, "no estimate of its numerical uncertainty is stored")
+            }
             Ok(done) => {
                 let row = self.with_programs(row, &done);
                 match (claim.measure)(&done) {

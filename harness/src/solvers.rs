@@ -1,6 +1,7 @@
 //! The solvers that are handed to the harness, which knows none itself.
 
 use crate::case::Case;
+use crate::claim::Claim;
 use crate::run::Run;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
@@ -30,6 +31,11 @@ pub trait Solvers: Send + Sync {
 
     /// The stored record of a run of another program; none where nothing is stored.
     fn stored(&self, _case: &Case, _run: &Run, _scene: &Scene) -> Option<Result<Record, RunError>> {
+        None
+    }
+
+    /// The stored numerical uncertainty of a claim's value, in units of its scale.
+    fn uncertainty(&self, _case: &Case, _claim: &Claim) -> Option<f64> {
         None
     }
 

@@ -38,7 +38,7 @@ impl Made {
 /// A tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Largest |error| that passes.
+    /// Largest |error| that passes; of one that is estimated, the most that it may be.
     pub allowed: f64,
     /// How that number was made.
     pub made: Made,
@@ -56,6 +56,12 @@ impl Tolerance {
 #[must_use]
 pub fn computed(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Computed, allowed, because)
+}
+
+/// By three levels of resolution, whose estimate is stored; no wider than `most`.
+#[must_use]
+pub fn estimated(most: f64, because: impl Into<String>) -> Tolerance {
+    Tolerance::new(Made::Estimated, most, because)
 }
 
 /// One confidence interval, which the runs themselves give and errors are divided by.

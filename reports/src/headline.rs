@@ -117,8 +117,11 @@ impl Headline {
             }
         }
         let controls = if self.controls > 0 {
-            let broken =
-                if self.controls_broken > 0 { format!(", {} of them by breaking", self.controls_broken) } else { String::new() };
+            let broken = if self.controls_broken > 0 {
+                format!(", {} of them by breaking", self.controls_broken)
+            } else {
+                String::new()
+            };
             format!("; negative controls: {} of {} turned red{broken}", self.controls_red, self.controls)
         } else {
             String::new()

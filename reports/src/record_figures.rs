@@ -3,10 +3,10 @@
 
 use crate::number;
 use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
-use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_harness::force_plot::force_plot;
 use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::force_plot::force_plot;
 use grainbench_scene::record::{Record, Snapshot};
 
 /// Pixels along the longer side of a picture, and of a film.

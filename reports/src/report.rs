@@ -66,7 +66,7 @@ pub struct RunCost {
     pub variant: String,
     /// Solver and convention.
     pub solver: String,
-    /// Rung of the ladder.
+    /// Resolution level.
     pub resolution: String,
     /// Steps taken.
     pub steps: u64,

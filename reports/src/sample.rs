@@ -1,9 +1,9 @@
 //! A small report with every kind of row and figure, for tests.
 
-use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
 use grainbench_harness::control::Red;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Expected;
+use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
 use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
@@ -102,17 +102,17 @@ fn backspin() -> Section {
     momentum.source = "Newton's third law".into();
     momentum.because = "a thousand roundings of double precision".into();
     momentum.outcome = Outcome::Pass;
-    let ladder = [0.4, 0.2, 0.1, 0.05, 0.025, 0.0125];
+    let levels = [0.4, 0.2, 0.1, 0.05, 0.025, 0.0125];
     let convergence = Graph {
         x: axis("Δt / critical (1)", true),
         y: axis("|error| of v(t = 0.5 s) (1)", true),
         curves: vec![
-            curve("dem", Stroke::MarkedLine, ladder.map(|x| (x, 0.03 * x)).to_vec()),
-            curve("dem:lammps", Stroke::MarkedLine, ladder.map(|x| (x, 0.19 * x * x)).to_vec()),
+            curve("dem", Stroke::MarkedLine, levels.map(|x| (x, 0.03 * x)).to_vec()),
+            curve("dem:lammps", Stroke::MarkedLine, levels.map(|x| (x, 0.19 * x * x)).to_vec()),
             curve(
                 "rigid, 8 substeps",
                 Stroke::MarkedLine,
-                ladder.map(|x| (x, if x < 0.02 { 0.0 } else { 4e-4 + 0.01 * x })).to_vec(),
+                levels.map(|x| (x, if x < 0.02 { 0.0 } else { 4e-4 + 0.01 * x })).to_vec(),
             ),
             curve("allowed", Stroke::Dashed, vec![(0.0125, 0.02), (0.4, 0.02)]),
             curve("first order", Stroke::Dashed, vec![(0.0125, 1.25e-3), (0.1, 1e-2)]),
@@ -154,7 +154,7 @@ fn backspin() -> Section {
             Figure {
                 name: "convergence".into(),
                 title: "Error against time step".into(),
-                caption: "Error of the end speed over the ladder. The in-house solver converges with the first power \
+                caption: "Error of the end speed over the levels. The in-house solver converges with the first power \
                           of the step, LAMMPS' convention with the second."
                     .into(),
                 drawing: Drawing::Graph(convergence),
@@ -271,7 +271,7 @@ pub(crate) fn report() -> Report {
             date: "2025-03-01 12:00 UTC".into(),
             machine: "x86_64, 2 cores, Linux".into(),
             rustc: "rustc 1.95.0".into(),
-            options: vec!["--rungs default".into()],
+            options: vec!["--levels default".into()],
             wall_seconds: 12.3,
         },
         sections: vec![backspin(), nine_discs()],

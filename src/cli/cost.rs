@@ -26,8 +26,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     solver: Vec<String>,
     /// Points that take more than twenty seconds too.
-    #[arg(long, value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
-    rungs: String,
+    #[arg(long, alias = "rungs", value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
+    levels: String,
     /// Measure every point anew, also those that were finished before.
     #[arg(long)]
     fresh: bool,
@@ -49,7 +49,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
     check_writable(&arguments.out)?;
     let shelf = Shelf::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::input)?;
-    let wanted = Wanted { solvers: arguments.solver.clone(), all: arguments.rungs == "all" };
+    let wanted = Wanted { solvers: arguments.solver.clone(), all: arguments.levels == "all" };
     let meter = Meter::new(&shelf, wanted, &solvers::Registry);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
     if pieces == 0 {
@@ -122,8 +122,8 @@ fn words(arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["cost".to_owned()];
     words.extend(arguments.cases.iter().cloned());
     words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
-    if arguments.rungs != "default" {
-        words.push(format!("--rungs {}", arguments.rungs));
+    if arguments.levels != "default" {
+        words.push(format!("--levels {}", arguments.levels));
     }
     words
 }

@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// Override one key of the scene; may be given more than once.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// Time step as a fraction of the critical one; the case's default rung, or .1, where none is given.
+    /// Time step as a fraction of the critical one; the case's default level, or .1, where none is given.
     #[arg(long, value_name = "FRACTION", value_parser = positive, allow_hyphen_values = true, conflicts_with = "time_step")]
     time_step_fraction: Option<f64>,
     /// Time step in seconds.
@@ -48,7 +48,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         subject::exact_scene(&arguments.scene)?
     } else {
         let (scene, case) = subject::scene(&arguments.scene, &arguments.set)?;
-        (scene, case.map_or(USUAL, |case| case.default_rung.resolution))
+        (scene, case.map_or(USUAL, |case| case.default_level.resolution))
     };
     let resolution = match (arguments.time_step, arguments.time_step_fraction) {
         (Some(step), _) => Resolution::TimeStep(step),

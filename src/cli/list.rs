@@ -2,8 +2,8 @@
 
 use super::exit::{Outcome, print, print_json};
 use super::select;
-use grainbench::harness::case::Case;
 use grainbench::cases::registry::CASES;
+use grainbench::harness::case::Case;
 use serde::Serialize;
 use std::process::ExitCode;
 
@@ -23,8 +23,8 @@ struct Entry {
     claim: &'static str,
     variants: Vec<String>,
     gates: usize,
-    default_rung: &'static str,
-    rungs: Vec<String>,
+    default_level: &'static str,
+    levels: Vec<String>,
     solvers: Vec<&'static str>,
 }
 
@@ -41,15 +41,15 @@ pub(crate) fn list(arguments: &Arguments) -> Outcome {
 
 fn entry(case: &Case) -> Result<Entry, super::exit::Fault> {
     let claims = (case.claims)();
-    let rungs = select::rungs(case, &claims);
+    let levels = select::levels(case, &claims);
     Ok(Entry {
         name: case.name,
         title: case.title,
         claim: case.claim,
         variants: select::variants(case, &claims)?,
         gates: claims.len(),
-        default_rung: case.default_rung.name,
-        rungs,
+        default_level: case.default_level.name,
+        levels,
         solvers: select::solvers(&claims),
     })
 }
@@ -57,13 +57,13 @@ fn entry(case: &Case) -> Result<Entry, super::exit::Fault> {
 fn table(entries: &[Entry]) -> String {
     let width = entries.iter().map(|entry| entry.name.chars().count()).max().unwrap_or(0);
     let mut text = String::new();
-    for Entry { name, title, variants, gates, default_rung, solvers, .. } in entries {
+    for Entry { name, title, variants, gates, default_level, solvers, .. } in entries {
         let variants = variants.join(", ");
         let plural = if *gates == 1 { "" } else { "s" };
         let solvers = solvers.join(", ");
         text.push_str(&format!("{name:<width$}  {title}\n"));
         text.push_str(&format!("{:<width$}    variants  {variants}\n", ""));
-        text.push_str(&format!("{:<width$}    {gates} gate{plural}, rung {default_rung}, solvers {solvers}\n", ""));
+        text.push_str(&format!("{:<width$}    {gates} gate{plural}, level {default_level}, solvers {solvers}\n", ""));
     }
     text
 }

@@ -38,7 +38,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// List the cases: title, variants, gates, default rung, solvers.
+    /// List the cases: title, variants, gates, default level, solvers.
     List(list::Arguments),
     /// Judge the gates of cases and write the report.
     Run(run::Arguments),

@@ -5,10 +5,15 @@ use super::exit::{Fault, Outcome, check_writable, print, say};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::run::exit_code;
+use grainbench::cases::registry::CASES;
 use grainbench::cases::stored::{self, Reference};
+use grainbench::cases::uncertainty::{self, Stored};
+use grainbench::cases::{Case, runner};
+use grainbench::harness::run::Set;
+use grainbench::harness::tolerance::Made;
 use grainbench::reference::stored::{folder, make};
 use grainbench::reports::results::results_json;
-use grainbench::reports::{Report, Section, StagedDir, write_report};
+use grainbench::reports::{Report, Section, StagedDir, write_file, write_report};
 use grainbench::scene::solver::RunError;
 use grainbench::verify::verify as compare;
 use std::path::PathBuf;
@@ -22,6 +27,20 @@ pub(crate) enum Command {
     Build(Build),
     /// Run the programs again and compare with what is stored.
     Verify(Verify),
+    /// Estimate how far values may be off because cells and steps are finite: three levels of resolution for each row whose
+    /// tolerance is an estimate.
+    Uncertainty(Uncertainty),
+}
+
+/// What `uncertainty` takes.
+#[derive(clap::Args)]
+pub(crate) struct Uncertainty {
+    /// Cases; all when none is named.
+    #[arg(value_name = "CASE")]
+    cases: Vec<String>,
+    /// Rows that take minutes too; what is stored of them is kept otherwise.
+    #[arg(long)]
+    long: bool,
 }
 
 /// What `build` takes.
@@ -54,6 +73,7 @@ pub(crate) fn reference(command: &Command) -> Outcome {
     match command {
         Command::Build(arguments) => build(arguments),
         Command::Verify(arguments) => verify(arguments),
+        Command::Uncertainty(arguments) => uncertainty(arguments),
     }
 }
 
@@ -111,6 +131,52 @@ fn build(arguments: &Build) -> Outcome {
     print(&lines)?;
     if failed { Err(Fault::Broken("not every run could be made".to_owned())) } else { Ok(ExitCode::SUCCESS) }
 }
+
+/// Estimates anew what is stored of the rows of some cases whose tolerance is an estimate.
+fn uncertainty(arguments: &Uncertainty) -> Outcome {
+    let set = if arguments.long { Set::Long } else { Set::Tests };
+    let known = || CASES.iter().map(|case| case.name);
+    if let Some(unknown) = arguments.cases.iter().find(|name| !known().any(|known| known == name.as_str())) {
+        return Err(Fault::unknown("a case", unknown, known()));
+    }
+    let wanted = |case: &&&Case| arguments.cases.is_empty() || arguments.cases.iter().any(|name| name == case.name);
+    let mut lines = String::new();
+    for case in CASES.iter().filter(wanted) {
+        let mut claims = (case.claims)();
+        claims.retain(|claim| claim.tolerance.made == Made::Estimated);
+        if claims.is_empty() {
+            continue;
+        }
+        let runner = runner(case);
+        let progress = Progress::new(claims.len() as u64, "estimates");
+        let mut stored = Stored {
+            program: format!("grainbench {}", env!("CARGO_PKG_VERSION")),
+            date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),
+            rule: RULE.to_owned(),
+            estimate: Vec::new(),
+        };
+        for claim in &claims {
+            progress.now(&claim.quantity);
+            let before = uncertainty::find(case, claim);
+            let estimate = if claim.set() > set { before.ok_or("not asked for".to_owned()) } else { runner.estimate(claim) };
+            match estimate {
+                Ok(estimate) => stored.estimate.push(estimate),
+                Err(reason) => say("warning", &format!("{}: {}: {reason}", case.name, claim.quantity)),
+            }
+            progress.advance();
+        }
+        drop(progress);
+        lines.push_str(&format!("{}: {} of {} rows\n", case.name, stored.estimate.len(), claims.len()));
+        let text = toml::to_string(&stored).map_err(Fault::input)?;
+        write_file(&uncertainty::file(case.name), text.as_bytes()).map_err(Fault::input)?;
+    }
+    print(&lines)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What stands in the files, so that a reader needs no other.
+const RULE: &str = "three levels of resolution, each half as fine as the one before; observed order p, \
+                    U = F_s |f1 - f2|/(2^p - 1) with F_s = 1.25 near the order of the method and 3 elsewhere (ASME V&V 20-2009)";
 
 fn verify(arguments: &Verify) -> Outcome {
     let wanted = named(&arguments.ids)?;

@@ -4,11 +4,11 @@ use super::exit::{self, Fault, Outcome, RED, check_writable, print};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::select::{self, Selected};
-use grainbench::harness::runner::Runner;
-use grainbench::harness::figure::Figure;
-use grainbench::harness::conformance;
-use grainbench::harness::run::{Done, Run};
 use grainbench::cases::{registry, solvers};
+use grainbench::harness::conformance;
+use grainbench::harness::figure::Figure;
+use grainbench::harness::run::{Done, Run};
+use grainbench::harness::runner::Runner;
 use grainbench::harness::verdict::{self, Control, Verdict};
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, RunCost, Section, summary_table, write_report};
@@ -35,9 +35,9 @@ pub(crate) struct Options {
     /// Only rows of this solver; may be given more than once.
     #[arg(long, value_name = "NAME")]
     solver: Vec<String>,
-    /// Only gates at these rungs of their ladders: `default`, `all`, or names such as `dt=.1`.
-    #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
-    rungs: Vec<String>,
+    /// Only gates at these resolution levels: `default`, `all`, or names such as `dt=.1`.
+    #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
+    levels: Vec<String>,
     /// Directory for the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
@@ -54,13 +54,13 @@ pub(crate) struct Options {
 
 /// Runs the named cases, all when none is named.
 pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
-    let selected = select::select(cases, &options.solver, &options.rungs)?;
+    let selected = select::select(cases, &options.solver, &options.levels)?;
     check_writable(&options.out)?;
     let start = Instant::now();
-    let thorough = options.rungs.iter().any(|rung| rung == "all");
+    let thorough = options.levels.iter().any(|level| level == "all");
     let mut sections = judge(&selected, !options.no_controls, options.live, thorough);
     // What every solver owes belongs to the whole registry, and not to a case.
-    if cases.is_empty() && (options.rungs.is_empty() || thorough) {
+    if cases.is_empty() && (options.levels.is_empty() || thorough) {
         sections.extend(conformance(&options.solver));
     }
     let provenance = provenance(words(cases, options), start.elapsed().as_secs_f64());
@@ -125,8 +125,8 @@ fn is_ours(solver: &str) -> bool {
 fn words(cases: &[String], options: &Options) -> Vec<String> {
     let mut words = cases.to_vec();
     words.extend(options.solver.iter().map(|solver| format!("--solver {solver}")));
-    if !options.rungs.is_empty() {
-        words.push(format!("--rungs {}", options.rungs.join(",")));
+    if !options.levels.is_empty() {
+        words.push(format!("--levels {}", options.levels.join(",")));
     }
     if options.live {
         words.push("--live".to_owned());
@@ -249,10 +249,7 @@ impl<'a> Work<'a> {
 fn cost(run: &Run, done: &Done) -> RunCost {
     let (provenance, cost) = (&done.record.provenance, &done.record.cost);
     RunCost {
-        variant: match &run.adjustment {
-            Some((name, _)) => format!("{}, {name}", run.variant),
-            None => run.variant.to_owned(),
-        },
+        variant: run.scene_words(),
         solver: run.solver.to_owned(),
         resolution: run.resolution.to_string(),
         steps: cost.steps,

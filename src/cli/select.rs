@@ -2,10 +2,10 @@
 
 use super::exit::Fault;
 use super::subject::Variant;
+use grainbench::cases::registry::CASES;
 use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::{Run, Set};
-use grainbench::cases::registry::CASES;
 
 /// The claims of one case that are to be judged.
 pub(crate) struct Selected {
@@ -16,8 +16,8 @@ pub(crate) struct Selected {
 }
 
 /// The claims of the cases (`CASE` or `CASE/VARIANT`; all when none is named) whose rows are of one of the solvers and
-/// that need one of the rungs, in the order of the registry.
-pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> Result<Vec<Selected>, Fault> {
+/// that need one of the levels, in the order of the registry.
+pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
     let named = cases.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut selected = Vec::new();
     for case in CASES {
@@ -33,7 +33,7 @@ pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> 
         selected.push(Selected { case, claims });
     }
     refuse_unknown_solvers(&selected, solvers)?;
-    let rungs = wanted_rungs(&selected, rungs)?;
+    let levels = wanted_levels(&selected, levels)?;
     for Selected { case, claims } in &mut selected {
         if !solvers.is_empty() {
             let wanted = |run: &Run| solvers.iter().any(|name| name == run.solver);
@@ -41,17 +41,17 @@ pub(crate) fn select(cases: &[String], solvers: &[String], rungs: &[String]) -> 
             let asked = |run: &Run| wanted(run) && grainbench::cases::solvers::is_program(run.solver);
             claims.retain(|claim| row(claim).is_some_and(wanted) || claim.runs.iter().any(asked));
         }
-        match &rungs {
-            Rungs::Default => claims.retain(|claim| claim.set() == Set::Main),
-            Rungs::All => {}
-            Rungs::Named(names) => claims.retain(|claim| claim.runs.iter().any(|run| is_at(case, run, names))),
+        match &levels {
+            Levels::Default => claims.retain(|claim| claim.set() == Set::Main),
+            Levels::All => {}
+            Levels::Named(names) => claims.retain(|claim| claim.runs.iter().any(|run| is_at(case, run, names))),
         }
     }
     selected.retain(|selected| !selected.claims.is_empty());
     // A selection without a row would end green without having looked at anything.
     if selected.is_empty() {
         return Err(Fault::input(
-            "expected at least one gate, found none that is of the cases, solvers and rungs named",
+            "expected at least one gate, found none that is of the cases, solvers and levels named",
         ));
     }
     Ok(selected)
@@ -74,40 +74,40 @@ fn refuse_unknown_solvers(selected: &[Selected], names: &[String]) -> Result<(),
     }
 }
 
-/// Which rungs are wanted.
-enum Rungs {
+/// Which levels are wanted.
+enum Levels {
     /// What the main job runs.
     Default,
     All,
     Named(Vec<String>),
 }
 
-/// The rungs asked for, each one that a selected case has.
-fn wanted_rungs(selected: &[Selected], names: &[String]) -> Result<Rungs, Fault> {
+/// The levels asked for, each one that a selected case has.
+fn wanted_levels(selected: &[Selected], names: &[String]) -> Result<Levels, Fault> {
     if names.iter().any(|name| name == "all") {
-        return Ok(Rungs::All);
+        return Ok(Levels::All);
     }
     if names.is_empty() || names.iter().any(|name| name == "default") {
-        return Ok(Rungs::Default);
+        return Ok(Levels::Default);
     }
     let mut known: Vec<String> = vec!["default".to_owned(), "all".to_owned()];
-    for name in selected.iter().flat_map(|Selected { case, claims }| rungs(case, claims)) {
+    for name in selected.iter().flat_map(|Selected { case, claims }| levels(case, claims)) {
         push_new(&mut known, name);
     }
     let unified: Vec<String> = known.iter().map(|name| unified(name)).collect();
     for name in names {
         if !unified.contains(&self::unified(name)) {
-            return Err(Fault::unknown("a rung", name, known.iter().map(String::as_str)));
+            return Err(Fault::unknown("a level", name, known.iter().map(String::as_str)));
         }
     }
-    Ok(Rungs::Named(names.iter().map(|name| self::unified(name)).collect()))
+    Ok(Levels::Named(names.iter().map(|name| self::unified(name)).collect()))
 }
 
-fn is_at(case: &Case, run: &Run, rungs: &[String]) -> bool {
-    [rung_of(case, run), run.resolution.to_string()].iter().any(|name| rungs.contains(&unified(name)))
+fn is_at(case: &Case, run: &Run, levels: &[String]) -> bool {
+    [level_of(case, run), run.resolution.to_string()].iter().any(|name| levels.contains(&unified(name)))
 }
 
-/// `dt=.1` and `dt=0.1` are one rung.
+/// `dt=.1` and `dt=0.1` are one level.
 fn unified(name: &str) -> String {
     match name.split_once('=') {
         Some((knob, value)) if value.starts_with('.') => format!("{knob}=0{value}"),
@@ -115,17 +115,17 @@ fn unified(name: &str) -> String {
     }
 }
 
-/// Name of the rung of a run: that of the case's ladder, or the resolution in words.
-pub(crate) fn rung_of(case: &Case, run: &Run) -> String {
-    let rung = case.ladder.iter().find(|rung| rung.resolution == run.resolution);
-    rung.map_or_else(|| run.resolution.to_string(), |rung| rung.name.to_owned())
+/// Name of the level of a run: that of the case, or the resolution in words.
+pub(crate) fn level_of(case: &Case, run: &Run) -> String {
+    let level = case.levels.iter().find(|level| level.resolution == run.resolution);
+    level.map_or_else(|| run.resolution.to_string(), |level| level.name.to_owned())
 }
 
-/// Names of the rungs of a case: its ladder, then what its claims have beside it.
-pub(crate) fn rungs(case: &Case, claims: &[Claim]) -> Vec<String> {
-    let mut names: Vec<String> = case.ladder.iter().map(|rung| rung.name.to_owned()).collect();
+/// Names of the levels of a case: its own, then what its claims have beside it.
+pub(crate) fn levels(case: &Case, claims: &[Claim]) -> Vec<String> {
+    let mut names: Vec<String> = case.levels.iter().map(|level| level.name.to_owned()).collect();
     for run in claims.iter().flat_map(|claim| &claim.runs) {
-        push_new(&mut names, rung_of(case, run));
+        push_new(&mut names, level_of(case, run));
     }
     names
 }

@@ -1,9 +1,9 @@
 //! A scene seen from elsewhere: turned, mirrored or from a moving frame. What a solver makes of it must be what it makes of
 //! the scene itself, seen from there.
 
+use super::end::NoEnd;
 use super::end::{End, rounding};
 use super::row::Found;
-use super::end::NoEnd;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Solver;
 use grainbench_scene::terms::Terms;

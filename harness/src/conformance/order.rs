@@ -27,8 +27,8 @@ fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
         source: "the solver's own claim",
         because: "what the next order of the fastest of these oscillations leaves at a hundredth of the critical step",
     };
-    rows.each(scenes::held(), &order.ladder[0], ("order in the time step of the end", "1"), |named| {
-        let run = |at: usize| End::of(solver, &named.scene, &order.ladder[at]);
+    rows.each(scenes::held(), &order.levels[0], ("order in the time step of the end", "1"), |named| {
+        let run = |at: usize| End::of(solver, &named.scene, &order.levels[at]);
         let ends = [run(0)?, run(1)?, run(2)?];
         // The solver's own finer runs stand for the exact answer, so that no convention of a law is judged.
         let (coarse, fine) = (ends[0].apart(&ends[1]), ends[1].apart(&ends[2]));

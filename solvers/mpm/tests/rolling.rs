@@ -46,7 +46,7 @@ fn the_papers_contact_does_not_roll_at_two_cells() {
     assert!((-55.0..-38.0).contains(&literal), "{literal}");
 }
 
-/// No body falls through a plane, in any method at any rung; a plane that carries a body feels its weight.
+/// No body falls through a plane, in any method at any level; a plane that carries a body feels its weight.
 #[test]
 fn nothing_falls_through_a_plane() {
     let weight = 3000.0 * std::f64::consts::PI * 0.25 * 9.8;

@@ -97,7 +97,9 @@ impl Effect {
         match self {
             Self::Friction => of_law(scene, "friction", |law| law.friction),
             Self::Cohesion => of_law(scene, "cohesion", |law| law.cohesion),
-            Self::Hertz => of_law(scene, "youngs_modulus", |law| if law.is_hertz() { law.effective_modulus } else { 0.0 }),
+            Self::Hertz => {
+                of_law(scene, "youngs_modulus", |law| if law.is_hertz() { law.effective_modulus } else { 0.0 })
+            }
             Self::Restitution => of_law(scene, "restitution", |law| law.damping_ratio),
             Self::RollingResistance => of_law(scene, "rolling_friction", |law| law.rolling_friction),
             Self::ContactDamping => [

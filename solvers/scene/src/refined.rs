@@ -7,12 +7,7 @@ use crate::solver::Resolution;
 /// A scene and a resolution that take `parts` steps for each one of a run of `steps` steps of `time_step` (s), sampled every
 /// `interval` of them.
 #[must_use]
-pub fn refined(
-    scene: &Scene,
-    time_step: f64,
-    [steps, interval]: [u64; 2],
-    parts: u64,
-) -> (Scene, Resolution) {
+pub fn refined(scene: &Scene, time_step: f64, [steps, interval]: [u64; 2], parts: u64) -> (Scene, Resolution) {
     let mut scene = Scene {
         duration: Duration::Cycles(steps * parts),
         sampling: Sampling::Cycles(interval * parts),

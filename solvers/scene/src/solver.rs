@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::fmt;
 use thiserror::Error;
 
-/// How finely a solver works: one rung of a ladder.
+/// How finely a solver works: a resolution level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
     /// Time step as a fraction of the critical one, `2√(m_min/k_max)`. Where the scene lasts a number of seconds the
@@ -55,6 +55,23 @@ impl Resolution {
     #[must_use]
     pub const fn substeps(substeps: u32) -> Self {
         Self::Rigid { step: Self::RIGID_STEP, substeps, iterations: Self::RIGID_ITERATIONS }
+    }
+
+    /// The resolution with steps or cells this many times as long; none of substeps that would be less than one.
+    #[must_use]
+    pub fn coarser(&self, factor: f64) -> Option<Self> {
+        Some(match *self {
+            Self::CriticalFraction(fraction) => Self::CriticalFraction(fraction * factor),
+            Self::TimeStep(step) => Self::TimeStep(step * factor),
+            Self::Rigid { step, substeps, iterations } => {
+                let fewer = f64::from(substeps) / factor;
+                if fewer < 1.0 || fewer.fract() != 0.0 {
+                    return None;
+                }
+                Self::Rigid { step, substeps: fewer as u32, iterations }
+            }
+            Self::Grid { cells, points, courant } => Self::Grid { cells: cells / factor, points, courant },
+        })
     }
 
     /// Time step (s) and number of steps of a scene, for solvers that take time steps.

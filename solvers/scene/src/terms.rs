@@ -22,7 +22,7 @@ pub struct Order {
     /// The order.
     pub expected: f64,
     /// Three resolutions, each of half the time step of the one before. The run lasts ten critical steps.
-    pub ladder: [Resolution; 3],
+    pub levels: [Resolution; 3],
 }
 
 /// Something that a method does not keep to rounding, and how far it is off at most.
@@ -44,7 +44,7 @@ impl Terms {
         resolution: Resolution::CriticalFraction(0.02),
         order: Some(Order {
             expected: 2.0,
-            ladder: [
+            levels: [
                 Resolution::CriticalFraction(0.01),
                 Resolution::CriticalFraction(0.005),
                 Resolution::CriticalFraction(0.0025),

@@ -5,8 +5,8 @@ use crate::clock::{self, Clocked};
 use crate::shelf::Shelf;
 use crate::{Follow, identity};
 use grainbench_harness::run::{Change, Done};
-use grainbench_harness::study::point::{Counts, Diagram, Point, Standing, Timing};
 use grainbench_harness::solvers::Solvers;
+use grainbench_harness::study::point::{Counts, Diagram, Point, Standing, Timing};
 use grainbench_harness::subject::Subject;
 use grainbench_reports::WriteError;
 use grainbench_scene::record::Record;
@@ -176,8 +176,7 @@ impl<'a> Meter<'a> {
                 if !self.wanted.all && slower * knobs::nominal_seconds(&scene, &turn.resolution) > LONGEST {
                     continue;
                 }
-                let solver =
-                    solvers.entry(turn.solver.clone()).or_insert_with(|| self.solvers.find(&turn.solver));
+                let solver = solvers.entry(turn.solver.clone()).or_insert_with(|| self.solvers.find(&turn.solver));
                 let Some(solver) = solver.clone() else { continue };
                 let read = format!("{}|{}|{}", subject.quantity, subject.variant, turn.knobs);
                 let name = identity::of_run(&self.program, &turn.solver, &scene, &turn.resolution, &read);

@@ -5,12 +5,12 @@ use crate::identity;
 use crate::shelf::Shelf;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
-use grainbench_scene::effect::Effect;
 use grainbench_harness::run::{Done, Run, Set, Standing};
 use grainbench_harness::runner::Runner;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::study::ledger::{Entry, Shift, Worth};
 use grainbench_reports::WriteError;
+use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
 use grainbench_scene::solver::{Method, RunError};
 use std::collections::BTreeMap;
@@ -100,7 +100,10 @@ impl Ledger {
     }
 
     fn calls_for(&self, claim: &Claim, effect: Effect) -> bool {
-        claim.runs.iter().any(|run| knows(run, effect) && self.runner.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
+        claim
+            .runs
+            .iter()
+            .any(|run| knows(run, effect) && self.runner.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
     }
 
     fn blank(&self, piece: &Piece) -> Entry {
@@ -200,7 +203,8 @@ impl Ledger {
     /// The first run of the variant by the kind of solver that knows the effect, with the effect compiled in.
     fn idle(&self, piece: &Piece) -> Option<Entry> {
         let method = Some(piece.effect.tried_with());
-        let is_ours = |run: &&Run| self.is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == method;
+        let is_ours =
+            |run: &&Run| self.is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == method;
         let run = self.claims.iter().flat_map(|claim| &claim.runs).find(is_ours)?;
         let scene = self.runner.scene(run).ok()?;
         let solver = self.solvers.find(run.solver)?;

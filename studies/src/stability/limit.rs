@@ -1,8 +1,8 @@
 //! The largest stable step of every assembly and solver.
 
+use super::PATIENCE;
 use super::assembly::Assembly;
 use super::bisection::largest;
-use super::PATIENCE;
 use super::failure::{Failure, of_error};
 use crate::identity;
 use crate::shelf::Shelf;
