@@ -220,6 +220,7 @@ fn no_hash_map_string_or_allocation_in_loops_over_points() {
         ("stress.rs", &["run<"]),
         ("surface.rs", &["run<", "gone_through"]),
         ("contact/penalty.rs", &["at_walls", "between", "run<"]),
+        ("contact/friction.rs", &["respond", "stretch"]),
         ("contact/grip.rs", &["bear<", "new<", "push<"]),
         ("contact/nodal.rs", &["apply<", "apply_pairs<"]),
         ("simulation.rs", &["step_nodes", "gather", "move_on"]),

@@ -21,6 +21,7 @@
 
 use crate::damping::Damping;
 use crate::grid::Node;
+use crate::off::Off;
 use crate::options::{Contact, StressUpdate};
 use crate::simulation::{Simulation, with_basis};
 use grainbench_scene::body::Hold;
@@ -41,6 +42,26 @@ pub(crate) struct Tally {
     pub(crate) walls: f64,
     /// What springs take from the motion of surfaces, by half of their velocities before the step and all of the walls' (J).
     pub(crate) taken: f64,
+}
+
+/// Where contacts tell what they do to energy: the budget of a run that asks for it, or its absence.
+pub(crate) trait Ledger {
+    /// What they tell of the step, if anybody asks.
+    fn tally(&mut self) -> Option<&mut Tally>;
+}
+
+impl Ledger for Off {
+    #[inline(always)]
+    fn tally(&mut self) -> Option<&mut Tally> {
+        None
+    }
+}
+
+impl Ledger for &mut Tally {
+    #[inline(always)]
+    fn tally(&mut self) -> Option<&mut Tally> {
+        Some(self)
+    }
 }
 
 /// What stresses tell of a step.
@@ -114,6 +135,13 @@ impl<S: Space> Default for Accounts<S> {
     }
 }
 
+impl<S: Space> Accounts<S> {
+    /// Memory that is in use (B).
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.impulses) + size_of_val(&*self.forces) + size_of_val(&*self.springs)
+    }
+}
+
 /// Velocity of a node before the step.
 fn before<S: Space>(node: &Node<S>, keep: f64) -> S::Vector {
     (node.velocity - node.change) * (1.0 / keep)
@@ -135,24 +163,24 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
 impl<S: Space> Simulation<S> {
     /// Before springs push: the forces on the nodes are internal.
     pub(crate) fn note_internal_forces(&mut self) {
-        if self.accounting {
-            self.accounts.impulses.clear();
-            self.accounts.impulses.extend(self.nodes[..self.used].iter().map(|node| node.change));
+        if let Some(accounts) = &mut self.accounts {
+            accounts.impulses.clear();
+            accounts.impulses.extend(self.nodes[..self.used].iter().map(|node| node.change));
         }
     }
 
     /// Before velocities change.
     pub(crate) fn note_forces(&mut self) {
-        if self.accounting {
-            let Accounts { forces, springs, impulses, .. } = &mut self.accounts;
-            let nodes = &self.nodes[..self.used];
-            forces.clear();
-            forces.extend(nodes.iter().map(|node| node.change));
-            springs.clear();
-            springs.extend(nodes.iter().zip(impulses).map(|(node, internal)| node.change - *internal));
-            if self.damping > 0.0 {
-                self.accounts.brought = self.kinetic_energy();
-            }
+        let Some(accounts) = &mut self.accounts else { return };
+        let Accounts { forces, springs, impulses, .. } = accounts;
+        let nodes = &self.nodes[..self.used];
+        forces.clear();
+        forces.extend(nodes.iter().map(|node| node.change));
+        springs.clear();
+        springs.extend(nodes.iter().zip(impulses).map(|(node, internal)| node.change - *internal));
+        if self.damping > 0.0 {
+            let brought = self.kinetic_energy();
+            self.accounts.iter_mut().for_each(|accounts| accounts.brought = brought);
         }
     }
 
@@ -164,18 +192,15 @@ impl<S: Space> Simulation<S> {
 
     /// Before points of driven bodies are carried along.
     pub(crate) fn note_driven(&mut self) {
-        if self.accounting {
-            self.accounts.held = self.work_of_driven();
-        }
+        let held = self.work_of_driven();
+        self.accounts.iter_mut().for_each(|accounts| accounts.held = held);
     }
 
     /// After velocities have changed.
     pub(crate) fn account_for_nodes(&mut self) {
-        if !self.accounting {
-            return;
-        }
         let driven_work = self.work_of_driven();
         let Self { nodes, accounts, setting, gravity, time_step, damping, driven, walls, used, .. } = self;
+        let Some(accounts) = accounts else { return };
         let Accounts { sums, tally, impulses, forces, held, brought, .. } = accounts;
         let Damping { keep, gain } = Damping::over(*damping, *time_step);
         let (mut mass, mut given, mut seen) = (0.0, 0.0, 0.0);
@@ -221,11 +246,9 @@ impl<S: Space> Simulation<S> {
 
     /// After points have brought their new velocities to the nodes, where they do.
     pub(crate) fn account_for_contacts(&mut self) {
-        if !self.accounting {
-            return;
-        }
         let is_projected = self.setting.stress_update == StressUpdate::ModifiedLast;
         let Self { nodes, projected, accounts, time_step, damping, .. } = self;
+        let Some(accounts) = accounts else { return };
         let Accounts { sums, impulses, forces, springs, .. } = accounts;
         let Damping { keep, .. } = Damping::over(*damping, *time_step);
         let after = |slot: usize| if is_projected { projected[slot] } else { nodes[slot].velocity };
@@ -239,17 +262,18 @@ impl<S: Space> Simulation<S> {
 
     /// After stresses have changed.
     pub(crate) fn account_for_flow(&mut self, flow: Flow) {
-        self.accounts.sums.stressed = flow.taken;
-        self.accounts.sums.plastic += flow.plastic;
+        if let Some(Accounts { sums, .. }) = &mut self.accounts {
+            sums.stressed = flow.taken;
+            sums.plastic += flow.plastic;
+        }
     }
 
-    /// Begins to add up, with the points as they are.
+    /// Begins to add up, with the points as they are, where the budget is asked for.
     pub(crate) fn open_accounts(&mut self) {
-        self.accounting = self.scene.asks_for_budget();
-        self.accounts = Accounts::default();
-        if self.accounting {
-            self.accounts.sums.kinetic_at_start = self.kinetic_energy();
-        }
+        self.accounts = self.scene.asks_for_budget().then(|| {
+            let sums = Sums { kinetic_at_start: self.kinetic_energy(), ..Sums::default() };
+            Accounts { sums, ..Accounts::default() }
+        });
     }
 
     /// Kinetic energy (J) of the points' velocities and of the affine part that they carry, ½ m tr(A D Aᵀ) with
@@ -260,7 +284,7 @@ impl<S: Space> Simulation<S> {
         for body in bodies {
             with_basis!(setting.basis, B => for at in body.part.points.clone() {
                 let velocity = points.velocity[at];
-                let affine = S::embed_gradient(points.affine[at]);
+                let affine = S::embed_gradient(points.affine_of(at));
                 let mut squared = S::dot(velocity, velocity);
                 if affine.norm_squared() > 0.0 {
                     let extent = body.part.extent::<S, B>(points.deformation[at]);
@@ -275,14 +299,14 @@ impl<S: Space> Simulation<S> {
         sum
     }
 
-    /// The budget, with the elastic energy of the material (J).
-    pub(crate) fn budget(&self, elastic: f64) -> Budget {
-        let Accounts { sums, tally, .. } = &self.accounts;
+    /// The budget, with the elastic energy of the material (J), where it is asked for.
+    pub(crate) fn budget(&self, elastic: f64) -> Option<Budget> {
+        let Accounts { sums, tally, .. } = self.accounts.as_ref()?;
         let kinetic = self.kinetic_energy();
         let points = &self.points;
         let all = 0..points.len();
         let height = |at: usize| -points.mass[at] * self.scene.gravity.dot(&S::embed(points.position[at]));
-        Budget {
+        Some(Budget {
             kinetic,
             elastic,
             springs: tally.springs,
@@ -302,6 +326,6 @@ impl<S: Space> Simulation<S> {
             },
             momentum: all.map(|at| S::embed(points.velocity[at]) * points.mass[at]).sum(),
             impulse: sums.impulse,
-        }
+        })
     }
 }

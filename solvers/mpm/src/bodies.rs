@@ -35,6 +35,11 @@ impl Material {
         }
     }
 
+    /// Whether it ever yields.
+    const fn yields(&self) -> bool {
+        matches!(self, Self::VonMises(_))
+    }
+
     fn under_pressure(&self, pressure: f64, dimensions: usize) -> (f64, Matrix3<f64>) {
         match self {
             Self::NeoHookean(law) => law.under_pressure(pressure, dimensions),
@@ -129,7 +134,7 @@ pub(crate) fn seed<S: Space>(
     let (mut points, mut tracers) = (Points::new(), Tracers::new());
     let half = 0.5 / f64::from(per_cell);
     let driven = scene.driven_group_of_grains();
-    let bodies = grains
+    let bodies: Vec<Body> = grains
         .chain(blocks)
         .map(|blank| {
             let first = (points.len(), tracers.len());
@@ -163,6 +168,8 @@ pub(crate) fn seed<S: Space>(
             }
         })
         .collect();
+    points.set_affine(setting.transfer.carries_affine());
+    points.set_plastic_strain(bodies.iter().any(|body| body.law.yields()));
     (bodies, points, tracers)
 }
 

@@ -104,7 +104,9 @@ impl<S: Space> Driven<S> {
             for at in body.part.points.clone() {
                 group.force += (points.velocity[at] - group.velocity) * (points.mass[at] / time_step);
                 points.velocity[at] = group.velocity;
-                points.affine[at] = S::NO_GRADIENT;
+            }
+            if !points.affine.is_empty() {
+                points.affine[body.part.points.clone()].fill(S::NO_GRADIENT);
             }
         }
     }

@@ -9,7 +9,9 @@
 //! 4. velocity gradients give deformation and stress (MUSL: from velocities that the points bring to the nodes anew).
 //!
 //! Type parameters stand for space, basis, transfer and material, each only in the loops over points that need it, and an
-//! enum chooses between the stages; so kernels add and do not multiply.
+//! enum chooses between the stages; so kernels add and do not multiply. What a scene does not call for is absent by the same means:
+//! friction of springs, plastic strain and the energy budget are [`off::Off`] in loops that do without, and no list is kept for them, nor
+//! for the affine part of velocities that no transfer carries.
 
 mod accounts;
 mod basis;
@@ -27,6 +29,7 @@ mod limits;
 pub mod material;
 mod meet;
 mod observe;
+pub mod off;
 pub mod options;
 mod patch;
 mod points;

@@ -1,8 +1,11 @@
 //! The stages of a cycle at which bodies meet: springs as forces, conditions at nodes on velocities.
 
+use crate::accounts::Accounts;
+use crate::contact::friction::Friction;
 use crate::contact::nodal::{self, Felt};
-use crate::contact::penalty::{Push, Rules, Told};
+use crate::contact::penalty::{Push, Rules, Springs, Told};
 use crate::contact::shared::{Projected, Stepped};
+use crate::off::Off;
 use crate::options::{Contact, StressUpdate};
 use crate::simulation::{Simulation, with_basis};
 use grainbench_scene::space::Space;
@@ -82,10 +85,20 @@ impl<S: Space> Simulation<S> {
             processor,
             ..
         } = self;
-        let told = Told { tally: &mut accounts.tally, touches: record.then_some(touches) };
-        with_basis!(setting.basis, B => {
-            let basis = PhantomData::<B>;
-            processor.run(Push { rules, bodies, pairs: &pairs.found, tracers, springs, walls, nodes, most, told, basis });
+        let Springs { friction, near, touched } = springs;
+        let pairs_found = &pairs.found;
+        macro_rules! push {
+            ($B:ty, $friction:expr, $ledger:expr) => {{
+                let (pairs, friction, basis) = (pairs_found, $friction, PhantomData::<$B>);
+                let told = Told { ledger: $ledger, touches: record.then_some(touches), touched };
+                processor.run(Push { rules, bodies, pairs, tracers, friction, walls, nodes, most, near, told, basis });
+            }};
+        }
+        with_basis!(setting.basis, B => match (friction, accounts) {
+            (Friction::Absent, None) => push!(B, Off, Off),
+            (Friction::Absent, Some(accounts)) => push!(B, Off, &mut accounts.tally),
+            (Friction::Present(friction), None) => push!(B, friction, Off),
+            (Friction::Present(friction), Some(accounts)) => push!(B, friction, &mut accounts.tally),
         });
         cost.pair_tests += pairs.tests;
         cost.contact_evaluations += springs.touched;
@@ -98,10 +111,12 @@ impl<S: Space> Simulation<S> {
         }
         let Self { lattice, friction, setting, time_step, bodies, shared, walls, nodes, driven, accounts, .. } = self;
         let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
-        let mut felt = Felt { walls, driven: &mut driven.groups, tally: &mut accounts.tally };
-        match setting.contact {
-            Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, &mut felt, &mut Stepped(nodes)),
-            _ => nodal::apply(&rules, bodies, shared, &mut felt, &mut Stepped(nodes)),
+        let (driven, field) = (&mut driven.groups, &mut Stepped(nodes));
+        match accounts {
+            None => nodal::meet(&rules, bodies, shared, &mut Felt { walls, driven, ledger: Off }, field),
+            Some(Accounts { tally, .. }) => {
+                nodal::meet(&rules, bodies, shared, &mut Felt { walls, driven, ledger: tally }, field);
+            }
         }
     }
 
@@ -110,13 +125,10 @@ impl<S: Space> Simulation<S> {
         if !self.is_nodal() {
             return;
         }
-        let Self { lattice, friction, setting, time_step, bodies, shared, walls, projected, driven, accounts, .. } =
-            self;
+        let Self { lattice, friction, setting, time_step, bodies, shared, walls, projected, driven, .. } = self;
         let rules = nodal::Rules { lattice, friction, contact: setting.contact, time_step: *time_step };
-        let mut felt = Felt { walls, driven: &mut driven.groups, tally: &mut accounts.tally };
-        match setting.contact {
-            Contact::Gap => nodal::apply_pairs(&rules, bodies, shared, &mut felt, &mut Projected(projected)),
-            _ => nodal::apply(&rules, bodies, shared, &mut felt, &mut Projected(projected)),
-        }
+        // Of these the budget is not told.
+        let mut felt = Felt { walls, driven: &mut driven.groups, ledger: Off };
+        nodal::meet(&rules, bodies, shared, &mut felt, &mut Projected(projected));
     }
 }

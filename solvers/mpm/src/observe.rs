@@ -89,7 +89,7 @@ impl<S: Space> Simulation<S> {
             inner_kinetic_energy,
             spots: self.spots(),
             driven: self.driven.groups.iter().map(|group| S::embed(group.force)).collect(),
-            budget: self.accounting.then(|| self.budget(elastic_energy)),
+            budget: self.budget(elastic_energy),
             snapshot: Snapshot {
                 step: self.step,
                 time: self.step as f64 * self.time_step,
@@ -131,7 +131,7 @@ impl<S: Space> Simulation<S> {
             angular += arm.cross(&own) * share;
             inertia += (Matrix3::from_diagonal_element(arm.norm_squared()) - arm * arm.transpose()) * share;
             kinetic += 0.5 * share * own.norm_squared();
-            flowed += points.plastic_strain[at] * share;
+            flowed += points.plastic_strain_of(at) * share;
             mean += S::embed_gradient(points.deformation[at]) * share;
         }
         let (spin, inertia) = if S::DIMENSION == 2 {
@@ -163,7 +163,7 @@ impl<S: Space> Simulation<S> {
         State {
             deformation: embed_deformation::<S>(self.points.deformation[at]),
             stress: S::embed_symmetric(self.points.stress[at]),
-            plastic_strain: self.points.plastic_strain[at],
+            plastic_strain: self.points.plastic_strain_of(at),
         }
     }
 
@@ -181,7 +181,7 @@ impl<S: Space> Simulation<S> {
             displacement: S::embed(points.position[at] - points.start[at]),
             velocity: self.velocity(at),
             stress: [stress.m11, stress.m22, stress.m33, stress.m12, stress.m23, stress.m31],
-            plastic_strain: points.plastic_strain[at],
+            plastic_strain: points.plastic_strain_of(at),
             rotation: if S::DIMENSION == 2 {
                 nearest_turn(rotation_of(S::embed_gradient(points.deformation[at])), body.angle)
             } else {

@@ -27,6 +27,13 @@ pub enum Transfer {
     Spin,
 }
 
+impl Transfer {
+    /// Whether points carry the affine part of the velocity, or its spin.
+    pub(crate) const fn carries_affine(self) -> bool {
+        !matches!(self, Self::Flip { .. })
+    }
+}
+
 /// When the stress follows the velocities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StressUpdate {

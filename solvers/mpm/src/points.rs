@@ -19,7 +19,7 @@ pub(crate) struct Points<S: Space> {
     pub(crate) next: Vec<S::Vector>,
     /// Velocity (m/s).
     pub(crate) velocity: Vec<S::Vector>,
-    /// Affine part of the velocity (1/s); zero unless the transfer carries it.
+    /// Affine part of the velocity (1/s), or none of any point unless the transfer carries it.
     pub(crate) affine: Vec<S::Matrix>,
     /// Mass (kg).
     pub(crate) mass: Vec<f64>,
@@ -31,17 +31,22 @@ pub(crate) struct Points<S: Space> {
     pub(crate) deformation: Vec<S::Matrix>,
     /// Cauchy stress (Pa).
     pub(crate) stress: Vec<S::Symmetric>,
-    /// Equivalent plastic strain.
+    /// Equivalent plastic strain, or none of any point where no material yields.
     pub(crate) plastic_strain: Vec<f64>,
 }
 
 impl<S: Space> Points<S> {
-    /// Memory that a point takes up (B).
-    pub(crate) const BYTES: usize = size_of::<u32>()
+    /// Memory that a point takes up (B), but for what not every scene calls for.
+    const BYTES: usize = size_of::<u32>()
         + 4 * size_of::<S::Vector>()
-        + 2 * size_of::<S::Matrix>()
+        + size_of::<S::Matrix>()
         + size_of::<S::Symmetric>()
-        + 4 * size_of::<f64>();
+        + 3 * size_of::<f64>();
+
+    /// Memory that the points take up (B).
+    pub(crate) fn bytes(&self) -> usize {
+        self.len() * Self::BYTES + size_of_val(&*self.affine) + size_of_val(&*self.plastic_strain)
+    }
 
     pub(crate) const fn new() -> Self {
         Self {
@@ -75,6 +80,26 @@ impl<S: Space> Points<S> {
         (mass, moment / mass)
     }
 
+    /// Gives every point an affine part of its velocity, zero at first, if the transfer `carries` one.
+    pub(crate) fn set_affine(&mut self, carries: bool) {
+        self.affine = vec![S::NO_GRADIENT; if carries { self.len() } else { 0 }];
+    }
+
+    /// Gives every point a plastic strain, zero at first, if any material `yields`.
+    pub(crate) fn set_plastic_strain(&mut self, yields: bool) {
+        self.plastic_strain = vec![0.0; if yields { self.len() } else { 0 }];
+    }
+
+    /// Affine part of the velocity of a point (1/s); zero where none is carried.
+    pub(crate) fn affine_of(&self, at: usize) -> S::Matrix {
+        self.affine.get(at).copied().unwrap_or(S::NO_GRADIENT)
+    }
+
+    /// Equivalent plastic strain of a point; zero where nothing yields.
+    pub(crate) fn plastic_strain_of(&self, at: usize) -> f64 {
+        self.plastic_strain.get(at).copied().unwrap_or(0.0)
+    }
+
     /// Adds an undeformed point at rest.
     pub(crate) fn push(&mut self, position: S::Vector, volume: f64, density: f64) {
         self.id.push(self.id.len() as u32);
@@ -82,30 +107,28 @@ impl<S: Space> Points<S> {
         self.position.push(position);
         self.next.push(position);
         self.velocity.push(S::ORIGIN);
-        self.affine.push(S::NO_GRADIENT);
         self.mass.push(density * volume);
         self.reference_volume.push(volume);
         self.volume.push(volume);
         self.deformation.push(S::restrict_gradient(Matrix3::identity()));
         self.stress.push(S::Symmetric::default());
-        self.plastic_strain.push(0.0);
     }
 
-    /// Whether every point has all of its state.
-    pub(crate) fn is_whole(&self) -> bool {
-        let count = self.len();
-        [
+    /// Whether every point has all of its state, and just that which those of `other` have.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        let count = other.len();
+        let same = self.affine.len() == other.affine.len() && self.plastic_strain.len() == other.plastic_strain.len();
+        same && [
             self.id.len(),
             self.start.len(),
             self.next.len(),
+            self.position.len(),
             self.velocity.len(),
-            self.affine.len(),
             self.mass.len(),
             self.reference_volume.len(),
             self.volume.len(),
             self.deformation.len(),
             self.stress.len(),
-            self.plastic_strain.len(),
         ]
         .iter()
         .all(|&length| length == count)
@@ -131,13 +154,17 @@ impl<S: Space> Points<S> {
         reorder(&mut self.start[range.clone()], &order, start);
         reorder(&mut self.position[range.clone()], &order, start);
         reorder(&mut self.velocity[range.clone()], &order, start);
-        reorder(&mut self.affine[range.clone()], &order, start);
         reorder(&mut self.mass[range.clone()], &order, start);
         reorder(&mut self.reference_volume[range.clone()], &order, start);
         reorder(&mut self.volume[range.clone()], &order, start);
         reorder(&mut self.deformation[range.clone()], &order, start);
         reorder(&mut self.stress[range.clone()], &order, start);
-        reorder(&mut self.plastic_strain[range], &order, start);
+        if !self.affine.is_empty() {
+            reorder(&mut self.affine[range.clone()], &order, start);
+        }
+        if !self.plastic_strain.is_empty() {
+            reorder(&mut self.plastic_strain[range], &order, start);
+        }
     }
 }
 

@@ -90,9 +90,8 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) friction: FrictionTable,
     pub(crate) held: Held,
     pub(crate) driven: Driven<S>,
-    /// Whether the energy budget is asked for.
-    pub(crate) accounting: bool,
-    pub(crate) accounts: Accounts<S>,
+    /// The energy budget, where it is asked for.
+    pub(crate) accounts: Option<Accounts<S>>,
     pub(crate) springs: Springs<S>,
     pub(crate) shared: Shared<S>,
     pub(crate) pairs: Pairs<S>,
@@ -122,14 +121,14 @@ impl<S: Space> Simulation<S> {
         critical: f64,
     ) -> Self {
         let (bodies, points, tracers) = seed::<S>(scene, &setting, &lattice, per_cell);
+        let friction = FrictionTable::of(scene);
         let walls: Vec<RigidPlane<S>> = scene.walls.iter().filter_map(RigidPlane::new).collect();
         Self {
             held: Held::new(&bodies, &lattice),
             driven: Driven::new(scene),
-            accounting: false,
-            accounts: Accounts::default(),
-            friction: FrictionTable::of(scene),
-            springs: Springs::new(tracers.len()),
+            accounts: None,
+            springs: Springs::new(friction.acts() && setting.contact == Contact::Penalty, tracers.len()),
+            friction,
             pairs: Pairs::new(),
             shared: Shared::new(),
             gravity: S::restrict(scene.gravity),
@@ -234,11 +233,13 @@ impl<S: Space> Simulation<S> {
 
     /// Memory that points, tracers, nodes and contacts take up (B), by their numbers.
     fn bytes(&self) -> usize {
-        let of_a_tracer = Tracers::<S>::BYTES + Springs::<S>::BYTES;
         let of_a_node = size_of::<Node<S>>() + size_of::<S::Vector>() + size_of::<f64>();
         // The velocity at the last look is a point's too.
-        self.points.len() * (Points::<S>::BYTES + size_of::<S::Vector>())
-            + self.tracers.len() * of_a_tracer
+        self.points.bytes()
+            + size_of_val(&*self.before)
+            + self.tracers.len() * Tracers::<S>::BYTES
+            + self.springs.friction.bytes()
+            + self.accounts.as_ref().map_or(0, Accounts::bytes)
             + self.used * of_a_node
             + self.shared.bytes()
             + self.pairs.bytes()
@@ -285,7 +286,7 @@ impl<S: Space> Simulation<S> {
 
     /// Begins the step for driven bodies and contacts.
     fn find_driven(&mut self) {
-        self.accounts.tally = Tally::default();
+        self.accounts.iter_mut().for_each(|accounts| accounts.tally = Tally::default());
         self.driven.begin(self.settling);
         if !self.driven.groups.is_empty() {
             let one_field = self.setting.contact == Contact::NoSlip;
@@ -435,7 +436,7 @@ impl<S: Space> Simulation<S> {
             processor,
             setting,
             time_step,
-            accounting,
+            accounts,
             ..
         } = self;
         let spins = setting.transfer == Transfer::Spin;
@@ -462,7 +463,7 @@ impl<S: Space> Simulation<S> {
                     processor.run(update);
                 }};
                 ($law:ident) => {
-                    if *accounting { update!($law, true) } else { update!($law, false) }
+                    if accounts.is_some() { update!($law, true) } else { update!($law, false) }
                 };
             }
             match *law {

@@ -39,7 +39,7 @@ impl<S: Space> Simulation<S> {
         if self.can_touch() && matches!(self.setting.contact, Contact::Penalty | Contact::Gap) {
             return;
         }
-        (self.tracers, self.springs) = (Tracers::new(), Springs::new(0));
+        (self.tracers, self.springs) = (Tracers::new(), Springs::new(false, 0));
         for body in &mut self.bodies {
             (body.tracers, body.chunks) = (0..0, 0..0);
         }
@@ -61,7 +61,9 @@ impl<S: Space> Simulation<S> {
                 let mut velocity = match body.owner {
                     Owner::Grain(id) => {
                         let grain = &self.scene.grains[id as usize - 1];
-                        self.points.affine[at] = S::restrict_gradient(grain.spin.cross_matrix());
+                        if let Some(affine) = self.points.affine.get_mut(at) {
+                            *affine = S::restrict_gradient(grain.spin.cross_matrix());
+                        }
                         grain.velocity + grain.spin.cross(&(position - centre))
                     }
                     Owner::Body(place) => {

@@ -3,8 +3,8 @@
 //! Points in the order that they are in, since sums at nodes depend on it in their last bit; where tracers are and how far their
 //! springs are stretched. Nodes, windows, pairs and planes are found anew in each step.
 
-use crate::accounts::{Sums, Tally};
-use crate::contact::penalty::Springs;
+use crate::accounts::{Accounts, Sums, Tally};
+use crate::contact::friction::Friction;
 use crate::points::Points;
 use crate::simulation::Simulation;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
@@ -19,7 +19,7 @@ struct State<S: Space> {
     points: Points<S>,
     /// Where tracers are (m), and their areas (m²).
     tracers: Vec<(S::Vector, S::Vector)>,
-    springs: Springs<S>,
+    friction: Friction<S>,
     /// Rotation of every body as last looked at (rad).
     angles: Vec<f64>,
     looked: u64,
@@ -27,8 +27,8 @@ struct State<S: Space> {
     runs_in_order: Vec<usize>,
     step: u64,
     cost: Cost,
-    sums: Sums,
-    tally: Tally,
+    /// The energy budget, where it is asked for, and what contacts told of the last step.
+    accounts: Option<(Sums, Tally)>,
     recorder: Recorder,
 }
 
@@ -39,14 +39,13 @@ impl<S: Space> Simulation<S> {
         let state = State::<S> {
             points: self.points.clone(),
             tracers: tracers.collect(),
-            springs: self.springs.clone(),
+            friction: self.springs.friction.clone(),
             angles: self.bodies.iter().map(|body| body.angle).collect(),
             looked: self.looked,
             runs_in_order: self.bodies.iter().map(|body| body.part.runs_in_order).collect(),
             step: self.step,
             cost: self.cost,
-            sums: self.accounts.sums,
-            tally: self.accounts.tally,
+            accounts: self.accounts.as_ref().map(|accounts| (accounts.sums, accounts.tally)),
             recorder: recorder.clone(),
         };
         Checkpoint::keep(identity, self.step, &state)
@@ -60,10 +59,9 @@ impl<S: Space> Simulation<S> {
     ) -> Result<Recorder, CheckpointError> {
         let state: State<S> = checkpoint.state(identity)?;
         self.drop_idle_surfaces();
-        let same = state.points.is_whole()
-            && state.points.len() == self.points.len()
+        let same = state.points.is_like(&self.points)
             && state.tracers.len() == self.tracers.len()
-            && state.springs.len() == self.tracers.len()
+            && state.friction.is_like(&self.springs.friction)
             && state.angles.len() == self.bodies.len()
             && state.runs_in_order.len() == self.bodies.len();
         if !same {
@@ -72,14 +70,16 @@ impl<S: Space> Simulation<S> {
         self.before.clone_from(&state.points.velocity);
         self.points = state.points;
         (self.tracers.position, self.tracers.area) = state.tracers.into_iter().unzip();
-        self.springs = state.springs;
+        self.springs.friction = state.friction;
         self.bodies.iter_mut().zip(state.angles).for_each(|(body, angle)| body.angle = angle);
         let parts = self.bodies.iter_mut().map(|body| &mut body.part);
         parts.zip(state.runs_in_order).for_each(|(part, runs)| part.runs_in_order = runs);
         self.looked = state.looked;
         (self.step, self.cost) = (state.step, state.cost);
         self.open_accounts();
-        (self.accounts.sums, self.accounts.tally) = (state.sums, state.tally);
+        if let (Some(Accounts { sums, tally, .. }), Some(kept)) = (&mut self.accounts, state.accounts) {
+            (*sums, *tally) = kept;
+        }
         self.find_all_bounds();
         Ok(state.recorder)
     }

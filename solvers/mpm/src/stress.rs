@@ -2,7 +2,7 @@
 
 use crate::accounts::Flow;
 use crate::lanes::{Kernel, Lanes};
-use crate::material::Law;
+use crate::material::{Law, PlasticStrain};
 use crate::points::Points;
 use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
@@ -51,11 +51,11 @@ impl<S: Space, L: Law, const COUNT: bool> Kernel for Update<'_, S, L, COUNT> {
         let affines = &mut points.affine;
         let deformations = &mut points.deformation[range.clone()];
         let stresses = &mut points.stress[range.clone()];
-        let plastic_strains = &mut points.plastic_strain[range.clone()];
+        let plastic_strains = L::PlasticStrain::those_of(&mut points.plastic_strain, range.clone());
         let volumes = points.volume[range.clone()].iter_mut().zip(&points.reference_volume[range.clone()]);
-        let states = deformations.iter_mut().zip(stresses).zip(plastic_strains).zip(volumes);
-        for ((at, gradient), (((deformation, stress), plastic_strain), (volume, reference))) in
-            range.zip(gradients).zip(states)
+        let states = deformations.iter_mut().zip(stresses).zip(volumes);
+        for (place, ((at, gradient), ((deformation, stress), (volume, reference)))) in
+            range.zip(gradients).zip(states).enumerate()
         {
             let increment = *gradient * time_step;
             *deformation = *deformation + increment * *deformation;
@@ -63,10 +63,12 @@ impl<S: Space, L: Law, const COUNT: bool> Kernel for Update<'_, S, L, COUNT> {
             if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
                 *failure = Some(Failure { point: at, cause: cause::<S>(increment, volume_ratio) });
             }
-            let before = (*volume, *plastic_strain);
+            let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
+            let before = (*volume, plastic_strain.value());
             *volume = reference * volume_ratio;
-            *stress = law.follow::<S>(increment, volume_ratio, *deformation, *stress, plastic_strain);
-            let flown = *plastic_strain - before.1;
+            *stress = law.follow::<S>(increment, volume_ratio, *deformation, *stress, &mut plastic_strain);
+            let flown = plastic_strain.value() - before.1;
+            plastic_strain.write(plastic_strains, place);
             if spins && flown > 0.0 {
                 let strain_rate = S::embed_symmetric(S::symmetric_part(*gradient));
                 affines[at] = S::restrict_gradient(S::embed_gradient(*gradient) - strain_rate);
@@ -74,7 +76,7 @@ impl<S: Space, L: Law, const COUNT: bool> Kernel for Update<'_, S, L, COUNT> {
             if COUNT {
                 flow.taken += *volume * S::double_dot(*stress, S::symmetric_part(increment));
                 if flown > 0.0 {
-                    flow.plastic += 0.5 * (before.0 + *volume) * law.flow_stress(*plastic_strain) * flown;
+                    flow.plastic += 0.5 * (before.0 + *volume) * law.flow_stress(plastic_strain) * flown;
                 }
             }
         }

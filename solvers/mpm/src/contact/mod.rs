@@ -1,5 +1,6 @@
 //! How bodies touch: springs between surfaces, or conditions at nodes.
 
+pub(crate) mod friction;
 pub(crate) mod grip;
 pub(crate) mod nodal;
 pub(crate) mod pairs;
@@ -46,6 +47,11 @@ impl FrictionTable {
     pub(crate) fn of(scene: &grainbench_scene::scene::Scene) -> Self {
         let coefficients = scene.laws.iter().map(|law| law.map(|law| law.friction)).collect();
         Self { coefficients, materials: scene.materials.len() }
+    }
+
+    /// Whether any law has friction.
+    pub(crate) fn acts(&self) -> bool {
+        self.coefficients.iter().flatten().any(|&friction| friction != 0.0)
     }
 
     #[inline(always)]

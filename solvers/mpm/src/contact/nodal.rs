@@ -15,7 +15,7 @@
 
 use super::shared::{Field, Shared};
 use super::{FrictionTable, Other};
-use crate::accounts::Tally;
+use crate::accounts::Ledger;
 use crate::bodies::Body;
 use crate::driven::Group;
 use crate::grid::Lattice;
@@ -38,21 +38,36 @@ pub(crate) struct Rules<'a> {
 }
 
 /// Who feels what is taken from the bodies, as a force over the step: walls and driven bodies, which both move as they are told.
-pub(crate) struct Felt<'a, S: Space> {
+pub(crate) struct Felt<'a, S: Space, A> {
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) driven: &'a mut [Group<S>],
-    pub(crate) tally: &'a mut Tally,
+    /// The energy budget, or its absence.
+    pub(crate) ledger: A,
+}
+
+/// Velocities after contact.
+pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
+    rules: &Rules<'_>,
+    bodies: &[Body],
+    shared: &mut Shared<S>,
+    felt: &mut Felt<'_, S, A>,
+    field: &mut F,
+) {
+    match rules.contact {
+        Contact::Gap => apply_pairs(rules, bodies, shared, felt, field),
+        _ => apply(rules, bodies, shared, felt, field),
+    }
 }
 
 /// Velocities after contact at all shared nodes.
-pub(crate) fn apply<S: Space, F: Field<S>>(
+fn apply<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &Shared<S>,
-    felt: &mut Felt<'_, S>,
+    felt: &mut Felt<'_, S, A>,
     field: &mut F,
 ) {
-    let Felt { walls, driven, tally } = felt;
+    let Felt { walls, driven, ledger } = felt;
     for group in shared.groups() {
         let members = &shared.members[group.members.clone()];
         let (mut mass, mut momentum, mut before) = (0.0, S::ORIGIN, S::ORIGIN);
@@ -135,12 +150,14 @@ pub(crate) fn apply<S: Space, F: Field<S>>(
             field.set(member.slot, velocity - change);
             if F::COUNTS {
                 let impulse = change * member.mass;
-                tally.friction += member.mass * S::dot(rub, field.before(member.slot) - common_before);
-                match (group.wall, mover) {
-                    (Some(wall), _) => {
-                        walls[wall].force += impulse * (1.0 / rules.time_step);
+                if let Some(tally) = ledger.tally() {
+                    tally.friction += member.mass * S::dot(rub, field.before(member.slot) - common_before);
+                    if group.wall.is_some() {
                         tally.walls -= S::dot(impulse, common);
                     }
+                }
+                match (group.wall, mover) {
+                    (Some(wall), _) => walls[wall].force += impulse * (1.0 / rules.time_step),
                     (None, Some(mover)) => driven[mover].force += impulse * (1.0 / rules.time_step),
                     (None, None) => {}
                 }
@@ -152,14 +169,14 @@ pub(crate) fn apply<S: Space, F: Field<S>>(
 /// Pairs of bodies, and of bodies and walls, that have met at a node: pushed apart along their common normal while they
 /// approach or press, with Coulomb friction, by projected Gauss–Seidel over the pairs of each node. Impulses are equal and
 /// opposite, so momentum is kept to rounding however many bodies meet.
-pub(crate) fn apply_pairs<S: Space, F: Field<S>>(
+fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &mut Shared<S>,
-    felt: &mut Felt<'_, S>,
+    felt: &mut Felt<'_, S, A>,
     field: &mut F,
 ) {
-    let Felt { walls, driven, tally } = felt;
+    let Felt { walls, driven, ledger } = felt;
     let Shared { meetings, faces, .. } = shared;
     for node in meetings.chunk_by_mut(|a, b| a.key == b.key) {
         let single = node.len() == 1;
@@ -206,19 +223,21 @@ pub(crate) fn apply_pairs<S: Space, F: Field<S>>(
                 }
                 if F::COUNTS {
                     let force = change * (1.0 / rules.time_step);
-                    let slip = match meeting.other {
-                        Other::Body(_) => field.before(one) - field.before(meeting.slots[1]),
-                        Other::Wall(_) => field.before(one) - velocity,
-                    };
-                    tally.friction += S::dot(change - normal * S::dot(change, normal), slip);
+                    if let Some(tally) = ledger.tally() {
+                        let slip = match meeting.other {
+                            Other::Body(_) => field.before(one) - field.before(meeting.slots[1]),
+                            Other::Wall(_) => {
+                                tally.walls -= S::dot(change, velocity);
+                                field.before(one) - velocity
+                            }
+                        };
+                        tally.friction += S::dot(change - normal * S::dot(change, normal), slip);
+                    }
                     if let Some(mover) = body.driven {
                         driven[usize::from(mover)].force -= force;
                     }
                     match meeting.other {
-                        Other::Wall(wall) => {
-                            walls[usize::from(wall)].force += force;
-                            tally.walls -= S::dot(change, velocity);
-                        }
+                        Other::Wall(wall) => walls[usize::from(wall)].force += force,
                         Other::Body(other) => {
                             if let Some(mover) = bodies[other as usize].driven {
                                 driven[usize::from(mover)].force += force;

@@ -1,6 +1,7 @@
 //! Hypoelasticity.
 
 use super::{Law, State};
+use crate::off::Off;
 use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
 
@@ -17,6 +18,8 @@ pub struct Hypoelastic {
 }
 
 impl Law for Hypoelastic {
+    type PlasticStrain = Off;
+
     #[inline(always)]
     fn follow<S: Space>(
         &self,
@@ -24,7 +27,7 @@ impl Law for Hypoelastic {
         _volume_ratio: f64,
         _deformation: S::Matrix,
         stress: S::Symmetric,
-        _plastic_strain: &mut f64,
+        _plastic_strain: &mut Off,
     ) -> S::Symmetric {
         let strain = S::symmetric_part(increment);
         let pressure = (self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus) * S::trace(strain);

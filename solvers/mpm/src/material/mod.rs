@@ -2,10 +2,12 @@
 
 mod hypoelastic;
 mod neo_hookean;
+mod plastic_strain;
 mod von_mises;
 
 pub use hypoelastic::Hypoelastic;
 pub use neo_hookean::NeoHookean;
+pub use plastic_strain::PlasticStrain;
 pub use von_mises::VonMises;
 
 use grainbench_scene::space::{Solid, Space};
@@ -30,6 +32,8 @@ impl Default for State {
 
 /// A law between deformation and stress.
 pub trait Law: Copy + Send + Sync + 'static {
+    /// The plastic strain that it reads and changes: [`crate::off::Off`] for laws that never yield.
+    type PlasticStrain: PlasticStrain;
     /// The stress after a step with the displacement gradient `increment` = Δt ∇v, from the stress before it and the
     /// deformation after it, of which `volume_ratio` is the determinant.
     fn follow<S: Space>(
@@ -38,18 +42,20 @@ pub trait Law: Copy + Send + Sync + 'static {
         volume_ratio: f64,
         deformation: S::Matrix,
         stress: S::Symmetric,
-        plastic_strain: &mut f64,
+        plastic_strain: &mut Self::PlasticStrain,
     ) -> S::Symmetric;
     /// The same of a state in three dimensions, which holds the deformation after the step and the stress before it.
     fn update(&self, increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State) {
         let stress = Solid::restrict_symmetric(state.stress);
-        let plastic_strain = &mut state.plastic_strain;
-        let stress = self.follow::<Solid>(*increment, volume_ratio, state.deformation, stress, plastic_strain);
+        let own = std::slice::from_mut(&mut state.plastic_strain);
+        let mut plastic_strain = Self::PlasticStrain::read(own, 0);
+        let stress = self.follow::<Solid>(*increment, volume_ratio, state.deformation, stress, &mut plastic_strain);
+        plastic_strain.write(own, 0);
         state.stress = Solid::embed_symmetric(stress);
     }
     /// Stress at which it flows after a plastic strain (Pa); zero for laws that do not.
     #[inline(always)]
-    fn flow_stress(&self, _plastic_strain: f64) -> f64 {
+    fn flow_stress(&self, _plastic_strain: Self::PlasticStrain) -> f64 {
         0.0
     }
     /// Elastic energy per volume at the start (J/m³).

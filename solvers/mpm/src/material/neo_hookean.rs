@@ -1,6 +1,7 @@
 //! Neo-Hookean elasticity.
 
 use super::{Law, State};
+use crate::off::Off;
 use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;
 
@@ -23,6 +24,8 @@ impl NeoHookean {
 }
 
 impl Law for NeoHookean {
+    type PlasticStrain = Off;
+
     #[inline(always)]
     fn follow<S: Space>(
         &self,
@@ -30,7 +33,7 @@ impl Law for NeoHookean {
         volume_ratio: f64,
         deformation: S::Matrix,
         _stress: S::Symmetric,
-        _plastic_strain: &mut f64,
+        _plastic_strain: &mut Off,
     ) -> S::Symmetric {
         self.stress::<S>(deformation, volume_ratio)
     }

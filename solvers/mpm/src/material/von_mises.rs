@@ -1,6 +1,7 @@
 //! Plasticity.
 
 use super::{Hypoelastic, Law, State};
+use crate::off::Off;
 use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
 
@@ -17,6 +18,8 @@ pub struct VonMises {
 }
 
 impl Law for VonMises {
+    type PlasticStrain = f64;
+
     #[inline(always)]
     fn follow<S: Space>(
         &self,
@@ -26,7 +29,7 @@ impl Law for VonMises {
         stress: S::Symmetric,
         plastic_strain: &mut f64,
     ) -> S::Symmetric {
-        let stress = self.elastic.follow::<S>(increment, volume_ratio, deformation, stress, plastic_strain);
+        let stress = self.elastic.follow::<S>(increment, volume_ratio, deformation, stress, &mut Off);
         let mean = S::trace(stress) / 3.0;
         let deviator = S::scaled_sum(stress, 1.0, S::isotropic(-mean));
         let squared = 1.5 * S::norm_squared(deviator);

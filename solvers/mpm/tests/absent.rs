@@ -1,0 +1,132 @@
+//! What a scene does not call for takes no memory, and what is called for with a value that does nothing changes no bit.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_mpm::material::{Hypoelastic, Law, NeoHookean, VonMises};
+use grainbench_mpm::off::Off;
+use grainbench_mpm::options::Transfer;
+use grainbench_mpm::solver::Mpm;
+use grainbench_scene::effect::Effect;
+use grainbench_scene::record::{Cost, Record};
+use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::solver::{Resolution, Solver};
+use support::{collision, column, incline, run, scene};
+
+const AT: Resolution = Resolution::grid(4.0, 2);
+
+/// Two discs that meet off centre and turn, of a material that is hypoelastic or flows at once, with friction or none.
+fn discs(friction: f64, constitutive: &str) -> Scene {
+    let modulus = "shear_modulus = 6.0";
+    let text = collision(0.1, friction, 0.5).replace(modulus, &format!("{modulus}, {constitutive}"));
+    scene(&format!("{text}[output]\nsnapshots = 3\n"))
+}
+
+const ELASTIC: &str = "constitutive = 'hypoelastic'";
+const YIELDING: &str = "constitutive = 'von-mises', yield_stress = 0.01";
+
+fn ran(solver: Mpm, scene: &Scene) -> Record {
+    solver.run(scene, &AT, &mut ()).unwrap()
+}
+
+/// A record in every bit, without what it cost and which effects it names.
+fn bits(record: &Record) -> String {
+    format!("{:?} {:?}", record.series, record.snapshots)
+}
+
+fn bytes_of(solver: Mpm, scene: &Scene) -> u64 {
+    ran(solver, scene).cost.bytes
+}
+
+#[test]
+fn what_is_off_has_no_size() {
+    assert_eq!(size_of::<Off>(), 0);
+    assert_eq!(size_of::<<Hypoelastic as Law>::PlasticStrain>(), 0);
+    assert_eq!(size_of::<<NeoHookean as Law>::PlasticStrain>(), 0);
+    assert_eq!(size_of::<<VonMises as Law>::PlasticStrain>(), size_of::<f64>());
+}
+
+/// Memory falls by just what the effect keeps: four springs of 32 B a tracer, a number or a matrix a point, three vectors a node.
+#[test]
+fn what_is_off_takes_no_memory() {
+    // Before the discs meet, while they have the same nodes.
+    let discs = |friction: f64, constitutive: &str| {
+        let duration = Duration::Seconds(0.1);
+        Scene { duration, ..discs(friction, constitutive) }
+    };
+    let elastic = discs(0.0, ELASTIC);
+    let points = |cost: Cost| cost.particle_steps / cost.steps;
+    let cost = ran(Mpm::BEST, &elastic).cost;
+    let plain = cost.bytes;
+    // Two circles of 6 tracers a cell, 4 cells a radius: 2π·24 of each, rounded up to a multiple of four.
+    assert_eq!(bytes_of(Mpm::BEST, &discs(0.5, ELASTIC)) - plain, 2 * 152 * 4 * 32);
+    assert_eq!(bytes_of(Mpm::BEST, &discs(0.0, YIELDING)) - plain, points(cost) * 8);
+    let flip = Mpm::BEST.with(|setting| setting.transfer = Transfer::Flip { pic: 0.0 });
+    let apic = Mpm::BEST.with(|setting| setting.transfer = Transfer::Apic);
+    let difference = bytes_of(apic, &alone()) - bytes_of(flip, &alone());
+    assert_eq!(difference, points(ran(flip, &alone()).cost) * 32);
+    let mut asked = elastic;
+    asked.probes = scene(&format!("{}budget.budget = true\n", collision(0.1, 0.0, 0.5))).probes;
+    assert!(bytes_of(Mpm::BEST, &asked) > plain);
+}
+
+/// A disc at rest, at which both transfers have the same nodes.
+fn alone() -> Scene {
+    scene(
+        "dimension = 2\nduration = 0.5\nmaterials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
+         [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0]\n",
+    )
+}
+
+/// Where bodies meet at nodes no tracer has a spring, whatever friction there is.
+#[test]
+fn contact_at_nodes_has_no_springs() {
+    let gap = Mpm::named("mpm:gap").unwrap();
+    assert_eq!(bytes_of(gap, &discs(0.5, ELASTIC)), bytes_of(gap, &discs(0.0, ELASTIC)));
+}
+
+/// An effect that is there and does nothing is as if it were not: friction of a material that no grain has, between discs and at a
+/// plane, and a yield stress that nothing reaches.
+#[test]
+fn an_idle_effect_changes_no_bit() {
+    let plane = || scene(&format!("{}[output]\nsnapshots = 3\n", incline(30.0, 0.0, 0.1, false)));
+    let cases = [
+        (Effect::Friction, Mpm::BEST, discs(0.0, ELASTIC)),
+        (Effect::Friction, Mpm::BEST, plane()),
+        (Effect::Friction, Mpm::named("mpm:gap").unwrap(), discs(0.0, ELASTIC)),
+        (Effect::Plasticity, Mpm::BEST, discs(0.5, ELASTIC)),
+        (Effect::Plasticity, Mpm::named("mpm:penalty").unwrap(), discs(0.5, ELASTIC)),
+    ];
+    for (effect, solver, without) in cases {
+        let mut idle = without.clone();
+        assert!(effect.switch_on_idly(&mut idle) && effect.is_on(&idle));
+        let [without, idle] = [ran(solver, &without), ran(solver, &idle)];
+        assert!(bits(&without) == bits(&idle), "{}, {effect:?} is not idle", solver.name);
+        if solver == Mpm::BEST {
+            assert!(without.cost.bytes < idle.cost.bytes, "{effect:?} takes no memory");
+        }
+    }
+}
+
+/// A budget that is asked for changes nothing but that it is there.
+#[test]
+fn a_budget_only_looks_on() {
+    for solver in Mpm::ALL {
+        let [without, with] = ["", "budget.budget = true\n"]
+            .map(|probe| ran(solver, &scene(&format!("{}{probe}[output]\nsnapshots = 3\n", collision(0.1, 0.5, 0.5)))));
+        assert!(format!("{:?}", without.snapshots) == format!("{:?}", with.snapshots), "{}", solver.name);
+    }
+}
+
+/// With FLIP the kinetic energy of a disc that spins is ½ I ω², of the velocities of its points and of nothing else.
+#[test]
+fn points_without_an_affine_part_have_no_energy_in_it() {
+    let spin: f64 = 0.1;
+    let text = format!(
+        "dimension = 2\nduration = 0.1\nmaterials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
+         [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0]\nspin = {spin}\n[probes]\nbudget.budget = true\n"
+    );
+    let kinetic = column(&run("mpm:penalty", &text, 4.0, 2), "budget.kinetic")[0];
+    let exact = 0.25 * std::f64::consts::PI * spin * spin;
+    assert!((kinetic / exact - 1.0).abs() < 1e-12, "{kinetic} {exact}");
+}
