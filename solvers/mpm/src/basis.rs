@@ -4,6 +4,28 @@
 
 use crate::lanes::Number;
 
+/// Compiles a call for the basis that was chosen.
+macro_rules! with_basis {
+    ($basis:expr, $B:ident => $call:expr) => {
+        match $basis {
+            $crate::options::Basis::Linear => {
+                type $B = $crate::basis::Linear;
+                $call
+            }
+            $crate::options::Basis::Quadratic => {
+                type $B = $crate::basis::Quadratic;
+                $call
+            }
+            $crate::options::Basis::Gimp => {
+                type $B = $crate::basis::Gimp;
+                $call
+            }
+        }
+    };
+}
+
+pub(crate) use with_basis;
+
 /// Values of the functions that reach a point, or four, along one axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis<N> {

@@ -1,13 +1,14 @@
 //! From a scene to bodies: seeded, covered with tracers, pressed where the scene says so.
 
 use crate::grid::Lattice;
-use crate::material::{Hypoelastic, Law, NeoHookean, VonMises};
+use crate::material::{self, Hypoelastic, Law, NeoHookean, VonMises};
 use crate::options::Setting;
 use crate::points::Points;
 use crate::seed::{self, Patch, Seed};
 use crate::surface::Tracers;
 use crate::transfer::Part;
 use grainbench_scene::body::{Block, BlockShape, Constitutive, Deformable, Sides};
+use grainbench_scene::manufactured::Medium;
 use grainbench_scene::record::Owner;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
@@ -38,6 +39,15 @@ impl Material {
     /// Whether it ever yields.
     const fn yields(&self) -> bool {
         matches!(self, Self::VonMises(_))
+    }
+
+    /// Elastic energy per volume at the start (J/m³).
+    pub(crate) fn energy(&self, state: &material::State) -> f64 {
+        match self {
+            Self::NeoHookean(law) => law.energy(state),
+            Self::Hypoelastic(law) => law.energy(state),
+            Self::VonMises(law) => law.energy(state),
+        }
     }
 
     fn under_pressure(&self, pressure: f64, dimensions: usize) -> (f64, Matrix3<f64>) {
@@ -72,6 +82,14 @@ pub(crate) struct Body {
     pub(crate) held: Option<(Sides, [Vector3<f64>; 2])>,
     /// The group of driven grains that it is in.
     pub(crate) driven: Option<u16>,
+}
+
+impl Body {
+    /// What a manufactured solution needs to know of it.
+    pub(crate) fn medium(&self) -> Medium {
+        let Self { density, deformable, .. } = self;
+        Medium { density: *density, lame: deformable.lame(), shear_modulus: deformable.shear_modulus }
+    }
 }
 
 /// What a body looks like before it is seeded.

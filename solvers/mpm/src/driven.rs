@@ -3,11 +3,11 @@
 //! Where each body has a field of its own, those are the nodes of the body; where all share one, what else is at such a node
 //! is carried along.
 
+use crate::basis::with_basis;
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Stencil};
 use crate::options::Basis;
 use crate::points::Points;
-use crate::simulation::with_basis;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 

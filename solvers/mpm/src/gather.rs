@@ -1,31 +1,80 @@
-//! From nodes to points: velocities and the way that they go.
+//! From nodes to points (G2P): velocities and the way that they go.
+//!
+//! Over the nodes i that reach a point p, with N_i their basis functions, v_i and Δv_i their velocities after the step and the change of
+//! these in it (m/s):
+//!
+//! - v_p ← keep v_p + Σ N_i(x_p) Δv_i, where points keep their velocity (Brackbill & Ruppel 1986), or Σ N_i(x_p) v_i; keep is what
+//!   damping leaves ([`Damping`]);
+//! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m);
+//! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), where points carry an affine part (1/s) (Jiang et al. 2015);
+//! - and once more to the nodes, for MUSL, p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with these (Sulsky, Zhou & Schreyer 1995).
 
-use crate::basis::Basis;
+use crate::basis::{Basis, with_basis};
+use crate::damping::Damping;
 use crate::grid::{Lattice, Node};
 use crate::lanes::{Four, Kernel, Lanes, Number};
+use crate::nodes::Grid;
+use crate::options;
 use crate::patch::{Copies, Patch};
 use crate::points::Points;
 use crate::runs::{Ground, Run};
 use crate::scatter::{Shown, weighted};
-use crate::transfer::{Part, Transfer};
+use crate::scheme::Scheme;
+use crate::state::State;
+use crate::transfer::{Apic, Flip, Part, Spin, Transfer};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 
+/// Points take velocities and the way that they go from the nodes, body by body.
+pub(crate) fn gather<S: Space>(
+    scheme: &Scheme,
+    Damping { keep, .. }: Damping,
+    state: &mut State<S>,
+    grid: &mut Grid<S>,
+) {
+    let Grid { lattice, nodes, projected, .. } = grid;
+    let State { bodies, points, runs, .. } = state;
+    let Scheme { setting, time_step, processor } = *scheme;
+    macro_rules! gather {
+        ($B:ty, $T:ty, $transfer:expr, $part:expr, $project:literal) => {{
+            let (transfer, part, basis) = ($transfer, $part, PhantomData::<$B>);
+            let runs = &runs[part.runs.clone()];
+            let gather: Gather<'_, S, $B, $T, $project> =
+                Gather { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, basis };
+            processor.run(gather);
+        }};
+        ($B:ty, $T:ty, $transfer:expr, $part:expr) => {
+            if scheme.is_projected() {
+                gather!($B, $T, $transfer, $part, true)
+            } else {
+                gather!($B, $T, $transfer, $part, false)
+            }
+        };
+    }
+    for body in bodies.iter() {
+        with_basis!(setting.basis, B => match setting.transfer {
+            options::Transfer::Flip { pic } => gather!(B, Flip, Flip { pic }, &body.part),
+            options::Transfer::Apic => gather!(B, Apic, Apic, &body.part),
+            options::Transfer::Spin => gather!(B, Spin, Spin, &body.part),
+        });
+    }
+}
+
 /// Velocity and next position of a body's points from its nodes; and, with `PROJECT`, the momentum of the points with
 /// their new velocity back to the nodes (MUSL).
-pub(crate) struct Gather<'a, S: Space, B, T, const PROJECT: bool> {
-    pub(crate) lattice: &'a Lattice,
-    pub(crate) part: &'a Part,
-    pub(crate) runs: &'a [Run],
-    pub(crate) transfer: T,
-    pub(crate) time_step: f64,
+struct Gather<'a, S: Space, B, T, const PROJECT: bool> {
+    lattice: &'a Lattice,
+    part: &'a Part,
+    runs: &'a [Run],
+    transfer: T,
+    time_step: f64,
     /// What damping leaves of a velocity in a step.
-    pub(crate) keep: f64,
-    pub(crate) points: &'a mut Points<S>,
-    pub(crate) nodes: &'a [Node<S>],
-    pub(crate) projected: &'a mut [S::Vector],
-    pub(crate) basis: PhantomData<B>,
+    keep: f64,
+    points: &'a mut Points<S>,
+    nodes: &'a [Node<S>],
+    projected: &'a mut [S::Vector],
+    basis: PhantomData<B>,
 }
 
 impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_, S, B, T, PROJECT> {

@@ -2,9 +2,10 @@
 
 use crate::bodies::Body;
 use crate::contact::{Other, Touch};
-use crate::material::State;
-use crate::simulation::{Simulation, energy_density};
+use crate::material;
+use crate::simulation::Simulation;
 use crate::stress::embed_deformation;
+use grainbench_scene::budget::Budget;
 use grainbench_scene::record::{
     self, BodyState, ContactState, GrainState, Look, Owner, Partner, PointState, Snapshot, WallState,
 };
@@ -29,11 +30,11 @@ struct Whole {
 impl<S: Space> Simulation<S> {
     /// The simulation now; with `points`, every material point.
     pub(crate) fn look(&mut self, with_points: bool) -> Look {
-        let wholes: Vec<Whole> = (0..self.bodies.len()).map(|body| self.whole(body)).collect();
+        let wholes: Vec<Whole> = (0..self.state.bodies.len()).map(|body| self.whole(body)).collect();
         let mut elastic_energy = 0.0;
         let mut inner_kinetic_energy = 0.0;
         let (mut grains, mut bodies) = (Vec::new(), Vec::new());
-        for (body, whole) in self.bodies.iter().zip(&wholes) {
+        for (body, whole) in self.state.bodies.iter().zip(&wholes) {
             elastic_energy += self.elastic_energy(body);
             let mut inertia = whole.inertia;
             match body.owner {
@@ -63,9 +64,9 @@ impl<S: Space> Simulation<S> {
             let rigid = whole.mass * whole.velocity.norm_squared() + inertia * whole.spin.norm_squared();
             inner_kinetic_energy += whole.kinetic - 0.5 * rigid;
         }
-        for touch in &self.touches {
+        for touch in &self.contacts.touches {
             let force = S::embed(touch.push + touch.shear);
-            let mut push = |body: u32, force: Vector3<f64>| match self.bodies[body as usize].owner {
+            let mut push = |body: u32, force: Vector3<f64>| match self.state.bodies[body as usize].owner {
                 Owner::Grain(id) => {
                     let arm = S::embed(touch.point) - wholes[body as usize].position;
                     let grain: &mut GrainState = &mut grains[id as usize - 1];
@@ -80,7 +81,7 @@ impl<S: Space> Simulation<S> {
             }
         }
         let points = if with_points {
-            self.bodies.iter().flat_map(|body| body.part.points.clone().map(|at| self.point(body, at))).collect()
+            self.state.bodies.iter().flat_map(|body| body.part.points.clone().map(|at| self.point(body, at))).collect()
         } else {
             Vec::new()
         };
@@ -88,11 +89,11 @@ impl<S: Space> Simulation<S> {
             elastic_energy: elastic_energy + self.spring_energy(),
             inner_kinetic_energy,
             spots: self.spots(),
-            driven: self.driven.groups.iter().map(|group| S::embed(group.force)).collect(),
+            driven: self.boundary.driven.groups.iter().map(|group| S::embed(group.force)).collect(),
             budget: self.budget(elastic_energy),
             snapshot: Snapshot {
                 step: self.step,
-                time: self.step as f64 * self.time_step,
+                time: self.step as f64 * self.scheme.time_step,
                 bounds: record::bounds(&self.scene, &grains),
                 periodic: self.scene.domain.map_or([false; 3], |domain| domain.periodic),
                 contacts: self.contacts(),
@@ -102,6 +103,13 @@ impl<S: Space> Simulation<S> {
                 points,
             },
         }
+    }
+
+    /// The energy budget, with the elastic energy of the material (J), where it is asked for.
+    fn budget(&self, elastic: f64) -> Option<Budget> {
+        let Self { scene, scheme, state, grid, accounts, .. } = self;
+        let accounts = accounts.as_ref()?;
+        Some(accounts.budget(&scheme.setting, scene.gravity, state, &grid.lattice, elastic))
     }
 
     /// Along periodic axes, the place within the domain.
@@ -116,8 +124,8 @@ impl<S: Space> Simulation<S> {
     }
 
     fn whole(&mut self, body: usize) -> Whole {
-        let points = &self.points;
-        let range = self.bodies[body].part.points.clone();
+        let points = &self.state.points;
+        let range = self.state.bodies[body].part.points.clone();
         let (mass, position) = points.centre_of_mass(range.clone());
         let momentum: Vector3<f64> = range.clone().map(|at| self.velocity(at) * points.mass[at]).sum();
         let velocity = momentum / mass;
@@ -141,13 +149,14 @@ impl<S: Space> Simulation<S> {
         };
         let angle = if S::DIMENSION == 2 {
             // Of the turns that the deformation may have made, the one nearest to that of the last look and the spin since.
-            let expected = self.bodies[body].angle + spin.z * self.time_step * (self.step - self.looked) as f64;
+            let expected =
+                self.state.bodies[body].angle + spin.z * self.scheme.time_step * (self.step - self.looked) as f64;
             nearest_turn(rotation_of(mean), expected)
         } else {
             0.0
         };
-        self.bodies[body].angle = angle;
-        if body + 1 == self.bodies.len() {
+        self.state.bodies[body].angle = angle;
+        if body + 1 == self.state.bodies.len() {
             self.looked = self.step;
         }
         Whole { mass, position, velocity, spin, inertia, kinetic, angle, plastic_strain: flowed / mass }
@@ -155,25 +164,25 @@ impl<S: Space> Simulation<S> {
 
     /// Velocity of a point at the time of the look, half a step on.
     fn velocity(&self, at: usize) -> Vector3<f64> {
-        let now = self.points.velocity[at];
-        S::embed(now + (now - self.before[at]) * 0.5)
+        let now = self.state.points.velocity[at];
+        S::embed(now + (now - self.state.before[at]) * 0.5)
     }
 
-    fn state(&self, at: usize) -> State {
-        State {
-            deformation: embed_deformation::<S>(self.points.deformation[at]),
-            stress: S::embed_symmetric(self.points.stress[at]),
-            plastic_strain: self.points.plastic_strain_of(at),
+    fn state_of(&self, at: usize) -> material::State {
+        material::State {
+            deformation: embed_deformation::<S>(self.state.points.deformation[at]),
+            stress: S::embed_symmetric(self.state.points.stress[at]),
+            plastic_strain: self.state.points.plastic_strain_of(at),
         }
     }
 
     fn elastic_energy(&self, body: &Body) -> f64 {
         let range = body.part.points.clone();
-        range.map(|at| self.points.reference_volume[at] * energy_density(&body.law, &self.state(at))).sum()
+        range.map(|at| self.state.points.reference_volume[at] * body.law.energy(&self.state_of(at))).sum()
     }
 
     fn point(&self, body: &Body, at: usize) -> PointState {
-        let points = &self.points;
+        let points = &self.state.points;
         let stress = S::embed_symmetric(points.stress[at]);
         PointState {
             owner: body.owner,
@@ -199,16 +208,16 @@ impl<S: Space> Simulation<S> {
                 BodyName::Grain(grain) => Owner::Grain(grain as u32 + 1),
                 BodyName::Body(body) => Owner::Body(body as u32),
             };
-            let Some(body) = self.bodies.iter().find(|body| body.owner == owner) else { continue };
-            let away = |at: usize| (S::embed(self.points.start[at]) - spot.at).norm();
+            let Some(body) = self.state.bodies.iter().find(|body| body.owner == owner) else { continue };
+            let away = |at: usize| (S::embed(self.state.points.start[at]) - spot.at).norm();
             let nearest = body.part.points.clone().map(away).fold(f64::INFINITY, f64::min);
-            let reach = nearest + 1e-6 * self.lattice.shortest(S::DIMENSION);
+            let reach = nearest + 1e-6 * self.grid.lattice.shortest(S::DIMENSION);
             let mut found: Vec<(u32, PointState)> = body
                 .part
                 .points
                 .clone()
                 .filter(|&at| away(at) <= reach)
-                .map(|at| (self.points.id[at], self.point(body, at)))
+                .map(|at| (self.state.points.id[at], self.point(body, at)))
                 .collect();
             // In an order that does not depend on where the points are now.
             found.sort_by_key(|(id, _)| *id);
@@ -219,11 +228,11 @@ impl<S: Space> Simulation<S> {
 
     /// Energy in the springs of contacts (J).
     fn spring_energy(&self) -> f64 {
-        self.touches.iter().map(|touch| touch.energy).sum()
+        self.contacts.touches.iter().map(|touch| touch.energy).sum()
     }
 
     fn wall_states(&self) -> Vec<WallState> {
-        let walls = self.scene.walls.iter().zip(&self.walls);
+        let walls = self.scene.walls.iter().zip(&self.boundary.walls);
         walls
             .map(|(wall, plane)| {
                 let shape = WallShape::Plane { point: S::embed(plane.point), normal: S::embed(plane.normal) };
@@ -236,7 +245,7 @@ impl<S: Space> Simulation<S> {
     /// What touches, one contact for each pair: forces of all tracers, at their centre of force.
     fn contacts(&self) -> Vec<ContactState> {
         let mut touches: Vec<(u32, Other, Touch<S>)> = Vec::new();
-        for touch in &self.touches {
+        for touch in &self.contacts.touches {
             let swap = matches!(touch.other, Other::Body(other) if other < touch.body);
             match touch.other {
                 Other::Body(other) if swap => touches.push((
@@ -252,10 +261,10 @@ impl<S: Space> Simulation<S> {
             .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
             .filter_map(|group| {
                 let (body, other) = (group[0].0, group[0].1);
-                let Owner::Grain(grain) = self.bodies[body as usize].owner else { return None };
+                let Owner::Grain(grain) = self.state.bodies[body as usize].owner else { return None };
                 let partner = match other {
                     Other::Wall(wall) => Partner::Wall(wall),
-                    Other::Body(body) => match self.bodies[body as usize].owner {
+                    Other::Body(body) => match self.state.bodies[body as usize].owner {
                         Owner::Grain(id) => Partner::Grain(id),
                         Owner::Body(place) => Partner::Body(place),
                     },

@@ -1,15 +1,49 @@
-//! From points to nodes: mass, momentum and internal force.
+//! From points to nodes (P2G): mass, momentum and internal force.
+//!
+//! Over the points p of a body, at each of its nodes i, with N_i the basis function of the node:
+//!
+//! - m_i = Σ N_i(x_p) m_p, mass (kg);
+//! - p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)), momentum (kg m/s), with x positions (m), v velocities (m/s) and A the affine part of
+//!   the velocity (1/s) where the transfer carries one (Jiang et al. 2015);
+//! - f_i = −Σ V_p σ_p ∇N_i(x_p), internal force (N), with V volumes (m³; m² in the plane) and σ Cauchy stresses (Pa) (Sulsky, Chen &
+//!   Schreyer 1994).
 
-use crate::basis::Basis;
+use crate::basis::{Basis, with_basis};
+use crate::contact::grip;
 use crate::grid::{Node, Stencil};
 use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
+use crate::nodes::Grid;
+use crate::options;
 use crate::patch::{Copies, Patch};
 use crate::points::Points;
 use crate::runs::Ground;
-use crate::transfer::Transfer;
+use crate::scheme::Scheme;
+use crate::state::State;
+use crate::transfer::{Apic, Flip, Spin, Transfer};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
+
+/// Points bring mass, momentum and internal force to the nodes, body by body: what a body has is in the cache only while it is
+/// worked on.
+pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &mut State<S>, grid: &mut Grid<S>) {
+    let Grid { lattice, nodes, most, .. } = grid;
+    let Scheme { setting, processor, .. } = scheme;
+    state.runs.clear();
+    for place in 0..state.bodies.len() {
+        state.find_runs(place, setting.basis, lattice);
+        let State { bodies, points, runs, .. } = state;
+        let part = &bodies[place].part;
+        let ground = Ground::new(lattice, part, &runs[part.runs.clone()], points);
+        with_basis!(setting.basis, B => match setting.transfer {
+            options::Transfer::Flip { .. } => processor.run(Scatter::<S, B, Flip>::new(ground, points, nodes)),
+            options::Transfer::Apic => processor.run(Scatter::<S, B, Apic>::new(ground, points, nodes)),
+            options::Transfer::Spin => processor.run(Scatter::<S, B, Spin>::new(ground, points, nodes)),
+        });
+        let window = part.window.slots();
+        grip::bear(&nodes[window.clone()], part.cell_mass, &mut most[window]);
+    }
+}
 
 /// The sum over the nodes of a row.
 #[inline(always)]
@@ -63,7 +97,7 @@ impl<N: Number> Shown<N> {
 }
 
 /// Mass, momentum and internal force, −Vσ∇N, of a body's points to its nodes.
-pub(crate) struct Scatter<'a, S: Space, B, T> {
+struct Scatter<'a, S: Space, B, T> {
     ground: Ground<'a, S>,
     points: &'a Points<S>,
     nodes: &'a mut [Node<S>],
@@ -71,7 +105,7 @@ pub(crate) struct Scatter<'a, S: Space, B, T> {
 }
 
 impl<'a, S: Space, B: Basis, T: Transfer> Scatter<'a, S, B, T> {
-    pub(crate) const fn new(ground: Ground<'a, S>, points: &'a Points<S>, nodes: &'a mut [Node<S>]) -> Self {
+    const fn new(ground: Ground<'a, S>, points: &'a Points<S>, nodes: &'a mut [Node<S>]) -> Self {
         Self { ground, points, nodes, how: PhantomData }
     }
 }

@@ -1,9 +1,19 @@
 //! From velocity gradients to deformation and stress, material by material.
 
-use crate::accounts::Flow;
+use crate::basis::with_basis;
+use crate::bodies::{Body, Material};
+use crate::failure::Failure;
+use crate::gradients::Gradients;
+use crate::grid::Node;
 use crate::lanes::{Kernel, Lanes};
+use crate::ledger::Flow;
 use crate::material::{Law, PlasticStrain};
+use crate::nodes::{Grid, Velocities};
+use crate::options::Transfer;
 use crate::points::Points;
+use crate::runs::{self, Ground};
+use crate::scheme::Scheme;
+use crate::state::State;
 use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
@@ -11,9 +21,9 @@ use std::ops::Range;
 
 /// A point whose state broke.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Failure {
-    pub(crate) point: usize,
-    pub(crate) cause: Cause,
+struct BrokenPoint {
+    point: usize,
+    cause: Cause,
 }
 
 /// The deformation gradient in three dimensions: in the plane nothing is stretched out of it.
@@ -26,22 +36,76 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
     full
 }
 
+/// Velocity gradients, then deformation and stress of the points of a body; what they tell the budget is added to `flow` if it `counts`.
+///
+/// # Errors
+/// With the first point that broke.
+pub(crate) fn follow<S: Space>(
+    scheme: &Scheme,
+    state: &mut State<S>,
+    place: usize,
+    (grid, velocities): (&Grid<S>, Velocities),
+    flow: &mut Flow,
+    counts: bool,
+) -> Result<(), Failure> {
+    let Grid { lattice, nodes, projected, .. } = grid;
+    let Scheme { setting, time_step, processor } = *scheme;
+    let State { bodies, points, runs, gradients, .. } = state;
+    let spins = setting.transfer == Transfer::Spin;
+    let Body { part, law, .. } = &bodies[place];
+    let mut failure = None;
+    for runs in runs::in_groups(&runs[part.runs.clone()]) {
+        let range = runs[0].start..runs[runs.len() - 1].end;
+        let ground = Ground::new(lattice, part, runs, points);
+        with_basis!(setting.basis, B => match velocities {
+            Velocities::Stepped => {
+                let velocity = |node: &Node<S>| node.velocity;
+                processor.run(Gradients::<S, B, _, _>::new(ground, nodes, velocity, gradients));
+            }
+            Velocities::Projected => {
+                let velocity = |velocity: &S::Vector| *velocity;
+                processor.run(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
+            }
+        });
+        macro_rules! update {
+            ($law:ident, $count:literal) => {{
+                let (law, failure) = ($law, &mut failure);
+                let update: Update<'_, S, _, $count> =
+                    Update { law, range, gradients, time_step, spins, points, flow, failure };
+                processor.run(update);
+            }};
+            ($law:ident) => {
+                if counts { update!($law, true) } else { update!($law, false) }
+            };
+        }
+        match *law {
+            Material::NeoHookean(law) => update!(law),
+            Material::Hypoelastic(law) => update!(law),
+            Material::VonMises(law) => update!(law),
+        }
+    }
+    match failure {
+        None => Ok(()),
+        Some(BrokenPoint { point, cause }) => Err(state.failure(place, point, cause)),
+    }
+}
+
 /// F ← (1 + Δt ∇v) F, volume and stress of every point of a range, of which `gradients` are the velocity gradients (1/s).
 /// With `COUNT` adds to `flow` what the stresses after the step take on the strain of it,
 /// and the work of plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume.
 ///
 /// Where points carry `spins` of their own, one that flows takes on that of the velocities around it: what it shared its spin with has
 /// moved on, and spins that nothing answers to grow until a grain of a few cells flies apart.
-pub(crate) struct Update<'a, S: Space, L, const COUNT: bool> {
-    pub(crate) law: L,
-    pub(crate) range: Range<usize>,
-    pub(crate) gradients: &'a [S::Matrix],
-    pub(crate) time_step: f64,
-    pub(crate) spins: bool,
-    pub(crate) points: &'a mut Points<S>,
-    pub(crate) flow: &'a mut Flow,
+struct Update<'a, S: Space, L, const COUNT: bool> {
+    law: L,
+    range: Range<usize>,
+    gradients: &'a [S::Matrix],
+    time_step: f64,
+    spins: bool,
+    points: &'a mut Points<S>,
+    flow: &'a mut Flow,
     /// The first point that broke, if any did.
-    pub(crate) failure: &'a mut Option<Failure>,
+    failure: &'a mut Option<BrokenPoint>,
 }
 
 impl<S: Space, L: Law, const COUNT: bool> Kernel for Update<'_, S, L, COUNT> {
@@ -61,7 +125,7 @@ impl<S: Space, L: Law, const COUNT: bool> Kernel for Update<'_, S, L, COUNT> {
             *deformation = *deformation + increment * *deformation;
             let volume_ratio = S::determinant(*deformation);
             if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
-                *failure = Some(Failure { point: at, cause: cause::<S>(increment, volume_ratio) });
+                *failure = Some(BrokenPoint { point: at, cause: cause::<S>(increment, volume_ratio) });
             }
             let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
             let before = (*volume, plastic_strain.value());

@@ -1,12 +1,12 @@
 //! Tracers: massless points on the surface of bodies, carried by the grid.
 
 use crate::basis::Basis;
-use crate::bodies::Body;
 use crate::grid::{Lattice, Stencil};
 use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
 use crate::patch::{Copies, Patch};
 use crate::runs;
 use crate::seed;
+use crate::transfer::Part;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -292,7 +292,9 @@ impl<S: Space> Chord<S> {
 /// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that carry mass.
 pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) lattice: &'a Lattice,
-    pub(crate) body: &'a Body,
+    pub(crate) part: &'a Part,
+    /// Which tracers.
+    pub(crate) of: Range<usize>,
     pub(crate) tracers: &'a mut Tracers<S>,
     pub(crate) nodes: &'a [N],
     /// What each node counts for at most.
@@ -305,14 +307,13 @@ pub(crate) struct Carry<'a, S: Space, B, N, V> {
 impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Carry<'_, S, B, N, V> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { lattice, body, tracers, nodes, most, velocity, elapsed, .. } = self;
+        let Self { lattice, part, of, tracers, nodes, most, velocity, elapsed, .. } = self;
         let Tracers { position, area, neighbours, .. } = tracers;
-        let part = &body.part;
         let zero = Four::splat(lanes, 0.0);
         // Never read unless copied to.
         let Some(&any) = nodes.first() else { return };
         let (mut copies, mut most_copies): (Copies<N>, Copies<f64>) = ([any; _], [0.0; _]);
-        let mut range = body.tracers.clone();
+        let mut range = of.clone();
         while !range.is_empty() {
             let (batch, base) = runs::first_batch::<S, B>(lattice, range.clone(), position);
             range.start += batch.count;
@@ -376,7 +377,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Carry<'_, S
             }
         }
         if S::DIMENSION == 2 {
-            for at in body.tracers.clone() {
+            for at in of {
                 let [before, after] = neighbours[at].map(|neighbour| position[neighbour as usize]);
                 let half = S::embed(after - before) * 0.5;
                 area[at] = S::restrict(Vector3::new(half.y, -half.x, 0.0));

@@ -15,10 +15,10 @@
 
 use super::shared::{Field, Shared};
 use super::{FrictionTable, Other};
-use crate::accounts::Ledger;
 use crate::bodies::Body;
 use crate::driven::Group;
 use crate::grid::Lattice;
+use crate::ledger::Ledger;
 use crate::options::Contact;
 use crate::walls::RigidPlane;
 use grainbench_scene::space::Space;

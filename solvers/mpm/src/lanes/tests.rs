@@ -59,10 +59,10 @@ fn state<S: Space>(processor: Processor, basis: Basis, transfer: Transfer) -> St
     let plan = solver.plan(&scene, &Resolution::grid(3.0, 2)).expect("the resolution is right");
     let Plan { lattice, points, time_step, critical, .. } = plan;
     let mut simulation = Simulation::<S>::new(&scene, setting, lattice, points, time_step, critical);
-    simulation.processor = processor;
+    simulation.scheme.processor = processor;
     simulation.begin().expect("it starts");
     simulation.advance(plan.steps).expect("it holds together");
-    format!("{:?}", simulation.points)
+    format!("{:?}", simulation.state.points)
 }
 
 /// Loops over points are compiled once for every processor; what they compute is the same.

@@ -1,0 +1,49 @@
+//! What bounds the bodies and moves as it is told: walls, held sides, driven bodies.
+
+use crate::bodies::Body;
+use crate::driven::Driven;
+use crate::grid::Lattice;
+use crate::held::Held;
+use crate::nodes::Grid;
+use crate::walls::RigidPlane;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::space::Space;
+
+/// Walls, held sides of bodies, driven bodies.
+#[derive(Clone, Debug)]
+pub(crate) struct Boundary<S: Space> {
+    pub(crate) walls: Vec<RigidPlane<S>>,
+    pub(crate) held: Held,
+    pub(crate) driven: Driven<S>,
+}
+
+impl<S: Space> Boundary<S> {
+    pub(crate) fn new(scene: &Scene, bodies: &[Body], lattice: &Lattice) -> Self {
+        Self {
+            walls: scene.walls.iter().filter_map(RigidPlane::new).collect(),
+            held: Held::new(bodies, lattice),
+            driven: Driven::new(scene),
+        }
+    }
+
+    /// Puts walls where they are at `time` (s); while bodies settle, where they start, and still.
+    pub(crate) fn move_walls(&mut self, time: f64, time_step: f64, settling: bool) {
+        for wall in &mut self.walls {
+            wall.force = S::ORIGIN;
+            if settling {
+                wall.move_to(0.0, time_step);
+                wall.stop();
+            } else {
+                wall.move_to(time, time_step);
+            }
+        }
+    }
+
+    /// Projected momenta become velocities that held sides and driven bodies allow.
+    pub(crate) fn hold_projected(&self, bodies: &[Body], grid: &mut Grid<S>) {
+        self.held.fold_projected::<S>(bodies, &mut grid.projected);
+        grid.divide_projected();
+        self.held.hold_projected::<S>(bodies, &mut grid.projected);
+        self.driven.hold_projected(&mut grid.projected, &grid.nodes);
+    }
+}

@@ -1,0 +1,235 @@
+//! Contact, and the stages of a cycle at which bodies meet: springs as forces, conditions at nodes on velocities.
+
+use crate::accounts::Accounts;
+use crate::basis::with_basis;
+use crate::boundary::Boundary;
+use crate::contact::friction::Friction;
+use crate::contact::nodal::{self, Felt};
+use crate::contact::pairs::Pairs;
+use crate::contact::penalty::{Push, Rules, Springs, Told};
+use crate::contact::shared::{Projected, Shared, Stepped};
+use crate::contact::{FrictionTable, Touch};
+use crate::grid::Node;
+use crate::nodes::{Grid, Velocities};
+use crate::off::Off;
+use crate::options::{Contact, StressUpdate};
+use crate::scheme::Scheme;
+use crate::state::State;
+use crate::surface::{Carry, Tracers};
+use grainbench_scene::record::Cost;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::space::Space;
+use std::marker::PhantomData;
+
+/// What is asked of springs in a step beside their forces.
+pub(crate) struct Asked<'a, S: Space> {
+    /// The energy budget, where it is kept.
+    pub(crate) accounts: Option<&'a mut Accounts<S>>,
+    /// Whether what touches is looked at.
+    pub(crate) touches: bool,
+}
+
+/// Surfaces, and what they do where they meet.
+#[derive(Clone, Debug)]
+pub(crate) struct Contacts<S: Space> {
+    pub(crate) tracers: Tracers<S>,
+    pub(crate) springs: Springs<S>,
+    pub(crate) touches: Vec<Touch<S>>,
+    friction: FrictionTable,
+    pairs: Pairs<S>,
+    shared: Shared<S>,
+}
+
+impl<S: Space> Contacts<S> {
+    pub(crate) fn new(scene: &Scene, contact: Contact, tracers: Tracers<S>) -> Self {
+        let friction = FrictionTable::of(scene);
+        let springs = Springs::new(friction.acts() && contact == Contact::Penalty, tracers.len());
+        Self { tracers, springs, touches: Vec::new(), friction, pairs: Pairs::new(), shared: Shared::new() }
+    }
+
+    /// Memory that is in use (B).
+    pub(crate) fn bytes(&self) -> usize {
+        self.tracers.len() * Tracers::<S>::BYTES
+            + self.springs.friction.bytes()
+            + self.shared.bytes()
+            + self.pairs.bytes()
+    }
+
+    /// Whether there is anything to touch.
+    fn can_touch(state: &State<S>, boundary: &Boundary<S>) -> bool {
+        state.bodies.len() > 1 || !boundary.walls.is_empty()
+    }
+
+    /// Whether contact is a condition at nodes, and anything can touch.
+    fn is_nodal(contact: Contact, state: &State<S>, boundary: &Boundary<S>) -> bool {
+        let several = state.bodies.len() > 1 && contact != Contact::NoSlip;
+        contact != Contact::Penalty && (several || !boundary.walls.is_empty())
+    }
+
+    /// Surfaces that nothing can touch, or that contact does not ask for, cost nothing: they are needed for pressing only.
+    pub(crate) fn drop_idle_surfaces(&mut self, contact: Contact, state: &mut State<S>, boundary: &Boundary<S>) {
+        if Self::can_touch(state, boundary) && matches!(contact, Contact::Penalty | Contact::Gap) {
+            return;
+        }
+        (self.tracers, self.springs) = (Tracers::new(), Springs::new(false, 0));
+        for body in &mut state.bodies {
+            (body.tracers, body.chunks) = (0..0, 0..0);
+        }
+    }
+
+    /// Finds the nodes at which bodies meet, for conditions at nodes.
+    pub(crate) fn find_shared(
+        &mut self,
+        scheme: &Scheme,
+        state: &State<S>,
+        grid: &Grid<S>,
+        boundary: &Boundary<S>,
+        cost: &mut Cost,
+    ) {
+        let setting = &scheme.setting;
+        if !Self::is_nodal(setting.contact, state, boundary) {
+            return;
+        }
+        let Grid { lattice, nodes, used, .. } = grid;
+        let State { bodies, points, .. } = state;
+        let walls = &boundary.walls;
+        let Self { shared, pairs, tracers, .. } = self;
+        let cell = lattice.shortest(S::DIMENSION);
+        let margin = if setting.contact == Contact::Gap { 0.0 } else { 3.0 * cell };
+        let fields = if setting.contact == Contact::NoSlip { 1 } else { bodies.len() };
+        pairs.clear();
+        if fields > 1 {
+            pairs.find(bodies, lattice, margin);
+        }
+        if setting.contact == Contact::Gap {
+            tracers.find_boxes();
+            shared.find_meetings(lattice, bodies, &pairs.found, tracers, walls, nodes);
+        } else {
+            shared.find(lattice, bodies, fields, &pairs.found, walls, nodes);
+        }
+        cost.pair_tests += pairs.tests;
+        // Velocities of the step and, where the stress comes from projected ones, those too.
+        let times = if setting.stress_update == StressUpdate::Last { 1 } else { 2 };
+        cost.contact_evaluations += times * (shared.members.len() + shared.meetings.len()) as u64;
+        if setting.contact == Contact::NoSlip {
+            return;
+        }
+        shared.find_touching(bodies.len());
+        with_basis!(setting.basis, B => shared.find_faces::<B>(lattice, bodies, *used, points));
+        if setting.contact == Contact::Kinematic {
+            shared.smooth_normals(lattice, bodies, *used, points);
+        }
+    }
+
+    /// Forces of springs between surfaces on the nodes.
+    pub(crate) fn push(
+        &mut self,
+        scheme: &Scheme,
+        state: &State<S>,
+        grid: &mut Grid<S>,
+        boundary: &mut Boundary<S>,
+        Asked { accounts, touches: record }: Asked<'_, S>,
+        cost: &mut Cost,
+    ) {
+        let Scheme { setting, time_step, processor } = *scheme;
+        if setting.contact != Contact::Penalty || !Self::can_touch(state, boundary) {
+            return;
+        }
+        let Grid { lattice, nodes, most, .. } = grid;
+        let (bodies, walls) = (&state.bodies, &mut boundary.walls);
+        let Self { tracers, springs, touches, friction, pairs, .. } = self;
+        touches.clear();
+        springs.begin();
+        pairs.find(bodies, lattice, 0.0);
+        let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
+        let Springs { friction, near, touched } = springs;
+        let found = &pairs.found;
+        macro_rules! push {
+            ($B:ty, $friction:expr, $ledger:expr) => {{
+                let (pairs, friction, basis) = (found, $friction, PhantomData::<$B>);
+                let told = Told { ledger: $ledger, touches: record.then_some(touches), touched };
+                processor.run(Push { rules, bodies, pairs, tracers, friction, walls, nodes, most, near, told, basis });
+            }};
+        }
+        with_basis!(setting.basis, B => match (friction, accounts) {
+            (Friction::Absent, None) => push!(B, Off, Off),
+            (Friction::Absent, Some(accounts)) => push!(B, Off, &mut accounts.tally),
+            (Friction::Present(friction), None) => push!(B, friction, Off),
+            (Friction::Present(friction), Some(accounts)) => push!(B, friction, &mut accounts.tally),
+        });
+        cost.pair_tests += pairs.tests;
+        cost.contact_evaluations += springs.touched;
+    }
+
+    /// Velocities of the step that contact at nodes allows.
+    pub(crate) fn meet_stepped(
+        &mut self,
+        scheme: &Scheme,
+        state: &State<S>,
+        grid: &mut Grid<S>,
+        boundary: &mut Boundary<S>,
+        accounts: Option<&mut Accounts<S>>,
+    ) {
+        let contact = scheme.setting.contact;
+        if !Self::is_nodal(contact, state, boundary) {
+            return;
+        }
+        let Grid { lattice, nodes, .. } = grid;
+        let Self { friction, shared, .. } = self;
+        let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
+        let (walls, driven, field) = (&mut *boundary.walls, &mut *boundary.driven.groups, &mut Stepped(nodes));
+        match accounts {
+            None => nodal::meet(&rules, &state.bodies, shared, &mut Felt { walls, driven, ledger: Off }, field),
+            Some(Accounts { tally, .. }) => {
+                nodal::meet(&rules, &state.bodies, shared, &mut Felt { walls, driven, ledger: tally }, field);
+            }
+        }
+    }
+
+    /// Projected velocities that contact at nodes allows. Of these the budget is not told.
+    pub(crate) fn meet_projected(
+        &mut self,
+        scheme: &Scheme,
+        state: &State<S>,
+        grid: &mut Grid<S>,
+        boundary: &mut Boundary<S>,
+    ) {
+        let contact = scheme.setting.contact;
+        if !Self::is_nodal(contact, state, boundary) {
+            return;
+        }
+        let Grid { lattice, projected, .. } = grid;
+        let Self { friction, shared, .. } = self;
+        let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
+        let mut felt = Felt { walls: &mut boundary.walls, driven: &mut boundary.driven.groups, ledger: Off };
+        nodal::meet(&rules, &state.bodies, shared, &mut felt, &mut Projected(projected));
+    }
+
+    /// Carries the tracers of a body with it.
+    pub(crate) fn move_tracers(
+        &mut self,
+        scheme: &Scheme,
+        state: &State<S>,
+        place: usize,
+        grid: &Grid<S>,
+        velocities: Velocities,
+    ) {
+        let Scheme { setting, time_step: elapsed, processor } = *scheme;
+        let Grid { lattice, nodes, projected, most, .. } = grid;
+        let (body, tracers) = (&state.bodies[place], &mut self.tracers);
+        let (part, of) = (&body.part, body.tracers.clone());
+        with_basis!(setting.basis, B => {
+            let basis = PhantomData::<B>;
+            match velocities {
+                Velocities::Stepped => {
+                    let velocity = |node: &Node<S>| node.velocity;
+                    processor.run(Carry { lattice, part, of, tracers, nodes, most, velocity, elapsed, basis });
+                }
+                Velocities::Projected => {
+                    let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
+                    processor.run(Carry { lattice, part, of, tracers, nodes, most, velocity, elapsed, basis });
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,122 @@
+//! The grid with what its nodes hold.
+
+use crate::bodies::Body;
+use crate::damping::Damping;
+use crate::grid::{Lattice, Node, Window};
+use grainbench_scene::solver::Cause;
+use grainbench_scene::space::Space;
+use nalgebra::Vector3;
+
+/// Nodes beyond which a grid is taken for a mistake.
+const MOST_NODES: f64 = 5e7;
+
+/// Which velocities of the nodes a stage means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Velocities {
+    /// Those of the step.
+    Stepped,
+    /// Those that the points brought to the nodes once more.
+    Projected,
+}
+
+/// The lattice, and the nodes of all windows one after another.
+#[derive(Clone, Debug)]
+pub(crate) struct Grid<S: Space> {
+    pub(crate) lattice: Lattice,
+    pub(crate) nodes: Vec<Node<S>>,
+    /// Momenta (kg m/s), then velocities (m/s), that points bring to the nodes once more.
+    pub(crate) projected: Vec<S::Vector>,
+    /// What each node counts for at most at a surface.
+    pub(crate) most: Vec<f64>,
+    /// Nodes in use.
+    pub(crate) used: usize,
+}
+
+impl<S: Space> Grid<S> {
+    pub(crate) const fn new(lattice: Lattice) -> Self {
+        Self { lattice, nodes: Vec::new(), projected: Vec::new(), most: Vec::new(), used: 0 }
+    }
+
+    /// Memory that is in use (B).
+    pub(crate) const fn bytes(&self) -> usize {
+        self.used * (size_of::<Node<S>>() + size_of::<S::Vector>() + size_of::<f64>())
+    }
+
+    /// Gives every field its window, and empties the nodes.
+    ///
+    /// # Errors
+    /// With a body that reaches farther than a grid can, and why.
+    pub(crate) fn place_windows(&mut self, bodies: &mut [Body], one_field: bool) -> Result<(), (usize, Cause)> {
+        let (mut start, mut count) = (0, 0.0);
+        let mut all: Option<[Vector3<f64>; 2]> = None;
+        if one_field {
+            all = bodies.iter().map(|body| body.bounds).reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])]);
+        }
+        for place in 0..bodies.len() {
+            if one_field && place > 0 {
+                bodies[place].part.window = bodies[0].part.window;
+                continue;
+            }
+            let [low, high] = all.unwrap_or(bodies[place].bounds);
+            let wanted: f64 =
+                (0..S::DIMENSION).map(|axis| (high[axis] - low[axis]) / self.lattice.cell[axis] + 3.0).product();
+            count += wanted;
+            if count >= MOST_NODES || count.is_nan() {
+                let cause = if count.is_finite() { Cause::LeftGrid { cells: count } } else { Cause::NotFinite };
+                return Err((place, cause));
+            }
+            let mut window: Window = self.lattice.window::<S>(S::restrict(low), S::restrict(high));
+            window.start = start;
+            start += window.len();
+            bodies[place].part.window = window;
+        }
+        self.used = start;
+        if self.nodes.len() < start {
+            self.nodes.resize(start + start / 4, Node::EMPTY);
+            self.projected.resize(start + start / 4, S::ORIGIN);
+            self.most.resize(start + start / 4, 0.0);
+        }
+        self.nodes[..start].fill(Node::EMPTY);
+        self.projected[..start].fill(S::ORIGIN);
+        Ok(())
+    }
+
+    /// Momenta and forces of the nodes become velocities after the step, v ← keep v + gain (f/m + g), beside those before it; how many
+    /// nodes have mass. See [`Damping`] for keep and gain.
+    pub(crate) fn step(&mut self, gravity: S::Vector, Damping { keep, gain }: Damping) -> u64 {
+        let mut stepped = 0;
+        for node in &mut self.nodes[..self.used] {
+            if node.mass > 0.0 {
+                stepped += 1;
+                let inverse = 1.0 / node.mass;
+                let before = node.velocity * inverse;
+                node.velocity = before * keep + (node.change * inverse + gravity) * gain;
+                node.change = before;
+            } else {
+                (node.velocity, node.change) = (S::ORIGIN, S::ORIGIN);
+            }
+        }
+        stepped
+    }
+
+    /// What changed in the step but for damping, once velocities are final.
+    pub(crate) fn find_changes(&mut self, Damping { keep, .. }: Damping) {
+        for node in &mut self.nodes[..self.used] {
+            node.change = node.velocity - node.change * keep;
+        }
+    }
+
+    /// For stresses that come first: momenta of the nodes as the points bring them.
+    pub(crate) fn project(&mut self) {
+        for (projected, node) in self.projected[..self.used].iter_mut().zip(&self.nodes) {
+            *projected = node.velocity;
+        }
+    }
+
+    /// Projected momenta become velocities.
+    pub(crate) fn divide_projected(&mut self) {
+        for (projected, node) in self.projected[..self.used].iter_mut().zip(self.nodes.iter()) {
+            *projected = if node.mass > 0.0 { *projected * (1.0 / node.mass) } else { S::ORIGIN };
+        }
+    }
+}
