@@ -325,7 +325,7 @@ fn unknown_solver_of_a_run() {
 }
 
 #[test]
-fn unknown_rung() {
+fn unknown_level() {
     let directory = tempfile::tempdir().unwrap();
     insta::assert_snapshot!(refusal(directory.path(), &["run", "squash", "--levels", "dt=.06"]));
 }

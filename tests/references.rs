@@ -6,7 +6,11 @@
 mod common;
 
 use common::grainbench;
+use grainbench::cases::registry::CASES;
 use grainbench::cases::stored;
+use grainbench::cases::uncertainty::{self, Stored};
+use grainbench::harness::claim::Claim;
+use grainbench::harness::tolerance::Made;
 use grainbench::reference::deck::Program;
 use grainbench::reference::stored::{StoredRun, folder};
 use grainbench::scene::solver::RunError;
@@ -24,6 +28,22 @@ fn every_run_that_gates_read_is_stored_and_no_other() {
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .collect();
         assert_eq!(there, wanted, "grainbench reference build makes what is missing");
+    }
+}
+
+/// A tolerance that is estimated has its estimate in the tree, and no estimate is of a row that is gone.
+#[test]
+fn every_estimate_is_of_a_row_and_every_such_row_has_one() {
+    for case in CASES {
+        let claims: Vec<Claim> =
+            (case.claims)().into_iter().filter(|claim| claim.tolerance.made == Made::Estimated).collect();
+        for claim in &claims {
+            let found = uncertainty::find(case, claim);
+            assert!(found.is_some(), "{} · {}: grainbench reference uncertainty makes it", case.name, claim.quantity);
+        }
+        let stored = std::fs::read_to_string(uncertainty::file(case.name)).unwrap_or_default();
+        let stored: Stored = toml::from_str(&stored).unwrap_or_default();
+        assert_eq!(stored.estimate.len(), claims.len(), "{}", case.name);
     }
 }
 

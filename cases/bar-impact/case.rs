@@ -121,7 +121,11 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             let values = done.series().column(name).unwrap_or_default();
             done.series().time.iter().zip(values).map(|(&time, &value)| (time, value / scale)).collect()
         };
-        velocities.push(Curve::new(format!("{solver}, {}", level.name), Stroke::Line, series("right.vx", impact.speed)));
+        velocities.push(Curve::new(
+            format!("{solver}, {}", level.name),
+            Stroke::Line,
+            series("right.vx", impact.speed),
+        ));
         stresses.push(Curve::new(
             format!("{solver}, {}", level.name),
             Stroke::Line,

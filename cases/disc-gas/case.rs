@@ -43,7 +43,10 @@ fn claims() -> Vec<Claim> {
     let conserved = claim("total energy over 10⁵ steps, worst", "J")
         .of(run(FINEST))
         .holds("conservation of energy", |done| energy(&done[0]))
-        .within(estimated(1e-4, "the kink of the force where contacts begin and end, at a hundredth of the critical step"))
+        .within(estimated(
+            1e-4,
+            "the kink of the force where contacts begin and end, at a hundredth of the critical step",
+        ))
         .refuses(Control::scene("dashpots of 1e-3 of critical", |scene| {
             let law = scene.laws[0].unwrap_or_default();
             let rate = 2e-3 * (law.normal_stiffness / scene.grains[0].mass).sqrt();

@@ -74,7 +74,6 @@ pub struct Claim {
 }
 
 /// Begins a claim: a quantity in words, and its unit.
-#[must_use]
 pub fn claim(quantity: impl Into<String>, unit: &'static str) -> Quantity {
     Quantity { quantity: quantity.into(), unit, runs: Vec::new() }
 }

@@ -1,6 +1,6 @@
 //! The words in which a case is said.
 
-pub use crate::case::{Case, Home, PLAIN, Level, cells, fraction};
+pub use crate::case::{Case, Home, Level, PLAIN, cells, fraction};
 pub use crate::claim::{Claim, Measure, claim};
 pub use crate::control::Control;
 pub use crate::expect::{Bound, Expected, Measured};

@@ -10,13 +10,19 @@ use crate::solvers::Solvers;
 use crate::tolerance::Made;
 use crate::uncertainty::{Estimate, of_finest};
 use crate::verdict::{Control, Outcome, Verdict};
+use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, Method, Resolution, RunError, Solver};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
-type Slot = Arc<OnceLock<Result<Arc<grainbench_scene::record::Record>, RunError>>>;
+/// The place of a run's record, which is there once it has been done.
+type Slot = Arc<OnceLock<Result<Arc<Record>, RunError>>>;
+/// Runs by their keys.
+type Runs = BTreeMap<String, (Run, Result<Done, RunError>)>;
+/// Scenes that were run, with their records, by solver and resolution.
+type Slots = BTreeMap<String, Vec<(Arc<Scene>, Slot)>>;
 
 /// Does the runs of one case: with the solvers that its claims name, or with one solver in place of them all.
 pub struct Runner {
@@ -28,9 +34,9 @@ pub struct Runner {
     /// Whether figures may take as long as the finest levels do.
     thorough: bool,
     /// Runs of scenes as the case means them, by [`Run::key`].
-    runs: Mutex<BTreeMap<String, (Run, Result<Done, RunError>)>>,
+    runs: Mutex<Runs>,
     /// Every run of a scene, right or wrong, by solver and resolution: claims that lead to the same scene share it.
-    done: Mutex<BTreeMap<String, Vec<(Arc<Scene>, Slot)>>>,
+    done: Mutex<Slots>,
 }
 
 /// What does a run: a solver by name, as it is or with a defect.
@@ -200,12 +206,7 @@ impl Runner {
         slot
     }
 
-    fn simulate(
-        &self,
-        run: &Run,
-        by: By<'_>,
-        scene: &Scene,
-    ) -> Result<Arc<grainbench_scene::record::Record>, RunError> {
+    fn simulate(&self, run: &Run, by: By<'_>, scene: &Scene) -> Result<Arc<Record>, RunError> {
         let solver = match by.defect {
             None => self.solver(by.solver),
             Some(defect) => self.solvers.with_defect(by.solver, defect),
@@ -253,7 +254,11 @@ impl Runner {
             let resolution = run.resolution.coarser(factor).ok_or("there is no coarser level")?;
             let done = self.run(&run.at(resolution)).map_err(|error| error.to_string())?;
             let found = (claim.measure)(&[done]).map_err(|missing| missing.to_string())?.error();
-            if found.is_finite() { Ok((resolution.to_string(), found)) } else { Err("a value is not finite".to_owned()) }
+            if found.is_finite() {
+                Ok((resolution.to_string(), found))
+            } else {
+                Err("a value is not finite".to_owned())
+            }
         };
         let levels = |factors: [f64; 3]| -> Result<[(String, f64); 3], String> {
             let [a, b, c] = factors.map(value);
@@ -283,15 +288,16 @@ impl Runner {
         })
     }
 
-    /// How far a claim may be off: what it says, or what is stored of it; none where an estimate should be stored and is not.
-    fn allowed(&self, claim: &Claim) -> Option<f64> {
-        let most = claim.tolerance.allowed;
-        match claim.tolerance.made {
-            Made::Estimated if self.stranger.is_none() => {
-                self.solvers.uncertainty(self.case, claim).map(|found| found.min(most))
-            }
-            _ => Some(most),
+    /// How far a claim may be off and how that was made: what it says, or what is stored of it where that is less; none where an
+    /// estimate should be stored and is not.
+    fn allowed(&self, claim: &Claim) -> Option<(f64, Made)> {
+        let stated = (claim.tolerance.allowed, claim.tolerance.made_without_estimate());
+        if claim.tolerance.made != Made::Estimated || self.stranger.is_some() {
+            return Some(stated);
         }
+        // A bound below its estimate is a judgement, and says so.
+        let found = self.solvers.uncertainty(self.case, claim)?;
+        Some(if found < stated.0 { (found, Made::Estimated) } else { stated })
     }
 
     /// The row of a claim, from its runs.
@@ -302,8 +308,8 @@ impl Runner {
             variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
             solver: first.map_or_else(String::new, |run| self.solver_name(run)),
             resolution: claim.resolution(),
-            allowed: allowed.unwrap_or(0.0),
-            tolerance: claim.tolerance.made,
+            allowed: allowed.map_or(0.0, |(most, _)| most),
+            tolerance: allowed.map_or(claim.tolerance.made, |(_, made)| made),
             because: claim.tolerance.because.clone(),
             evidence: claim.evidence(),
             source: claim.source.words(),

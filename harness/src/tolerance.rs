@@ -47,6 +47,15 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
+    /// How it was made where no estimate is at hand: the most that an estimate may be is a judgement.
+    #[must_use]
+    pub const fn made_without_estimate(&self) -> Made {
+        match self.made {
+            Made::Estimated => Made::Judged,
+            made => made,
+        }
+    }
+
     fn new(made: Made, allowed: f64, because: impl Into<String>) -> Self {
         Self { allowed, made, because: because.into() }
     }

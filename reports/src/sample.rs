@@ -289,7 +289,9 @@ pub(crate) fn hostile() -> Report {
                 let fixed = ["Line", "Dashed", "Markers", "MarkedLine"];
                 let is_word = fixed.contains(&text.as_str())
                     || serde_json::from_value::<Outcome>(text.as_str().into()).is_ok()
-                    || serde_json::from_value::<Evidence>(text.as_str().into()).is_ok();
+                    || serde_json::from_value::<Evidence>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<Made>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<Red>(text.as_str().into()).is_ok();
                 if !is_word {
                     *text = TEXT.to_owned();
                 }

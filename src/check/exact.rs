@@ -27,7 +27,7 @@ pub(super) fn exact(
         evidence: claim.evidence(),
         source: claim.source.words(),
         allowed: claim.tolerance.allowed,
-        tolerance: claim.tolerance.made,
+        tolerance: claim.tolerance.made_without_estimate(),
         because: claim.tolerance.because.clone(),
         ..row(claim.quantity.clone(), claim.unit)
     };

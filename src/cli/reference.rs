@@ -158,7 +158,8 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
         for claim in &claims {
             progress.now(&claim.quantity);
             let before = uncertainty::find(case, claim);
-            let estimate = if claim.set() > set { before.ok_or("not asked for".to_owned()) } else { runner.estimate(claim) };
+            let estimate =
+                if claim.set() > set { before.ok_or("not asked for".to_owned()) } else { runner.estimate(claim) };
             match estimate {
                 Ok(estimate) => stored.estimate.push(estimate),
                 Err(reason) => say("warning", &format!("{}: {}: {reason}", case.name, claim.quantity)),
@@ -168,7 +169,7 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
         drop(progress);
         lines.push_str(&format!("{}: {} of {} rows\n", case.name, stored.estimate.len(), claims.len()));
         let text = toml::to_string(&stored).map_err(Fault::input)?;
-        write_file(&uncertainty::file(case.name), text.as_bytes()).map_err(Fault::input)?;
+        write_file(uncertainty::file(case.name), text.as_bytes()).map_err(Fault::input)?;
     }
     print(&lines)?;
     Ok(ExitCode::SUCCESS)

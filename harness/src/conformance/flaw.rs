@@ -1,4 +1,4 @@
-//! Solvers that are wrong on purpose, each in one way and by about a billionth, or by a thousandth where less is not seen.
+//! Solvers that are wrong on purpose, each in one way and by about a billionth, or by a hundredth where less is not seen.
 
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;
@@ -10,14 +10,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Size of a flaw, as a fraction of the velocities.
 const SIZE: f64 = 1e-9;
 /// The same for what falls, where a solver claims no more than the first order and may be off by gΔt/2.
-const LARGE: f64 = 1e-3;
+const LARGE: f64 = 1e-2;
 
 /// How a solver is wrong. All but the last three act on the velocities it starts from, which any solver can express.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
     /// Something holds every grain back, as if there were a medium at rest.
     Drag,
-    /// The same a million times as strong.
+    /// The same ten million times as strong.
     StrongDrag,
     /// It tells left from right: in the plane velocities turn a little, in space they gain along the spin.
     Handed,
@@ -39,7 +39,7 @@ impl Flaw {
     pub const fn words(self) -> &'static str {
         match self {
             Self::Drag => "every velocity held back by a billionth",
-            Self::StrongDrag => "every velocity held back by a thousandth",
+            Self::StrongDrag => "every velocity held back by a hundredth",
             Self::Handed => "velocities turned to one side by a billionth",
             Self::Anisotropic => "velocities along x larger by a billionth",
             Self::Listed => "the first grain in the list faster by a billionth",
