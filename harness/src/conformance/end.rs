@@ -45,8 +45,8 @@ impl End {
         Ok(Self { time: last.time, grains, time_step, steps: last.step as f64 })
     }
 
-    /// How far two ends are apart, as a speed (m/s): the worst grain's velocity, spin times radius, or position over the
-    /// time that led there.
+    /// How far two ends are apart, as a speed (m/s): the worst grain's velocity, spin times radius, or position over
+    /// the time that led there.
     pub(super) fn apart(&self, other: &Self) -> f64 {
         let pairs = self.grains.iter().zip(&other.grains);
         let worst = pairs.map(|(a, b)| {
@@ -70,8 +70,8 @@ fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 
-/// What rounding may add up to in a speed (m/s) between two runs of collisions: every step rounds positions of size L by
-/// εL, which is worth ω²εLΔt of velocity with the stiffest contact's ω = 2/Δt_crit, and velocities U by εU.
+/// What rounding may add up to in a speed (m/s) between two runs of collisions: every step rounds positions of size L
+/// by εL, which is worth ω²εLΔt of velocity with the stiffest contact's ω = 2/Δt_crit, and velocities U by εU.
 pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
     let rate = 2.0 / scene.critical_time_step();
     let of = |end: &End| {

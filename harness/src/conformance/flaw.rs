@@ -1,4 +1,5 @@
-//! Solvers that are wrong on purpose, each in one way and by about a billionth, or by a hundredth where less is not seen.
+//! Solvers that are wrong on purpose, each in one way and by about a billionth, or by a hundredth where less is not
+//! seen.
 
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;

@@ -6,26 +6,20 @@ use super::row::{Found, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
 
 pub(super) const PROPERTY: Property = Property {
     name: "free-flight",
     claim: "grains that touch nothing keep velocity and spin, and fall as x + vt + gt²/2",
     flaw: Flaw::Drag,
+    evidence: Evidence::Analytic,
+    source: "x + vt + gt²/2, constant spin",
+    because: "every step rounds velocity and position by ε; under gravity, a solver that does not claim the second order \
+                  may be off by gΔt/2; of the fastest grain",
     check,
 };
 
-fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-    let rows = Rows {
-        solver,
-        terms,
-        property: PROPERTY.name,
-        evidence: Evidence::Analytic,
-        source: "x + vt + gt²/2, constant spin",
-        because: "every step rounds velocity and position by ε; under gravity, a solver that does not claim the second order \
-                  may be off by gΔt/2; of the fastest grain",
-    };
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let (solver, terms) = (rows.solver, rows.terms);
     let second_order = terms.order.is_some_and(|order| order.expected >= 2.0);
     rows.each(scenes::flights(), &terms.resolution, APART, |named| {
         let end = End::of(solver, &named.scene, &terms.resolution)?;

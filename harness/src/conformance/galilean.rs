@@ -5,29 +5,23 @@ use super::row::Rows;
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
 use nalgebra::Vector3;
 
 pub(super) const PROPERTY: Property = Property {
     name: "galilean-invariance",
     claim: "the same velocity added to all grains adds the same velocity in the end and changes nothing else",
     flaw: Flaw::Drag,
+    evidence: Evidence::Invariant,
+    source: "forces depend on relative positions and velocities",
+    because: ROUNDING,
     check,
 };
 
 /// Some times the fastest grain's, in no special direction (m/s).
 const SPEED: Vector3<f64> = Vector3::new(4.0, -3.0, 2.0);
 
-fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-    let rows = Rows {
-        solver,
-        terms,
-        property: PROPERTY.name,
-        evidence: Evidence::Invariant,
-        source: "forces depend on relative positions and velocities",
-        because: ROUNDING,
-    };
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let (solver, terms) = (rows.solver, rows.terms);
     rows.each(scenes::collisions(), &terms.resolution, APART, |named| {
         let speed = if scenes::flat(&named.scene) { SPEED - Vector3::z() * SPEED.z } else { SPEED };
         View::moving(speed).compare(solver, &named.scene, terms)

@@ -1,7 +1,7 @@
 //! What every solver owes, whatever its method: conservation, symmetries, exact flight, order, determinism.
 //!
-//! A property runs scenes of its own, in two and three dimensions, with friction and without, and gives rows as gates do:
-//! measured value, tolerance and why. Every property has a [`Flaw`] that it must see in the same solver.
+//! A property runs scenes of its own, in two and three dimensions, with friction and without, and gives rows as gates
+//! do: measured value, tolerance and why. Every property has a [`Flaw`] that it must see in the same solver.
 
 mod end;
 mod flaw;
@@ -20,10 +20,12 @@ mod row;
 mod scenes;
 
 use once::Once;
+use row::Rows;
 
 pub use flaw::{Flaw, Flawed};
 
 use crate::control::Red;
+use crate::evidence::Evidence;
 use crate::verdict::{Control, Outcome, Verdict};
 use grainbench_scene::solver::Solver;
 use grainbench_scene::terms::Terms;
@@ -38,14 +40,20 @@ pub struct Property {
     pub claim: &'static str,
     /// The flaw that it must see.
     pub flaw: Flaw,
-    check: fn(&dyn Solver, &Terms) -> Vec<Verdict>,
+    /// What kind of evidence its rows are.
+    pub evidence: Evidence,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// Why its tolerance is what it is.
+    pub because: &'static str,
+    check: fn(&Rows<'_>) -> Vec<Verdict>,
 }
 
 impl Property {
     /// A row for every scene.
     #[must_use]
     pub fn check(&self, solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-        (self.check)(solver, terms)
+        (self.check)(&Rows { solver, terms, property: self })
     }
 
     /// The flaw that it must see: where free fall may be off by gΔt/2, one that is larger than that.
@@ -68,8 +76,8 @@ pub const ALL: [Property; 9] = [
     restart::PROPERTY,
 ];
 
-/// The rows of every property, and for each that passes whether the flaw that its property must see turned it red. What a
-/// method owes less is no pass, and has no control.
+/// The rows of every property, and for each that passes whether the flaw that its property must see turned it red. What
+/// a method owes less is no pass, and has no control.
 #[must_use]
 pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
@@ -96,8 +104,8 @@ pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>)
     (rows, controls)
 }
 
-/// Every row that failed or broke, every control that did not turn red as it must, and that nothing passed if nothing did: a
-/// line each, for tests of solvers.
+/// Every row that failed or broke, every control that did not turn red as it must, and that nothing passed if nothing
+/// did: a line each, for tests of solvers.
 #[must_use]
 pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
     let (rows, controls) = judge(solver, terms);

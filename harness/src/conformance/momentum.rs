@@ -8,26 +8,20 @@ use super::row::{Found, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
 use nalgebra::Vector3;
 
 pub(super) const PROPERTY: Property = Property {
     name: "momentum",
     claim: "momentum is kept in collisions, and angular momentum where there is no friction",
     flaw: Flaw::Drag,
+    evidence: Evidence::Invariant,
+    source: "equal and opposite forces, along the line of centres without friction",
+    because: "every step rounds each grain's share by ε; of the sum of shares",
     check,
 };
 
-fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-    let rows = Rows {
-        solver,
-        terms,
-        property: PROPERTY.name,
-        evidence: Evidence::Invariant,
-        source: "equal and opposite forces, along the line of centres without friction",
-        because: "every step rounds each grain's share by ε; of the sum of shares",
-    };
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let (solver, terms) = (rows.solver, rows.terms);
     let linear = rows.each(scenes::collisions(), &terms.resolution, ("momentum in the end", "kg m/s"), |named| {
         let end = End::of(solver, &named.scene, &terms.resolution)?;
         let before: Vec<Vector3<f64>> = named.scene.grains.iter().map(|grain| grain.velocity * grain.mass).collect();

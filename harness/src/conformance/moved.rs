@@ -1,5 +1,5 @@
-//! A scene seen from elsewhere: turned, mirrored or from a moving frame. What a solver makes of it must be what it makes of
-//! the scene itself, seen from there.
+//! A scene seen from elsewhere: turned, mirrored or from a moving frame. What a solver makes of it must be what it
+//! makes of the scene itself, seen from there.
 
 use super::end::NoEnd;
 use super::end::{End, rounding};
@@ -60,7 +60,8 @@ impl View {
 }
 
 /// What the rows of every comparison of two runs say of their tolerance.
-pub(super) const ROUNDING: &str = "rounding of positions in every step, εL, worth ω²εLΔt of velocity, and of velocities, added up over the run; \
+pub(super) const ROUNDING: &str = "rounding of positions in every step, εL, worth ω²εLΔt of velocity, and of \
+  velocities, added up over the run; \
      of the fastest grain";
 /// What they compare.
 pub(super) const APART: (&str, &str) = ("worst velocity, spin × radius or position / time apart, in the end", "m/s");

@@ -7,8 +7,8 @@ use std::sync::{Mutex, PoisonError};
 
 type Known = (Scene, Resolution, Result<Record, RunError>);
 
-/// Remembers what came of every scene at every resolution. What is asked to be done again, or to be watched, is for the solver
-/// itself.
+/// Remembers what came of every scene at every resolution. What is asked to be done again, or to be watched, is for the
+/// solver itself.
 pub(super) struct Once<'a> {
     solver: &'a dyn Solver,
     known: Mutex<Vec<Known>>,

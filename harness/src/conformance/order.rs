@@ -6,27 +6,21 @@ use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::expect::{Bound, Expected, Measured};
 use crate::verdict::Verdict;
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
 
 pub(super) const PROPERTY: Property = Property {
     name: "order",
     claim: "halving the step divides the error by 2 to the claimed order",
     flaw: Flaw::FirstOrder,
+    evidence: Evidence::Convergence,
+    source: "the solver's own claim",
+    because: "what the next order of the fastest of these oscillations leaves at a hundredth of the critical step",
     check,
 };
 
 /// No rows where no order is claimed.
-fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let (solver, terms) = (rows.solver, rows.terms);
     let Some(order) = terms.order else { return Vec::new() };
-    let rows = Rows {
-        solver,
-        terms,
-        property: PROPERTY.name,
-        evidence: Evidence::Convergence,
-        source: "the solver's own claim",
-        because: "what the next order of the fastest of these oscillations leaves at a hundredth of the critical step",
-    };
     rows.each(scenes::held(), &order.levels[0], ("order in the time step of the end", "1"), |named| {
         let run = |at: usize| End::of(solver, &named.scene, &order.levels[at]);
         let ends = [run(0)?, run(1)?, run(2)?];

@@ -6,25 +6,19 @@ use super::row::{Found, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
 
 pub(super) const PROPERTY: Property = Property {
     name: "permutation",
     claim: "the same grains listed in another order end alike",
     flaw: Flaw::Listed,
+    evidence: Evidence::Invariant,
+    source: "a list has an order, nature has none",
+    because: ROUNDING,
     check,
 };
 
-fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-    let rows = Rows {
-        solver,
-        terms,
-        property: PROPERTY.name,
-        evidence: Evidence::Invariant,
-        source: "a list has an order, nature has none",
-        because: ROUNDING,
-    };
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let (solver, terms) = (rows.solver, rows.terms);
     rows.each(scenes::collisions(), &terms.resolution, APART, |named| {
         let straight = End::of(solver, &named.scene, &terms.resolution)?;
         let mut permuted = named.scene.clone();

@@ -6,25 +6,19 @@ use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
 use grainbench_scene::record::{Cost, Record};
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
 
 pub(super) const PROPERTY: Property = Property {
     name: "rerun",
     claim: "the same scene at the same resolution leaves the same record, but for its times",
     flaw: Flaw::Irreproducible,
+    evidence: Evidence::Invariant,
+    source: "a program is a function of its input",
+    because: "bits are the same or not",
     check,
 };
 
-fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-    let rows = Rows {
-        solver,
-        terms,
-        property: PROPERTY.name,
-        evidence: Evidence::Invariant,
-        source: "a program is a function of its input",
-        because: "bits are the same or not",
-    };
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let (solver, terms) = (rows.solver, rows.terms);
     let quantity = ("lines of the record that differ", "1");
     rows.each(scenes::collisions(), &terms.resolution, quantity, |named| {
         let run = || solver.run(&named.scene, &terms.resolution, &mut ()).map(lines).map_err(NoEnd::Run);

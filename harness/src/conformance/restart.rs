@@ -8,24 +8,19 @@ use crate::evidence::Evidence;
 use crate::verdict::Verdict;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::solver::{RunError, Solver, Watch};
-use grainbench_scene::terms::Terms;
 
 pub(super) const PROPERTY: Property = Property {
     name: "restart",
     claim: "a run continued from a checkpoint halfway leaves the record of the whole run, but for its times",
     flaw: Flaw::Restarted,
+    evidence: Evidence::Invariant,
+    source: "a checkpoint holds all that the next step depends on",
+    because: "bits are the same or not",
     check,
 };
 
-fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-    let rows = Rows {
-        solver,
-        terms,
-        property: PROPERTY.name,
-        evidence: Evidence::Invariant,
-        source: "a checkpoint holds all that the next step depends on",
-        because: "bits are the same or not",
-    };
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let (solver, terms) = (rows.solver, rows.terms);
     let quantity = ("lines of the record that differ", "1");
     let scenes = scenes::collisions().and_then(|mut all| {
         all.extend(scenes::held()?);

@@ -5,29 +5,23 @@ use super::row::Rows;
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
 use nalgebra::{Rotation3, Unit, Vector3};
 
 pub(super) const PROPERTY: Property = Property {
     name: "rotation-invariance",
     claim: "a scene that is turned ends as its end turned",
     flaw: Flaw::Anisotropic,
+    evidence: Evidence::Invariant,
+    source: "contact laws know no axes",
+    because: ROUNDING,
     check,
 };
 
 /// A turn that maps no axis on another (rad).
 const ANGLE: f64 = 0.65;
 
-fn check(solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-    let rows = Rows {
-        solver,
-        terms,
-        property: PROPERTY.name,
-        evidence: Evidence::Invariant,
-        source: "contact laws know no axes",
-        because: ROUNDING,
-    };
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let (solver, terms) = (rows.solver, rows.terms);
     rows.each(scenes::collisions(), &terms.resolution, APART, |named| {
         let axis = if scenes::flat(&named.scene) { Vector3::z() } else { Vector3::new(1.0, 2.0, 3.0) };
         let turn = Rotation3::from_axis_angle(&Unit::new_normalize(axis), ANGLE);

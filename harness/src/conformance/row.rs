@@ -1,8 +1,8 @@
 //! Rows of the suite: the same kind as those of gates.
 
+use super::Property;
 use super::end::NoEnd;
 use super::scenes::{Named, flat};
-use crate::evidence::Evidence;
 use crate::expect::Measured;
 use crate::tolerance::Made;
 use crate::verdict::{Outcome, Verdict};
@@ -14,10 +14,7 @@ use grainbench_scene::terms::Terms;
 pub(super) struct Rows<'a> {
     pub(super) solver: &'a dyn Solver,
     pub(super) terms: &'a Terms,
-    pub(super) property: &'static str,
-    pub(super) evidence: Evidence,
-    pub(super) source: &'static str,
-    pub(super) because: &'static str,
+    pub(super) property: &'a Property,
 }
 
 /// What a property measured on one scene, and how far it may be off.
@@ -62,12 +59,12 @@ impl Rows<'_> {
         found: Result<Found, NoEnd>,
     ) -> Verdict {
         let row = Verdict {
-            variant: format!("{}/{scene}", self.property),
+            variant: format!("{}/{scene}", self.property.name),
             solver: self.solver.name(),
             resolution: resolution.to_string(),
-            because: self.because.to_owned(),
-            evidence: self.evidence,
-            source: self.source.to_owned(),
+            because: self.property.because.to_owned(),
+            evidence: self.property.evidence,
+            source: self.property.source.to_owned(),
             ..Verdict::open("conformance", quantity, unit)
         };
         match found {
@@ -75,7 +72,7 @@ impl Rows<'_> {
             Err(NoEnd::Record(lack)) => row.left(Outcome::Fail, lack),
             Ok(Found { measured, allowed }) => {
                 let row = Verdict { allowed, tolerance: Made::Computed, ..row }.judged(&measured);
-                match self.terms.less_of(self.property, quantity) {
+                match self.terms.less_of(self.property.name, quantity) {
                     Some(less) if row.outcome == Outcome::Fail && measured.error().abs() <= less.at_most => {
                         row.left(Outcome::Known, less.because)
                     }

@@ -14,8 +14,8 @@ pub(super) struct Named {
 }
 
 /// One grain runs into four that lie close together: some six contacts open and close within the run, none head-on.
-/// Unit masses in size, k = 1e4 N/m: a contact lasts about 20 ms, overlaps are about a hundredth of the radius. Where grains
-/// deform, their moduli are about as large (Pa).
+/// Unit masses in size, k = 1e4 N/m: a contact lasts about 20 ms, overlaps are about a hundredth of the radius. Where
+/// grains deform, their moduli are about as large (Pa).
 const COLLISION_2D: &str = r#"
 title = "A disc runs into four"
 dimension = 2
@@ -100,20 +100,27 @@ const FRICTION: &str =
     "tangential_stiffness = 5.0e3\nfriction = 0.4\nnormal_damping = 10.0\ntangential_damping = 5.0\n";
 
 /// Two grains that never meet, so that a step can be a fraction of the critical one.
-const FLIGHT_2D: &str = "title = 'Two discs fly apart'\ndimension = 2\nduration = 1.0\nmaterials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
+const FLIGHT_2D: &str = "title = 'Two discs fly apart'\ndimension = 2\nduration = 1.0\n\
+  materials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
     [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-2.0, 0.3]\nvelocity = [-1.7, 0.9]\nspin = 3.1\n\
     [grains.b]\nmaterial = 'm'\nradius = 0.7\nposition = [2.0, -0.4]\nvelocity = [1.1, 0.3]\nspin = -1.3\n";
-const FLIGHT_3D: &str = "title = 'Two spheres fly apart'\ndimension = 3\nduration = 1.0\nmaterials.m = { density = 0.238732414637843, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
-    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-2.0, 0.3, 0.1]\nvelocity = [-1.7, 0.9, 0.4]\nspin = [1.1, 0.3, 3.1]\n\
-    [grains.b]\nmaterial = 'm'\nradius = 0.7\nposition = [2.0, -0.4, 0.2]\nvelocity = [1.1, 0.3, -0.6]\nspin = [0.0, 0.5, -1.3]\n";
+const FLIGHT_3D: &str = "title = 'Two spheres fly apart'\ndimension = 3\nduration = 1.0\n\
+  materials.m = { density = 0.238732414637843, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-2.0, 0.3, 0.1]\nvelocity = [-1.7, 0.9, 0.4]\n\
+      spin = [1.1, 0.3, 3.1]\n\
+    [grains.b]\nmaterial = 'm'\nradius = 0.7\nposition = [2.0, -0.4, 0.2]\nvelocity = [1.1, 0.3, -0.6]\n\
+      spin = [0.0, 0.5, -1.3]\n";
 
 /// A grain held between two planes that press on it: it oscillates, turns to and fro, and never lets go.
-const HELD_2D: &str = "title = 'A disc held by two walls'\ndimension = 2\nduration = 0.2\nmaterials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
+const HELD_2D: &str = "title = 'A disc held by two walls'\ndimension = 2\nduration = 0.2\n\
+  materials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
     [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.99]\nvelocity = [0.3, 0.4]\nspin = 0.5\n\
     [walls.low]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
     [walls.high]\nmaterial = 'm'\nplane = { point = [0.0, 1.98], normal = [0.0, -1.0] }\n";
-const HELD_3D: &str = "title = 'A sphere held by two walls'\ndimension = 3\nduration = 0.2\nmaterials.m = { density = 0.238732414637843, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
-    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0, 0.99]\nvelocity = [0.3, -0.2, 0.4]\nspin = [0.1, 0.5, 0.0]\n\
+const HELD_3D: &str = "title = 'A sphere held by two walls'\ndimension = 3\nduration = 0.2\n\
+  materials.m = { density = 0.238732414637843, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0, 0.99]\nvelocity = [0.3, -0.2, 0.4]\n\
+      spin = [0.1, 0.5, 0.0]\n\
     [walls.low]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
     [walls.high]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 1.98], normal = [0.0, 0.0, -1.0] }\n";
 /// So rough that nothing slips, and without dashpots, whose lag of half a step is of first order in every code we know.
