@@ -259,7 +259,7 @@ fn extrapolated(slope: Elastic) -> Claim {
 fn turns_as_it_goes(slope: Elastic) -> Claim {
     claim("mean ΩR over mean v at the end, 8 cells a radius against 16", "1")
         .of_all([8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))
-        .agrees(Source::Finer("the same disc at 16 cells a radius"), |done| {
+        .agrees(Source::Ourselves("the same disc at 16 cells a radius"), |done| {
             Ok(Measured::new(rolling(&done[0])?, rolling(&done[1])?, 1.0))
         })
         .within(judged(0.02, "discretisation"))

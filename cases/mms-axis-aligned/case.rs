@@ -56,8 +56,8 @@ fn claims() -> Vec<Claim> {
         ),
         claim("order in the cell, hat functions", "1")
             .of_all(runs(HATS, 2))
-            .between(
-                [-1.5, 0.5],
+            .converges_at_most(
+                0.5,
                 Source::Derived("who crosses a cell meets a jump of the gradient (derivation)"),
                 order,
             )

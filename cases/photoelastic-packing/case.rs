@@ -200,7 +200,7 @@ fn as_printed(packings: Vec<Run>, words: &str, printed: Cited) -> Claim {
 fn step() -> Claim {
     claim("F_H/F_V at stage B, against half the step", "1")
         .of_all([run(PLAIN).slow(), run(PLAIN).at(LEVELS[1].resolution).aside()])
-        .agrees(Source::Finer("the same at half the time step"), |done| {
+        .agrees(Source::Ourselves("the same at half the time step"), |done| {
             Ok(Measured::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0))
         })
         .within(judged(0.01, "slip comes in jumps, and the step decides which comes first: by up to .005"))

@@ -161,7 +161,7 @@ fn refined() -> Vec<Claim> {
         };
         claim(format!("{words} on a grid of {coarse}² over that on one of {fine}², {:.0} % shear", 100.0 * shear), "1")
             .of_all([run, finer.aside()])
-            .agrees(Source::Finer("the same packing on a grid twice as fine"), move |done| {
+            .agrees(Source::Ourselves("the same packing on a grid twice as fine"), move |done| {
                 Ok(Measured::new(over(done, shear, of)?, 1.0, 1.0))
             })
             .within(required(

@@ -1,5 +1,5 @@
-//! A claim: a quantity of one or more records, what is expected of it and from which source, how far it may be off and why,
-//! and which wrong physics it must refuse.
+//! A claim: a quantity of one or more records, what is expected of it and from which source, how far it may be off and
+//! why, and which wrong physics it must refuse.
 //!
 //! It is said in this order, and the compiler asks for each part:
 //!
@@ -228,6 +228,17 @@ impl Quantity {
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
+    /// Converges with this order at most, or not at all.
+    pub fn converges_at_most(
+        self,
+        order: f64,
+        source: Source,
+        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
+    ) -> Expecting {
+        let bound = Bound::AtMost(order);
+        self.bounded(Expectation::Converges(bound), bound, source, value)
+    }
+
     /// A scene that the solver must refuse: the row is amber, with the solver's reason. The control makes a scene of it
     /// that the solver can run, and then the row is red.
     #[must_use]
@@ -292,7 +303,7 @@ impl Claim {
                 Kind::Experiment => Evidence::Experiment,
                 Kind::Prototype => Evidence::Prototype,
             },
-            (Source::Finer(_), _) | (Source::Derived(_), Expectation::Converges(_)) => Evidence::Convergence,
+            (Source::Ourselves(_), _) | (Source::Derived(_), Expectation::Converges(_)) => Evidence::Convergence,
             (Source::Derived(_), Expectation::Holds | Expectation::Refusal) => Evidence::Invariant,
             (Source::Derived(_), Expectation::Equals | Expectation::Agrees | Expectation::Bound(_)) => {
                 Evidence::Analytic

@@ -16,7 +16,7 @@ pub enum Evidence {
     Paper,
     /// An independent prototype, whose numbers are stored.
     Prototype,
-    /// The solver's own results at several resolutions.
+    /// Our own results at several resolutions, or by several methods.
     Convergence,
     /// A law that holds whatever the answer is: conservation, symmetry, determinism.
     Invariant,

@@ -1,5 +1,5 @@
-//! Where an expected value comes from. Handles of works exist only where files with provenance do: they are made from those
-//! files when the cases are built.
+//! Where an expected value comes from. Handles of works exist only where files with provenance do: they are made from
+//! those files when the cases are built.
 
 /// A source of expected values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,8 +10,9 @@ pub enum Source {
     Printed(&'static Work, &'static str),
     /// A program, whose run is stored or done now.
     Program,
-    /// The same solver at a finer resolution.
-    Finer(&'static str),
+    /// Another run of ours, in words: the same solver at a finer resolution, or another method from the same start. It shows
+    /// that our own results agree, and nothing from outside.
+    Ourselves(&'static str),
     /// What the solver gave when the row was written, and nothing else.
     Regression(&'static str),
 }
@@ -64,7 +65,7 @@ impl Source {
     #[must_use]
     pub fn words(self) -> String {
         match self {
-            Self::Derived(words) | Self::Finer(words) => words.to_owned(),
+            Self::Derived(words) | Self::Ourselves(words) => words.to_owned(),
             Self::Printed(work, place) => format!("{}: {place}", work.cited),
             Self::Program => "the program, run on the deck of the same scene".to_owned(),
             Self::Regression(words) => format!("what this solver gave before: {words}"),

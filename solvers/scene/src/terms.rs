@@ -1,5 +1,5 @@
-//! What a solver claims of itself: how finely it is to be run, its order in the time step, and what its method owes less than
-//! others, with the physics.
+//! What a solver claims of itself: how finely it is to be run, its order in the time step, and what its method owes
+//! less than others, with the physics.
 
 use crate::solver::Resolution;
 
@@ -32,7 +32,8 @@ pub struct Less {
     pub property: &'static str,
     /// The beginning of the quantity, such as `angular`; empty for all of the property.
     pub quantity: &'static str,
-    /// Largest error that the method has, as a part of the row's scale; beyond it the row is red all the same.
+    /// Error, as a part of the row's scale, beyond which the row is red all the same. It is set above what was seen, so
+    /// that it tells of a change and of nothing else: what is owed less is never green.
     pub at_most: f64,
     /// The physics of it.
     pub because: &'static str,
