@@ -1,8 +1,8 @@
 //! Time of a DEM step and of the contact kernel: `cargo bench`.
 //!
 //! `particle-steps` are 10,000 sheared discs in the convention of LAMMPS with 4.7 contacts a disc, with the effects
-//! that the scene calls for, with friction taken out of it, and with friction compiled in at μ = 0. `contact` is one pair that stays in touch. `lattice` is a
-//! square lattice of growing size: the time per grain must not grow.
+//! that the scene calls for, with friction taken out of it, and with friction compiled in at μ = 0. `contact` is one
+//! pair that stays in touch. `lattice` is a square lattice of growing size: the time per grain must not grow.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use grainbench::cases::registry;
@@ -32,7 +32,10 @@ dimension = 2
 duration = 1.0
 materials.disc.density = 0.3183098861837907
 contacts.all = {{ between = ["disc", "disc"], normal_stiffness = 1.0, tangential_stiffness = 1.0, friction = 0.5 }}
-grains.disc = {{ material = "disc", radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], count = [{count}, {count}] }} }}
+[grains.disc]
+material = "disc"
+radius = 1.0
+lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], count = [{count}, {count}] }}
 "#
     );
     SceneSource::from_text("lattice", Path::new(""), &text)

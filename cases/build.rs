@@ -1,5 +1,5 @@
-//! Lists the case folders, so that adding a case touches one folder and nothing else; and the works that expected values come
-//! from, so that there is a handle of a work where there is a folder with its provenance and nowhere else.
+//! Lists the case folders, so that adding a case touches one folder and nothing else; and the works that expected
+//! values come from, so that there is a handle of a work where there is a folder with its provenance and nowhere else.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,8 @@
 //! grainbench: how far to trust a solver of granular simulations, and what that trust costs.
 //!
-//! This façade is what a solver author uses; the crates behind it are for reading. [`judge`] gives a solver of one's own
-//! the gates of the cases, [`conform`] the properties that any solver owes; `examples/own_solver.rs` shows a whole solver.
+//! This façade is what a solver author uses; the crates behind it are for reading. [`judge`] gives a solver of one's
+//! own the gates of the cases, [`conform`] the properties that any solver owes; `examples/own_solver.rs` shows a whole
+//! solver.
 
 pub mod check;
 pub mod own;

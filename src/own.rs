@@ -63,8 +63,8 @@ fn names() -> String {
     registry::CASES.iter().map(|case| case.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Puts a solver in the place of those that the gates of some cases name. Only gates that are fair to any solver judge it.
-/// It is given their resolutions, fractions of the critical step of a spring contact, to be read as it sees fit.
+/// Puts a solver in the place of those that the gates of some cases name. Only gates that are fair to any solver judge
+/// it. It is given their resolutions, fractions of the critical step of a spring contact, to be read as it sees fit.
 ///
 /// # Errors
 /// When a case does not exist or has no such gate.

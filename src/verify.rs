@@ -12,8 +12,9 @@ use grainbench_scene::error::SceneError;
 use grainbench_scene::record::Series;
 use grainbench_scene::solver::{RunError, Solver};
 
-/// How far a rerun may be off for as long as it can be predicted, in units of what moves: a thousand times what one unit
-/// in the last place of one position has grown to by then, for another build and processor round every sum otherwise.
+/// How far a rerun may be off for as long as it can be predicted, in units of what moves: a thousand times what one
+/// unit in the last place of one position has grown to by then, for another build and processor round every sum
+/// otherwise.
 pub const ALLOWED: f64 = 1e-6;
 
 /// Reruns a stored run: a row for as long as it can be predicted, and one for what comes after.

@@ -1,6 +1,7 @@
-//! An effect that is absent costs next to nothing. It is no part of the kernel that is picked, which the kernel's type says; and
-//! instructions of the kernel for undamped, frictionless discs are counted against a loop written by hand that knows nothing else.
-//! Valgrind counts them where it is installed, and counts do not depend on what else the machine does: no time is asked for.
+//! An effect that is absent costs next to nothing. It is no part of the kernel that is picked, which the kernel's type
+//! says; and instructions of the kernel for undamped, frictionless discs are counted against a loop written by hand
+//! that knows nothing else. Valgrind counts them where it is installed, and counts do not depend on what else the
+//! machine does: no time is asked for.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -84,8 +85,8 @@ fn instructions(name: &str, steps: u64) -> Option<f64> {
     line.split(':').nth(1)?.trim().parse().ok()
 }
 
-/// Instructions a step: of many steps less those of few, so that setting up cancels. None where valgrind is absent, which it must
-/// not be where every change is checked.
+/// Instructions a step: of many steps less those of few, so that setting up cancels. None where valgrind is absent,
+/// which it must not be where every change is checked.
 fn a_step(name: &str, [few, many]: [u64; 2]) -> Option<f64> {
     let counted = instructions(name, many).zip(instructions(name, few));
     assert!(counted.is_some() || std::env::var_os("CI").is_none(), "valgrind is not installed: nothing was counted");
@@ -114,7 +115,8 @@ fn dense_shear_without_friction_takes_fewer_instructions() {
     assert!(idle >= FRICTION * kernel, "friction that does nothing takes {idle} instructions, none {kernel}");
 }
 
-/// The kernel that is picked has no stage for friction where there is none, and one where there is, even if it does nothing.
+/// The kernel that is picked has no stage for friction where there is none, and one where there is, even if it does
+/// nothing.
 #[test]
 fn what_is_absent_is_no_part_of_the_kernel() {
     let kernel = |scene: &Scene| Dem::new(Convention::CUNDALL_STRACK).start(scene, 1e-4).unwrap().layout();

@@ -83,7 +83,8 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
     ] {
         let (found, rows) = check("oblique-impact/damped", dump, &[]);
         assert_eq!((found, count(&rows, "fail"), rows.len()), (code, red, 10), "{dump}");
-        // Our solvers, and the stored runs of both programs; exact answers to damped impacts hang on the dashpot's convention.
+        // Our solvers, and the stored runs of both programs; exact answers to damped impacts hang on the dashpot's
+        // convention.
         let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run of 20"));
         assert_eq!(stored.count(), 5, "{dump}");
     }
@@ -165,7 +166,8 @@ fn contacts_that_cannot_be_read_are_refused_with_the_reason() {
     assert!(without_names.contains("contacts.gz:9: expected columns `id1` and `id2` of contacts"), "{without_names}");
     fs::write(
         directory.path().join("early"),
-        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\nITEM: BOX BOUNDS ff ff ff\n-1 1\n-1 1\n-1 1\nITEM: ENTRIES a b x y\n1 2 0 0\n",
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\nITEM: BOX BOUNDS ff ff ff\n-1 1\n-1 1\n-1 1\n\
+         ITEM: ENTRIES a b x y\n1 2 0 0\n",
     )
     .unwrap();
     let names = "id1=a,id2=b,force_x=x,force_y=y";
@@ -188,7 +190,8 @@ fn what_cannot_be_judged_is_refused_with_the_reason() {
     let write = |name: &str, text: &str| fs::write(directory.path().join(name), text).unwrap();
     let snapshot = |head: &str, columns: &str, row: &str| {
         format!(
-            "{head}ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\nITEM: ATOMS {columns}\n{row}\n"
+            "{head}ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\n\
+             ITEM: ATOMS {columns}\n{row}\n"
         )
     };
     write("empty", "");

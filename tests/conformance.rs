@@ -1,5 +1,5 @@
-//! The suite of what every solver owes: it sees what it must, and believes nothing that was not shown. Solvers are held to it in
-//! their own crates.
+//! The suite of what every solver owes: it sees what it must, and believes nothing that was not shown. Solvers are held
+//! to it in their own crates.
 
 use grainbench::cases::solvers;
 use grainbench::harness::conformance::ALL;

@@ -47,7 +47,8 @@ fn a_dashpot_of_another_kind_for_liggghts() {
     insta::assert_snapshot!(shown("collision", "beta-zeta.1", Program::Liggghts));
 }
 
-/// Hertz contacts: with a coefficient of restitution, which LAMMPS has in `granular` and LIGGGHTS with moduli; and without.
+/// Hertz contacts: with a coefficient of restitution, which LAMMPS has in `granular` and LIGGGHTS with moduli; and
+/// without.
 #[test]
 fn hertz_spheres() {
     for program in Program::ALL {

@@ -11,7 +11,8 @@ use grainbench::scene::record::Record;
 use grainbench::scene::scene::{ContactLaw, Duration, Scene};
 use grainbench::scene::solver::{Resolution, Solver};
 
-/// Adds a material that no grain has, with friction and rolling resistance: kernels for both are picked, and do nothing.
+/// Adds a material that no grain has, with friction and rolling resistance: kernels for both are picked, and do
+/// nothing.
 fn with_idle_friction(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let (law, count) = (scene.laws[0].unwrap(), scene.materials.len());

@@ -1,5 +1,5 @@
-//! Every gate of the registry, and for every gate its negative control: a test each. Those of the long set, which take minutes,
-//! take part with `GRAINBENCH_LONG=1`.
+//! Every gate of the registry, and for every gate its negative control: a test each. Those of the long set, which take
+//! minutes, take part with `GRAINBENCH_LONG=1`.
 
 use grainbench::cases::registry::CASES;
 use grainbench::cases::runner;
@@ -38,8 +38,8 @@ fn trial(
     Trial::test(name, move || test(&runner, &claim))
 }
 
-/// The gate passes; where the solver must refuse the scene, it does, with a reason; a known error is still there; where it is
-/// a program that is not installed, that is what the row says.
+/// The gate passes; where the solver must refuse the scene, it does, with a reason; a known error is still there; where
+/// it is a program that is not installed, that is what the row says.
 fn accept(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
     let verdict = runner.judge(claim);
     let expected = match claim.standing() {

@@ -68,7 +68,10 @@ plane = { point = [0.0, -1.0], normal = [0.0, 1.0] }
 [walls.bar]
 material = "rock"
 segment = [[1.0, 3.9], [2.0, 3.9]]
-motion = [{ velocity = [0.1, 0.0], start = 0.1, stop = 0.2 }, { spin = 1.0, centre = [1.0, 3.9], start_cycle = 1, stop_cycle = 9 }]
+motion = [
+    { velocity = [0.1, 0.0], start = 0.1, stop = 0.2 },
+    { spin = 1.0, centre = [1.0, 3.9], start_cycle = 1, stop_cycle = 9 },
+]
 
 [output]
 every = 0.001

@@ -69,8 +69,8 @@ fn a_solver_that_ignores_the_scene_is_found_out() {
     assert!(!failures.is_empty() && failures.iter().all(|line| line.contains("stayed green")), "{failures:#?}");
 }
 
-/// The example as a stranger has it, in a crate of its own that knows grainbench as a dependency: right as it stands, red
-/// with one line of its physics spoiled.
+/// The example as a stranger has it, in a crate of its own that knows grainbench as a dependency: right as it stands,
+/// red with one line of its physics spoiled.
 #[test]
 fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -97,8 +97,8 @@ fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
     }
 }
 
-/// A crate outside the workspace, with all programs in one executable, since linking takes longest. It shares the target
-/// directory, so that dependencies are not built again.
+/// A crate outside the workspace, with all programs in one executable, since linking takes longest. It shares the
+/// target directory, so that dependencies are not built again.
 struct Foreign {
     executable: PathBuf,
 }
@@ -136,8 +136,8 @@ impl Foreign {
     }
 }
 
-/// A manifest with the profiles and the outside dependencies of the workspace: other flags or features would mean another
-/// build of everything.
+/// A manifest with the profiles and the outside dependencies of the workspace: other flags or features would mean
+/// another build of everything.
 fn manifest(root: &Path) -> String {
     let workspace = fs::read_to_string(root.join("Cargo.toml")).unwrap();
     let section = |from: &str, to: &str| {

@@ -1,5 +1,5 @@
-//! The stored runs are those that gates read, all there and of the scenes as they are; and what is said where they are not,
-//! or the programs.
+//! The stored runs are those that gates read, all there and of the scenes as they are; and what is said where they are
+//! not, or the programs.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -46,7 +46,8 @@ fn begun(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Moving walls, periodic faces, Hertz, rolling resistance, cohesion, spheres: whatever the cases hold, in every convention.
+/// Moving walls, periodic faces, Hertz, rolling resistance, cohesion, spheres: whatever the cases hold, in every
+/// convention.
 #[test]
 fn every_case_continues_to_the_same_bits() {
     let mut compared = 0;

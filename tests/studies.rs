@@ -1,4 +1,5 @@
-//! The three studies as a user runs them: what they claim of themselves holds, and holds on when they are ended at any moment.
+//! The three studies as a user runs them: what they claim of themselves holds, and holds on when they are ended at any
+//! moment.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -59,8 +60,8 @@ fn hard_cases_hold_or_say_why_not() {
     }
 }
 
-/// Effects that a case calls for and no gate feels; everything else that is on must turn a gate red when it is off. The blocks are long
-/// enough for what rolls on them not to come near their periodic ends.
+/// Effects that a case calls for and no gate feels; everything else that is on must turn a gate red when it is off. The
+/// blocks are long enough for what rolls on them not to come near their periodic ends.
 const NOT_FELT: &[(&str, Effect)] =
     &[("rolling-on-block", Effect::PeriodicAxes), ("sphere-on-block", Effect::PeriodicAxes)];
 

@@ -297,7 +297,8 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
     }
 }
 
-/// What rustfmt finds to mend in some files: `cargo fmt` sees no file that only a generated list names, as those of cases are.
+/// What rustfmt finds to mend in some files: `cargo fmt` sees no file that only a generated list names, as those of
+/// cases are.
 fn badly_formatted(files: &[PathBuf]) -> Option<String> {
     let settings = root().join("rustfmt.toml");
     let mut command = std::process::Command::new("rustfmt");
@@ -324,6 +325,16 @@ fn a_badly_formatted_file_is_seen() {
     fs::write(&file, "fn  claims( )  { }\n").unwrap();
     if let Some(found) = badly_formatted(&[file]) {
         assert!(found.contains("fn claims() {}"), "{found}");
+    }
+}
+
+/// rustfmt leaves comments and long strings as they are.
+#[test]
+fn lines_are_short_enough_to_read() {
+    const MOST: usize = 130;
+    for (name, text) in rust() {
+        let long = text.lines().position(|line| line.chars().count() > MOST);
+        assert!(long.is_none(), "{name}:{} has more than {MOST} characters", long.unwrap_or_default() + 1);
     }
 }
 

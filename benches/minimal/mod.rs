@@ -1,6 +1,6 @@
 //! The least that discs on undamped springs need, written by hand: what the kernel is held to where a scene calls for
-//! nothing more. The same method and nothing else: a list of neighbours with a skin in rows, forces from the overlap, kick and
-//! drift, and how far the fastest disc has moved from where it was listed.
+//! nothing more. The same method and nothing else: a list of neighbours with a skin in rows, forces from the overlap,
+//! kick and drift, and how far the fastest disc has moved from where it was listed.
 
 /// Discs of one radius, mass and stiffness.
 pub(crate) struct Minimal {

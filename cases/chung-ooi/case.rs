@@ -226,8 +226,8 @@ fn more_friction() -> Control {
     Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2))
 }
 
-/// A rigid-body engine has neither overlap nor duration; restitution it gives back exactly. Friction it limits by the impulse
-/// that stops the approach, μ m v_n, and leaves out what restitution adds: μ(1+e) m v_n is Coulomb's.
+/// A rigid-body engine has neither overlap nor duration; restitution it gives back exactly. Friction it limits by the
+/// impulse that stops the approach, μ m v_n, and leaves out what restitution adds: μ(1+e) m v_n is Coulomb's.
 fn rigid() -> Vec<Claim> {
     let rigid = |run: Run| Run { solver: "rigid", ..run.at(rigid_rows::DEFAULT) };
     let oblique = || rigid(at_angle(OBLIQUE[0], 60.0));

@@ -40,7 +40,8 @@ fn with_cohesion(factor: f64) -> Run {
     })
 }
 
-/// Growth of the surface's slip, d(v − ΩR)/dt, over the second half of the run: measured and exact, in units of g sin θ.
+/// Growth of the surface's slip, d(v − ΩR)/dt, over the second half of the run: measured and exact, in units of g sin
+/// θ.
 fn slip(done: &Done) -> Result<Measured, Missing> {
     let scene = &done.scene;
     let grain = OneGrain::of(scene);

@@ -1,5 +1,5 @@
-//! The exact motion of discs on linear springs, for displacements so small that the geometry stays as it is and for as long
-//! as no contact opens or slips: `M ü + K u = f V t`, by the eigenvectors of `M^{-1/2} K M^{-1/2}`.
+//! The exact motion of discs on linear springs, for displacements so small that the geometry stays as it is and for as
+//! long as no contact opens or slips: `M ü + K u = f V t`, by the eigenvectors of `M^{-1/2} K M^{-1/2}`.
 //!
 //! A contact at unit normal `e` (from i to j) with tangent `t = (e₂, −e₁)` is stretched by
 //!

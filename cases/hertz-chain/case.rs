@@ -107,7 +107,8 @@ fn claims() -> Vec<Claim> {
         })
     };
     let programs = forces(sampled, &["near.normal_force", "far.normal_force"], 1e-13, |scene, _| {
-        // A contact of the wave bears about this: k δ^{3/2} at the overlap of two beads that meet at the striker's speed.
+        // A contact of the wave bears about this: k δ^{3/2} at the overlap of two beads that meet at the striker's
+        // speed.
         let (law, grain) = (scene.laws.iter().flatten().next().copied().unwrap_or_default(), &scene.grains[0]);
         let k = 4.0 / 3.0 * law.effective_modulus * (0.5 * grain.radius).sqrt();
         let speed = scene.grains.last().map_or(0.0, |striker| striker.velocity.norm());

@@ -115,8 +115,8 @@ fn static_forces() -> Vec<Claim> {
     claims
 }
 
-/// What the static forces leave out, in units of k_n δ: the force b that turns by (a − b)/2R with its contact, none at κ = 0,
-/// and rounding of the walls' places, by ε 3R in each cycle in which they move.
+/// What the static forces leave out, in units of k_n δ: the force b that turns by (a − b)/2R with its contact, none at
+/// κ = 0, and rounding of the walls' places, by ε 3R in each cycle in which they move.
 fn left_out(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let (phase, step) = (&scene.walls[0].motion.phases[0], 0.1 * scene.critical_time_step());
@@ -406,8 +406,8 @@ fn damping() -> Vec<Claim> {
     claims
 }
 
-/// Rate (1/s) at which the slow mode p = a + √2 b dies away once the walls have stopped: x, its distance from where it ends, follows
-/// `x_{n+1} = A x_n − B x_{n−1}` with B = exp(−2γΔt), fitted by least squares over two periods.
+/// Rate (1/s) at which the slow mode p = a + √2 b dies away once the walls have stopped: x, its distance from where it
+/// ends, follows `x_{n+1} = A x_n − B x_{n−1}` with B = exp(−2γΔt), fitted by least squares over two periods.
 fn decay(done: &Done) -> Result<f64, Missing> {
     let scene = &done.scene;
     let time_step = done.record.provenance.time_step;

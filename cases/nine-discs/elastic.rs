@@ -1,8 +1,9 @@
 //! The discs as elastic bodies: contact force at rest, the frequency at which they ring, and the spring that they show.
 //!
-//! Without friction. The walls move in by d = .01 R and stop; a row of three diameters is shortened by 2d, with as much across. Rigid discs on
-//! springs k_n have the force k_n d/2 everywhere and ring with ω² = 2 k_n/m. Elastic ones have F(2d/3) in closed form; half of a
-//! diameter's compliance lies at each of its contacts, a whole one between two discs, so that ω² = 3 (dF/dδ)/m.
+//! Without friction. The walls move in by d = .01 R and stop; a row of three diameters is shortened by 2d, with as much
+//! across. Rigid discs on springs k_n have the force k_n d/2 everywhere and ring with ω² = 2 k_n/m. Elastic ones have
+//! F(2d/3) in closed form; half of a diameter's compliance lies at each of its contacts, a whole one between two discs,
+//! so that ω² = 3 (dF/dδ)/m.
 
 use crate::elastic::Pressed;
 use crate::ringing::Ringing;
@@ -19,7 +20,8 @@ pub(super) const DISCS: Ringing = Ringing {
     cells: 6.0,
     exact: |scene, squeeze| {
         let force = Pressed::of(scene, 4)?.force(2.0 / 3.0 * squeeze);
-        // A disc that rings between two others is pressed on by one as much as it is let go by the other, and does not widen.
+        // A disc that rings between two others is pressed on by one as much as it is let go by the other, and does not
+        // widen.
         Some((force, Pressed::of(scene, 2)?.stiffness(force)))
     },
     diameters: 3.0,

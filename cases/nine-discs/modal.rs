@@ -70,9 +70,9 @@ impl Modal {
         }))
     }
 
-    /// Rate γ (1/s) at which the slow mode dies away in the calculation cycle, once the walls stand, damped by α (global) and by β k
-    /// (contacts). A cycle takes velocity and place of a mode to `v' = [v(1 − αΔt/2) − ω²Δt(x + βv)]/(1 + αΔt/2)`, `x' = x + v'Δt`; its
-    /// eigenvalues multiply to `(1 − αΔt/2 − βω²Δt)/(1 + αΔt/2) = exp(−2γΔt)`.
+    /// Rate γ (1/s) at which the slow mode dies away in the calculation cycle, once the walls stand, damped by α
+    /// (global) and by β k (contacts). A cycle takes velocity and place of a mode to `v' = [v(1 − αΔt/2) − ω²Δt(x +
+    /// βv)]/(1 + αΔt/2)`, `x' = x + v'Δt`; its eigenvalues multiply to `(1 − αΔt/2 − βω²Δt)/(1 + αΔt/2) = exp(−2γΔt)`.
     pub(crate) fn decay(&self, scene: &Scene, time_step: f64) -> f64 {
         let (alpha, beta) = (scene.global_damping, law(scene).stiffness_damping);
         let omega = self.frequencies()[0];
@@ -80,7 +80,8 @@ impl Modal {
         -((1.0 - half - beta * omega * omega * time_step) / (1.0 + half)).ln() / (2.0 * time_step)
     }
 
-    /// Amplitude of the force between centre and edge after the ramp, as a fraction of its rest value: sum of both modes.
+    /// Amplitude of the force between centre and edge after the ramp, as a fraction of its rest value: sum of both
+    /// modes.
     pub(crate) fn residual(&self, ramp: u64, time_step: f64) -> f64 {
         let rest = self.at_rest();
         let parts = [rest.edge + SQRT_2 * rest.corner, rest.edge - SQRT_2 * rest.corner].map(|part| 0.5 * part);

@@ -1,5 +1,5 @@
-//! A grain as an elastic body on a plane: how it starts, and the change of stiffness that leads to the rigid answer; and a disc that is
-//! pressed.
+//! A grain as an elastic body on a plane: how it starts, and the change of stiffness that leads to the rigid answer;
+//! and a disc that is pressed.
 
 use grainbench_scene::body::Settle;
 use grainbench_scene::scene::{Duration, Scene};
@@ -14,8 +14,8 @@ pub struct Rest {
     pub damping: f64,
 }
 
-/// The first grain touches its plane and comes to rest on it under the part of gravity that presses it there; the run then
-/// lasts `time` (s).
+/// The first grain touches its plane and comes to rest on it under the part of gravity that presses it there; the run
+/// then lasts `time` (s).
 pub fn settle(scene: &mut Scene, rest: Rest, time: f64) {
     let normal = scene.dimension.count() - 1;
     scene.grains[0].position[normal] = scene.grains[0].radius;
@@ -35,10 +35,11 @@ pub fn stiffen(scene: &mut Scene, factor: f64) {
     }
 }
 
-/// An elastic disc in plane strain that is pressed at two opposite sides, or at four, without friction: how much its diameter shortens.
+/// An elastic disc in plane strain that is pressed at two opposite sides, or at four, without friction: how much its
+/// diameter shortens.
 ///
-/// δ/R = p [(2/π)(2 ln(4R/a) − 1) − s], p = F/(E'R), a² = 4pR²/π (Johnson, Contact Mechanics, §5.6: a cylinder between two flats);
-/// s is zero between two flats, and with an equal pair across, which widens it, (4/π − 1) + ν/(1 − ν).
+/// δ/R = p [(2/π)(2 ln(4R/a) − 1) − s], p = F/(E'R), a² = 4pR²/π (Johnson, Contact Mechanics, §5.6: a cylinder between
+/// two flats); s is zero between two flats, and with an equal pair across, which widens it, (4/π − 1) + ν/(1 − ν).
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed {
     /// E' = E/(1 − ν²) (Pa).
@@ -79,7 +80,8 @@ impl Pressed {
         low * self.modulus * self.radius
     }
 
-    /// Stiffness of a diameter against a little more of a force (N/m per metre), dF/dδ: a ∝ √F takes 2/π off the compliance.
+    /// Stiffness of a diameter against a little more of a force (N/m per metre), dF/dδ: a ∝ √F takes 2/π off the
+    /// compliance.
     #[must_use]
     pub fn stiffness(&self, force: f64) -> f64 {
         self.modulus / (self.compliance(force / (self.modulus * self.radius)) - 2.0 / PI)

@@ -23,8 +23,8 @@ pub struct Slope {
 pub const STEP: Resolution = Resolution::CriticalFraction(0.01);
 /// The step of the undamped run that is compared with the elastic answer.
 const FINE: Resolution = Resolution::CriticalFraction(0.0025);
-/// Steps before slip sets in, of the undamped runs that show the order. Slip sets in at mid-step in each, for the error's
-/// coefficient depends on where within a step that is.
+/// Steps before slip sets in, of the undamped runs that show the order. Slip sets in at mid-step in each, for the
+/// error's coefficient depends on where within a step that is.
 const STEPS_BEFORE_SLIP: [f64; 4] = [16.5, 32.5, 64.5, 128.5];
 /// Static overlaps of the sweep, divided by R.
 const OVERLAPS: [f64; 5] = [1e-3, 3e-4, 1e-4, 3e-5, NEARLY_RIGID];
@@ -52,8 +52,8 @@ pub fn at_overlap(variant: &'static str, solver: &'static str, ratio: f64, dampi
     Run::new(variant, solver, step).adjusted(&name, move |scene| rest_at_overlap(scene, ratio, damping))
 }
 
-/// A run at a static overlap of 1e-5 R, without tangential dashpot if so wished: whether a dashpot counts in Coulomb's limit
-/// is what conventions differ in most where a grain slips.
+/// A run at a static overlap of 1e-5 R, without tangential dashpot if so wished: whether a dashpot counts in Coulomb's
+/// limit is what conventions differ in most where a grain slips.
 #[must_use]
 pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
     if tangential_dashpot {

@@ -97,7 +97,8 @@ impl OneGrain {
         (self.tangential_stiffness / self.mass * (1.0 + 1.0 / self.inertia_factor)).sqrt()
     }
 
-    /// When the undamped spring reaches Coulomb's limit, arccos(1 − μ g_n/(f g_t))/ω (s); not a number if it never does.
+    /// When the undamped spring reaches Coulomb's limit, arccos(1 − μ g_n/(f g_t))/ω (s); not a number if it never
+    /// does.
     #[must_use]
     pub fn slips_from(&self) -> f64 {
         (1.0 - self.friction * self.onto / (self.share() * self.along)).acos() / self.tangential_frequency()

@@ -84,8 +84,8 @@ fn touching(scene: &mut Scene) {
     grain.position[axis] = grain.radius;
 }
 
-/// An elastic grain, settled under the load onto the plane. Where the case gives no moduli: those of the 2000 paper, K = 10 MPa and
-/// G = 2.5 MPa.
+/// An elastic grain, settled under the load onto the plane. Where the case gives no moduli: those of the 2000 paper, K
+/// = 10 MPa and G = 2.5 MPa.
 fn settled(scene: &mut Scene, factor: f64) {
     touching(scene);
     let axis = scene.dimension.count() - 1;

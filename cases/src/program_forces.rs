@@ -1,8 +1,8 @@
-//! Rows of the programs `lammps` and `liggghts`: the forces at contacts are ours, as their dumps of contacts and of walls have
-//! them.
+//! Rows of the programs `lammps` and `liggghts`: the forces at contacts are ours, as their dumps of contacts and of
+//! walls have them.
 //!
-//! Both programs evaluate them anew when they are written, with the velocities of the full step: what dashpots add differs
-//! from what moved the grains, and all rows here are undamped.
+//! Both programs evaluate them anew when they are written, with the velocities of the full step: what dashpots add
+//! differs from what moved the grains, and all rows here are undamped.
 
 use crate::program_rows::{PAIRS, layer_of_spheres, row};
 use grainbench_harness::compare::pointwise::worst;
@@ -36,8 +36,8 @@ pub fn forces(
     PAIRS.map(of).to_vec()
 }
 
-/// Forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves walls as meshes, whose
-/// forces it does not tell disc by disc.
+/// Forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves walls as
+/// meshes, whose forces it does not tell disc by disc.
 #[must_use]
 pub fn nine_discs(variant: &'static str, resolution: Resolution) -> Vec<Claim> {
     const BETWEEN: &[&str] =

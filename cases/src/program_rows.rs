@@ -125,8 +125,8 @@ pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(
     claims
 }
 
-/// The same while the walls turn. Neither program has mass-proportional damping, and a damped contact of LIGGGHTS feels where
-/// one `run` ends and the next begins: the row is undamped.
+/// The same while the walls turn. Neither program has mass-proportional damping, and a damped contact of LIGGGHTS feels
+/// where one `run` ends and the next begins: the row is undamped.
 #[must_use]
 pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Claim> {
     fn undamped(scene: &mut Scene) {

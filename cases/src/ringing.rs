@@ -1,5 +1,5 @@
-//! Elastic discs between walls that move in by a little and stop: the force at rest, the frequency at which they ring, and the spring
-//! that they show; without friction, beside rigid discs on springs that have their force at rest.
+//! Elastic discs between walls that move in by a little and stop: the force at rest, the frequency at which they ring,
+//! and the spring that they show; without friction, beside rigid discs on springs that have their force at rest.
 
 use crate::elastic::stiffen;
 use grainbench_harness::measure::dominant_frequency;
@@ -26,7 +26,8 @@ pub(crate) struct Ringing {
     pub(crate) sample: f64,
     /// Cells per radius.
     pub(crate) cells: f64,
-    /// Force at a wall at rest (N/m), and dF/dδ of a diameter about it (N/m²), in closed form; none of discs that do not deform.
+    /// Force at a wall at rest (N/m), and dF/dδ of a diameter about it (N/m²), in closed form; none of discs that do
+    /// not deform.
     pub(crate) exact: fn(&Scene, f64) -> Option<(f64, f64)>,
     /// n of ω² = n (dF/dδ)/m of elastic discs.
     pub(crate) diameters: f64,

@@ -1,4 +1,5 @@
-//! A packing between walls at one moment: what the walls carry, how deep contacts are, and how near it is to equilibrium.
+//! A packing between walls at one moment: what the walls carry, how deep contacts are, and how near it is to
+//! equilibrium.
 
 use grainbench_scene::record::{ContactState, Partner, Snapshot};
 use nalgebra::Vector3;
@@ -10,12 +11,13 @@ pub struct Stage {
     pub horizontal: f64,
     /// F_V: half of what the walls across y carry along their normals (N; N/m for discs).
     pub vertical: f64,
-    /// Mean over all contacts, those at walls among them, of how much nearer centres are than where undeformed grains touch, over the
-    /// mean radius: the overlap of rigid grains on springs, and what flattens grains that deform.
+    /// Mean over all contacts, those at walls among them, of how much nearer centres are than where undeformed grains
+    /// touch, over the mean radius: the overlap of rigid grains on springs, and what flattens grains that deform.
     pub overlap: f64,
     /// The largest sum of forces on a grain over the largest contact force.
     pub unbalanced: f64,
-    /// The larger component of the forces added up over all walls, friction among them, over the largest force on a wall.
+    /// The larger component of the forces added up over all walls, friction among them, over the largest force on a
+    /// wall.
     pub residual: f64,
 }
 
@@ -50,7 +52,8 @@ impl Stage {
     }
 }
 
-/// How much nearer the centre of a grain is to that of its partner, or to a plane, than where they touch undeformed (m).
+/// How much nearer the centre of a grain is to that of its partner, or to a plane, than where they touch undeformed
+/// (m).
 fn approach(snapshot: &Snapshot, contact: &ContactState) -> f64 {
     let grain = &snapshot.grains[contact.grain as usize - 1];
     match contact.partner {

@@ -1,5 +1,5 @@
-//! The material point method in settings that are spelt out in a name, such as `mpm+quadratic+apic`: for cases that need
-//! another setting and say so in their rows.
+//! The material point method in settings that are spelt out in a name, such as `mpm+quadratic+apic`: for cases that
+//! need another setting and say so in their rows.
 
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_mpm::solver::Mpm;

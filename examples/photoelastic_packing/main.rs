@@ -1,9 +1,9 @@
 //! How the packings of the case `photoelastic-packing` are prepared and the motion of their walls is found.
 //!
-//! `cargo run --release --example photoelastic_packing FOLDER VARIANT …` prepares the packing of each variant of the case, by
-//! its name, leaves it in FOLDER as a LAMMPS data file and prints the variant for the scene file: where the walls start and how
-//! fast they go. Nothing is chosen by the answer: stage A and the growth of F_V to stage B are imposed, and F_H/F_V at stage
-//! B is what comes out.
+//! `cargo run --release --example photoelastic_packing FOLDER VARIANT …` prepares the packing of each variant of the
+//! case, by its name, leaves it in FOLDER as a LAMMPS data file and prints the variant for the scene file: where the
+//! walls start and how fast they go. Nothing is chosen by the answer: stage A and the growth of F_V to stage B are
+//! imposed, and F_H/F_V at stage B is what comes out.
 
 mod prepare;
 mod search;
@@ -70,7 +70,8 @@ fn data(packing: &Scene) -> String {
     text
 }
 
-/// The scene of a variant with laws and times of the first packing with the same table, and a packing as its file has it.
+/// The scene of a variant with laws and times of the first packing with the same table, and a packing as its file has
+/// it.
 fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn Error>> {
     let named = ["table", "fifty-elastic"].iter().any(|name| variant.starts_with(name));
     let table = if named { variant.split("-seed").next().unwrap_or(variant) } else { PLAIN };
@@ -94,7 +95,8 @@ fn print(variant: &str, data: &str, scene: &Scene) {
             let [x, y] = [speed(0), speed(1)];
             let seconds = |moment: grainbench::scene::motion::Moment| moment.seconds(f64::NAN);
             println!(
-                "walls.{} = {{ plane.point = [{:?}, {:?}], motion = [{{ velocity = [{}, {}], stop = {:?} }}, {{ velocity = [{}, {}], start = {:?}, stop = {:?} }}] }}",
+                "walls.{} = {{ plane.point = [{:?}, {:?}], motion = [{{ velocity = [{}, {}], stop = {:?} }}, \
+                 {{ velocity = [{}, {}], start = {:?}, stop = {:?} }}] }}",
                 wall.name,
                 point.x,
                 point.y,

@@ -1,5 +1,5 @@
-//! A dense packing of touching discs: they fly about without friction while the walls come in slowly, as an assembly that is
-//! shaken; when they are jammed they are brought to rest, and the walls open until no disc presses on another.
+//! A dense packing of touching discs: they fly about without friction while the walls come in slowly, as an assembly
+//! that is shaken; when they are jammed they are brought to rest, and the walls open until no disc presses on another.
 
 use super::walls::{Course, drive, go_on_from, run, size, stop, watch};
 use grainbench::cases::stage::Stage;

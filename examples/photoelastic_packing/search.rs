@@ -1,4 +1,5 @@
-//! The motion of the walls that is imposed: which strain ratio leads to stage A, and how far the strain of stage B goes.
+//! The motion of the walls that is imposed: which strain ratio leads to stage A, and how far the strain of stage B
+//! goes.
 
 use super::walls::{Course, drive, run, run_elastic, size, watch};
 use grainbench::cases::stage::Stage;
@@ -42,8 +43,8 @@ pub(crate) struct Imposed {
 /// Runs a scene for a time (s); what stands there.
 type Run = fn(&Scene, f64) -> Result<Snapshot, Box<dyn Error>>;
 
-/// How a packing is run and where looking begins. Runs of elastic discs take a thousand times as long, and their walls go too fast for
-/// forces on the way to mean much.
+/// How a packing is run and where looking begins. Runs of elastic discs take a thousand times as long, and their walls
+/// go too fast for forces on the way to mean much.
 struct Manner {
     run: Run,
     /// The first strain ratio of stage A, in fifths.
@@ -52,7 +53,8 @@ struct Manner {
     further: Option<f64>,
     /// By how much a strain after stage A that was too small is made larger.
     widen: f64,
-    /// Whether forces fall while all is at rest, so that F_V grows against that of a packing that is left alone as long.
+    /// Whether forces fall while all is at rest, so that F_V grows against that of a packing that is left alone as
+    /// long.
     relaxes: bool,
 }
 
@@ -133,7 +135,8 @@ impl<'s> Search<'s> {
         Ok(Some(best))
     }
 
-    /// Strain ratios upwards from where the sides come in half as far until F_H/F_V has fallen to what it should be, then in between.
+    /// Strain ratios upwards from where the sides come in half as far until F_H/F_V has fallen to what it should be,
+    /// then in between.
     fn to_a(&self) -> Result<(Imposed, Stage), Box<dyn Error>> {
         let mut before: Option<(Imposed, Stage)> = None;
         for fifth in self.manner.first..10 {

@@ -6,10 +6,10 @@
 //! velocity          v = v⁰ + L (x − x̄), least squares over the centres of these grains             | over points, by volume
 //! ```
 //!
-//! Δx goes from the centre of a grain to its contact and F acts on it there, so compression is negative. The two stresses are one:
-//! for a grain in equilibrium ∫σ dV = Σ Δx⊗F by Gauss' theorem. A grain counts as a whole to the cell of its centre, so that T of a
-//! single cell scatters by as much as grains stick out of it; summed over cells nothing is lost. Momentum flux is left out.
-//! Pressure is p = −tr T/d, and the deviator T + p·1 (the paper prints p/3 there).
+//! Δx goes from the centre of a grain to its contact and F acts on it there, so compression is negative. The two
+//! stresses are one: for a grain in equilibrium ∫σ dV = Σ Δx⊗F by Gauss' theorem. A grain counts as a whole to the cell
+//! of its centre, so that T of a single cell scatters by as much as grains stick out of it; summed over cells nothing
+//! is lost. Momentum flux is left out. Pressure is p = −tr T/d, and the deviator T + p·1 (the paper prints p/3 there).
 
 use crate::overlap::{disc_in_box, sphere_in_box};
 use grainbench_scene::file::GrainShape;
@@ -172,7 +172,8 @@ impl Motion {
     }
 }
 
-/// The cells of a grid over a snapshot, in the order of [`Grid::place`]: of material points where there are some, else of grains.
+/// The cells of a grid over a snapshot, in the order of [`Grid::place`]: of material points where there are some, else
+/// of grains.
 #[must_use]
 pub fn elements(snapshot: &Snapshot, scene: &Scene, grid: &Grid) -> Vec<Element> {
     let cells = grid.count.iter().product();

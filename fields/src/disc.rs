@@ -1,14 +1,15 @@
 //! The elastic stress inside a disc that forces press on at points of its rim.
 //!
-//! A force F on the edge of a half-plane makes a purely radial stress about its point (Flamant 1892; Timoshenko and Goodier,
-//! Theory of Elasticity, art. 36):
+//! A force F on the edge of a half-plane makes a purely radial stress about its point (Flamant 1892; Timoshenko and
+//! Goodier, Theory of Elasticity, art. 36):
 //!
 //! ```text
 //! σ_F(x) = −(2/(π r)) (F·e) e⊗e ,      r e = x − a,   a the point of the force, per metre of depth
 //! ```
 //!
-//! On a circle through a, e·n = r/(2R) at the rim point with outward normal n, so the traction there is −(F·e) e/(πR). Doubling
-//! the angle of the chord and summing over all forces F_i at normals n_i (as art. 41 does for two opposite forces) leaves
+//! On a circle through a, e·n = r/(2R) at the rim point with outward normal n, so the traction there is −(F·e) e/(πR).
+//! Doubling the angle of the chord and summing over all forces F_i at normals n_i (as art. 41 does for two opposite
+//! forces) leaves
 //!
 //! ```text
 //! t = −ΣF/(2πR) + n ΣF·n_i/(2πR) − τ M/(2πR²) ,     M = R Σ n_i×F_i,  τ the tangent, counter-clockwise
@@ -22,10 +23,10 @@
 //! torque M      σ_rθ = M r²/(2πR⁴)               in balance with the body force of one whose spin grows by M/I, I = mR²/2
 //! ```
 //!
-//! Each has harmonic σ_xx + σ_yy or is torsion, hence is compatible: the sum is exact for plane elasticity, whatever the moduli, for
-//! a disc in equilibrium and for one that speeds up as a rigid body does. Gravity is part of it, for it changes body force and
-//! acceleration alike; the centrifugal field, ρω²R² at most, is left out. At a point force stress grows without bound as 1/r; a real
-//! contact has a width.
+//! Each has harmonic σ_xx + σ_yy or is torsion, hence is compatible: the sum is exact for plane elasticity, whatever
+//! the moduli, for a disc in equilibrium and for one that speeds up as a rigid body does. Gravity is part of it, for it
+//! changes body force and acceleration alike; the centrifugal field, ρω²R² at most, is left out. At a point force
+//! stress grows without bound as 1/r; a real contact has a width.
 
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::{Matrix2, Vector2};
@@ -141,7 +142,8 @@ mod tests {
         let centre = disc.stress(Vector2::zeros());
         assert!((centre.m11 / unit - 1.0).abs() < 1e-12, "σ_x = 2P/(πD)");
         assert!(((centre.m11 - centre.m22) / (4.0 * unit) - 1.0).abs() < 1e-12, "σ_x − σ_y = 8P/(πD)");
-        // Along the loaded diameter σ_x stays 2P/(πD); across it, at x = R/2, Timoshenko and Goodier's eq. (g) of art. 41.
+        // Along the loaded diameter σ_x stays 2P/(πD); across it, at x = R/2, Timoshenko and Goodier's eq. (g) of art.
+        // 41.
         assert!((disc.stress(Vector2::new(0.0, 0.6 * radius)).m11 / unit - 1.0).abs() < 1e-12);
         let side = disc.stress(Vector2::new(0.5 * radius, 0.0));
         let (d, x) = (2.0 * radius, 0.5 * radius);

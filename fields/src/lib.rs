@@ -1,6 +1,7 @@
 //! Fields over what a run leaves behind: the stress inside discs, pictures of it, and means over the cells of a grid.
 //!
-//! Material points carry fields and grains carry contact forces; here both become the same quantities at the same places.
+//! Material points carry fields and grains carry contact forces; here both become the same quantities at the same
+//! places.
 
 pub mod coarse;
 pub mod coarse_picture;

@@ -30,8 +30,9 @@ fn below_left(x: f64, y: f64) -> f64 {
     whole(-1.0, x.min(-reach)) + middle + whole(reach, x.max(reach))
 }
 
-/// Volume of a sphere about the origin within a box (m³): its cross-sections, which are exact, summed by Gauss and Legendre's rule
-/// between the heights at which the circle meets an edge or a corner of the box. Good to 1e-9 of the sphere.
+/// Volume of a sphere about the origin within a box (m³): its cross-sections, which are exact, summed by Gauss and
+/// Legendre's rule between the heights at which the circle meets an edge or a corner of the box. Good to 1e-9 of the
+/// sphere.
 #[must_use]
 pub fn sphere_in_box(radius: f64, low: [f64; 3], high: [f64; 3]) -> f64 {
     let (from, to) = (low[2].max(-radius), high[2].min(radius));
@@ -54,7 +55,8 @@ pub fn sphere_in_box(radius: f64, low: [f64; 3], high: [f64; 3]) -> f64 {
     breaks.windows(2).map(|ends| integral(section, ends[0], ends[1])).sum()
 }
 
-/// Of a function that may begin and end like a power of a root: in the angle of which the place is the sine, it is smooth.
+/// Of a function that may begin and end like a power of a root: in the angle of which the place is the sine, it is
+/// smooth.
 fn integral(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     // Ten points of Gauss and Legendre (Abramowitz and Stegun, table 25.4).
     const RULE: [(f64, f64); 5] = [

@@ -22,8 +22,8 @@ impl<'a> Shot<'a> {
     }
 }
 
-/// Panels of a quantity, `longest` pixels along the longer side of what all of them show. The range is that of the values but for
-/// the highest fiftieth, unless it is given.
+/// Panels of a quantity, `longest` pixels along the longer side of what all of them show. The range is that of the
+/// values but for the highest fiftieth, unless it is given.
 #[must_use]
 pub fn pictures(quantity: Quantity, shots: &[Shot<'_>], longest: u32, range: Option<(f64, f64)>) -> Field {
     film(quantity, shots, ("", &[0.0]), longest, range)
@@ -66,8 +66,8 @@ pub fn film(
     }
 }
 
-/// The fringe constant c (Pa) for which the stress that only a fiftieth of the material is above, in any of the snapshots, is so many
-/// fringes from none.
+/// The fringe constant c (Pa) for which the stress that only a fiftieth of the material is above, in any of the
+/// snapshots, is so many fringes from none.
 #[must_use]
 pub fn fringe_constant<'a>(snapshots: impl IntoIterator<Item = &'a Snapshot>, fringes: f64) -> f64 {
     let quantity = Quantity::StressDifference;

@@ -4,8 +4,8 @@ use crate::coarse::inside;
 use grainbench_scene::record::{Owner, PointState, Snapshot};
 use nalgebra::Vector3;
 
-/// A place belongs to the material of a point that is nearer than this, in widths √V of the point's square: half a diagonal, and a
-/// little for squares that have sheared.
+/// A place belongs to the material of a point that is nearer than this, in widths √V of the point's square: half a
+/// diagonal, and a little for squares that have sheared.
 const REACH: f64 = 0.85;
 /// Points within this many of their widths share in the value at a place.
 const BLUR: f64 = 1.3;

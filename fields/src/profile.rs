@@ -14,9 +14,9 @@ pub enum Motion {
     Velocity,
 }
 
-/// The mean of one component of displacement or velocity over slices across `axis`, weighted by the material in each: points
-/// (middle of the slice, mean), of the last of `snapshots`. Displacements of discs are those of their centres, followed from one
-/// snapshot to the next across periodic sides: no grain may pass half the domain between two.
+/// The mean of one component of displacement or velocity over slices across `axis`, weighted by the material in each:
+/// points (middle of the slice, mean), of the last of `snapshots`. Displacements of discs are those of their centres,
+/// followed from one snapshot to the next across periodic sides: no grain may pass half the domain between two.
 #[must_use]
 pub fn profile(
     snapshots: &[Snapshot],

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 pub enum Quantity {
     /// Difference of the principal stresses in the plane, σ₁ − σ₂ (Pa).
     StressDifference,
-    /// cos((σ₁ − σ₂)/c) of a stress c (Pa): the photoelastic fringes of Bardenhagen and others (2001). Bright where there is no
-    /// stress.
+    /// cos((σ₁ − σ₂)/c) of a stress c (Pa): the photoelastic fringes of Bardenhagen and others (2001). Bright where
+    /// there is no stress.
     Fringes(f64),
     /// Equivalent plastic strain.
     PlasticStrain,

@@ -28,8 +28,8 @@ pub enum Bound {
 }
 
 impl Expected {
-    /// How far a value is from what is expected, with its sign: of a bound or a band, how far it is beyond, and 0 where it
-    /// holds. What is not a number stays one.
+    /// How far a value is from what is expected, with its sign: of a bound or a band, how far it is beyond, and 0 where
+    /// it holds. What is not a number stays one.
     #[must_use]
     pub fn off(self, value: f64) -> f64 {
         let beyond = |low: f64, high: f64| {

@@ -4,7 +4,8 @@ use crate::figure::{ForceBar, ForcePlot};
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::Vector3;
 
-/// Draws every contact of a grain that is there as a bar through the contact point with the orientation of the force, as long as the radii together.
+/// Draws every contact of a grain that is there as a bar through the contact point with the orientation of the force,
+/// as long as the radii together.
 #[must_use]
 pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
     let flat = |point: Vector3<f64>| [point.x, point.y];

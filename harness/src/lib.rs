@@ -1,8 +1,9 @@
 //! The harness: what a claim is, and how it is judged.
 //!
-//! A [`claim::Claim`] says of which runs a quantity is read, what is expected of it and from which source, how far it may be
-//! off and why, and which wrong physics it must refuse. A [`runner::Runner`] does the runs, each once, with solvers that are
-//! handed in, and ends in a [`verdict::Verdict`]. Nothing here knows a solver: whatever left a record is judged alike.
+//! A [`claim::Claim`] says of which runs a quantity is read, what is expected of it and from which source, how far it
+//! may be off and why, and which wrong physics it must refuse. A [`runner::Runner`] does the runs, each once, with
+//! solvers that are handed in, and ends in a [`verdict::Verdict`]. Nothing here knows a solver: whatever left a record
+//! is judged alike.
 
 pub mod case;
 pub mod claim;

@@ -55,8 +55,8 @@ impl Runner {
         Self { case, solvers, stranger: None, live: false, thorough: false, runs, done }
     }
 
-    /// A runner that puts one solver in the place of every solver that the claims name. It is given their resolutions, to be
-    /// read as it sees fit.
+    /// A runner that puts one solver in the place of every solver that the claims name. It is given their resolutions,
+    /// to be read as it sees fit.
     #[must_use]
     pub fn with_solver(self, solver: Arc<dyn Solver>) -> Self {
         Self { stranger: Some(solver), ..self }
@@ -242,8 +242,8 @@ impl Runner {
         RunError::Unsupported { solver: self.solver_name(run), reason }
     }
 
-    /// What three levels of resolution tell of a claim of one run: at its own, and at two coarser ones, or at its own and two
-    /// finer ones where there is nothing coarser.
+    /// What three levels of resolution tell of a claim of one run: at its own, and at two coarser ones, or at its own
+    /// and two finer ones where there is nothing coarser.
     ///
     /// # Errors
     /// Says why there is no estimate.
@@ -288,8 +288,8 @@ impl Runner {
         })
     }
 
-    /// How far a claim may be off and how that was made: what it says, or what is stored of it where that is less; none where an
-    /// estimate should be stored and is not.
+    /// How far a claim may be off and how that was made: what it says, or what is stored of it where that is less; none
+    /// where an estimate should be stored and is not.
     fn allowed(&self, claim: &Claim) -> Option<(f64, Made)> {
         let stated = (claim.tolerance.allowed, claim.tolerance.made_without_estimate());
         if claim.tolerance.made != Made::Estimated || self.stranger.is_some() {

@@ -3,11 +3,11 @@
 /// Whom a gate may judge. A case says it for every gate; there is no default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
-    /// The solvers that its runs name: it judges a program's convention, its order in Δt, the compliance of its contact,
-    /// or its agreement with one other program.
+    /// The solvers that its runs name: it judges a program's convention, its order in Δt, the compliance of its
+    /// contact, or its agreement with one other program.
     Named,
-    /// Any solver that can express the scene. The expectation is physics that the scene fixes, the tolerance leaves room
-    /// for what the scene leaves open (torque arm, cap on the dashpot), and the negative control is a wrong scene, so
-    /// that it can be tried on a stranger too.
+    /// Any solver that can express the scene. The expectation is physics that the scene fixes, the tolerance leaves
+    /// room for what the scene leaves open (torque arm, cap on the dashpot), and the negative control is a wrong scene,
+    /// so that it can be tried on a stranger too.
     AnySolver,
 }

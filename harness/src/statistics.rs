@@ -18,11 +18,11 @@ pub struct Estimate {
     pub half_width: f64,
 }
 
-/// The difference of two courses sampled at the same times, by block averages: both are cut into `blocks` of equal length
-/// (what is left over at the start is not used), and the differences of the blocks' means are taken for independent, so
-/// that their mean is known to t s/√n with Student's t for n − 1 degrees of freedom and their standard deviation s
-/// (Flyvbjerg & Petersen 1989). What both do together, such as gaining speed, is not in the differences. None where a
-/// block would be empty.
+/// The difference of two courses sampled at the same times, by block averages: both are cut into `blocks` of equal
+/// length (what is left over at the start is not used), and the differences of the blocks' means are taken for
+/// independent, so that their mean is known to t s/√n with Student's t for n − 1 degrees of freedom and their standard
+/// deviation s (Flyvbjerg & Petersen 1989). What both do together, such as gaining speed, is not in the differences.
+/// None where a block would be empty.
 #[must_use]
 pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estimate> {
     let length = first.len().min(second.len()) / blocks.max(2);
@@ -43,8 +43,8 @@ pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estima
     Some(Estimate { first: mean(&first), second: mean(&second), half_width })
 }
 
-/// Half of the interval that the difference of two more values of a kind lies in, from some independent ones: t s √2 with
-/// their standard deviation s. None where there are too few, or all are one.
+/// Half of the interval that the difference of two more values of a kind lies in, from some independent ones: t s √2
+/// with their standard deviation s. None where there are too few, or all are one.
 #[must_use]
 pub fn spread(values: &[f64]) -> Option<f64> {
     let count = values.len() as f64;
@@ -63,8 +63,8 @@ pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     Some((mean, quantile(count - 1.0)? * (variance / count).sqrt()))
 }
 
-/// The mean of some independent values, and half of the interval about it that one more of their kind lies in: t s √(1 + 1/n) with
-/// their standard deviation s. None where there are too few, or all are one.
+/// The mean of some independent values, and half of the interval about it that one more of their kind lies in: t s √(1
+/// + 1/n) with their standard deviation s. None where there are too few, or all are one.
 #[must_use]
 pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;

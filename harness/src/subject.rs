@@ -1,8 +1,9 @@
-//! What accuracy is measured by: a quantity with an exact answer, and the scene in which each kind of solver is asked for it.
+//! What accuracy is measured by: a quantity with an exact answer, and the scene in which each kind of solver is asked
+//! for it.
 //!
-//! A case's subjects are taken from its own claims, so that a new case has its diagram without another line: rows of one
-//! quantity against an analytic answer, each solver in the scene that its row gives it. A folder with a `cost.rs` says
-//! more, such as a sweep of stiffness.
+//! A case's subjects are taken from its own claims, so that a new case has its diagram without another line: rows of
+//! one quantity against an analytic answer, each solver in the scene that its row gives it. A folder with a `cost.rs`
+//! says more, such as a sweep of stiffness.
 
 use crate::case::Case;
 use crate::claim::{Claim, Measure};

@@ -1,9 +1,9 @@
 //! How far a value may be off because cells and steps are finite, from three levels of resolution.
 //!
-//! With values f₁, f₂, f₃ of levels h, rh, r²h the observed order is p = ln((f₃ − f₂)/(f₂ − f₁))/ln r, and the value of level h is
-//! uncertain by U = F_s |f₁ − f₂|/(rᵖ − 1). The factor of safety F_s is 1.25 where p is within a tenth of the order that the method
-//! has, and 3 elsewhere, with p between ½ and that order. Where the differences change sign or grow, U is three times the largest
-//! of them (ASME V&V 20-2009, section 2; Eça & Hoekstra 2014).
+//! With values f₁, f₂, f₃ of levels h, rh, r²h the observed order is p = ln((f₃ − f₂)/(f₂ − f₁))/ln r, and the value of
+//! level h is uncertain by U = F_s |f₁ − f₂|/(rᵖ − 1). The factor of safety F_s is 1.25 where p is within a tenth of
+//! the order that the method has, and 3 elsewhere, with p between ½ and that order. Where the differences change sign
+//! or grow, U is three times the largest of them (ASME V&V 20-2009, section 2; Eça & Hoekstra 2014).
 
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,8 @@ pub struct Estimate {
     pub uncertainty: f64,
 }
 
-/// Order, factor of safety and uncertainty of the finest of three values, fine to coarse, of a method of order `formal`.
+/// Order, factor of safety and uncertainty of the finest of three values, fine to coarse, of a method of order
+/// `formal`.
 #[must_use]
 pub fn of_finest([fine, middle, coarse]: [f64; 3], formal: f64) -> (Option<f64>, f64, f64) {
     let (near, far) = (fine - middle, middle - coarse);

@@ -163,7 +163,8 @@ impl Verdict {
         }
     }
 
-    /// How near it came to what is allowed: |error|/allowed, 1 at the edge; none where nothing is allowed or nothing was found.
+    /// How near it came to what is allowed: |error|/allowed, 1 at the edge; none where nothing is allowed or nothing
+    /// was found.
     #[must_use]
     pub fn closeness(&self) -> Option<f64> {
         self.error.filter(|_| self.allowed > 0.0).map(|error| error.abs() / self.allowed)

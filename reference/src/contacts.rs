@@ -13,8 +13,8 @@ pub(crate) struct Forces<'f> {
     pub(crate) of_wall: &'f dyn Fn(usize, usize) -> Option<PairForce>,
 }
 
-/// The contacts that are asked for and touch. Forces that are not known are not a number; `shift` is how many times what the
-/// digits leave open is added to the magnitude of each.
+/// The contacts that are asked for and touch. Forces that are not known are not a number; `shift` is how many times
+/// what the digits leave open is added to the magnitude of each.
 pub(crate) fn contacts(
     scene: &Scene,
     time: f64,

@@ -14,8 +14,9 @@ use crate::snapshot::{Coordinate, DumpSnapshot};
 /// What a file calls its columns, where that is not what LAMMPS calls them: pairs of `x`, `vx`, `omegaz`, … and the
 /// file's own name.
 ///
-/// LAMMPS has no names for these: `angle`, of a disc (rad); `WALL.force_x`, the force of the scene's wall `WALL` on a grain;
-/// and in dumps of contacts `id1`, `id2`, `force_x` (the force on the first) and, where it stands apart, `tangential_x`.
+/// LAMMPS has no names for these: `angle`, of a disc (rad); `WALL.force_x`, the force of the scene's wall `WALL` on a
+/// grain; and in dumps of contacts `id1`, `id2`, `force_x` (the force on the first) and, where it stands apart,
+/// `tangential_x`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Names(pub Vec<(String, String)>);
 
@@ -103,12 +104,12 @@ impl<'s> Observer<'s> {
         self
     }
 
-    /// Takes a snapshot of the file `file`, at a time (s). `digits` are what its columns show to the end of the file, in
-    /// the order of its columns; without them printed numbers are taken as exact.
+    /// Takes a snapshot of the file `file`, at a time (s). `digits` are what its columns show to the end of the file,
+    /// in the order of its columns; without them printed numbers are taken as exact.
     ///
     /// # Errors
-    /// When it lacks the id or the position of a grain, or has another number of grains than the scene, or the contacts of
-    /// its step are missing where those of others are told.
+    /// When it lacks the id or the position of a grain, or has another number of grains than the scene, or the contacts
+    /// of its step are missing where those of others are told.
     pub fn take(
         &mut self,
         file: &str,

@@ -1,4 +1,5 @@
-//! What some program left of a run, in dumps or in one table, read twice: once for what the files are, once for a record.
+//! What some program left of a run, in dumps or in one table, read twice: once for what the files are, once for a
+//! record.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};

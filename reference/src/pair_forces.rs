@@ -1,4 +1,5 @@
-//! Forces between grains from dumps of local entries: rows of two ids and a force, whatever a program calls the columns.
+//! Forces between grains from dumps of local entries: rows of two ids and a force, whatever a program calls the
+//! columns.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,11 +18,11 @@ pub(crate) struct PairForce {
     pub(crate) open: f64,
 }
 
-/// What entries tell of the contacts that the probes of a scene ask for; all others are passed over, so that memory does not
-/// grow with their number.
+/// What entries tell of the contacts that the probes of a scene ask for; all others are passed over, so that memory
+/// does not grow with their number.
 ///
-/// Their columns are `id1`, `id2` and the force on the first, `force_x`, `force_y`, `force_z`; what is called `tangential_x`
-/// and so on is added to it, for some programs print the two parts apart.
+/// Their columns are `id1`, `id2` and the force on the first, `force_x`, `force_y`, `force_z`; what is called
+/// `tangential_x` and so on is added to it, for some programs print the two parts apart.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PairForces {
     /// The pairs that are asked for, by id, the smaller one first.

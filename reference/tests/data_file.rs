@@ -165,7 +165,8 @@ fn the_header() {
     );
     assert_eq!(
         damaged("2 atoms", "2 atoms\n4 bonds"),
-        "data:6: expected a header line `N atoms`, `N atom types`, `… xlo xhi`, `… ylo yhi` or `… zlo zhi`, or a section, found `4 bonds`"
+        "data:6: expected a header line `N atoms`, `N atom types`, `… xlo xhi`, `… ylo yhi` or `… zlo zhi`, or \
+         a section, found `4 bonds`"
     );
 }
 

@@ -34,8 +34,10 @@ fn reads_a_log_of_liggghts() {
 /// The alignment of a 2025 release, a warning between the rows, NaN as a program prints it, and no end.
 #[test]
 fn reads_another_alignment_and_a_log_that_breaks_off() {
-    let text = "LAMMPS (22 Jul 2025)\nPer MPI rank memory allocation (min/avg/max) = 5 | 5 | 5 Mbytes\n   Step          Time          \
-                KinEng    \n         0   0              0            \nWARNING: Fix moved\n       100   0.01           -nan         \n";
+    let text = "LAMMPS (22 Jul 2025)\nPer MPI rank memory allocation (min/avg/max) = 5 | 5 | 5 Mbytes\n\
+                \x20  Step          Time          \
+                KinEng    \n         0   0              0            \nWARNING: Fix moved\n\
+                \x20      100   0.01           -nan         \n";
     let log = parse_log(text.as_bytes(), "log").unwrap();
     let thermo = &log.runs[0].thermo;
     assert_eq!((thermo.rows(), log.runs[0].end), (2, None));

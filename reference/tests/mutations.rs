@@ -158,7 +158,8 @@ proptest! {
 
     #[test]
     fn of_a_dump(file in 0_usize..5, damages in damages()) {
-        let names = ["lammps-nine.dump", "lammps-nine.local", "lammps-scaled-six-digits.dump", "liggghts-nine.dump", "liggghts-nine.local"];
+        let names = ["lammps-nine.dump", "lammps-nine.local", "lammps-scaled-six-digits.dump",
+            "liggghts-nine.dump", "liggghts-nine.local"];
         static TEXTS: OnceLock<Vec<String>> = OnceLock::new();
         let texts = TEXTS.get_or_init(|| names.iter().map(|name| stored(&format!("tests/data/{name}"))).collect());
         match read_dump(&apply(&texts[file], &damages)) {

@@ -1,5 +1,5 @@
-//! Pictures of any record of a plane scene: forces, stress, fringes, plastic strain, rotation, speed, profiles, films. Several records
-//! stand beside one another at equal times.
+//! Pictures of any record of a plane scene: forces, stress, fringes, plastic strain, rotation, speed, profiles, films.
+//! Several records stand beside one another at equal times.
 
 use crate::number;
 use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
@@ -48,7 +48,8 @@ pub fn is_plane(record: &Record) -> bool {
     !record.snapshots.is_empty() && record.snapshots.iter().all(flat)
 }
 
-/// Every picture that the records have the data for, at times of the first one. `fringe` is the constant c of fringes (Pa).
+/// Every picture that the records have the data for, at times of the first one. `fringe` is the constant c of fringes
+/// (Pa).
 #[must_use]
 pub fn figures(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Figure> {
     let Some(first) = records.first().filter(|_| records.iter().all(|named| is_plane(named.record))) else {

@@ -1,5 +1,5 @@
-//! Judging what any program left of a case: by the exact answers of the case's gates, by what our solvers make of the same
-//! scene, and by the stored runs of other programs.
+//! Judging what any program left of a case: by the exact answers of the case's gates, by what our solvers make of the
+//! same scene, and by the stored runs of other programs.
 
 mod exact;
 mod figures;

@@ -57,8 +57,8 @@ pub(super) fn is_compared(name: &str) -> bool {
         || quantity.starts_with("force_")
 }
 
-/// A row a column: against the convention that is nearest as a whole, within what the conventions and half the time step
-/// leave open.
+/// A row a column: against the convention that is nearest as a whole, within what the conventions and half the time
+/// step leave open.
 pub(super) fn compare(
     scene: &Scene,
     ours: &[Peer],
@@ -69,8 +69,9 @@ pub(super) fn compare(
     let radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
     let mass: f64 = scene.grains.iter().map(|grain| grain.mass).sum();
     let end = observed.series.time.last().copied().unwrap_or_default();
-    // What hardly moves or turns is not judged by its rounding: a way of a millionth of the radius, the speed that leads there,
-    // that speed at the rim. Grains at rest have no energy that others could be measured by: a thousandth of the speed is rest.
+    // What hardly moves or turns is not judged by its rounding: a way of a millionth of the radius, the speed that
+    // leads there, that speed at the rim. Grains at rest have no energy that others could be measured by: a thousandth
+    // of the speed is rest.
     let scale = |extent: &dyn Fn(&str) -> f64, unit: &str| {
         let way = extent("m").max(1e-6 * radius);
         let speed = if end > 0.0 { extent("m/s").max(way / end) } else { extent("m/s") };

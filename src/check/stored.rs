@@ -13,14 +13,15 @@ use grainbench_reference::stored::{StoredRun, folder};
 use grainbench_reports::number;
 use grainbench_scene::record::Series;
 
-/// How many times what half the time step changes a stored run may be off itself: the grid convergence index of the coarser of
-/// two steps, with the factor of safety 3 that two call for and first order, as where contacts begin and end (Roache 1994).
+/// How many times what half the time step changes a stored run may be off itself: the grid convergence index of the
+/// coarser of two steps, with the factor of safety 3 that two call for and first order, as where contacts begin and end
+/// (Roache 1994).
 const SAFETY: f64 = 6.0;
 /// What a program may be off by beside what is measured: a millionth of the scale.
 const FLOOR: f64 = 1e-6;
 
-/// A row a column: against the stored run that is nearest as a whole, at the times that both have, within what the stored
-/// runs differ by and their own uncertainty.
+/// A row a column: against the stored run that is nearest as a whole, at the times that both have, within what the
+/// stored runs differ by and their own uncertainty.
 pub(super) fn compare(
     case: &Case,
     candidate: &Candidate,

@@ -20,8 +20,8 @@ pub(crate) struct Arguments {
     /// The case, or one variant of it.
     #[arg(value_name = "CASE|CASE/VARIANT")]
     case: String,
-    /// Dumps of grains that follow one another, dumps of their contacts (`dump local`) at the same steps beside them; or one
-    /// CSV table; plain, gzip or zstd.
+    /// Dumps of grains that follow one another, dumps of their contacts (`dump local`) at the same steps beside them;
+    /// or one CSV table; plain, gzip or zstd.
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
     dump: Vec<PathBuf>,
     /// The run's log.
@@ -30,8 +30,9 @@ pub(crate) struct Arguments {
     /// Time step in seconds, where neither dump nor log tells it.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     dt: Option<f64>,
-    /// What columns are called in the files, such as `x=xu,omegaz=wz`. Of contacts `id1`, `id2`, `force_x` (on the first),
-    /// and `tangential_x` where it stands apart; `WALL.force_x` is the force of a wall on a grain, `angle` that of a disc.
+    /// What columns are called in the files, such as `x=xu,omegaz=wz`. Of contacts `id1`, `id2`, `force_x` (on the
+    /// first), and `tangential_x` where it stands apart; `WALL.force_x` is the force of a wall on a grain, `angle` that
+    /// of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
     /// Directory for the report.

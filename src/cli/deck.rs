@@ -21,8 +21,8 @@ pub(crate) struct Arguments {
     /// The program: `lammps` or `liggghts`.
     #[arg(long = "for", value_name = "PROGRAM")]
     program: String,
-    /// The scene that exact answers hold for any solver in, where the case judges those in another than its own: a stiffer
-    /// contact, say. `check` knows it by its start.
+    /// The scene that exact answers hold for any solver in, where the case judges those in another than its own: a
+    /// stiffer contact, say. `check` knows it by its start.
     #[arg(long, conflicts_with = "set")]
     exact: bool,
     /// Override one key of the scene; may be given more than once.

@@ -27,8 +27,8 @@ pub(crate) enum Command {
     Build(Build),
     /// Run the programs again and compare with what is stored.
     Verify(Verify),
-    /// Estimate how far values may be off because cells and steps are finite: three levels of resolution for each row whose
-    /// tolerance is an estimate.
+    /// Estimate how far values may be off because cells and steps are finite: three levels of resolution for each row
+    /// whose tolerance is an estimate.
     Uncertainty(Uncertainty),
 }
 
@@ -46,7 +46,8 @@ pub(crate) struct Uncertainty {
 /// What `build` takes.
 #[derive(clap::Args)]
 pub(crate) struct Build {
-    /// Which: names of their folders, with or without `lammps/` or `liggghts/` in front, or cases; all when none is named.
+    /// Which: names of their folders, with or without `lammps/` or `liggghts/` in front, or cases; all when none is
+    /// named.
     #[arg(value_name = "ID")]
     ids: Vec<String>,
     /// Directory for the folders of both programs, in place of that among the sources.
@@ -57,7 +58,8 @@ pub(crate) struct Build {
 /// What `verify` takes.
 #[derive(clap::Args)]
 pub(crate) struct Verify {
-    /// Which: names of their folders, with or without `lammps/` or `liggghts/` in front, or cases; all when none is named.
+    /// Which: names of their folders, with or without `lammps/` or `liggghts/` in front, or cases; all when none is
+    /// named.
     #[arg(value_name = "ID")]
     ids: Vec<String>,
     /// Directory for the report.

@@ -60,7 +60,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
     /// Steps from one checkpoint to the next.
-    #[arg(long, value_name = "STEPS", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..), requires = "checkpoint")]
+    #[arg(
+        long,
+        value_name = "STEPS",
+        default_value_t = 100_000,
+        value_parser = clap::value_parser!(u64).range(1..),
+        requires = "checkpoint"
+    )]
     checkpoint_every: u64,
     /// Continue from this checkpoint of the same run: the record is that of the whole run, in every bit but its times.
     #[arg(long, value_name = "FILE")]

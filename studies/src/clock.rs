@@ -3,8 +3,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Processor time of this process and of the programs that it ran and that have ended (s); wall-clock time since the first
-/// call where the system does not tell.
+/// Processor time of this process and of the programs that it ran and that have ended (s); wall-clock time since the
+/// first call where the system does not tell.
 #[must_use]
 pub fn cpu_seconds() -> f64 {
     #[cfg(unix)]
@@ -24,14 +24,14 @@ pub fn cpu_seconds() -> f64 {
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Processor time of a fixed piece of work that no change of this program's solvers touches (s), the mean of as many in a row
-/// as take `lasting` seconds, of one at least: what a time is divided by when two sessions are compared, so that a machine that
-/// was slower for a while is not taken for a program that is.
+/// Processor time of a fixed piece of work that no change of this program's solvers touches (s), the mean of as many in
+/// a row as take `lasting` seconds, of one at least: what a time is divided by when two sessions are compared, so that
+/// a machine that was slower for a while is not taken for a program that is.
 ///
-/// Another program on the other thread of the same core slows solvers down by half for some milliseconds. Arithmetic in which
-/// each operation waits for the one before hardly feels it (a tenth); searching and branching feel it as solvers do: over a
-/// thousand pairs of runs in turn the logarithms of both times had a slope of .99 and their ratio a spread of 7 %, where times
-/// alone had 20 to 30 %.
+/// Another program on the other thread of the same core slows solvers down by half for some milliseconds. Arithmetic in
+/// which each operation waits for the one before hardly feels it (a tenth); searching and branching feel it as solvers
+/// do: over a thousand pairs of runs in turn the logarithms of both times had a slope of .99 and their ratio a spread
+/// of 7 %, where times alone had 20 to 30 %.
 #[must_use]
 pub fn reference_seconds(lasting: f64) -> f64 {
     let start = cpu_seconds();
@@ -68,8 +68,8 @@ pub fn clocked<T>(lasting: f64, work: impl FnOnce() -> T) -> Clocked<T> {
     Clocked { done, cpu, wall, reference: 0.5 * (before + reference_seconds(lasting)) }
 }
 
-/// Looks keys up in a table with two thirds of its places taken and branches on what it finds, as a solver does with the
-/// contacts of its grains: about a tenth of a millisecond.
+/// Looks keys up in a table with two thirds of its places taken and branches on what it finds, as a solver does with
+/// the contacts of its grains: about a tenth of a millisecond.
 fn searches(scale: f64) -> f64 {
     const PLACES: usize = 1024;
     const KEYS: usize = 700;

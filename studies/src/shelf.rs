@@ -22,7 +22,8 @@ impl Shelf {
     pub fn open(folder: &Path, fresh: bool) -> Result<Self, WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
         let shelf = Self { folder: Some(folder.to_owned()), fresh };
-        // Of a program that was killed while it wrote, here or in the directory of the report; what has its name is whole.
+        // Of a program that was killed while it wrote, here or in the directory of the report; what has its name is
+        // whole.
         for place in [Some(folder), folder.parent()].into_iter().flatten() {
             sweep(place).map_err(|source| WriteError::new(place, source))?;
         }

@@ -1,5 +1,5 @@
-//! A series against several runs of the same scene: the one that is nearest as a whole, column by column, within what these runs
-//! differ by and what half their time step changes.
+//! A series against several runs of the same scene: the one that is nearest as a whole, column by column, within what
+//! these runs differ by and what half their time step changes.
 
 use super::pointwise::largest;
 use crate::expect::Measured;
@@ -33,9 +33,9 @@ pub struct Compared<'a> {
     pub open: f64,
 }
 
-/// Compares the columns of an observed series that `is_compared` takes and that every run has. `scale` says what differences
-/// of a unit are divided by, from the largest extent of that unit; a column whose scale is zero is left out. The name of the
-/// nearest run, and a comparison a column; none where there are no runs.
+/// Compares the columns of an observed series that `is_compared` takes and that every run has. `scale` says what
+/// differences of a unit are divided by, from the largest extent of that unit; a column whose scale is zero is left
+/// out. The name of the nearest run, and a comparison a column; none where there are no runs.
 pub fn against<'a>(
     observed: &'a Series,
     uncertainty: &[Vec<f64>],

@@ -13,7 +13,8 @@ pub fn together(first: &Done, second: &Done, column: &str) -> Result<(Vec<f64>, 
     Ok((steps.iter().map(|&step| first.at_step(column, step)).collect::<Result<_, _>>()?, of_second))
 }
 
-/// The worst difference in some columns between ours (first) and what another program gave (second), in units of `scale`.
+/// The worst difference in some columns between ours (first) and what another program gave (second), in units of
+/// `scale`.
 ///
 /// # Errors
 /// When a column is missing, or a sample of the program in ours.

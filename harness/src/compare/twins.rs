@@ -1,9 +1,9 @@
 //! Comparing runs that no two machines can repeat for long: moment by moment up to the predictability horizon, by means
 //! with confidence intervals after it.
 //!
-//! The horizon is measured: a twin of the run, one position moved by one unit in the last place, is within [`PARTED`] of it
-//! up to there. Two programs that do the same arithmetic in another order differ by many such units at once, which is what
-//! [`ALLOWED`] leaves room for.
+//! The horizon is measured: a twin of the run, one position moved by one unit in the last place, is within [`PARTED`]
+//! of it up to there. Two programs that do the same arithmetic in another order differ by many such units at once,
+//! which is what [`ALLOWED`] leaves room for.
 //!
 //! Runs of a claim stand in one order: ours, the program's, our run again and its twin.
 
@@ -74,7 +74,8 @@ pub fn horizon(of: Parting, steps: u64, runs: [Run; 2]) -> Claim {
         }))
 }
 
-/// All watched columns of ours (first run) and a program (second) up to the horizon that the twins (third and fourth) have.
+/// All watched columns of ours (first run) and a program (second) up to the horizon that the twins (third and fourth)
+/// have.
 #[must_use]
 pub fn pointwise(of: Parting, runs: Vec<Run>, control: Control) -> Claim {
     let program = runs[1].solver;

@@ -75,7 +75,8 @@ impl Counts {
 pub struct Timing {
     /// Wall-clock time of the stepping loop.
     pub wall: f64,
-    /// Processor time of the whole run, start-up included; of a program, that of its process less that of a run of one step.
+    /// Processor time of the whole run, start-up included; of a program, that of its process less that of a run of one
+    /// step.
     pub cpu: f64,
     /// Wall-clock time of everything but the stepping loop.
     pub start_up: f64,

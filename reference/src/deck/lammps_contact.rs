@@ -1,4 +1,5 @@
-//! Contacts as LAMMPS has them: `gran/hooke/history` and `gran/hertz/history`, and `granular` where its law is the scene's.
+//! Contacts as LAMMPS has them: `gran/hooke/history` and `gran/hertz/history`, and `granular` where its law is the
+//! scene's.
 
 use grainbench_scene::scene::{ContactLaw, Scene};
 
@@ -102,8 +103,8 @@ fn tsuji(law: &ContactLaw) -> Result<String, String> {
     Ok(format!("hertz {normal:?} {coefficient:?} tangential mindlin {tangential:?} 0.0 {friction:?} damping tsuji"))
 }
 
-/// The coefficient of restitution that LAMMPS' polynomial turns into α. It is fitted to restitution to some thousandths;
-/// with this coefficient the dashpot is the scene's to rounding.
+/// The coefficient of restitution that LAMMPS' polynomial turns into α. It is fitted to restitution to some
+/// thousandths; with this coefficient the dashpot is the scene's to rounding.
 fn coefficient_for(alpha: f64) -> Option<f64> {
     const FIT: [f64; 7] = [1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218];
     let fitted = |coefficient: f64| FIT.iter().rev().fold(0.0, |sum, factor| sum * coefficient + factor);
@@ -119,8 +120,8 @@ fn coefficient_for(alpha: f64) -> Option<f64> {
     Some(low)
 }
 
-/// `granular hooke` with `rolling sds`: a spring k against the rolling displacement R_eff θ, k = 2.25 k_n μ_r², limited by
-/// μ_r F_n.
+/// `granular hooke` with `rolling sds`: a spring k against the rolling displacement R_eff θ, k = 2.25 k_n μ_r², limited
+/// by μ_r F_n.
 fn rolling(scene: &Scene, law: &ContactLaw, material: u16) -> Result<String, String> {
     if law.rolling_damping != 0.0 {
         return Err(

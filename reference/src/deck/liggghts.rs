@@ -1,7 +1,7 @@
 //! LIGGGHTS: contacts of `hooke/stiffness tangential history` and its like between grains and at walls.
 //!
-//! Scenes in the plane are run in two dimensions where every wall is a primitive one. Meshes, which all other walls need,
-//! work in three dimensions only: there the grains are one layer of spheres.
+//! Scenes in the plane are run in two dimensions where every wall is a primitive one. Meshes, which all other walls
+//! need, work in three dimensions only: there the grains are one layer of spheres.
 
 use std::fmt::Write as _;
 
@@ -88,8 +88,8 @@ fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
     Names(names)
 }
 
-/// The command that adds up the forces of a wall on the grains, and the components of the sum. A mesh does so by itself,
-/// and its force is that of the grains; at the start it has added up nothing yet, and says zero.
+/// The command that adds up the forces of a wall on the grains, and the components of the sum. A mesh does so by
+/// itself, and its force is that of the grains; at the start it has added up nothing yet, and says zero.
 fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
     if meshes.iter().any(|mesh| mesh.number == number) {
         return (String::new(), [1, 2, 3].map(|at| format!("(-f_mesh{number}[{at}])")));

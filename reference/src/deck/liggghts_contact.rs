@@ -20,7 +20,8 @@ impl Model {
         Self { effects: Effects::of(scene) }
     }
 
-    /// Hertz contacts whose dashpots give a coefficient of restitution: LIGGGHTS has them with moduli, others with stiffnesses.
+    /// Hertz contacts whose dashpots give a coefficient of restitution: LIGGGHTS has them with moduli, others with
+    /// stiffnesses.
     fn has_moduli(self) -> bool {
         self.effects.hertz && self.effects.restitution
     }

@@ -23,8 +23,8 @@ const VIRIAL: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
 /// The commands that make the columns, and the columns; `force` names the program's vector of the forces of a wall on
 /// the grains, by the wall's number.
 ///
-/// The pressure of the programs counts forces between grains at the time of the step, as they moved the grains. It is per
-/// volume of a box that grows with the grains, so that it is brought to the volume of the scene's domain.
+/// The pressure of the programs counts forces between grains at the time of the step, as they moved the grains. It is
+/// per volume of a box that grows with the grains, so that it is brought to the volume of the scene's domain.
 pub(crate) fn logged(
     scene: &Scene,
     temperature: &str,
@@ -54,7 +54,8 @@ pub(crate) fn logged(
                 let count = scene.dimension.count();
                 let volume: f64 = (domain.high - domain.low).iter().take(count).product();
                 commands.push_str(&format!(
-                    "compute virial all pressure {temperature} virial\ncompute touch all contact/atom\ncompute touching all reduce ave c_touch\n"
+                    "compute virial all pressure {temperature} virial\ncompute touch all contact/atom\n\
+                     compute touching all reduce ave c_touch\n"
                 ));
                 for (at, pair) in (1..).zip(VIRIAL) {
                     if count == 3 || !pair.contains('z') {

@@ -7,8 +7,8 @@ const RIGID: f64 = 1e40;
 /// What of a compliance is taken for rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Shares of one type in the compliances of its pairs (1/Pa): 1/E* = a₁ + a₂ with a = (1 − ν²)/E, and 1/G* = b₁ + b₂ with
-/// b = 2(2 − ν)(1 + ν)/E.
+/// Shares of one type in the compliances of its pairs (1/Pa): 1/E* = a₁ + a₂ with a = (1 − ν²)/E, and 1/G* = b₁ + b₂
+/// with b = 2(2 − ν)(1 + ν)/E.
 #[derive(Clone, Copy)]
 struct Shares {
     normal: f64,
@@ -30,11 +30,11 @@ impl Shares {
     }
 }
 
-/// Young's modulus and Poisson's ratio of every type, from the laws of all pairs, `types` a row; rigid where a type meets
-/// none.
+/// Young's modulus and Poisson's ratio of every type, from the laws of all pairs, `types` a row; rigid where a type
+/// meets none.
 ///
-/// Types that meet themselves have half of what two of them have together. The others have what their partners leave, or all
-/// of it if their partners are left to be chosen too.
+/// Types that meet themselves have half of what two of them have together. The others have what their partners leave,
+/// or all of it if their partners are left to be chosen too.
 pub(crate) fn moduli(laws: &[Option<ContactLaw>], types: usize) -> Result<(Vec<f64>, Vec<f64>), String> {
     let pair = |a: usize, b: usize| laws[a * types + b].as_ref().map(Shares::of_pair);
     let mut shares: Vec<Option<Shares>> = (0..types)

@@ -35,8 +35,8 @@ pub struct Live {
 }
 
 impl Live {
-    /// The program as `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names it, or else `lmp` or `liggghts` on `PATH`. A run of
-    /// it may take ten minutes, or as many seconds as `GRAINBENCH_TIME_LIMIT` says.
+    /// The program as `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names it, or else `lmp` or `liggghts` on `PATH`. A
+    /// run of it may take ten minutes, or as many seconds as `GRAINBENCH_TIME_LIMIT` says.
     #[must_use]
     pub fn find(program: Program) -> Self {
         let (variable, usual) = match program {

@@ -28,8 +28,8 @@ pub struct Made {
     pub files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs the scene and its twin with half the time step, and writes both down. `id` is what `reference build` calls it, and
-/// `date` the day (YYYY-MM-DD).
+/// Runs the scene and its twin with half the time step, and writes both down. `id` is what `reference build` calls it,
+/// and `date` the day (YYYY-MM-DD).
 ///
 /// # Errors
 /// When the program cannot express the scene, is not there or fails, or leaves a value that is not finite.

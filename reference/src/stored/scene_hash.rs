@@ -8,8 +8,8 @@ use crate::deck::Stepping;
 
 /// The BLAKE3 hash of all in a scene and its stepping that a run of rigid grains depends on, in lower-case hexadecimal.
 ///
-/// Titles, names of materials, how often samples are taken, and what deformable bodies alone have are left out. Numbers go
-/// in with all their digits.
+/// Titles, names of materials, how often samples are taken, and what deformable bodies alone have are left out. Numbers
+/// go in with all their digits.
 #[must_use]
 pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     let mut text =

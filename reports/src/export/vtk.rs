@@ -32,8 +32,8 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
     close(&mut out)
 }
 
-/// Writes the material points of deformable bodies: `body` is a grain's id, or −1 − the place of a body that is no grain;
-/// `stress` is Cauchy's, xx yy zz xy yz xz (Pa), tension positive.
+/// Writes the material points of deformable bodies: `body` is a grain's id, or −1 − the place of a body that is no
+/// grain; `stress` is Cauchy's, xx yy zz xy yz xz (Pa), tension positive.
 ///
 /// # Errors
 /// When `out` refuses.

@@ -118,7 +118,8 @@ dt { color: var(--soft); } dd { margin: 0; overflow-wrap: anywhere; }
   figure { max-width: 150mm; margin: 4mm 0; break-inside: avoid; }
   table { font-size: 7pt; } h1 { font-size: 22pt; } h2 { font-size: 16pt; }
   .lead, .claim { font-size: 10.5pt; } .failing { font-size: 9pt; padding: 2mm 3mm; margin: 4mm 0; }
-  .counts { gap: 3mm 5mm; } .counts .controls { padding-left: 5mm; } .counts b { font-size: 14pt; } .counts span { font-size: 8pt; } h3 { margin-top: 7mm; }
+  .counts { gap: 3mm 5mm; } .counts .controls { padding-left: 5mm; }
+  .counts b { font-size: 14pt; } .counts span { font-size: 8pt; } h3 { margin-top: 7mm; }
   thead { display: table-header-group; }
   tr, .failing li { break-inside: avoid; } h2, h3, .note, summary { break-after: avoid; }
   figcaption, .note { font-size: 9pt; }

@@ -179,8 +179,8 @@ fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::R
     Ok(bytes)
 }
 
-/// The colour of a level. The maps can be told apart without colour vision and grow evenly lighter: cividis (Nuñez, Anderton and
-/// Renslow 2018), magma, and ColorBrewer's PuOr, all from the `colorous` crate.
+/// The colour of a level. The maps can be told apart without colour vision and grow evenly lighter: cividis (Nuñez,
+/// Anderton and Renslow 2018), magma, and ColorBrewer's PuOr, all from the `colorous` crate.
 fn colour(shades: Shades, level: u8) -> [u8; 3] {
     let part = f64::from(level.saturating_sub(LOW)) / f64::from(HIGH - LOW);
     match (level, shades) {

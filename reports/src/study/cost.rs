@@ -157,7 +157,8 @@ fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
     bars
 }
 
-/// Measured against expected over all cases, a figure a unit: of each solver and quantity the point with the smallest error.
+/// Measured against expected over all cases, a figure a unit: of each solver and quantity the point with the smallest
+/// error.
 #[must_use]
 pub fn scatters(study: &Study) -> Vec<Figure> {
     let mut units: Vec<&str> = study.diagrams.iter().flat_map(|d| &d.points).map(|point| point.unit.as_str()).collect();
@@ -175,8 +176,8 @@ fn best<'a>(study: &'a Study, unit: &'a str, line: &'a str) -> Vec<&'a Point> {
     study.diagrams.iter().filter_map(of).collect()
 }
 
-/// Bias and spread of the logarithm of measured over expected: the factor that a solver is off by on average, and the relative
-/// standard deviation about it.
+/// Bias and spread of the logarithm of measured over expected: the factor that a solver is off by on average, and the
+/// relative standard deviation about it.
 #[must_use]
 pub fn bias(points: &[&Point]) -> Option<(f64, f64)> {
     let logs: Vec<f64> = points

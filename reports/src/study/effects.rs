@@ -14,8 +14,10 @@ pub(crate) fn render(study: &Study) -> Markup {
             p.kicker { "grainbench" }
             h1 { "What each effect is worth" }
             p.lead {
-                "What every scene calls for and which key turned it on. Each effect that is on is switched off: what that changes in \
-                 every gated quantity, and in the cost. Each effect that is off is compiled in with a value that does nothing, and \
+                "What every scene calls for and which key turned it on. Each effect that is on is switched off: \
+                 what that changes in \
+                 every gated quantity, and in the cost. Each effect that is off is compiled in with a value \
+                   that does nothing, and \
                  must change no bit."
             }
             p {
@@ -73,7 +75,8 @@ fn table(ledger: &[Entry]) -> Markup {
                         td.verdict { span.mark class=(class(entry.worth)) { (entry.worth.word()) } }
                         td.wide {
                             @if let Some(shift) = farthest(entry) {
-                                (shift.quantity) ", " (shift.solver) ": " (number::error(shift.with)) " → " (number::error(shift.without))
+                                (shift.quantity) ", " (shift.solver) ": " (number::error(shift.with)) " → "
+                                (number::error(shift.without))
                                 " (allowed " (number::fraction(shift.allowed)) ")"
                             }
                         }

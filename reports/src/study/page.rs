@@ -58,7 +58,8 @@ fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
             p.kicker { "grainbench" }
             h1 { "What accuracy costs" }
             p.lead {
-                "Every solver over its knobs, on every quantity that has an exact answer: the error against the time it took. Times \
+                "Every solver over its knobs, on every quantity that has an exact answer: the error against the \
+                 time it took. Times \
                  are medians of interleaved repetitions, one run at a time; counts do not depend on the machine."
             }
             @if let Some(old) = &study.against { (changes(study, old)) }

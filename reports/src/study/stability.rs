@@ -84,7 +84,8 @@ pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
             p.kicker { "grainbench" }
             h1 { "What stays stable" }
             p.lead {
-                "The largest stable step of every solver, found by bisection on a typed failure, beside the exact limit where there \
+                "The largest stable step of every solver, found by bisection on a typed failure, beside the \
+                 exact limit where there \
                  is one; and hard cases, each with what must hold."
             }
             @if !study.hard.is_empty() {
@@ -144,7 +145,11 @@ fn details_of(rows: &[Hard]) -> Markup {
     html! {
         details {
             summary { "What was seen" }
-            ul { @for row in rows.iter().filter(telling) { li { (row.case) " · " (row.solver) " · " (row.standing.word()) ": " (row.detail) } } }
+            ul {
+                @for row in rows.iter().filter(telling) {
+                    li { (row.case) " · " (row.solver) " · " (row.standing.word()) ": " (row.detail) }
+                }
+            }
         }
     }
 }

@@ -53,7 +53,8 @@ pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
 
-/// Writes `index.html`, `results.json`, `study.json`, `points.csv` and `figures/*.svg` into a directory, all of them or none.
+/// Writes `index.html`, `results.json`, `study.json`, `points.csv` and `figures/*.svg` into a directory, all of them or
+/// none.
 ///
 /// # Errors
 /// When the disk refuses or a figure cannot be drawn.

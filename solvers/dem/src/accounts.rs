@@ -1,8 +1,8 @@
 //! The energy budget of a run: what it adds up from step to step.
 //!
-//! Over a step a driven grain or a wall moves by V Δt while the force on it goes from F to F': its work is −½ (F + F')·V Δt, which
-//! is to second order what positions and velocities half a step apart take from it. The work of friction is that of
-//! [`Tangential::rubbed`](crate::contact::tangential::Tangential::rubbed).
+//! Over a step a driven grain or a wall moves by V Δt while the force on it goes from F to F': its work is −½ (F +
+//! F')·V Δt, which is to second order what positions and velocities half a step apart take from it. The work of
+//! friction is that of [`Tangential::rubbed`](crate::contact::tangential::Tangential::rubbed).
 
 use grainbench_scene::budget::Budget;
 use grainbench_scene::effects::Effects;

@@ -53,8 +53,8 @@ pub enum History {
 pub enum WallRolling {
     /// The grain's own, ω.
     Spin,
-    /// The velocity of its surface at the torque arm over the distance of the wall, ω (R − δ/2)/(R − δ): between grains the
-    /// two are the same (LIGGGHTS `rolling_friction epsd`).
+    /// The velocity of its surface at the torque arm over the distance of the wall, ω (R − δ/2)/(R − δ): between grains
+    /// the two are the same (LIGGGHTS `rolling_friction epsd`).
     Surface,
 }
 

@@ -1,8 +1,8 @@
 //! The loops over contacts: pairs of grains, and grains at walls.
 //!
-//! They find what touches, hand it to the chain of stages ([`crate::contact`]) and add the answers to the forces and torques on
-//! the grains. Tangential and rolling springs are stretched by what slipped and rolled in the time `elapsed` (s) since the last
-//! evaluation. With `RECORD` every contact is kept in `seen`.
+//! They find what touches, hand it to the chain of stages ([`crate::contact`]) and add the answers to the forces and
+//! torques on the grains. Tangential and rolling springs are stretched by what slipped and rolled in the time `elapsed`
+//! (s) since the last evaluation. With `RECORD` every contact is kept in `seen`.
 
 use crate::contact::Options;
 use crate::contact::at_wall::AtWall;
@@ -31,7 +31,8 @@ pub(crate) struct Terms<'a> {
     pub(crate) elapsed: f64,
 }
 
-/// Forces and torques at the contacts between grains; with `ACROSS`, of pairs across a periodic face, else of all other pairs.
+/// Forces and torques at the contacts between grains; with `ACROSS`, of pairs across a periodic face, else of all other
+/// pairs.
 pub(crate) fn pairs<S, N, T, R, const RECORD: bool, const ACROSS: bool>(
     terms: Terms<'_>,
     grains: &mut Grains<S, T::Rotation>,

@@ -1,4 +1,5 @@
-//! The grains in memory: arrays in the order of the cells they lie in, so that neighbours in space are neighbours there.
+//! The grains in memory: arrays in the order of the cells they lie in, so that neighbours in space are neighbours
+//! there.
 
 use crate::rotation::Rotation;
 use grainbench_scene::scene::{Grain, Scene};

@@ -1,15 +1,16 @@
 //! Cundall–Strack discrete element method in two and three dimensions.
 //!
-//! Rigid grains overlap a little where they touch. A force–displacement law gives the forces from the overlaps, and Newton's law
-//! the motion from the forces, in a central-difference cycle with velocity v (m/s), position x (m), force F (N) and mass m (kg):
+//! Rigid grains overlap a little where they touch. A force–displacement law gives the forces from the overlaps, and
+//! Newton's law the motion from the forces, in a central-difference cycle with velocity v (m/s), position x (m), force
+//! F (N) and mass m (kg):
 //!
 //! ```text
 //! v(n+½) = v(n−½) + F(n)/m Δt        x(n+1) = x(n) + v(n+½) Δt        F(n+1) from x(n+1), v(n+½)
 //! ```
 //!
 //! Source: P. A. Cundall and O. D. L. Strack, Géotechnique 29 (1979) 47–65. What later codes do differently is named in
-//! [`convention`]. The kernel is compiled once for each combination of effects ([`contact`]) and picked in [`solver`]; one cycle is
-//! written in `simulation`, its motion in `motion` and its loops over contacts in `forces`.
+//! [`convention`]. The kernel is compiled once for each combination of effects ([`contact`]) and picked in [`solver`];
+//! one cycle is written in `simulation`, its motion in `motion` and its loops over contacts in `forces`.
 
 mod accounts;
 mod cells;

@@ -12,8 +12,8 @@ use grainbench_scene::space::Space;
 
 /// Global damping of the equation of motion, or its absence.
 trait Drag {
-    /// `keep`, the part of a velocity that is left after a step, and `gain` (s), what an acceleration is multiplied by; from the
-    /// rate α (1/s) and the time step Δt (s).
+    /// `keep`, the part of a velocity that is left after a step, and `gain` (s), what an acceleration is multiplied by;
+    /// from the rate α (1/s) and the time step Δt (s).
     fn factors(rate: f64, time_step: f64) -> (f64, f64);
     /// `keep · velocity`, without arithmetic where nothing is lost.
     fn keep<V: std::ops::Mul<f64, Output = V>>(velocity: V, keep: f64) -> V;
@@ -58,8 +58,8 @@ pub(crate) struct Motion<S: Space> {
 }
 
 impl<S: Space> Motion<S> {
-    /// Moves every grain over one step, by the forces on it, and sets those to zero. Whether every grain is still within
-    /// `nearby` (m) of its reference position.
+    /// Moves every grain over one step, by the forces on it, and sets those to zero. Whether every grain is still
+    /// within `nearby` (m) of its reference position.
     pub(crate) fn advance<R: Rotation<S>>(
         &self,
         grains: &mut Grains<S, R>,
@@ -106,7 +106,8 @@ impl<S: Space> Motion<S> {
         stayed
     }
 
-    /// Takes the velocities at the start to half a step before it, so that the first cycle ends at half a step after it.
+    /// Takes the velocities at the start to half a step before it, so that the first cycle ends at half a step after
+    /// it.
     pub(crate) fn step_back_half<R: Rotation<S>>(&self, grains: &mut Grains<S, R>) {
         let half = 0.5 * self.time_step;
         let drag = 1.0 + self.global_damping * half;

@@ -1,8 +1,8 @@
 //! The neighbour list: pairs that may touch, with a skin, built anew only when something has moved by half of the skin.
 //!
-//! The list has a row for each grain, and each pair is in it once. The history of a contact stands beside its pair. Pairs
-//! across a periodic face have a list of their own, with their shift, so that the loop over the others knows nothing of
-//! periodic axes.
+//! The list has a row for each grain, and each pair is in it once. The history of a contact stands beside its pair.
+//! Pairs across a periodic face have a list of their own, with their shift, so that the loop over the others knows
+//! nothing of periodic axes.
 
 use crate::cells::Cells;
 use crate::grains::{Grains, Place};

@@ -1,4 +1,5 @@
-//! What a simulation shows at a step: grains with their velocities at the time of the positions, contacts, walls and energies.
+//! What a simulation shows at a step: grains with their velocities at the time of the positions, contacts, walls and
+//! energies.
 
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
@@ -97,8 +98,8 @@ fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     }
 }
 
-/// The angular velocity (rad/s) of a grain on which nothing exerts a torque: only global damping acts, once a step (Cundall &
-/// Strack 1979, eq. 36).
+/// The angular velocity (rad/s) of a grain on which nothing exerts a torque: only global damping acts, once a step
+/// (Cundall & Strack 1979, eq. 36).
 fn free_spin(scene: &Scene, start: Vector3<f64>, time_step: f64, step: u64) -> Vector3<f64> {
     let half = 0.5 * scene.global_damping * time_step;
     start * ((1.0 - half) / (1.0 + half)).powf(step as f64)

@@ -1,7 +1,7 @@
 //! The rotation of a grain: angular velocity ω (rad/s), angle θ (rad) and moment of inertia I (kg m²), or none of them.
 //!
-//! Where no contact has a tangential force nothing exerts a torque: then [`Rigid`] stands in for [`Rotating`], takes no memory and
-//! is not computed with.
+//! Where no contact has a tangential force nothing exerts a torque: then [`Rigid`] stands in for [`Rotating`], takes no
+//! memory and is not computed with.
 
 use grainbench_scene::space::Space;
 use serde::de::DeserializeOwned;
@@ -13,13 +13,15 @@ pub trait Rotation<S: Space>: Copy + Debug + Send + Serialize + DeserializeOwned
     /// Torque M on a grain (N m), or its absence.
     type Torque: Copy + Debug + Default + Send + Serialize + DeserializeOwned;
 
-    /// The rotation at the start, from the angular velocity ω (rad/s) and the inverse of the moment of inertia, 1/I (1/(kg m²)).
+    /// The rotation at the start, from the angular velocity ω (rad/s) and the inverse of the moment of inertia, 1/I
+    /// (1/(kg m²)).
     fn new(spin: S::Spin, inverse_inertia: f64) -> Self;
     /// Angular velocity ω (rad/s); `None` when grains do not rotate.
     fn spin(&self) -> Option<S::Spin>;
     /// Angle θ about the z axis by which the grain has turned since the start (rad); zero in three dimensions.
     fn angle(&self) -> f64;
-    /// Takes one time step Δt (s): ω ← keep·ω + gain·M/I, then θ ← θ + ω Δt. Without global damping `keep` is 1 and `gain` is Δt.
+    /// Takes one time step Δt (s): ω ← keep·ω + gain·M/I, then θ ← θ + ω Δt. Without global damping `keep` is 1 and
+    /// `gain` is Δt.
     fn advance(&mut self, torque: Self::Torque, keep: f64, gain: f64, time_step: f64);
     /// Moment of inertia I (kg m²); infinite when grains do not rotate.
     fn inertia(&self) -> f64;

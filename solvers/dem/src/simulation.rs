@@ -1,7 +1,7 @@
 //! One simulation: the calculation cycle of Cundall & Strack, compiled for the effects of its scene.
 //!
-//! A cycle moves the grains by the forces of the last one ([`crate::motion`]), moves the walls, lists the neighbours anew if it
-//! must ([`crate::neighbours`]), and finds the forces for the next ([`crate::forces`]).
+//! A cycle moves the grains by the forces of the last one ([`crate::motion`]), moves the walls, lists the neighbours
+//! anew if it must ([`crate::neighbours`]), and finds the forces for the next ([`crate::forces`]).
 
 use crate::accounts::{Accounts, Step};
 use crate::contact::Options;
@@ -25,8 +25,8 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 
-/// Skin of the neighbour list as a fraction of the mean radius: a tenth of a diameter, as in the stored LAMMPS run. A wider skin
-/// tests more pairs in vain and builds fewer lists anew.
+/// Skin of the neighbour list as a fraction of the mean radius: a tenth of a diameter, as in the stored LAMMPS run. A
+/// wider skin tests more pairs in vain and builds fewer lists anew.
 const SKIN: f64 = 0.2;
 
 /// A simulation in a space, with a normal, a tangential and a rolling stage.
@@ -112,7 +112,8 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         if steps > 0 { self.cycle::<true>() } else { Ok(()) }
     }
 
-    /// One cycle: motion by the forces of the last, walls, and the forces for the next. With `RECORD` its contacts are kept.
+    /// One cycle: motion by the forces of the last, walls, and the forces for the next. With `RECORD` its contacts are
+    /// kept.
     fn cycle<const RECORD: bool>(&mut self) -> Result<(), Box<Broken>> {
         self.shield_driven();
         let half_skin = 0.5 * self.neighbours.skin;
@@ -160,8 +161,8 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         }
     }
 
-    /// Gives driven grains the velocity they are driven with and no spin, and takes back what gravity and global damping have
-    /// changed in their positions in the time `drifted` (s).
+    /// Gives driven grains the velocity they are driven with and no spin, and takes back what gravity and global
+    /// damping have changed in their positions in the time `drifted` (s).
     fn drive(&mut self, drifted: f64) {
         let grains = &mut self.grains;
         for driven in &self.scene.driven {
@@ -234,7 +235,8 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         Ok(())
     }
 
-    /// Refuses a state in which a position or velocity is not finite, or a grain moves by more than its radius in a step.
+    /// Refuses a state in which a position or velocity is not finite, or a grain moves by more than its radius in a
+    /// step.
     fn refuse_broken_state(&self) -> Result<(), Box<Broken>> {
         for (slot, (place, movement)) in self.grains.place.iter().zip(&self.grains.movement).enumerate() {
             let position = S::embed(place.position);

@@ -128,8 +128,8 @@ impl Dem {
         Ok(())
     }
 
-    /// Refuses a time step (s) at which springs alone are stable and dashpots are not. A dashpot near or above critical damping
-    /// then brings energy in, and the run would go on as if nothing were wrong.
+    /// Refuses a time step (s) at which springs alone are stable and dashpots are not. A dashpot near or above critical
+    /// damping then brings energy in, and the run would go on as if nothing were wrong.
     fn refuse_lagging_dashpots(&self, scene: &Scene, time_step: f64) -> Result<(), RunError> {
         let (damped, undamped) = damped_step(scene);
         if time_step > damped && time_step <= undamped {

@@ -4,9 +4,9 @@ use grainbench_scene::scene::{ContactLaw, Dimension, Scene};
 
 /// A fraction of the critical step `2√(m/k_n)` at which no packing of equal grains is unstable.
 ///
-/// Bound on the largest frequency of a grain with `z` contacts between neighbours that move against it:
-/// ω² ≤ z (k_n/m) (1 + κ(1 + mR²/I)), κ = k_s/k_n, hence f = 2/(ω · 2√(m/k_n)) = 1/√(z(1 + κ(1 + mR²/I))), with z = 6 for
-/// discs and 12 for spheres. For the square lattice (z = 4) it is exact at κ = 0 and κ = 1.
+/// Bound on the largest frequency of a grain with `z` contacts between neighbours that move against it: ω² ≤ z (k_n/m)
+/// (1 + κ(1 + mR²/I)), κ = k_s/k_n, hence f = 2/(ω · 2√(m/k_n)) = 1/√(z(1 + κ(1 + mR²/I))), with z = 6 for discs and 12
+/// for spheres. For the square lattice (z = 4) it is exact at κ = 0 and κ = 1.
 #[must_use]
 pub fn stable_fraction(scene: &Scene) -> f64 {
     let contacts = match scene.dimension {
@@ -21,8 +21,8 @@ pub fn stable_fraction(scene: &Scene) -> f64 {
     1.0 / (contacts * (1.0 + worst * (1.0 + 1.0 / scene.grain_shape.inertia_factor()))).sqrt()
 }
 
-/// The largest step (s) at which a dashpot at a single contact is stable, and the largest without the dashpot, of the contact
-/// that bears least; both infinite where nothing is damped.
+/// The largest step (s) at which a dashpot at a single contact is stable, and the largest without the dashpot, of the
+/// contact that bears least; both infinite where nothing is damped.
 ///
 /// The dashpot feels the velocity of half a step before: λ² − (2 − θ² − 2ζθ)λ + 1 − 2ζθ = 0 with θ = ωΔt, ω² = k/m* and
 /// ζ = c/(2√(k m*)) reaches λ = −1 at θ = 2(√(1 + ζ²) − ζ), half of the undamped limit 2 already at ζ = 3/4.

@@ -12,12 +12,12 @@ use grainbench_scene::source::SceneSource;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Kernels compiled today, in two and three dimensions together: 37 each. Five normal stages stand without friction (5). With it
-/// the two undamped ones meet 2 tangential and 2 rolling stages (8), and the three damped ones 4 tangential and 2 rolling
-/// stages (24).
+/// Kernels compiled today, in two and three dimensions together: 37 each. Five normal stages stand without friction
+/// (5). With it the two undamped ones meet 2 tangential and 2 rolling stages (8), and the three damped ones 4
+/// tangential and 2 rolling stages (24).
 ///
-/// This is the bound until the loops over contacts are rewritten for speed: a new effect or option that multiplies kernels is
-/// seen here, and so is one that saves some.
+/// This is the bound until the loops over contacts are rewritten for speed: a new effect or option that multiplies
+/// kernels is seen here, and so is one that saves some.
 const KERNELS: usize = 74;
 
 /// A contact law in which every effect is on; Hertz's in place of linear springs where that is asked for.

@@ -133,7 +133,8 @@ fn a_periodic_face_is_not_felt() {
     }
 }
 
-/// With cohesion a disc rolls without slip iff m g sin θ/3 ≤ μ m g cos θ + c; else it slips at g sin θ − μ g cos θ − c/m.
+/// With cohesion a disc rolls without slip iff m g sin θ/3 ≤ μ m g cos θ + c; else it slips at g sin θ − μ g cos θ −
+/// c/m.
 #[test]
 fn cohesion_carries_shear_without_load() {
     let mass = 1000.0 * std::f64::consts::PI * 0.01;
@@ -171,8 +172,8 @@ fn a_grain_in_the_plane_is_what_the_scene_says() {
     }
 }
 
-/// Two driven discs shear a third one between them, with friction: what moves as it is told does, momentum is what was given,
-/// and the energy that was brought in is stored or rubbed away, to the order of the method.
+/// Two driven discs shear a third one between them, with friction: what moves as it is told does, momentum is what was
+/// given, and the energy that was brought in is stored or rubbed away, to the order of the method.
 #[test]
 fn driven_grains_give_what_they_say() {
     let friction = "contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6 }";
@@ -185,7 +186,8 @@ fn driven_grains_give_what_they_say() {
          domain = { low = [-0.1, -1.0], high = [0.3, 1.0] }\n\
          [grains.row]\nmaterial = 'm'\nradius = 0.1\nlattice = { origin = [-0.1, 0.0], spacing = [0.199, 0.2], count = [3, 1] }\n\
          [driven.left]\nface = 'x-low'\n[driven.right]\nface = 'x-high'\nvelocity = [0.0, 0.2]\n\
-         [probes]\nmoved.grain = 'row.3'\nstill.grain = 'row.1'\nfree.grain = 'row.2'\nbudget.budget = true\nright.driven = 'right'\n"
+         [probes]\nmoved.grain = 'row.3'\nstill.grain = 'row.1'\nfree.grain = 'row.2'\n\
+         budget.budget = true\nright.driven = 'right'\n"
     );
     let source = SceneSource::from_text("test", Path::new(""), &text);
     let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();

@@ -1,8 +1,8 @@
 //! Points of a second: `cargo bench -p grainbench-mpm`.
 //!
-//! `points` counts material points times steps: an elastic block of 60,000 points that vibrates, in hat functions with FLIP and in
-//! the best setting, and 36 discs with friction that are squeezed, in the best setting. `grains` does so for 12, 120 and 1200 discs of
-//! the same resolution, each of which touches four others. The set-up is not counted.
+//! `points` counts material points times steps: an elastic block of 60,000 points that vibrates, in hat functions with
+//! FLIP and in the best setting, and 36 discs with friction that are squeezed, in the best setting. `grains` does so
+//! for 12, 120 and 1200 discs of the same resolution, each of which touches four others. The set-up is not counted.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use grainbench_mpm::options::{Contact, Setting};
@@ -29,7 +29,8 @@ fn block() -> Scene {
     )
 }
 
-/// Discs in a square lattice that overlap a little, periodic along both axes: each touches four others, however many there are.
+/// Discs in a square lattice that overlap a little, periodic along both axes: each touches four others, however many
+/// there are.
 fn grains([columns, rows]: [u32; 2]) -> Scene {
     let end = |count: u32| f64::from(2 * count) - 1.0;
     scene(&format!(
@@ -37,7 +38,8 @@ fn grains([columns, rows]: [u32; 2]) -> Scene {
          domain = {{ low = [-1.0, -1.0], high = [{:?}, {:?}], periodic = [true, true] }}\n\
          materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
          contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.5 }}\n\
-         grains.d = {{ material = 'm', radius = 1.005, lattice = {{ origin = [0.0, 0.0], spacing = [2.0, 2.0], count = [{columns}, {rows}] }} }}\n",
+         grains.d = {{ material = 'm', radius = 1.005, \
+         lattice = {{ origin = [0.0, 0.0], spacing = [2.0, 2.0], count = [{columns}, {rows}] }} }}\n",
         end(columns),
         end(rows)
     ))
@@ -47,7 +49,8 @@ fn grains([columns, rows]: [u32; 2]) -> Scene {
 fn discs() -> Scene {
     let wall = |name: &str, point: &str, normal: &str, velocity: &str| {
         format!(
-            "[walls.{name}]\nmaterial = 'm'\nplane = {{ point = [{point}], normal = [{normal}] }}\nmotion = [{{ velocity = [{velocity}] }}]\n"
+            "[walls.{name}]\nmaterial = 'm'\nplane = {{ point = [{point}], normal = [{normal}] }}\n\
+             motion = [{{ velocity = [{velocity}] }}]\n"
         )
     };
     let walls = [
@@ -60,7 +63,8 @@ fn discs() -> Scene {
         "duration = 6.0\noutput.every = 6.0\n\
          materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
          contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.5 }}\n\
-         grains.d = {{ material = 'm', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [2.0, 2.0], count = [6, 6] }} }}\n\
+         grains.d = {{ material = 'm', radius = 1.0, \
+         lattice = {{ origin = [0.0, 0.0], spacing = [2.0, 2.0], count = [6, 6] }} }}\n\
          {}[probes]\nall.system = true\n",
         walls.concat()
     ))

@@ -1,23 +1,25 @@
 //! Where energy comes from and goes, added up from step to step for runs that ask for it.
 //!
 //! - work: impulses of driven grains and walls, times their velocities;
-//! - plastic: ∫ q dε_p V over points; friction: mean force of the spring times what its end slid, or the impulse along the
-//!   surface times the slip at nodes before the step;
-//! - contact: what contacts take from the motion, and neither store in springs nor lose to friction. Springs take from two
-//!   surfaces their force times the way that these go against each other, contact by contact for the velocities before the step;
-//!   for those after it by their forces on the nodes, which is the same: a surface follows its nodes with the weights by which a
-//!   force on it reaches them. Conditions at nodes take their impulses times the velocity of the nodes. Surfaces follow the mean of
-//!   the velocities that points bring to the nodes before and after the step. (The velocity that a force gives to a node beside a
-//!   surface, which may have hardly any mass, is felt by nothing.)
-//! - transfer: the kinetic energy that nodes gain in a step and points do not when they take it over; less the work that impulses do
-//!   on that part of the nodes' velocity which points do not bring back, and which neither stresses nor surfaces follow (points that
-//!   keep their own velocity and bring it back lose nothing in sum: the two are equal); and half of what stresses take from the
-//!   velocities that they follow, less what the same stresses take from the nodes once points have moved on, across cells.
+//! - plastic: ∫ q dε_p V over points; friction: mean force of the spring times what its end slid, or the impulse along
+//!   the surface times the slip at nodes before the step;
+//! - contact: what contacts take from the motion, and neither store in springs nor lose to friction. Springs take from
+//!   two surfaces their force times the way that these go against each other, contact by contact for the velocities
+//!   before the step; for those after it by their forces on the nodes, which is the same: a surface follows its nodes
+//!   with the weights by which a force on it reaches them. Conditions at nodes take their impulses times the velocity
+//!   of the nodes. Surfaces follow the mean of the velocities that points bring to the nodes before and after the step.
+//!   (The velocity that a force gives to a node beside a surface, which may have hardly any mass, is felt by nothing.)
+//! - transfer: the kinetic energy that nodes gain in a step and points do not when they take it over; less the work
+//!   that impulses do on that part of the nodes' velocity which points do not bring back, and which neither stresses
+//!   nor surfaces follow (points that keep their own velocity and bring it back lose nothing in sum: the two are
+//!   equal); and half of what stresses take from the velocities that they follow, less what the same stresses take from
+//!   the nodes once points have moved on, across cells.
 //!
-//! No entry is what the others leave. That they add up to the work of what drives grains is a test of it all: that impulses are
-//! equal and opposite, that forces on nodes take from the motion what stresses take in points, and that stress, plastic work and
-//! elastic energy go together. (Where stresses come first, what crossing cells takes is left out.) Energy is counted in whole steps: kinetic energy belongs to the
-//! velocities of points, half a step before their positions, and springs are those of the last forces.
+//! No entry is what the others leave. That they add up to the work of what drives grains is a test of it all: that
+//! impulses are equal and opposite, that forces on nodes take from the motion what stresses take in points, and that
+//! stress, plastic work and elastic energy go together. (Where stresses come first, what crossing cells takes is left
+//! out.) Energy is counted in whole steps: kinetic energy belongs to the velocities of points, half a step before their
+//! positions, and springs are those of the last forces.
 
 use crate::boundary::Boundary;
 use crate::damping::Damping;

@@ -1,7 +1,7 @@
 //! What a simulation must remember between two steps, to go on to the same bits.
 //!
-//! Points in the order that they are in, since sums at nodes depend on it in their last bit; where tracers are and how far their
-//! springs are stretched. Nodes, windows, pairs and planes are found anew in each step.
+//! Points in the order that they are in, since sums at nodes depend on it in their last bit; where tracers are and how
+//! far their springs are stretched. Nodes, windows, pairs and planes are found anew in each step.
 
 use crate::accounts::{Accounts, Sums};
 use crate::contact::friction::Friction;

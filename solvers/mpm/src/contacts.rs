@@ -66,7 +66,8 @@ impl<S: Space> Contacts<S> {
         contact != Contact::Penalty && (several || !boundary.walls.is_empty())
     }
 
-    /// Surfaces that nothing can touch, or that contact does not ask for, cost nothing: they are needed for pressing only.
+    /// Surfaces that nothing can touch, or that contact does not ask for, cost nothing: they are needed for pressing
+    /// only.
     pub(crate) fn drop_idle_surfaces(&mut self, contact: Contact, state: &mut State<S>, boundary: &Boundary<S>) {
         if Self::can_touch(state, boundary) && matches!(contact, Contact::Penalty | Contact::Gap) {
             return;

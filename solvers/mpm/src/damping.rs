@@ -2,8 +2,8 @@
 
 /// What damping makes of a step: dv/dt = a − αv by the trapezoidal rule, v' = keep v + gain a.
 ///
-/// It acts on the velocity and spin of every material point, as −αρv says, and not only on what nodes see of them: motion of points
-/// against their neighbours that the grid does not show would go on for ever otherwise.
+/// It acts on the velocity and spin of every material point, as −αρv says, and not only on what nodes see of them:
+/// motion of points against their neighbours that the grid does not show would go on for ever otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Damping {
     /// (1 − αΔt/2)/(1 + αΔt/2).

@@ -1,7 +1,7 @@
 //! Grains that are moved as walls are: every node that their points reach has their velocity.
 //!
-//! Where each body has a field of its own, those are the nodes of the body; where all share one, what else is at such a node
-//! is carried along.
+//! Where each body has a field of its own, those are the nodes of the body; where all share one, what else is at such a
+//! node is carried along.
 
 use crate::basis::with_basis;
 use crate::bodies::Body;
@@ -96,7 +96,8 @@ impl<S: Space> Driven<S> {
         }
     }
 
-    /// Points of driven bodies move as they do. Where others share their nodes, they had taken on a part of what those gave.
+    /// Points of driven bodies move as they do. Where others share their nodes, they had taken on a part of what those
+    /// gave.
     pub(crate) fn carry(&mut self, bodies: &[Body], points: &mut Points<S>, time_step: f64) {
         for body in bodies {
             let Some(group) = body.driven else { continue };

@@ -1,13 +1,15 @@
 //! From nodes to points (G2P): velocities and the way that they go.
 //!
-//! Over the nodes i that reach a point p, with N_i their basis functions, v_i and Δv_i their velocities after the step and the change of
-//! these in it (m/s):
+//! Over the nodes i that reach a point p, with N_i their basis functions, v_i and Δv_i their velocities after the step
+//! and the change of these in it (m/s):
 //!
-//! - v_p ← keep v_p + Σ N_i(x_p) Δv_i, where points keep their velocity (Brackbill & Ruppel 1986), or Σ N_i(x_p) v_i; keep is what
-//!   damping leaves ([`Damping`]);
+//! - v_p ← keep v_p + Σ N_i(x_p) Δv_i, where points keep their velocity (Brackbill & Ruppel 1986), or Σ N_i(x_p) v_i;
+//!   keep is what damping leaves ([`Damping`]);
 //! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m);
-//! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), where points carry an affine part (1/s) (Jiang et al. 2015);
-//! - and once more to the nodes, for MUSL, p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with these (Sulsky, Zhou & Schreyer 1995).
+//! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), where points carry an affine part (1/s)
+//!   (Jiang et al. 2015);
+//! - and once more to the nodes, for MUSL, p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with these (Sulsky, Zhou &
+//!   Schreyer 1995).
 
 use crate::basis::{Basis, with_basis};
 use crate::damping::Damping;

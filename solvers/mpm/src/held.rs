@@ -1,5 +1,5 @@
-//! Sides of boxes that are held: the body goes on as its mirror image beyond the side, so that the side stays where it is
-//! to the order of the basis. A side stands on the nodes nearest to it.
+//! Sides of boxes that are held: the body goes on as its mirror image beyond the side, so that the side stays where it
+//! is to the order of the basis. A side stands on the nodes nearest to it.
 
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Window};

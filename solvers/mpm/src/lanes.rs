@@ -1,11 +1,11 @@
-//! Four numbers at a time. Loops over points are written once, for a number; points that reach the same nodes are taken four by
-//! four, with vector instructions where the processor has them.
+//! Four numbers at a time. Loops over points are written once, for a number; points that reach the same nodes are taken
+//! four by four, with vector instructions where the processor has them.
 //!
-//! Every operation is that of each lane by itself, rounded once, and sums over lanes have one order: the same bits on all
-//! processors. So nothing is fused, and no loop is left to the compiler to reorder.
+//! Every operation is that of each lane by itself, rounded once, and sums over lanes have one order: the same bits on
+//! all processors. So nothing is fused, and no loop is left to the compiler to reorder.
 //!
-//! Whatever computes with lanes is inlined into the loop that is compiled for the processor. Closures may not be, and then
-//! every operation is a call: there are none, but those that only look something up.
+//! Whatever computes with lanes is inlined into the loop that is compiled for the processor. Closures may not be, and
+//! then every operation is a call: there are none, but those that only look something up.
 
 #[cfg(target_arch = "x86_64")]
 mod avx;

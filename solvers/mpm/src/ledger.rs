@@ -12,7 +12,8 @@ pub(crate) struct Tally {
     pub(crate) friction: f64,
     /// Work of walls (J).
     pub(crate) walls: f64,
-    /// What springs take from the motion of surfaces, by half of their velocities before the step and all of the walls' (J).
+    /// What springs take from the motion of surfaces, by half of their velocities before the step and all of the walls'
+    /// (J).
     pub(crate) taken: f64,
 }
 

@@ -8,14 +8,15 @@
 //! 3. nodes take the step, and points take velocity and way from them;
 //! 4. velocity gradients give deformation and stress (MUSL: from velocities that the points bring to the nodes anew).
 //!
-//! Each part of a simulation has its own type, and each stage of the cycle (`simulation`) takes the parts that it needs: bodies and points
-//! (`state`), the grid (`grid`, `nodes`), what moves as it is told (`boundary`), surfaces and contact (`contacts`), the energy budget
-//! (`accounts`). The sums over points and nodes stand in `scatter` and `gather`.
+//! Each part of a simulation has its own type, and each stage of the cycle (`simulation`) takes the parts that it
+//! needs: bodies and points (`state`), the grid (`grid`, `nodes`), what moves as it is told (`boundary`), surfaces and
+//! contact (`contacts`), the energy budget (`accounts`). The sums over points and nodes stand in `scatter` and
+//! `gather`.
 //!
-//! Type parameters stand for space, basis, transfer and material, each only in the loops over points that need it, and an
-//! enum chooses between the stages; so kernels add and do not multiply. What a scene does not call for is absent by the same means:
-//! friction of springs, plastic strain and the energy budget are [`off::Off`] in loops that do without, and no list is kept for them, nor
-//! for the affine part of velocities that no transfer carries.
+//! Type parameters stand for space, basis, transfer and material, each only in the loops over points that need it, and
+//! an enum chooses between the stages; so kernels add and do not multiply. What a scene does not call for is absent by
+//! the same means: friction of springs, plastic strain and the energy budget are [`off::Off`] in loops that do without,
+//! and no list is kept for them, nor for the affine part of velocities that no transfer carries.
 
 mod accounts;
 mod basis;

@@ -81,8 +81,8 @@ impl<S: Space> Grid<S> {
         Ok(())
     }
 
-    /// Momenta and forces of the nodes become velocities after the step, v ← keep v + gain (f/m + g), beside those before it; how many
-    /// nodes have mass. See [`Damping`] for keep and gain.
+    /// Momenta and forces of the nodes become velocities after the step, v ← keep v + gain (f/m + g), beside those
+    /// before it; how many nodes have mass. See [`Damping`] for keep and gain.
     pub(crate) fn step(&mut self, gravity: S::Vector, Damping { keep, gain }: Damping) -> u64 {
         let mut stepped = 0;
         for node in &mut self.nodes[..self.used] {

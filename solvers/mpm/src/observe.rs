@@ -148,7 +148,8 @@ impl<S: Space> Simulation<S> {
             (inertia.try_inverse().map_or_else(Vector3::zeros, |inverse| inverse * angular), inertia.trace() / 3.0)
         };
         let angle = if S::DIMENSION == 2 {
-            // Of the turns that the deformation may have made, the one nearest to that of the last look and the spin since.
+            // Of the turns that the deformation may have made, the one nearest to that of the last look and the spin
+            // since.
             let expected =
                 self.state.bodies[body].angle + spin.z * self.scheme.time_step * (self.step - self.looked) as f64;
             nearest_turn(rotation_of(mean), expected)

@@ -50,17 +50,17 @@ pub enum StressUpdate {
 pub enum Contact {
     /// One velocity field for all bodies, which walls carry along.
     NoSlip,
-    /// Nodes at which bodies approach (Bardenhagen, Brackbill & Sulsky 2000): released on departure, each body along its
-    /// own normal, from a density smoothed as in their eq. 24.
+    /// Nodes at which bodies approach (Bardenhagen, Brackbill & Sulsky 2000): released on departure, each body along
+    /// its own normal, from a density smoothed as in their eq. 24.
     Kinematic,
     /// Nodes at which the normal traction is compressive (Bardenhagen et al. 2001), each body along its own normal; the
     /// impulse is scaled to keep cells from collapsing (eq. 22, whose `max` must read `min`).
     Traction,
-    /// Nodes at which surfaces have met, found from tracers on them: bodies pair by pair along a common normal, while they
-    /// approach or press.
+    /// Nodes at which surfaces have met, found from tracers on them: bodies pair by pair along a common normal, while
+    /// they approach or press.
     Gap,
-    /// Springs between tracers on the surfaces, with a Coulomb-limited spring along them, that act where surfaces meet and
-    /// not at nodes.
+    /// Springs between tracers on the surfaces, with a Coulomb-limited spring along them, that act where surfaces meet
+    /// and not at nodes.
     Penalty,
 }
 
@@ -84,10 +84,10 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// One setting for all scenes: the best known. With hat functions, which cost half, rolling and impacts are as good, but
-    /// points with a spin become unstable on them after some thousand steps. Softer springs show contacts of a quarter of a
-    /// cell more than a tenth too soft; stiffer ones, or fewer tracers, slow discs and spheres that roll at two to four
-    /// cells a radius.
+    /// One setting for all scenes: the best known. With hat functions, which cost half, rolling and impacts are as
+    /// good, but points with a spin become unstable on them after some thousand steps. Softer springs show contacts of
+    /// a quarter of a cell more than a tenth too soft; stiffer ones, or fewer tracers, slow discs and spheres that roll
+    /// at two to four cells a radius.
     pub const BEST: Self = Self {
         basis: Basis::Quadratic,
         transfer: Transfer::Spin,

@@ -1,4 +1,5 @@
-//! The nodes that reach a run of points, row by row: where their field keeps them, or copied where a period cuts through them.
+//! The nodes that reach a run of points, row by row: where their field keeps them, or copied where a period cuts
+//! through them.
 
 use crate::basis::Basis;
 use crate::grid::Window;

@@ -134,7 +134,8 @@ impl<S: Space> Points<S> {
         .all(|&length| length == count)
     }
 
-    /// Puts the points of a body in the order of the places that `place` says they are at, of equal ones in the order they have.
+    /// Puts the points of a body in the order of the places that `place` says they are at, of equal ones in the order
+    /// they have.
     pub(crate) fn sort(&mut self, range: Range<usize>, place: impl Fn(S::Vector) -> usize) {
         let places: Vec<usize> = self.position[range.clone()].iter().map(|&position| place(position)).collect();
         let low = places.iter().copied().min().unwrap_or(0);

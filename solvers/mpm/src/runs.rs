@@ -1,5 +1,5 @@
-//! Points that follow each other and reach the same nodes. Kept in the order of their cells most do, and loops over points take them
-//! four by four, each four with one set of nodes.
+//! Points that follow each other and reach the same nodes. Kept in the order of their cells most do, and loops over
+//! points take them four by four, each four with one set of nodes.
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Stencil};
@@ -104,7 +104,8 @@ pub(crate) struct Batch {
     pub(crate) count: usize,
 }
 
-/// The first of some positions with those after it, up to four in all, that reach the same nodes; and the first of these nodes.
+/// The first of some positions with those after it, up to four in all, that reach the same nodes; and the first of
+/// these nodes.
 #[inline(always)]
 pub(crate) fn first_batch<S: Space, B: Basis>(
     lattice: &Lattice,

@@ -3,10 +3,10 @@
 //! Over the points p of a body, at each of its nodes i, with N_i the basis function of the node:
 //!
 //! - m_i = Σ N_i(x_p) m_p, mass (kg);
-//! - p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)), momentum (kg m/s), with x positions (m), v velocities (m/s) and A the affine part of
-//!   the velocity (1/s) where the transfer carries one (Jiang et al. 2015);
-//! - f_i = −Σ V_p σ_p ∇N_i(x_p), internal force (N), with V volumes (m³; m² in the plane) and σ Cauchy stresses (Pa) (Sulsky, Chen &
-//!   Schreyer 1994).
+//! - p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)), momentum (kg m/s), with x positions (m), v velocities (m/s) and A
+//!   the affine part of the velocity (1/s) where the transfer carries one (Jiang et al. 2015);
+//! - f_i = −Σ V_p σ_p ∇N_i(x_p), internal force (N), with V volumes (m³; m² in the plane) and σ Cauchy stresses (Pa)
+//!   (Sulsky, Chen & Schreyer 1994).
 
 use crate::basis::{Basis, with_basis};
 use crate::contact::grip;
@@ -24,8 +24,8 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 
-/// Points bring mass, momentum and internal force to the nodes, body by body: what a body has is in the cache only while it is
-/// worked on.
+/// Points bring mass, momentum and internal force to the nodes, body by body: what a body has is in the cache only
+/// while it is worked on.
 pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &mut State<S>, grid: &mut Grid<S>) {
     let Grid { lattice, nodes, most, .. } = grid;
     let Scheme { setting, processor, .. } = scheme;
@@ -52,8 +52,8 @@ pub(crate) fn weighted<B: Basis, N: Number>(of: [N; 3], weights: [N; 3]) -> N {
     if B::WIDTH == 3 { sum + of[2] * weights[2] } else { sum }
 }
 
-/// The velocity that points show to the nodes of a stencil, v + A r with r from the point to the node: at the first node, and what
-/// is added from one node to the next along each axis.
+/// The velocity that points show to the nodes of a stencil, v + A r with r from the point to the node: at the first
+/// node, and what is added from one node to the next along each axis.
 pub(crate) struct Shown<N> {
     first: [N; 3],
     next: [[N; 3]; 3],

@@ -1,8 +1,8 @@
 //! One simulation: the cycle points → nodes → points.
 //!
-//! Each stage is a function of the parts that it needs: the state of bodies and points ([`State`]), the grid ([`Grid`]), what bounds
-//! bodies ([`Boundary`]), contact ([`Contacts`]) and the energy budget ([`Accounts`]). The sums over points and nodes stand in
-//! [`crate::scatter`] and [`crate::gather`].
+//! Each stage is a function of the parts that it needs: the state of bodies and points ([`State`]), the grid
+//! ([`Grid`]), what bounds bodies ([`Boundary`]), contact ([`Contacts`]) and the energy budget ([`Accounts`]). The sums
+//! over points and nodes stand in [`crate::scatter`] and [`crate::gather`].
 
 use crate::accounts::Accounts;
 use crate::basis::with_basis;
@@ -223,7 +223,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Momenta and forces of the nodes become velocities after the step that boundary and contacts allow, and their change.
+    /// Momenta and forces of the nodes become velocities after the step that boundary and contacts allow, and their
+    /// change.
     fn step_nodes(&mut self) {
         let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, cost, .. } = self;
         let damping = Damping::over(surroundings.damping, scheme.time_step);

@@ -40,8 +40,8 @@ impl<S: Space> Simulation<S> {
         state.find_all_bounds(&contacts.tracers.position);
     }
 
-    /// Gives every point the velocity that the scene asks for, half a step before the clock starts, so that every step is
-    /// alike: what balances the bodies at rest does so then too, and gravity beyond that acts from the start.
+    /// Gives every point the velocity that the scene asks for, half a step before the clock starts, so that every step
+    /// is alike: what balances the bodies at rest does so then too, and gravity beyond that acts from the start.
     pub(crate) fn set_moving(&mut self) {
         let half = 0.5 * self.scheme.time_step;
         let balanced = self.scene.start.settle.map_or_else(Vector3::zeros, |settle| settle.gravity);

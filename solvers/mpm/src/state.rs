@@ -20,7 +20,8 @@ const DISORDER: usize = 8;
 pub(crate) struct State<S: Space> {
     pub(crate) bodies: Vec<Body>,
     pub(crate) points: Points<S>,
-    /// Velocities of the points a step before those of the last look (m/s): velocities are half a step behind positions.
+    /// Velocities of the points a step before those of the last look (m/s): velocities are half a step behind
+    /// positions.
     pub(crate) before: Vec<S::Vector>,
     /// Runs of points in the step under way.
     pub(crate) runs: Vec<Run>,
@@ -38,8 +39,8 @@ impl<S: Space> State<S> {
         self.points.bytes() + size_of_val(&*self.before) + size_of_val(&*self.runs) + size_of_val(&*self.bodies)
     }
 
-    /// Finds the points of a body that reach the same nodes. Where they no longer follow each other they are put in the order of
-    /// their cells.
+    /// Finds the points of a body that reach the same nodes. Where they no longer follow each other they are put in the
+    /// order of their cells.
     pub(crate) fn find_runs(&mut self, place: usize, basis: Basis, lattice: &Lattice) {
         let Self { bodies, points, runs, .. } = self;
         let part = &mut bodies[place].part;
@@ -54,7 +55,8 @@ impl<S: Space> State<S> {
         });
     }
 
-    /// Puts the points of a body where they are next; the square of the farthest way that one goes (m²), not a number if one is lost.
+    /// Puts the points of a body where they are next; the square of the farthest way that one goes (m²), not a number
+    /// if one is lost.
     pub(crate) fn move_points(&mut self, place: usize) -> f64 {
         let Self { bodies, points, .. } = self;
         let range = bodies[place].part.points.clone();

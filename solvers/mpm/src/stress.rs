@@ -36,7 +36,8 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
     full
 }
 
-/// Velocity gradients, then deformation and stress of the points of a body; what they tell the budget is added to `flow` if it `counts`.
+/// Velocity gradients, then deformation and stress of the points of a body; what they tell the budget is added to
+/// `flow` if it `counts`.
 ///
 /// # Errors
 /// With the first point that broke.
@@ -90,12 +91,12 @@ pub(crate) fn follow<S: Space>(
     }
 }
 
-/// F ← (1 + Δt ∇v) F, volume and stress of every point of a range, of which `gradients` are the velocity gradients (1/s).
-/// With `COUNT` adds to `flow` what the stresses after the step take on the strain of it,
-/// and the work of plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume.
+/// F ← (1 + Δt ∇v) F, volume and stress of every point of a range, of which `gradients` are the velocity gradients
+/// (1/s). With `COUNT` adds to `flow` what the stresses after the step take on the strain of it, and the work of
+/// plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume.
 ///
-/// Where points carry `spins` of their own, one that flows takes on that of the velocities around it: what it shared its spin with has
-/// moved on, and spins that nothing answers to grow until a grain of a few cells flies apart.
+/// Where points carry `spins` of their own, one that flows takes on that of the velocities around it: what it shared
+/// its spin with has moved on, and spins that nothing answers to grow until a grain of a few cells flies apart.
 struct Update<'a, S: Space, L, const COUNT: bool> {
     law: L,
     range: Range<usize>,

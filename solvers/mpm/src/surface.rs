@@ -151,8 +151,8 @@ impl<S: Space> Tracers<S> {
         near.extend(chunks.clone().filter(is_near));
     }
 
-    /// The surface made of some runs where a position on another, of which `facing` points out (of any length), has gone through it; none
-    /// when it has not, does not face it, or is farther than `reach` (m) from it.
+    /// The surface made of some runs where a position on another, of which `facing` points out (of any length), has
+    /// gone through it; none when it has not, does not face it, or is farther than `reach` (m) from it.
     #[inline(always)]
     pub(crate) fn gone_through(
         &self,
@@ -189,7 +189,8 @@ impl<S: Space> Tracers<S> {
         (faces && near.gap <= 0.0 && -near.gap < reach).then_some(near)
     }
 
-    /// Whether a position is above the surface for sure: higher over the tracer closest to it than the next one is away.
+    /// Whether a position is above the surface for sure: higher over the tracer closest to it than the next one is
+    /// away.
     #[inline(always)]
     fn is_above(&self, closest: usize, position: S::Vector) -> bool {
         let area = self.area[closest];
@@ -198,10 +199,11 @@ impl<S: Space> Tracers<S> {
         S::dot(position - self.position[closest], area) > squared * spacing
     }
 
-    /// The surface next to a position in space, where tracers have no neighbours: with weights a (1 − r²/H²)² of the tracers y that face
-    /// the given normal, a their areas and r their distance from the foot of the position on the plane of the nearest one,
-    /// n̄ = Σ w n/|Σ w n| and the gap Σ w (x − y)·(n̄ + n)/2 / Σ w. Exact on planes, and on spheres where the gap is zero: there
-    /// x − y is perpendicular to the sum of their normals. None where the foot lies beside the surface.
+    /// The surface next to a position in space, where tracers have no neighbours: with weights a (1 − r²/H²)² of the
+    /// tracers y that face the given normal, a their areas and r their distance from the foot of the position on the
+    /// plane of the nearest one, n̄ = Σ w n/|Σ w n| and the gap Σ w (x − y)·(n̄ + n)/2 / Σ w. Exact on planes, and on
+    /// spheres where the gap is zero: there x − y is perpendicular to the sum of their normals. None where the foot
+    /// lies beside the surface.
     #[inline(always)]
     fn around(
         &self,
@@ -289,7 +291,8 @@ impl<S: Space> Chord<S> {
     }
 }
 
-/// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that carry mass.
+/// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that
+/// carry mass.
 pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,

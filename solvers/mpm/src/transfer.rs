@@ -11,8 +11,8 @@ use std::ops::Range;
 pub(crate) trait Transfer: Copy + Send + 'static {
     /// Whether points carry the affine part of the velocity, or its spin.
     const AFFINE: bool;
-    /// A component of a point's velocity after the step, from what damping leaves of that before, the velocity of the nodes
-    /// around it and their change but for damping.
+    /// A component of a point's velocity after the step, from what damping leaves of that before, the velocity of the
+    /// nodes around it and their change but for damping.
     fn taken<N: Number>(&self, before: N, around: N, change: N) -> N;
     /// What of nodes makes the affine part: their velocities or the changes of these.
     fn source<N>(velocity: N, change: N) -> N;
@@ -71,8 +71,8 @@ impl Transfer for Apic {
 /// which points of finite extent have, and, unlike APIC, damps nothing.
 ///
 /// The change of the spin is that of the rigid rotation with the angular momentum that the nodes' change has about the
-/// point: Δω = Σ w r × Δv / Σ w |r|² about each axis, r from the point to the node and its lengths across that axis. A point that
-/// flows takes on the spin around it ([`crate::stress::Update`]).
+/// point: Δω = Σ w r × Δv / Σ w |r|² about each axis, r from the point to the node and its lengths across that axis. A
+/// point that flows takes on the spin around it ([`crate::stress::Update`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Spin;
 
@@ -124,8 +124,8 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// Half the extent of a point along each axis (cells): it grows with the material lines along the axis, √b_ii, which
-    /// keeps points contiguous where the stretch is along the axes and does not change under rotation.
+    /// Half the extent of a point along each axis (cells): it grows with the material lines along the axis, √b_ii,
+    /// which keeps points contiguous where the stretch is along the axes and does not change under rotation.
     #[inline(always)]
     pub(crate) fn extent<S: Space, B: Basis>(&self, deformation: S::Matrix) -> [f64; 3] {
         if !B::EXTENDED {

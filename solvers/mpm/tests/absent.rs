@@ -1,4 +1,5 @@
-//! What a scene does not call for takes no memory, and what is called for with a value that does nothing changes no bit.
+//! What a scene does not call for takes no memory, and what is called for with a value that does nothing changes no
+//! bit.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -46,7 +47,8 @@ fn what_is_off_has_no_size() {
     assert_eq!(size_of::<<VonMises as Law>::PlasticStrain>(), size_of::<f64>());
 }
 
-/// Memory falls by just what the effect keeps: four springs of 32 B a tracer, a number or a matrix a point, three vectors a node.
+/// Memory falls by just what the effect keeps: four springs of 32 B a tracer, a number or a matrix a point, three
+/// vectors a node.
 #[test]
 fn what_is_off_takes_no_memory() {
     // Before the discs meet, while they have the same nodes.
@@ -85,8 +87,8 @@ fn contact_at_nodes_has_no_springs() {
     assert_eq!(bytes_of(gap, &discs(0.5, ELASTIC)), bytes_of(gap, &discs(0.0, ELASTIC)));
 }
 
-/// An effect that is there and does nothing is as if it were not: friction of a material that no grain has, between discs and at a
-/// plane, and a yield stress that nothing reaches.
+/// An effect that is there and does nothing is as if it were not: friction of a material that no grain has, between
+/// discs and at a plane, and a yield stress that nothing reaches.
 #[test]
 fn an_idle_effect_changes_no_bit() {
     let plane = || scene(&format!("{}[output]\nsnapshots = 3\n", incline(30.0, 0.0, 0.1, false)));

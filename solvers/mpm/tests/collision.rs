@@ -20,8 +20,8 @@ fn momentum_drift(record: &Record) -> f64 {
     pair.map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max) / (std::f64::consts::PI * SPEED)
 }
 
-/// Head on without friction: energy is kept, restitution is that of the converged elastic answer, .98. At four cells a radius
-/// quadratic functions are too coarse for the vibration that the impact leaves.
+/// Head on without friction: energy is kept, restitution is that of the converged elastic answer, .98. At four cells a
+/// radius quadratic functions are too coarse for the vibration that the impact leaves.
 #[test]
 fn springs_keep_energy_and_momentum() {
     for (cells, energy_allowed, restitution_allowed) in [(4.0, 0.025, 0.04), (8.0, 0.005, 0.015)] {
@@ -34,8 +34,8 @@ fn springs_keep_energy_and_momentum() {
     }
 }
 
-/// Kinetic, elastic and contact energy are those of one and the same time: their sum hardly rings while discs touch. (With contact
-/// springs as they were at the beginning of the step it is off by +.8 and −1.8 % here.)
+/// Kinetic, elastic and contact energy are those of one and the same time: their sum hardly rings while discs touch.
+/// (With contact springs as they were at the beginning of the step it is off by +.8 and −1.8 % here.)
 #[test]
 fn the_sum_of_energies_hardly_rings() {
     let at = Resolution::Grid { cells: 8.0, points: 3, courant: 0.2 };
@@ -45,8 +45,8 @@ fn the_sum_of_energies_hardly_rings() {
     assert!(low > 0.99 * energy[0] && high < 1.002 * energy[0], "{} {}", low / energy[0], high / energy[0]);
 }
 
-/// Damping takes what points ring with against each other, which nodes do not show: energy falls as e^(−αt) or faster, where 2e-3 of it
-/// stayed when nodes alone were damped. And it says what it took.
+/// Damping takes what points ring with against each other, which nodes do not show: energy falls as e^(−αt) or faster,
+/// where 2e-3 of it stayed when nodes alone were damped. And it says what it took.
 #[test]
 fn damping_reaches_what_nodes_do_not_show() {
     let text = collision(0.02, 0.5, 0.5) + "budget.budget = true\n";
@@ -69,7 +69,8 @@ fn friction_turns_discs() {
     assert!(momentum_drift(&record) < 1e-12);
 }
 
-/// The gap contact never makes energy and keeps momentum; release on departure makes it, and the 2001 criterion does not.
+/// The gap contact never makes energy and keeps momentum; release on departure makes it, and the 2001 criterion does
+/// not.
 #[test]
 fn nodal_contacts_do_what_they_are_known_for() {
     let gap = run("mpm:gap", &collision(0.5, 0.0, 0.0), 8.0, 3);
@@ -82,7 +83,8 @@ fn nodal_contacts_do_what_they_are_known_for() {
     assert!(energy(&traction) < energy(&kinematic));
 }
 
-/// Discs of materials without a law between them go through each other, as in the other solvers; with one field they cannot.
+/// Discs of materials without a law between them go through each other, as in the other solvers; with one field they
+/// cannot.
 #[test]
 fn without_a_law_nothing_is_felt() {
     let mut scene = support::scene(&collision(0.5, 0.0, 0.0));

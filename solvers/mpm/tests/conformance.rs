@@ -1,5 +1,5 @@
-//! What every solver owes, and what a method with a grid owes less: every setting with a name, in the plane; `mpm` in space too
-//! with `GRAINBENCH_LONG=1`.
+//! What every solver owes, and what a method with a grid owes less: every setting with a name, in the plane; `mpm` in
+//! space too with `GRAINBENCH_LONG=1`.
 
 use grainbench_harness::conformance::failures;
 use grainbench_mpm::solver::Mpm;

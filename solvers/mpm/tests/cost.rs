@@ -13,7 +13,8 @@ const MATERIAL: &str = "materials.m = { density = 1.0, bulk_modulus = 10.0, shea
 fn discs(count: [u32; 2]) -> Cost {
     let text = format!(
         "dimension = 2\nduration = 0.2\n{MATERIAL}\
-         grains.d = {{ material = 'm', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.99, 1.99], count = [{}, {}] }} }}\n",
+         grains.d = {{ material = 'm', radius = 1.0, \
+         lattice = {{ origin = [0.0, 0.0], spacing = [1.99, 1.99], count = [{}, {}] }} }}\n",
         count[0], count[1]
     );
     run("mpm", &text, 3.0, 2).cost
@@ -37,8 +38,8 @@ fn cost_grows_with_the_number_of_grains_and_no_faster() {
     }
 }
 
-/// A body by itself has no surface, no pairs and no springs: the run takes as much memory as one in which bodies cannot tell each
-/// other apart, and evaluates no contact.
+/// A body by itself has no surface, no pairs and no springs: the run takes as much memory as one in which bodies cannot
+/// tell each other apart, and evaluates no contact.
 #[test]
 fn a_body_by_itself_pays_nothing_for_contact() {
     let text = format!(

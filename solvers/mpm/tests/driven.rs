@@ -5,8 +5,8 @@ mod support;
 
 use support::{collision, column, last, run, scene};
 
-/// The left disc of a collision is driven, faster than the sound of a push can let the right one escape, and yields where
-/// `yields`.
+/// The left disc of a collision is driven, faster than the sound of a push can let the right one escape, and yields
+/// where `yields`.
 fn pushed(friction: f64, offset: f64, yields: bool) -> String {
     let speed = 0.01 * 18.0_f64.sqrt();
     let mut text = collision(0.1, friction, offset);

@@ -53,7 +53,8 @@ fn driven() -> String {
     format!("{}budget.budget = true\n[driven.ram]\ngrains = 'a'\nvelocity = [0.05, 0.0]\n", collision(0.1, 0.9, 0.5))
 }
 
-/// Contact with friction between bodies and at a plane, settled, in space: every way to touch, from early and from late.
+/// Contact with friction between bodies and at a plane, settled, in space: every way to touch, from early and from
+/// late.
 #[test]
 fn a_continued_run_leaves_the_same_bits() {
     let sampled = |text: String| format!("{text}[output]\nsnapshots = 3\n");

@@ -42,8 +42,8 @@ fn energy(record: &Record) -> f64 {
     energy[energy.len() - 1] / energy[0]
 }
 
-/// Head on without friction: momentum is kept to rounding, and nothing starts to turn. Springs give the energy back that they took; quadratic
-/// functions damp at four cells a radius.
+/// Head on without friction: momentum is kept to rounding, and nothing starts to turn. Springs give the energy back
+/// that they took; quadratic functions damp at four cells a radius.
 #[test]
 fn spheres_rebound() {
     for (solver, energies, restitutions) in [
@@ -78,8 +78,9 @@ fn friction_turns_spheres() {
     assert!(momentum_drift(&rough) < 1e-12 && energy(&rough) < energy(&smooth));
 }
 
-/// Slow enough for waves to have passed many times, spheres part after Hertz' time, 2.94 δ/v, δ = (15 m v²/(16 E* √R))^(2/5) with m and R
-/// half of one's and E* = E/(2 (1 − ν²)) (Johnson, Contact Mechanics, §11.4): E = 15, ν = 1/4, v the speed of approach.
+/// Slow enough for waves to have passed many times, spheres part after Hertz' time, 2.94 δ/v, δ = (15 m v²/(16 E*
+/// √R))^(2/5) with m and R half of one's and E* = E/(2 (1 − ν²)) (Johnson, Contact Mechanics, §11.4): E = 15, ν = 1/4,
+/// v the speed of approach.
 #[test]
 fn slow_spheres_touch_for_hertz_time() {
     let touch = |softer: f64| {

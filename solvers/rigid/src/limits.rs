@@ -48,7 +48,8 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     }
     let of_contact = |probe: &Probe| !matches!(probe.target, ProbeTarget::Grain(_) | ProbeTarget::System);
     if !scene.probes.is_empty() && scene.probes.iter().all(of_contact) {
-        let reason = "it asks for nothing but overlaps and forces over time, which rigid contacts do not have: theirs are impulses \
+        let reason = "it asks for nothing but overlaps and forces over time, which rigid contacts do not have: \
+          theirs are impulses \
                       within a step";
         return Some(reason.to_owned());
     }

@@ -11,9 +11,9 @@ use nalgebra::Vector3;
 /// A friction impulse of at least this part of Coulomb's limit slips.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 
-/// Turn in a substep (rad) beyond which a grain that spins in place on another loses its friction, for the engine turns the points at
-/// which they touch along with it: of a disc on a floor, at 100 to 31,600 rad/s, rapier gave half of μ g t at .066 rad and more, and all
-/// of it to 1 % at .02 rad and less.
+/// Turn in a substep (rad) beyond which a grain that spins in place on another loses its friction, for the engine turns
+/// the points at which they touch along with it: of a disc on a floor, at 100 to 31,600 rad/s, rapier gave half of μ g
+/// t at .066 rad and more, and all of it to 1 % at .02 rad and less.
 const LARGEST_TURN: f64 = 0.05;
 /// A grain spins in place where its surface is this many times as fast as its centre.
 const IN_PLACE: f64 = 10.0;

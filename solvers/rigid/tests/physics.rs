@@ -286,7 +286,8 @@ fn finite_walls_are_hit_on_both_sides_and_missed_beside() {
     };
     let segment = format!("{GRAIN}[walls.w]\nmaterial = \"m\"\nsegment = [[-2.0, 0.0], [2.0, 0.0]]\n");
     let rectangle = format!(
-        "{}[walls.w]\nmaterial = \"m\"\nrectangle = {{ corner = [-2.0, -2.0, 0.0], edges = [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0]] }}\n",
+        "{}[walls.w]\nmaterial = \"m\"\n\
+         rectangle = {{ corner = [-2.0, -2.0, 0.0], edges = [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0]] }}\n",
         GRAIN.replace("dimension = 2", "dimension = 3").replace("[0.0, 0.5]", "[0.0, 0.0, 0.5]")
     );
     for text in [&segment, &rectangle] {

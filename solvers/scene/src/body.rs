@@ -116,7 +116,8 @@ pub enum Hold {
     Fixed,
 }
 
-/// An initial velocity along x of v₀ sin(β (x − x_low)), β = (2n − 1)π/2L: mode n of a bar that is held at its lower end.
+/// An initial velocity along x of v₀ sin(β (x − x_low)), β = (2n − 1)π/2L: mode n of a bar that is held at its lower
+/// end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
     /// Amplitude v₀ (m/s).

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 
 /// The energy budget of a run (J; J/m of discs): what is stored now, and what was brought in and lost since the start.
 ///
-/// Methods move velocities and positions in turn, half a step apart. Kinetic energy and momentum are those that belong to the
-/// method's own sums: at the time of the positions for grains on springs, half a step before them for material points.
+/// Methods move velocities and positions in turn, half a step apart. Kinetic energy and momentum are those that belong
+/// to the method's own sums: at the time of the positions for grains on springs, half a step before them for material
+/// points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Budget {
     /// Kinetic energy: of grains and their spin, or of material points and the spin that they carry.
@@ -25,8 +26,8 @@ pub struct Budget {
     pub friction: f64,
     /// Work against dashpots and global damping.
     pub damping: f64,
-    /// Lost by the method between material points and nodes: what nodes gain in kinetic energy and points do not, and what
-    /// stresses take from nodes and do not do on points.
+    /// Lost by the method between material points and nodes: what nodes gain in kinetic energy and points do not, and
+    /// what stresses take from nodes and do not do on points.
     pub transfer: f64,
     /// Lost by the method at contacts: what contacts take from the motion and neither store nor rub away.
     pub contact: f64,

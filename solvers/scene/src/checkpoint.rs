@@ -1,7 +1,8 @@
 //! The state of a run between two steps, from which it continues to the same bits.
 //!
-//! On disk: the line `grainbench checkpoint <format>`, the number of bytes that follow the hash (8 bytes, little end first),
-//! their BLAKE3 hash (32 bytes), and the bytes: a [`Checkpoint`] in postcard's format, which keeps every bit of a number.
+//! On disk: the line `grainbench checkpoint <format>`, the number of bytes that follow the hash (8 bytes, little end
+//! first), their BLAKE3 hash (32 bytes), and the bytes: a [`Checkpoint`] in postcard's format, which keeps every bit of
+//! a number.
 
 use crate::scene::Scene;
 use serde::de::DeserializeOwned;

@@ -1,5 +1,5 @@
-//! The one loop by which every solver goes through a run: what is due is taken down, who watches hears of it, checkpoints are
-//! left. And the one clock: it runs from the first step of any kind, settling included, to the last.
+//! The one loop by which every solver goes through a run: what is due is taken down, who watches hears of it,
+//! checkpoints are left. And the one clock: it runs from the first step of any kind, settling included, to the last.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::record::{Cost, Look, Series, Snapshot};

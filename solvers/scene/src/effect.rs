@@ -1,5 +1,5 @@
-//! The one list of effects: what each is called, which key of a scene turns it on, how it is switched off, and a value with
-//! which it is compiled in and does nothing. What a scene calls for is derived from it and never typed beside it.
+//! The one list of effects: what each is called, which key of a scene turns it on, how it is switched off, and a value
+//! with which it is compiled in and does nothing. What a scene calls for is derived from it and never typed beside it.
 
 use crate::body::Constitutive;
 use crate::motion::{Moment, Phase};
@@ -197,9 +197,9 @@ impl Effect {
         }
     }
 
-    /// Switches it on with a value that does nothing: a law between grains of a material that nobody has, a rate that is lost
-    /// when it is added to one, gravity that a step shorter than half a second rounds to nothing, a motion that starts after
-    /// the end. Whether there is such a value.
+    /// Switches it on with a value that does nothing: a law between grains of a material that nobody has, a rate that
+    /// is lost when it is added to one, gravity that a step shorter than half a second rounds to nothing, a motion that
+    /// starts after the end. Whether there is such a value.
     #[must_use]
     pub fn switch_on_idly(self, scene: &mut Scene) -> bool {
         match self {

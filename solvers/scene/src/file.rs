@@ -136,8 +136,8 @@ pub struct MaterialSpec {
     /// Density ρ (kg/m³); not needed for materials of walls, nor where a data file gives it.
     #[serde(default)]
     pub density: Option<f64>,
-    /// Young's modulus E (Pa); needed for Hertz contacts unless `rigid`. With Poisson's ratio it makes bodies deformable
-    /// for solvers that resolve them.
+    /// Young's modulus E (Pa); needed for Hertz contacts unless `rigid`. With Poisson's ratio it makes bodies
+    /// deformable for solvers that resolve them.
     #[serde(default)]
     pub young_modulus: Option<f64>,
     /// Poisson's ratio ν, from −1 to 1/2; needed for Hertz contacts unless `rigid`.
@@ -359,11 +359,12 @@ pub struct ContactSpec {
     /// ζ = −ln e/√(π² + ln² e).
     #[serde(default)]
     pub restitution: Option<f64>,
-    /// Coefficient of rolling resistance μ_r: a moment of at most μ_r R_eff F_n against rolling, R_eff = R₁R₂/(R₁+R₂), R at
-    /// a wall. An elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r² R_eff² (Ai et al. 2011, model C).
+    /// Coefficient of rolling resistance μ_r: a moment of at most μ_r R_eff F_n against rolling, R_eff = R₁R₂/(R₁+R₂),
+    /// R at a wall. An elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r² R_eff² (Ai et al. 2011, model C).
     #[serde(default)]
     pub rolling_friction: f64,
-    /// Damping ratio η_r of the rolling spring: a moment −2η_r√(I_r k_r) times the rolling velocity while it has not yielded.
+    /// Damping ratio η_r of the rolling spring: a moment −2η_r√(I_r k_r) times the rolling velocity while it has not
+    /// yielded.
     #[serde(default)]
     pub rolling_damping: f64,
 }
@@ -529,8 +530,8 @@ pub struct MotionSpec {
     pub stop_cycle: Option<u64>,
 }
 
-/// Grains that do not obey forces: they move at a constant velocity and do not turn, nor deform. Exactly one of `grains`
-/// and `face`.
+/// Grains that do not obey forces: they move at a constant velocity and do not turn, nor deform. Exactly one of
+/// `grains` and `face`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrivenSpec {
@@ -564,7 +565,8 @@ pub struct OutputSpec {
     pub snapshot_times: Vec<f64>,
 }
 
-/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `driven`, `stress`, `budget` and `system`.
+/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `driven`, `stress`, `budget` and
+/// `system`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeSpec {
@@ -576,7 +578,8 @@ pub struct ProbeSpec {
     #[serde(default)]
     pub body: Option<String>,
     /// The material of a deformable grain or body at a place: columns ux, … (displacement), vx, …, sigma_xx, sigma_yy,
-    /// sigma_zz, sigma_xy (and sigma_yz, sigma_zx), plastic_strain, mean over the material points nearest to it at the start.
+    /// sigma_zz, sigma_xy (and sigma_yz, sigma_zx), plastic_strain, mean over the material points nearest to it at the
+    /// start.
     #[serde(default)]
     pub point: Option<PointSpec>,
     /// A contact between a grain and a grain or wall. Columns overlap, normal_force, shear_force (signed in two
@@ -589,15 +592,15 @@ pub struct ProbeSpec {
     /// A group of driven grains: columns force_x, … of the other grains on them.
     #[serde(default)]
     pub driven: Option<String>,
-    /// Where energy comes from and goes: columns kinetic, elastic, springs, gravitational, work, plastic, friction, damping,
-    /// transfer, contact (J), unbalanced (J), and momentum_x, impulse_x, … (kg m/s); see
+    /// Where energy comes from and goes: columns kinetic, elastic, springs, gravitational, work, plastic, friction,
+    /// damping, transfer, contact (J), unbalanced (J), and momentum_x, impulse_x, … (kg m/s); see
     /// [`crate::budget::Budget`].
     #[serde(default)]
     pub budget: Option<bool>,
-    /// Mean stress of the grains, from the contacts between them: σ_ij = (1/V) Σ l_i f_j with the line l from the centre of
-    /// one grain to that of the other, the force f on the first, and V the volume of the domain (Love 1927; Weber 1966).
-    /// Tension is positive, walls are left out. Columns sigma_xx, sigma_yy, sigma_xy (and sigma_zz, sigma_xz, sigma_yz),
-    /// and coordination, the mean number of grains that a grain touches.
+    /// Mean stress of the grains, from the contacts between them: σ_ij = (1/V) Σ l_i f_j with the line l from the
+    /// centre of one grain to that of the other, the force f on the first, and V the volume of the domain (Love 1927;
+    /// Weber 1966). Tension is positive, walls are left out. Columns sigma_xx, sigma_yy, sigma_xy (and sigma_zz,
+    /// sigma_xz, sigma_yz), and coordination, the mean number of grains that a grain touches.
     #[serde(default)]
     pub stress: Option<bool>,
     /// The whole system: kinetic, rotational, elastic and gravitational energy, their sum, momentum, angular momentum

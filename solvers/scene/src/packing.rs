@@ -1,8 +1,9 @@
 //! Dense packings without overlap, from a seed: grains of given sizes grow in a box while overlaps are pushed apart.
 //!
-//! Grains start at random places at half their size. They grow in small stages; after each, every overlapping pair is moved
-//! apart along its line of centres in proportion to the inverse of the squared radii, pair after pair, until no pair overlaps.
-//! There is no friction and no time in it, so packings can be denser than those that grains with friction come to rest in.
+//! Grains start at random places at half their size. They grow in small stages; after each, every overlapping pair is
+//! moved apart along its line of centres in proportion to the inverse of the squared radii, pair after pair, until no
+//! pair overlaps. There is no friction and no time in it, so packings can be denser than those that grains with
+//! friction come to rest in.
 
 use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
@@ -21,9 +22,9 @@ const SWEEPS: u32 = 40_000;
 /// By how much grains are taken larger than they are while the last overlaps are pushed apart, so that it ends in gaps.
 const MARGIN: f64 = 1e-4;
 
-/// Centres (m) of grains of the given radii (m), in their order, in `domain`: across periodic faces grains touch their images,
-/// the other faces are smooth walls. `None` when overlaps cannot be pushed apart: the grains are too many for the box. The same
-/// seed gives the same packing on every machine.
+/// Centres (m) of grains of the given radii (m), in their order, in `domain`: across periodic faces grains touch their
+/// images, the other faces are smooth walls. `None` when overlaps cannot be pushed apart: the grains are too many for
+/// the box. The same seed gives the same packing on every machine.
 #[must_use]
 pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
     packed(radii, seed, domain, dimension, false)

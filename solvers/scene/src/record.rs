@@ -129,7 +129,8 @@ pub struct PointState {
     pub stress: [f64; 6],
     /// Equivalent plastic strain.
     pub plastic_strain: f64,
-    /// Rotation R of the deformation F = R U (rad), about z, in the turn nearest to that of its body; zero in three dimensions.
+    /// Rotation R of the deformation F = R U (rad), about z, in the turn nearest to that of its body; zero in three
+    /// dimensions.
     #[serde(default)]
     pub rotation: f64,
     /// Volume (m³; m² in the plane).
@@ -207,7 +208,8 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// What a solver shows that knows of grains alone: no contacts, and walls as far as they have moved, without forces.
+    /// What a solver shows that knows of grains alone: no contacts, and walls as far as they have moved, without
+    /// forces.
     #[must_use]
     pub fn of_grains(scene: &Scene, step: u64, time: f64, grains: Vec<GrainState>) -> Self {
         let time_step = if step == 0 { 0.0 } else { time / step as f64 };
@@ -230,7 +232,8 @@ impl Snapshot {
     }
 }
 
-/// Corners of the domain (m), or of the box around all grains where the scene has none; z from −0.5 to 0.5 in the plane.
+/// Corners of the domain (m), or of the box around all grains where the scene has none; z from −0.5 to 0.5 in the
+/// plane.
 #[must_use]
 pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {
     if let Some(domain) = scene.domain {
@@ -258,8 +261,8 @@ pub struct Look {
     pub inner_kinetic_energy: f64,
     /// The material at the places that probes ask for, in the order of [`Scene::spots`].
     pub spots: Vec<PointState>,
-    /// Force of the other grains on each group of driven ones (N), in the order of [`Scene::driven`]; empty where it is not
-    /// known.
+    /// Force of the other grains on each group of driven ones (N), in the order of [`Scene::driven`]; empty where it is
+    /// not known.
     pub driven: Vec<Vector3<f64>>,
     /// Where energy comes from and goes, where a probe asks for it and the solver knows.
     pub budget: Option<Budget>,

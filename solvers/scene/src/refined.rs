@@ -4,8 +4,8 @@ use crate::motion::Moment;
 use crate::scene::{Duration, Sampling, Scene};
 use crate::solver::Resolution;
 
-/// A scene and a resolution that take `parts` steps for each one of a run of `steps` steps of `time_step` (s), sampled every
-/// `interval` of them.
+/// A scene and a resolution that take `parts` steps for each one of a run of `steps` steps of `time_step` (s), sampled
+/// every `interval` of them.
 #[must_use]
 pub fn refined(scene: &Scene, time_step: f64, [steps, interval]: [u64; 2], parts: u64) -> (Scene, Resolution) {
     let mut scene = Scene {

@@ -121,8 +121,8 @@ impl ContactLaw {
         self.is_hertz() || self.normal_stiffness > 0.0
     }
 
-    /// Stiffness dF/dδ along the normal and along the tangent (N/m) at an overlap (m) of bodies with an effective radius
-    /// R* = R₁R₂/(R₁+R₂) (m): S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and Mindlin, k_n and k_s for linear laws.
+    /// Stiffness dF/dδ along the normal and along the tangent (N/m) at an overlap (m) of bodies with an effective
+    /// radius R* = R₁R₂/(R₁+R₂) (m): S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and Mindlin, k_n and k_s for linear laws.
     #[must_use]
     pub fn stiffness(&self, overlap: f64, effective_radius: f64) -> (f64, f64) {
         if self.is_hertz() {
@@ -337,7 +337,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Speed of longitudinal waves in the stiffest deformable material in use, √((K + 4G/3)/ρ) (m/s); zero where there is none.
+    /// Speed of longitudinal waves in the stiffest deformable material in use, √((K + 4G/3)/ρ) (m/s); zero where there
+    /// is none.
     #[must_use]
     pub fn fastest_wave(&self) -> f64 {
         let of = |material: u16, density: f64| {
@@ -350,7 +351,8 @@ impl Scene {
         grains.chain(bodies).fold(0.0, f64::max)
     }
 
-    /// The group of driven grains that each grain is in, by place in [`Scene::driven`]; none for those that move freely.
+    /// The group of driven grains that each grain is in, by place in [`Scene::driven`]; none for those that move
+    /// freely.
     #[must_use]
     pub fn driven_group_of_grains(&self) -> Vec<Option<u16>> {
         let mut group_of = vec![None; self.grains.len()];

@@ -362,7 +362,8 @@ pub trait Watch {
     fn begin(&mut self, _time_step: f64, _steps: u64) {}
     /// Called now and then with the number of steps done and to do.
     fn progress(&mut self, done: u64, total: u64);
-    /// Steps from one checkpoint to the next; asked for once, after [`Watch::begin`]. None when no checkpoint is wanted.
+    /// Steps from one checkpoint to the next; asked for once, after [`Watch::begin`]. None when no checkpoint is
+    /// wanted.
     fn checkpoint_interval(&self) -> Option<u64> {
         None
     }
@@ -399,11 +400,12 @@ pub trait Solver: Send + Sync {
     /// When the scene cannot be expressed, the resolution makes no sense, or the simulation breaks.
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError>;
 
-    /// Continues a run of the same scene at the same resolution from a checkpoint that it left. The record is that of the
-    /// whole run, in every bit but its times.
+    /// Continues a run of the same scene at the same resolution from a checkpoint that it left. The record is that of
+    /// the whole run, in every bit but its times.
     ///
     /// # Errors
-    /// As for [`Solver::run`], and when the checkpoint belongs to another run. A solver that leaves no checkpoints refuses.
+    /// As for [`Solver::run`], and when the checkpoint belongs to another run. A solver that leaves no checkpoints
+    /// refuses.
     fn restart(
         &self,
         _scene: &Scene,

@@ -97,7 +97,8 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
     /// Squared length of a tangential quantity.
     fn tangent_squared(tangent: Self::Tangent) -> f64;
-    /// A relative spin without its part along the normal, which is twisting and not rolling; in the plane all of it rolls.
+    /// A relative spin without its part along the normal, which is twisting and not rolling; in the plane all of it
+    /// rolls.
     fn without_twist(spin: Self::Spin, normal: Self::Vector) -> Self::Spin;
     /// Product of two spins, for rotational energy.
     fn spin_dot(a: Self::Spin, b: Self::Spin) -> f64;

@@ -1,4 +1,5 @@
-//! The twin that tells for how long a run can be foretold: the same scene, one position moved by one unit in the last place.
+//! The twin that tells for how long a run can be foretold: the same scene, one position moved by one unit in the last
+//! place.
 
 use crate::scene::Scene;
 

@@ -1,17 +1,18 @@
 //! Two sessions against each other: counts exactly, times with their spread.
 //!
 //! A point's time is the median of its repetitions, in units of the reference that was timed before and after each
-//! ([`crate::clock::reference_seconds`]): a machine that was slower for a while cancels. Of all points of a solver in a case,
-//! xᵢ = ln(tᵢ,new/tᵢ,old); their median m has the standard error
+//! ([`crate::clock::reference_seconds`]): a machine that was slower for a while cancels. Of all points of a solver in a
+//! case, xᵢ = ln(tᵢ,new/tᵢ,old); their median m has the standard error
 //!
 //! ```text
 //! s = max(1.2533 · 1.4826 · median|xᵢ − m|, √mean(σᵢ²))/√n
 //! ```
 //!
-//! with σᵢ the standard error of both sessions' medians, from the median distance of the repetitions to it in the same way. The
-//! second is larger where some points are doubtful: then all are, for they were measured in turn. A solver is called
-//! slower where m − 3s > ln 1.1, with at least three points: what repetitions within one session cannot see (where memory
-//! happened to lie, what else ran) has been seen to move all points of a case by 6 % more than 3s in 36 pairs of sessions.
+//! with σᵢ the standard error of both sessions' medians, from the median distance of the repetitions to it in the same
+//! way. The second is larger where some points are doubtful: then all are, for they were measured in turn. A solver is
+//! called slower where m − 3s > ln 1.1, with at least three points: what repetitions within one session cannot see
+//! (where memory happened to lie, what else ran) has been seen to move all points of a case by 6 % more than 3s in 36
+//! pairs of sessions.
 
 use grainbench_harness::study::point::{Change, Point, Standing};
 use std::collections::BTreeMap;
@@ -79,8 +80,8 @@ struct Middle {
 }
 
 impl Middle {
-    /// Of at least one number. The error is taken from the median distance to the median, so that a few numbers far away do not
-    /// count; of a single number nothing is known, and it is zero.
+    /// Of at least one number. The error is taken from the median distance to the median, so that a few numbers far
+    /// away do not count; of a single number nothing is known, and it is zero.
     fn of(values: &[f64]) -> Self {
         let value = median(values.to_vec());
         let distance = median(values.iter().map(|other| (other - value).abs()).collect());
@@ -132,8 +133,8 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
-    /// A session of one solver in one case, on a machine that is loaded now and then: every time is lengthened by up to a third,
-    /// the machine's speed drifts by up to half, and the session as a whole has its own few per cent.
+    /// A session of one solver in one case, on a machine that is loaded now and then: every time is lengthened by up to
+    /// a third, the machine's speed drifts by up to half, and the session as a whole has its own few per cent.
     fn session(seed: u64, slower: f64, points: usize, repetitions: usize) -> Vec<Point> {
         let mut dice = Pcg64Mcg::seed_from_u64(seed);
         let mut unit = move || dice.random::<f64>();
@@ -199,7 +200,8 @@ mod tests {
         }
     }
 
-    /// Times (µs) of a squashed pair in two sessions of one code: for a moment the processor was half as fast again in the first.
+    /// Times (µs) of a squashed pair in two sessions of one code: for a moment the processor was half as fast again in
+    /// the first.
     #[test]
     fn a_moment_at_another_clock_shows_nothing() {
         const OLD: [[f64; 5]; 5] = [

@@ -57,8 +57,8 @@ struct Task {
     solver: Arc<dyn Solver>,
     /// Name on the shelf.
     name: String,
-    /// Processor time of a run of one step (s), of a program; what a program needs to start is no part of what steps cost. It is that
-    /// of the scene, whatever the step.
+    /// Processor time of a run of one step (s), of a program; what a program needs to start is no part of what steps
+    /// cost. It is that of the scene, whatever the step.
     start: Arc<OnceLock<f64>>,
     /// Whether the solver is another program.
     is_program: bool,
@@ -192,8 +192,8 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// Runs a task once, with its times; none of them where nothing ran. The reference is timed for `lasting` seconds before and
-/// after.
+/// Runs a task once, with its times; none of them where nothing ran. The reference is timed for `lasting` seconds
+/// before and after.
 fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>) {
     let clocked = clock::clocked(lasting, || task.solver.run(&task.scene, &task.turn.resolution, &mut ()));
     let Clocked { done: record, cpu, wall: whole, reference } = clocked;
@@ -298,8 +298,8 @@ fn median(sorted: &[f64]) -> Option<f64> {
     (!sorted.is_empty()).then(|| 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]))
 }
 
-/// Marks where finer resolutions no longer make the error smaller: the last two of a sequence, if they differ by less than a
-/// fifth.
+/// Marks where finer resolutions no longer make the error smaller: the last two of a sequence, if they differ by less
+/// than a fifth.
 fn mark_floors(tasks: &[Task], points: &mut [Point]) {
     let mut sequences: BTreeMap<(String, String), Vec<(f64, usize)>> = BTreeMap::new();
     for (at, task) in tasks.iter().enumerate() {

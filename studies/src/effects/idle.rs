@@ -26,8 +26,8 @@ pub struct Idle {
     pub time: f64,
 }
 
-/// Tries an effect in a scene that does not call for it, in so many runs in turn as there is `patience` for; none where there is no
-/// value that does nothing.
+/// Tries an effect in a scene that does not call for it, in so many runs in turn as there is `patience` for; none where
+/// there is no value that does nothing.
 ///
 /// # Errors
 /// When the solver cannot run the scene.
@@ -79,8 +79,8 @@ pub fn try_idly(
     }))
 }
 
-/// Whether two records end in the same numbers. Equality of numbers is that of bits but for the sign of zero. A spin that
-/// nothing can change is not carried along without friction, and is left out.
+/// Whether two records end in the same numbers. Equality of numbers is that of bits but for the sign of zero. A spin
+/// that nothing can change is not carried along without friction, and is left out.
 fn same(a: &Record, b: &Record) -> bool {
     let (Some(a), Some(b)) = (a.snapshots.last(), b.snapshots.last()) else { return false };
     a.grains.len() == b.grains.len()

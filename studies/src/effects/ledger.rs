@@ -169,8 +169,8 @@ impl Ledger {
         (claim.measure)(&done.ok()?).ok().map(|measured| measured.error()).filter(|error| error.is_finite())
     }
 
-    /// A run of a claim whose solver is given the scene without the effect; the scene of the claim stays what it was, and so do
-    /// the runs that others are judged by.
+    /// A run of a claim whose solver is given the scene without the effect; the scene of the claim stays what it was,
+    /// and so do the runs that others are judged by.
     fn run_without(&mut self, run: &Run, effect: Effect) -> Result<Done, RunError> {
         if !self.is_judged(run) {
             return self.runner.run(run);

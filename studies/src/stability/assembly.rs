@@ -1,9 +1,9 @@
-//! Assemblies whose largest stable step is known exactly: grains of unit mass on springs of unit stiffness, so that steps are
-//! in units of √(m/k).
+//! Assemblies whose largest stable step is known exactly: grains of unit mass on springs of unit stiffness, so that
+//! steps are in units of √(m/k).
 //!
-//! Central differences are stable up to Δt = 2/ω of the highest mode. Every assembly is pressed together, so that no contact
-//! opens, and every degree of freedom is perturbed at random by a millionth of the overlap: a symmetric start never excites
-//! the critical mode. It is unstable when the perturbation has grown a thousandfold.
+//! Central differences are stable up to Δt = 2/ω of the highest mode. Every assembly is pressed together, so that no
+//! contact opens, and every degree of freedom is perturbed at random by a millionth of the overlap: a symmetric start
+//! never excites the critical mode. It is unstable when the perturbation has grown a thousandfold.
 //!
 //! ```text
 //! grain on a wall     ω² = k/m; with a tangential spring κk that does not slip also κ(k/m)(1 + 1/i), i = I/(mR²)
@@ -15,8 +15,8 @@
 //! ```
 //!
 //! A free pair flies apart within two steps near its limit, 2/ω = √2: it starts overlapped by δ and at rest. In central
-//! differences ½v²(1 − ω²Δt²/4) ≤ ½ω²δ²(1 − ω²Δt²/4) holds at the step at which it parts, so that it parts with more energy
-//! than its spring held if and only if Δt > 2/ω.
+//! differences ½v²(1 − ω²Δt²/4) ≤ ½ω²δ²(1 − ω²Δt²/4) holds at the step at which it parts, so that it parts with more
+//! energy than its spring held if and only if Δt > 2/ω.
 
 use super::failure::{Failure, finite};
 use grainbench_scene::error::SceneError;
@@ -34,8 +34,8 @@ const OVERLAP: f64 = 1e-5;
 const PERTURBATION: f64 = 1e-6 * OVERLAP;
 /// Growth that counts as unstable.
 const GROWTH: f64 = 1000.0;
-/// Steps; just above the limit by ε a perturbation grows by 1 + √(8ε) in each. Rows of a compressed lattice without friction
-/// slide off each other in any case, at a rate √(overlap/R · k/m) or so that is not felt within as many.
+/// Steps; just above the limit by ε a perturbation grows by 1 + √(8ε) in each. Rows of a compressed lattice without
+/// friction slide off each other in any case, at a rate √(overlap/R · k/m) or so that is not felt within as many.
 const STEPS: u64 = 400;
 /// Steps within which a pair has parted.
 const APART: u64 = 60;
@@ -166,8 +166,8 @@ fn finish(
     Ok(Assembly { name, kappa, exact, scene, rest, judge })
 }
 
-/// Moves every grain, and turns it where it can be turned, by a random part of the perturbation: along x alone in a single
-/// row, which would buckle otherwise.
+/// Moves every grain, and turns it where it can be turned, by a random part of the perturbation: along x alone in a
+/// single row, which would buckle otherwise.
 fn perturb(scene: &mut Scene, turns: bool) {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut dice = move || {

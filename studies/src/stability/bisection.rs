@@ -9,8 +9,8 @@ pub struct Bracket<F> {
     pub unstable: Option<(f64, F)>,
 }
 
-/// Halves, in the logarithm, the range between a step that passes and one that fails until they are within `precision` (a
-/// fraction) of each other. Where the larger end passes too, it is doubled up to `doublings` times.
+/// Halves, in the logarithm, the range between a step that passes and one that fails until they are within `precision`
+/// (a fraction) of each other. Where the larger end passes too, it is doubled up to `doublings` times.
 ///
 /// # Errors
 /// How the smaller end failed.

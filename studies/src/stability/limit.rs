@@ -14,8 +14,8 @@ use grainbench_scene::solver::{Resolution, RunError, Solver};
 
 /// How near the two ends of a bracket come.
 const PRECISION: f64 = 0.005;
-/// Steps between which the limit of an assembly is looked for, in √(m/k): the same for all, or the answer would be in the
-/// question.
+/// Steps between which the limit of an assembly is looked for, in √(m/k): the same for all, or the answer would be in
+/// the question.
 const RANGE: [f64; 2] = [0.15, 3.0];
 /// The step that decks and commands take by default, in √(m/k): a tenth of 2√(m/k).
 const DEFAULT: f64 = 0.2;
@@ -69,8 +69,8 @@ pub fn of_assembly(
     Ok((limit, false))
 }
 
-/// Courant number up to which the method with a grid keeps the energy of a vibrating bar to a tenth, at a number of cells over
-/// the length of `bar`, the scene of a vibrating bar.
+/// Courant number up to which the method with a grid keeps the energy of a vibrating bar to a tenth, at a number of
+/// cells over the length of `bar`, the scene of a vibrating bar.
 ///
 /// # Errors
 /// When it cannot be kept.

@@ -8,7 +8,8 @@ use super::{Options, Touch};
 use grainbench_scene::scene::ContactLaw;
 use grainbench_scene::space::Space;
 
-/// A grain that touches a wall, as the loop over walls finds it. The wall is a body of infinite mass and does not rotate by itself.
+/// A grain that touches a wall, as the loop over walls finds it. The wall is a body of infinite mass and does not
+/// rotate by itself.
 pub(crate) struct AtWall<'a, S: Space> {
     /// The law between the materials of grain and wall.
     pub(crate) law: &'a ContactLaw,

@@ -18,9 +18,11 @@ pub(crate) fn exchanged<S: Space, T: Tangential<S>, R: Rolling<S>>(
 
 /// How two bodies turn at their contact.
 pub(crate) struct Turning<S: Space> {
-    /// ω₁a₁ + ω₂a₂, with the angular velocities ω and the torque arms a: by what the surfaces slip because the bodies turn (m/s).
+    /// ω₁a₁ + ω₂a₂, with the angular velocities ω and the torque arms a: by what the surfaces slip because the bodies
+    /// turn (m/s).
     pub(crate) surface: S::Spin,
-    /// Angular velocity of the first body relative to the second, ω₁ − ω₂ (rad/s), or what rolls in its place at a wall.
+    /// Angular velocity of the first body relative to the second, ω₁ − ω₂ (rad/s), or what rolls in its place at a
+    /// wall.
     pub(crate) relative: S::Spin,
     /// Moment of inertia of the two about their contact, [1/(I₁ + m₁R₁²) + 1/(I₂ + m₂R₂²)]⁻¹ (kg m²).
     pub(crate) inertia: f64,
@@ -52,8 +54,9 @@ pub(crate) struct Answer<S: Space> {
     pub(crate) rubbed: f64,
 }
 
-/// Takes one contact through its stages. `arms` are the torque arms of both bodies (m), `turning` is `None` where bodies do not
-/// rotate, and `elapsed` is the time since the last evaluation (s). Energies are found only with `RECORD`.
+/// Takes one contact through its stages. `arms` are the torque arms of both bodies (m), `turning` is `None` where
+/// bodies do not rotate, and `elapsed` is the time since the last evaluation (s). Energies are found only with
+/// `RECORD`.
 #[inline(always)]
 pub(crate) fn stages<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>, const RECORD: bool>(
     touch: &Touch<'_, S>,

@@ -1,8 +1,8 @@
 //! The contact law as a chain of stages: normal, then tangential, then rolling.
 //!
 //! A stage that a scene does not call for is another type, of zero size, so that its branch, its memory and its
-//! arithmetic are not compiled into the loop over contacts. The stages stand in `normal`, `tangential` and `rolling`, each with its
-//! laws; `chain` takes one contact through them, and `pair` and `at_wall` make a contact ready for it.
+//! arithmetic are not compiled into the loop over contacts. The stages stand in `normal`, `tangential` and `rolling`,
+//! each with its laws; `chain` takes one contact through them, and `pair` and `at_wall` make a contact ready for it.
 
 pub(crate) mod at_wall;
 pub(crate) mod chain;
@@ -25,8 +25,8 @@ pub struct Touch<'a, S: Space> {
     pub between: S::Vector,
     /// The inverse of the length of `between` (1/m).
     pub inverse_distance: f64,
-    /// Unit vector `e = between · inverse_distance`. Only dashpots, the tangential and the rolling stage read it: the normal force is
-    /// taken along `between`.
+    /// Unit vector `e = between · inverse_distance`. Only dashpots, the tangential and the rolling stage read it: the
+    /// normal force is taken along `between`.
     pub normal: S::Vector,
     /// Overlap δ (m), positive.
     pub overlap: f64,

@@ -146,8 +146,8 @@ impl Normal for Hertz {
 }
 
 /// Hertz contact with dashpots: c_n = γ_n m_eff + 2√(5/6) ζ √(S m_eff), S = dF/dδ = 2E*√(R*δ), whose second term gives
-/// the coefficient of restitution e exactly when contact ends with the overlap (Tsuji, Tanaka & Ishida 1992; Antypov & Elliott
-/// 2011 show that it maps onto a damped harmonic oscillator).
+/// the coefficient of restitution e exactly when contact ends with the overlap (Tsuji, Tanaka & Ishida 1992; Antypov &
+/// Elliott 2011 show that it maps onto a damped harmonic oscillator).
 #[derive(Clone, Copy, Debug)]
 pub struct HertzDashpot;
 

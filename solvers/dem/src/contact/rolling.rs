@@ -61,8 +61,8 @@ impl<S: Space> Rolling<S> for FreeRolling {
 /// M = −k_r θ − C ω      |k_r θ| ≤ μ_r R_eff F_n      k_r = 2.25 k_n μ_r² R_eff²      C = 2η_r √(I_r k_r)
 /// ```
 ///
-/// θ is the rolling angle, cut back when the spring yields; the dashpot acts only while it has not. The part of the relative
-/// spin along the normal is twisting, not rolling, and exerts nothing.
+/// θ is the rolling angle, cut back when the spring yields; the dashpot acts only while it has not. The part of the
+/// relative spin along the normal is twisting, not rolling, and exerts nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct ElasticPlastic;
 

@@ -1,7 +1,7 @@
 //! Second stage: the force along the tangent, a spring and a dashpot under Coulomb's limit.
 //!
-//! The spring's stretch s (m) is what the contact remembers. It grows by the slip velocity times the time step, and it is carried
-//! along with a contact that turns ([`Carrying`]). Coulomb's limit cuts it back ([`Cap`]).
+//! The spring's stretch s (m) is what the contact remembers. It grows by the slip velocity times the time step, and it
+//! is carried along with a contact that turns ([`Carrying`]). Coulomb's limit cuts it back ([`Cap`]).
 
 use super::Touch;
 use super::normal::{Normal, NormalForce};
@@ -39,9 +39,9 @@ pub trait Tangential<S: Space>: Copy + Send + 'static {
         history: &mut Self::History,
     ) -> Shear<S>;
 
-    /// Work of friction in a step (J), ½ k_s (s + s')·(s + ṡ Δt − s'): the mean force of the spring times the distance that its
-    /// end slid. Here s is the stretch before the step, carried to the normal of now, s' the stretch after it, and ṡ the slip
-    /// velocity.
+    /// Work of friction in a step (J), ½ k_s (s + s')·(s + ṡ Δt − s'): the mean force of the spring times the distance
+    /// that its end slid. Here s is the stretch before the step, carried to the normal of now, s' the stretch after it,
+    /// and ṡ the slip velocity.
     fn rubbed<N: Normal>(
         touch: &Touch<'_, S>,
         slip: S::Tangent,
@@ -86,8 +86,9 @@ impl<S: Space> Tangential<S> for Frictionless {
 
 /// How Coulomb's limit is applied to the spring and the dashpot.
 pub trait Cap: Copy + Debug + Send + 'static {
-    /// The tangential force and whether the contact slips, from the stretch of the spring s (m), the slip velocity (m/s), the
-    /// stiffness k_s (N/m), the viscosity c_s (N s/m) and the limit (N). The stretch is cut back when the contact slips.
+    /// The tangential force and whether the contact slips, from the stretch of the spring s (m), the slip velocity
+    /// (m/s), the stiffness k_s (N/m), the viscosity c_s (N s/m) and the limit (N). The stretch is cut back when the
+    /// contact slips.
     fn limit<S: Space, const DAMPED: bool>(
         stretch: &mut S::Tangent,
         slip: S::Tangent,
@@ -170,8 +171,8 @@ pub trait Carrying<S: Space>: Copy + Debug + Send + 'static {
     fn squared(stored: Self::Stored) -> f64;
 }
 
-/// The stretch turns with the contact: in the plane it is a scalar along the tangent (Cundall & Strack 1979), in three dimensions
-/// its normal part is taken off.
+/// The stretch turns with the contact: in the plane it is a scalar along the tangent (Cundall & Strack 1979), in three
+/// dimensions its normal part is taken off.
 #[derive(Clone, Copy, Debug)]
 pub struct Turned;
 
@@ -195,8 +196,8 @@ impl<S: Space> Carrying<S> for Turned {
     }
 }
 
-/// The stretch is a vector that keeps its direction and loses its normal part, in the plane too (LAMMPS, LIGGGHTS): it shrinks a
-/// little as the contact turns.
+/// The stretch is a vector that keeps its direction and loses its normal part, in the plane too (LAMMPS, LIGGGHTS): it
+/// shrinks a little as the contact turns.
 #[derive(Clone, Copy, Debug)]
 pub struct Projected;
 
@@ -220,8 +221,8 @@ impl<S: Space> Carrying<S> for Projected {
     }
 }
 
-/// An incremental spring F_s = −k_s s with Coulomb's limit |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19), and a dashpot
-/// c_s = β k_s + γ_t m_eff where contacts are damped.
+/// An incremental spring F_s = −k_s s with Coulomb's limit |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to
+/// 19), and a dashpot c_s = β k_s + γ_t m_eff where contacts are damped.
 #[derive(Clone, Copy, Debug)]
 pub struct Coulomb<C: Cap, H>(PhantomData<(C, H)>);
 

@@ -1,7 +1,7 @@
 //! Friction of springs: what a tracer feels along the surface that it has gone through, or that nothing rubs.
 //!
-//! Along the surface a spring is stretched by the slip and limited by Coulomb friction (Cundall & Strack 1979): F_s = −k s, |F_s| ≤ μ k g,
-//! with s the stretch (m), g the depth (m) and k the stiffness of the tracer's springs (N/m).
+//! Along the surface a spring is stretched by the slip and limited by Coulomb friction (Cundall & Strack 1979): F_s =
+//! −k s, |F_s| ≤ μ k g, with s the stretch (m), g the depth (m) and k the stiffness of the tracer's springs (N/m).
 
 use super::Other;
 use crate::off::Off;
@@ -58,8 +58,8 @@ impl<S: Space> Shear<S> {
         }
     }
 
-    /// Work of friction in the step (J), in which the spring went from one stretch to another and slid for the rest of the slip: the mean
-    /// force of the spring times what its end slid.
+    /// Work of friction in the step (J), in which the spring went from one stretch to another and slid for the rest of
+    /// the slip: the mean force of the spring times what its end slid.
     #[inline(always)]
     pub(crate) fn rubbed(&self, overlap: &Overlap<S>) -> f64 {
         let [before, after] = self.stretch;
@@ -74,8 +74,8 @@ impl<S: Space> Shear<S> {
         0.5 * overlap.stiffness * (overlap.depth * overlap.depth + S::dot(stretch, stretch))
     }
 
-    /// The same at the end of the step, when points and stresses are looked at: forces are those at its beginning. A spring that slips
-    /// stores no more.
+    /// The same at the end of the step, when points and stresses are looked at: forces are those at its beginning. A
+    /// spring that slips stores no more.
     #[inline(always)]
     pub(crate) fn energy_ahead(&self, overlap: &Overlap<S>) -> f64 {
         let Overlap { depth, normal, stiffness, slip, .. } = *overlap;

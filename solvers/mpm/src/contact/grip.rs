@@ -1,22 +1,23 @@
 //! A body as a point on its surface sees it: the nodes around that carry mass.
 //!
-//! Forces on a surface act on nodes and tracers follow nodes, weighted by the basis functions. Where flow has drawn a grain out to three
-//! times its length its points stand a cell and a half apart, and a node may count half at a tracer and have a thousandth of the
-//! mass of others: pushed as hard as they are it flies off, and takes along what it can. So no node counts for more than its
-//! mass can bear.
+//! Forces on a surface act on nodes and tracers follow nodes, weighted by the basis functions. Where flow has drawn a
+//! grain out to three times its length its points stand a cell and a half apart, and a node may count half at a tracer
+//! and have a thousandth of the mass of others: pushed as hard as they are it flies off, and takes along what it can.
+//! So no node counts for more than its mass can bear.
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Node, Stencil};
 use crate::transfer::Part;
 use grainbench_scene::space::Space;
 
-/// What w² of a node is at most, in its mass over that of a full cell. An impulse on a surface changes the velocity there by
-/// Σ w²/m, which is 1 to 2 (per mass of a cell) in sum where a surface is well sampled. There only nodes that points hardly reach are
-/// above it, which count for little anyway: rolling, impacts and presses differ in the fourth digit.
+/// What w² of a node is at most, in its mass over that of a full cell. An impulse on a surface changes the velocity
+/// there by Σ w²/m, which is 1 to 2 (per mass of a cell) in sum where a surface is well sampled. There only nodes that
+/// points hardly reach are above it, which count for little anyway: rolling, impacts and presses differ in the fourth
+/// digit.
 const MOST: f64 = 4.0;
 
-/// What every node of a body's window, of given masses (kg), counts for at most at its surface: √(4 m/m_cell), so that a node fades out
-/// with its mass.
+/// What every node of a body's window, of given masses (kg), counts for at most at its surface: √(4 m/m_cell), so that
+/// a node fades out with its mass.
 pub(crate) fn bear<S: Space>(nodes: &[Node<S>], cell_mass: f64, most: &mut [f64]) {
     let factor = MOST / cell_mass;
     for (most, node) in most.iter_mut().zip(nodes) {
@@ -86,7 +87,8 @@ mod tests {
 
     #[test]
     fn a_node_counts_by_its_function_until_it_has_hardly_any_mass() {
-        // A plane half way between two nodes, and on a node: what is outside has a sixth of a cell's mass, and a fiftieth.
+        // A plane half way between two nodes, and on a node: what is outside has a sixth of a cell's mass, and a
+        // fiftieth.
         for (weight, mass) in [(0.5, CELL / 6.0), (0.75, 0.5 * CELL), (0.125, CELL / 48.0)] {
             assert!(weight < most(mass));
         }

@@ -1,17 +1,17 @@
 //! The papers' contact: at nodes that several bodies or a wall share, each body is held against the common velocity.
 //!
-//! The common velocity is that of the centre of mass (of the wall, where there is one), v. Where a body of velocity vᵍ is
-//! in contact, with its own outward normal n, Δv = vᵍ − v and t along its tangential part,
-//! vᵍ ← vᵍ − Δv_n (n + μ' t), μ' = min(μ, Δv_t/Δv_n) (Bardenhagen, Brackbill & Sulsky 2000, eqs. 20–23; Bardenhagen
-//! et al. 2001, eq. 10). Contact means
+//! The common velocity is that of the centre of mass (of the wall, where there is one), v. Where a body of velocity vᵍ
+//! is in contact, with its own outward normal n, Δv = vᵍ − v and t along its tangential part, vᵍ ← vᵍ − Δv_n (n + μ'
+//! t), μ' = min(μ, Δv_t/Δv_n) (Bardenhagen, Brackbill & Sulsky 2000, eqs. 20–23; Bardenhagen et al. 2001, eq. 10).
+//! Contact means
 //!
 //! - 2000: approach, Δv_n > 0;
 //! - 2001: compression, n·σn < 0, whichever way the body moves; departing, the quotient above is negative and the body
-//!   sticks, as the equation has it. The impulse is scaled by min(γ/(ε̇Δt), 1), γ = 1/2, with ε̇ the rate of strain that it
-//!   would give a cell (eqs. 17–22; eq. 22 prints `max`, which would enlarge it).
+//!   sticks, as the equation has it. The impulse is scaled by min(γ/(ε̇Δt), 1), γ = 1/2, with ε̇ the rate of strain
+//!   that it would give a cell (eqs. 17–22; eq. 22 prints `max`, which would enlarge it).
 //!
-//! At a wall the normal is the wall's. Between bodies normals are not common, so momentum is kept only as far as they are
-//! opposite.
+//! At a wall the normal is the wall's. Between bodies normals are not common, so momentum is kept only as far as they
+//! are opposite.
 
 use super::shared::{Field, Shared};
 use super::{FrictionTable, Other};
@@ -37,7 +37,8 @@ pub(crate) struct Rules<'a> {
     pub(crate) time_step: f64,
 }
 
-/// Who feels what is taken from the bodies, as a force over the step: walls and driven bodies, which both move as they are told.
+/// Who feels what is taken from the bodies, as a force over the step: walls and driven bodies, which both move as they
+/// are told.
 pub(crate) struct Felt<'a, S: Space, A> {
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) driven: &'a mut [Group<S>],
@@ -167,8 +168,8 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
 }
 
 /// Pairs of bodies, and of bodies and walls, that have met at a node: pushed apart along their common normal while they
-/// approach or press, with Coulomb friction, by projected Gauss–Seidel over the pairs of each node. Impulses are equal and
-/// opposite, so momentum is kept to rounding however many bodies meet.
+/// approach or press, with Coulomb friction, by projected Gauss–Seidel over the pairs of each node. Impulses are equal
+/// and opposite, so momentum is kept to rounding however many bodies meet.
 fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
@@ -206,7 +207,8 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                 if along <= 0.0 && !pressing && S::dot(before, normal) <= 0.0 {
                     continue;
                 }
-                // Impulse on the other along the normal: what stops the approach, and pulls only while the bodies press.
+                // Impulse on the other along the normal: what stops the approach, and pulls only while the bodies
+                // press.
                 let sum = S::dot(before, normal) + effective * along;
                 let push = if pressing { sum } else { sum.max(0.0) };
                 let rubbed = before - normal * S::dot(before, normal) + (apart - normal * along) * effective;

@@ -70,8 +70,8 @@ impl<S: Space> Pairs<S> {
         self.found.dedup_by_key(|pair| (pair.first, pair.second));
     }
 
-    /// Finds the cells that each box with half of `margin` (m) around it reaches, in order of cells and bodies. Cells are as large as bodies
-    /// are in the mean.
+    /// Finds the cells that each box with half of `margin` (m) around it reaches, in order of cells and bodies. Cells
+    /// are as large as bodies are in the mean.
     fn reach(&mut self, bodies: &[Body], lattice: &Lattice, margin: f64) {
         self.reached.clear();
         let extent =

@@ -1,7 +1,7 @@
 //! Springs between surfaces: each tracer that has gone through another surface is pushed out by κ |g| a, with g the gap
-//! (m), a the tracer's area and κ a stiffness per area; along the surface a spring of the same stiffness rubs, where there is
-//! friction ([`super::friction`]). Forces act where the surfaces meet, at the same point on both, so linear momentum is kept to
-//! rounding and torques are right.
+//! (m), a the tracer's area and κ a stiffness per area; along the surface a spring of the same stiffness rubs, where
+//! there is friction ([`super::friction`]). Forces act where the surfaces meet, at the same point on both, so linear
+//! momentum is kept to rounding and torques are right.
 
 use super::friction::{Friction, Overlap, Tangential};
 use super::grip::Grip;
@@ -66,7 +66,8 @@ pub(crate) struct Told<'a, S: Space, A> {
     pub(crate) touched: &'a mut u64,
 }
 
-/// Springs of all bodies, with walls and with each other, in one step: with friction or without, with an energy budget or without.
+/// Springs of all bodies, with walls and with each other, in one step: with friction or without, with an energy budget
+/// or without.
 pub(crate) struct Push<'a, S: Space, B, F, A> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
@@ -143,8 +144,8 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
         }
     }
 
-    /// Springs between two bodies, from the tracers of `first` that have gone through the surface of `second`: half of the
-    /// stiffness, since the tracers of the second do the same.
+    /// Springs between two bodies, from the tracers of `first` that have gone through the surface of `second`: half of
+    /// the stiffness, since the tracers of the second do the same.
     #[inline(always)]
     fn between(&mut self, pair: &Pair<S>) {
         let Self { rules, bodies, tracers, friction, nodes, most, near: chunks, told, .. } = self;

@@ -244,8 +244,8 @@ impl<S: Space> Shared<S> {
         }
     }
 
-    /// Normals from a density at the middles of cells, smoothed by a quadratic B-spline (2000, eq. 24), and its gradient at
-    /// the nodes.
+    /// Normals from a density at the middles of cells, smoothed by a quadratic B-spline (2000, eq. 24), and its
+    /// gradient at the nodes.
     pub(crate) fn smooth_normals(&mut self, lattice: &Lattice, bodies: &[Body], used: usize, points: &Points<S>) {
         self.densities.clear();
         self.densities.resize(used, 0.0);

@@ -36,8 +36,8 @@ fn every_operation_leaves_the_same_bits_on_all_processors() {
     assert!(portable.len() == 64 * 40 && portable == best);
 }
 
-/// State of the points, as text, after some steps of a round body that spins, flies across the faces of a periodic domain and
-/// shares nodes with its image.
+/// State of the points, as text, after some steps of a round body that spins, flies across the faces of a periodic
+/// domain and shares nodes with its image.
 fn state<S: Space>(processor: Processor, basis: Basis, transfer: Transfer) -> String {
     let (dimension, axes, spin) = if S::DIMENSION == 2 { (2, 2, "0.3") } else { (3, 3, "[0.3, 0.1, -0.2]") };
     let vector = |value: &str| format!("[{}]", vec![value; axes].join(", "));

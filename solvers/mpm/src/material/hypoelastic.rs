@@ -7,8 +7,8 @@ use nalgebra::Matrix3;
 
 /// σ̂ = 2G dev D + K tr D 1 with the Jaumann rate σ̂ = σ̇ − Wσ + σW, D and W the symmetric and skew parts of ∇v (1/s).
 ///
-/// The stress is turned by the exact rotation of the midpoint rule (Hughes & Winget 1980), so that rigid rotation leaves
-/// its invariants alone whatever the step.
+/// The stress is turned by the exact rotation of the midpoint rule (Hughes & Winget 1980), so that rigid rotation
+/// leaves its invariants alone whatever the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hypoelastic {
     /// Bulk modulus K (Pa).

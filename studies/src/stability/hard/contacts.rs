@@ -21,7 +21,8 @@ pub(super) fn cases() -> Vec<HardCase> {
         ),
         case(
             "edge-along-cell-border",
-            "a disc that slides without friction, its edge along the border of cells, keeps its velocity to 1 % and stays on the plane",
+            "a disc that slides without friction, its edge along the border of cells, keeps its velocity to 1 % \
+             and stays on the plane",
             EDGE,
             slides,
         ),

@@ -22,8 +22,9 @@ impl Impact {
         let reduced = 1.0 / (1.0 / mass(a, first) + 1.0 / mass(b, second));
         let gap = 0.02 * a.min(b) * length;
         let duration = 3.0 * (gap / speed + std::f64::consts::PI * (reduced / stiffness).sqrt());
-        // Moduli whose waves cross either grain in a hundredth of the time in which the smaller one flies its radius: a grain that is away
-        // before the other has felt it as a whole leaves waves in it, and does not part as from a point.
+        // Moduli whose waves cross either grain in a hundredth of the time in which the smaller one flies its radius: a
+        // grain that is away before the other has felt it as a whole leaves waves in it, and does not part as from a
+        // point.
         let modulus = |radius: f64, density: f64| 1e4 * density * (speed * radius / a.min(b)).powi(2);
         let (stiff_first, stiff_second) = (modulus(a, first), modulus(b, second));
         format!(

@@ -18,7 +18,8 @@ pub(super) fn cases() -> Vec<HardCase> {
     )]
 }
 
-/// Three, two and one, between stops, with friction and dashpots. Unit masses, k = 1e6: a tenth of the critical step is 2e-4 s.
+/// Three, two and one, between stops, with friction and dashpots. Unit masses, k = 1e6: a tenth of the critical step is
+/// 2e-4 s.
 fn heap() -> String {
     let mut text = format!(
         "title = 'A heap'\ndimension = 2\ngravity = [0.0, -10.0]\nduration = {:?}\nmaterials.m.density = {:?}\n\
