@@ -4,6 +4,7 @@
 //! has a `scene.toml` is in the registry.
 
 pub mod elastic;
+mod elastic_backspin;
 pub mod incline;
 pub mod manufactured;
 pub mod one_grain;

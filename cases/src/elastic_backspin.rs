@@ -1,0 +1,53 @@
+//! Backspin of an elastic grain, on a rigid plane and on a deformable one: what rows of both are read from, and what an
+//! independent prototype says of the sphere.
+
+use crate::one_grain::{OneGrain, course, last};
+use crate::sources::prototype::elastic_sphere::{BACKSPIN, WORK};
+use grainbench_harness::prelude::*;
+
+/// From when on the grain rolls (s).
+pub(crate) const ROLLS: f64 = 0.5;
+/// What the prototype says of the sphere's end.
+const SPEED: &str = "mean velocity of rolling 1.459 to 1.478 m/s, where a rigid sphere has 10/7";
+
+/// Displacement over that of a rigid grain, less one.
+pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
+    let (t, state) = last(done)?;
+    Ok(state.x / OneGrain::of(&done.scene).rigid_backspin(t).x - 1.0)
+}
+
+/// Mean velocity and mean surface speed ΩR over the time of rolling (m/s).
+pub(crate) fn rolling(done: &Done) -> Result<(f64, f64), Missing> {
+    let radius = done.scene.grains[0].radius;
+    let states: Vec<_> = course(done)?.into_iter().filter(|(t, _)| *t >= ROLLS).collect();
+    if states.is_empty() {
+        return Err(Missing("samples after .5 s".to_owned()));
+    }
+    let mean = |of: &dyn Fn(usize) -> f64| (0..states.len()).map(of).sum::<f64>() / states.len() as f64;
+    Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))
+}
+
+/// Friction that is felt while the grain slides.
+pub(crate) fn slippery() -> Control {
+    Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7))
+}
+
+/// Displacement and speed of the sphere at a level, each of its run, against the prototype. `asked` is the deviation of the
+/// displacement that was asked for at this level before the solver existed.
+pub(crate) fn sphere(level: &str, asked: f64, [displacement, speed]: [Run; 2]) -> [Claim; 2] {
+    [
+        claim(format!("displacement at .8 s over the rigid one, less 1, {level}"), "1")
+            .of(displacement)
+            .equals_cited(BACKSPIN, 1.0, |done| excess(&done[0]))
+            .within(required(
+                asked + BACKSPIN.uncertainty,
+                "asked for at this resolution before the solver existed, and the reference's own uncertainty",
+            ))
+            .refuses(slippery()),
+        claim(format!("mean velocity of rolling, {level}"), "m/s")
+            .of(speed)
+            .between([1.43, 1.48], Source::Printed(&WORK, SPEED), |done| Ok(rolling(&done[0])?.0))
+            .within(exactly("the band was asked for before the solver existed"))
+            .refuses(Control::scene("a tenth less spin", |scene| scene.grains[0].spin *= 0.9)),
+    ]
+}
