@@ -28,6 +28,15 @@ fn a_property_sees_its_own_flaw_and_not_every_other() {
     assert_eq!(red(Flaw::Irreproducible), ["rerun"]);
 }
 
+/// Two rows of one name would be taken for one another, their controls too.
+#[test]
+fn every_row_has_a_name_of_its_own() {
+    let solver = solvers::by_name("dem").unwrap();
+    let rows = grainbench::conform(&*solver, &Terms::SECOND_ORDER).verdicts;
+    let names: std::collections::BTreeSet<_> = rows.iter().map(|row| (&row.variant, &row.quantity)).collect();
+    assert_eq!(names.len(), rows.len());
+}
+
 /// A claim that the runs do not bear out fails, and nothing else with it.
 #[test]
 fn an_order_that_is_not_there_is_not_believed() {

@@ -87,7 +87,7 @@ fn conformance(named: &[String]) -> Option<Section> {
     (!solvers.is_empty()).then(|| Section {
         name: "conformance".to_owned(),
         title: "What every solver owes".to_owned(),
-        claim: conformance::ALL.map(|property| property.claim).join("; ") + ".",
+        claim: format!("Whatever its method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
         derivation: "Each property is tried in scenes of its own: a grain that runs into four others, with friction and \
                      without; two that fly apart; one held between two walls. The same solver with a flaw of a billionth \
                      must turn the row red. What a method owes less is amber, with its physics, and red beyond the stated \

@@ -160,10 +160,10 @@ pub(super) fn flights() -> Result<Vec<Named>, SceneError> {
 /// order, with a coefficient as small as the overlap.
 pub(super) fn held() -> Result<Vec<Named>, SceneError> {
     let mut all = vec![
-        scene("2d", &[HELD_2D, SPRINGS], false)?,
-        scene("2d-friction", &[HELD_2D, SPRINGS, ROUGH], true)?,
-        scene("3d", &[HELD_3D, SPRINGS], false)?,
-        scene("3d-friction", &[HELD_3D, SPRINGS, ROUGH], true)?,
+        scene("held-2d", &[HELD_2D, SPRINGS], false)?,
+        scene("held-2d-friction", &[HELD_2D, SPRINGS, ROUGH], true)?,
+        scene("held-3d", &[HELD_3D, SPRINGS], false)?,
+        scene("held-3d-friction", &[HELD_3D, SPRINGS, ROUGH], true)?,
     ];
     for named in &mut all {
         if named.frictional {
