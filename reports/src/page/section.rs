@@ -88,6 +88,7 @@ fn verdict_table(rows: &[&Verdict]) -> Markup {
         table.rows {
             thead {
                 tr {
+                    th scope="col" { "Verdict" }
                     th scope="col" { "Quantity" }
                     @if variants { th scope="col" { "Variant" } }
                     th scope="col" { "Solver" }
@@ -98,7 +99,6 @@ fn verdict_table(rows: &[&Verdict]) -> Markup {
                     th.n scope="col" { "Allowed" }
                     th scope="col" { "Evidence" }
                     th scope="col" { "Source" }
-                    th scope="col" { "Verdict" }
                 }
             }
             tbody { @for verdict in rows { (verdict_row(verdict, variants)) } }
@@ -113,6 +113,10 @@ fn verdict_row(verdict: &Verdict, variants: bool) -> Markup {
         |value: Option<f64>| value.map_or_else(|| "—".to_owned(), |value| number::with_unit(value, &verdict.unit));
     html! {
         tr class=(class) {
+            td.verdict {
+                span.mark class=(class) { (symbol) " " (verdict.outcome.word()) }
+                @if let Some(detail) = &verdict.detail { span.fine { (detail) } }
+            }
             th scope="row" { (verdict.quantity) }
             @if variants { td { (verdict.variant) } }
             td { (verdict.solver) }
@@ -128,16 +132,14 @@ fn verdict_row(verdict: &Verdict, variants: bool) -> Markup {
             td.n {
                 (number::fraction(verdict.allowed))
                 span.fine { (verdict.tolerance.word()) }
-                @if let Some(used) = verdict.closeness() { span.fine { (number::significant(used, 2)) " of it used" } }
+                @if let Some(used) = verdict.closeness() {
+                    span.fine { (number::significant(used, 2)) (if used > 1.0 { " times it" } else { " of it used" }) }
+                }
             }
             td { (verdict.evidence.word()) }
             td.wide {
                 (verdict.source)
                 @if !verdict.because.is_empty() { span.fine { "allowed: " (verdict.because) } }
-            }
-            td.verdict {
-                span.mark class=(class) { (symbol) " " (verdict.outcome.word()) }
-                @if let Some(detail) = &verdict.detail { span.fine { (detail) } }
             }
         }
     }

@@ -49,10 +49,10 @@ thead th { font-weight: 500; font-size: .91em; color: var(--soft); white-space: 
 tbody th { font-weight: 600; }
 tbody tr > * { border-bottom: 1px solid var(--rule); }
 td.n, th.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums lining-nums; }
-.rows tbody th { min-width: 7rem; }
+.rows tbody th { min-width: 10rem; }
 .rows td { white-space: nowrap; }
 .rows td.wide { white-space: normal; min-width: 15rem; }
-.rows td.verdict { white-space: normal; min-width: 7.5rem; }
+.rows td.verdict { white-space: normal; min-width: 10rem; }
 .rows tr.fail > * { background: var(--fail-wash); }
 .rows tr.amber > * { background: var(--amber-wash); }
 .rows tr > :first-child { padding-left: .6rem; border-left: 3px solid transparent; }
