@@ -150,7 +150,7 @@ fn refusals_give_the_reason() {
         lammps("rolling-resistance", "sphere-slope", &|_| {}),
         lammps("collision", "oblique", &|scene| scene.change_laws(|law| law.rolling_friction = 0.1)),
         refusal("chung-ooi", "3-cast-iron", Program::Liggghts, |scene| {
-            scene.change_laws(|law| law.effective_shear_modulus *= 2.0);
+            scene.change_laws(|law| law.scale_tangential(2.0));
         }),
         lammps("nine-discs", "static-0", &|_| {}),
         lammps("collision", "beta-zeta.1", &|scene| {

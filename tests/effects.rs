@@ -8,7 +8,8 @@ use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::scene::effects::Effects;
 use grainbench::scene::record::Record;
-use grainbench::scene::scene::{ContactLaw, Duration, Scene};
+use grainbench::scene::contact_law::{ContactLaw, Springs};
+use grainbench::scene::scene::{Duration, Scene};
 use grainbench::scene::solver::{Resolution, Solver};
 
 /// Adds a material that no grain has, with friction and rolling resistance: kernels for both are picked, and do
@@ -17,7 +18,9 @@ fn with_idle_friction(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let (law, count) = (scene.laws[0].unwrap(), scene.materials.len());
     assert_eq!(count, 1, "a scene of one material");
-    let idle = ContactLaw { friction: 0.5, tangential_stiffness: law.normal_stiffness, rolling_friction: 0.1, ..law };
+    let normal = law.normal_stiffness();
+    let springs = Springs::Linear { normal, tangential: normal };
+    let idle = ContactLaw { springs, friction: 0.5, rolling_friction: 0.1, ..law };
     scene.materials.push("idle".to_owned());
     scene.laws = vec![Some(law), None, None, Some(idle)];
     scene

@@ -36,8 +36,8 @@ fn exact_limits_are_found_to_half_a_hundredth() {
 fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
     for mut assembly in assembly::all().unwrap() {
         assembly.scene.change_laws(|law| {
-            law.normal_stiffness *= 1.05;
-            law.tangential_stiffness *= 1.05;
+            law.scale_normal(1.05);
+            law.scale_tangential(1.05);
         });
         let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &Shelf::none()).unwrap();
         assert!(limit.error.is_none_or(|error| error < -0.012), "{} {:?}: {:?}", limit.scene, limit.at, limit.error);

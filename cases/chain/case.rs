@@ -37,7 +37,7 @@ fn run(level: Level) -> Run {
 
 /// Driving speed V (m/s), ω₀ (rad/s) and impedance √(km) (N s/m).
 fn chain(scene: &Scene) -> (f64, f64, f64) {
-    let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness).fold(0.0, f64::max);
+    let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
     let mass = scene.grains[0].mass;
     (scene.walls[0].motion.phases[0].velocity.x, (stiffness / mass).sqrt(), (stiffness * mass).sqrt())
 }
@@ -86,7 +86,7 @@ fn claims() -> Vec<Claim> {
              half wave of it, 2√(2/π) 20^(−5/2)",
         ))
         .refuses(Control::scene("contacts 2 % too stiff", |scene| {
-            scene.change_laws(|law| law.normal_stiffness *= 1.02);
+            scene.change_laws(|law| law.scale_normal(1.02));
         }))
         .fair_to_any();
     // Rigid beads have no dispersion, and no unique answer either: many beads touch at once.

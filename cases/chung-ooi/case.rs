@@ -4,7 +4,7 @@ use crate::program_forces::forces;
 use crate::program_rows::hertz_impact;
 use crate::rigid_rows;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::ContactLaw;
+use grainbench_scene::contact_law::ContactLaw;
 use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[fraction("dt=.01", 0.01), fraction("dt=.003", 0.003), fraction("dt=.001", 0.001)];
@@ -64,7 +64,7 @@ fn impact(scene: &Scene) -> (f64, f64, f64) {
         ),
         None => (first.radius, first.mass, first.velocity.z.abs()),
     };
-    (4.0 / 3.0 * law(scene).effective_modulus * radius.sqrt(), mass, speed)
+    (4.0 / 3.0 * law(scene).effective_modulus() * radius.sqrt(), mass, speed)
 }
 
 /// Deepest overlap (m), largest force (N) and duration (s) of an elastic impact.
@@ -104,7 +104,7 @@ fn elastic() -> Vec<Claim> {
                 Ok(Measured::new(read(&done[0])?, exact, exact))
             })
             .within(estimated(1e-6, "discretisation of the impact by some thousand steps"))
-            .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.effective_modulus *= 1.01)))
+            .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01))))
     };
     let mut claims = Vec::new();
     for variant in ELASTIC {

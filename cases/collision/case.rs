@@ -75,8 +75,8 @@ fn worst_angular_momentum(done: &Done) -> Result<Measured, Missing> {
 fn pair(scene: &Scene) -> (f64, f64, f64) {
     let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
     let mass = 1.0 / scene.grains.iter().map(|grain| 1.0 / grain.mass).sum::<f64>();
-    let viscosity = law.stiffness_damping * law.normal_stiffness + law.normal_damping * mass;
-    (mass, (law.normal_stiffness / mass).sqrt(), viscosity / (2.0 * (law.normal_stiffness * mass).sqrt()))
+    let viscosity = law.stiffness_damping * law.normal_stiffness() + law.normal_damping * mass;
+    (mass, (law.normal_stiffness() / mass).sqrt(), viscosity / (2.0 * (law.normal_stiffness() * mass).sqrt()))
 }
 
 /// Coefficient of restitution.
@@ -199,7 +199,7 @@ fn at_the_limit() -> Claim {
             let grain = &done[0].scene.grains[0];
             let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
             let overlap: f64 = done[0].column("contact.overlap")?.iter().sum();
-            let limit = law.friction * law.normal_stiffness * overlap * done[0].record.provenance.time_step;
+            let limit = law.friction * law.normal_stiffness() * overlap * done[0].record.provenance.time_step;
             // Both discs are turned clockwise.
             let expected = -limit * grain.radius / grain.inertia;
             Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))

@@ -49,7 +49,7 @@ fn claims() -> Vec<Claim> {
         ))
         .refuses(Control::scene("dashpots of 1e-3 of critical", |scene| {
             let law = scene.laws[0].unwrap_or_default();
-            let rate = 2e-3 * (law.normal_stiffness / scene.grains[0].mass).sqrt();
+            let rate = 2e-3 * (law.normal_stiffness() / scene.grains[0].mass).sqrt();
             scene.change_laws(|law| law.normal_damping = rate);
         }))
         .fair_to_any();

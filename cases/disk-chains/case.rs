@@ -56,7 +56,7 @@ fn pair(scene: &Scene, first: usize) -> [usize; 2] {
 
 /// .1 V√(k m) (N).
 fn threshold(scene: &Scene) -> f64 {
-    let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness).fold(0.0, f64::max);
+    let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
     ARRIVED * scene.walls[0].motion.phases[0].velocity.norm() * (stiffness * scene.grains[0].mass).sqrt()
 }
 
@@ -116,7 +116,7 @@ fn exact(variant: &'static str, first: usize) -> Claim {
              which turn the normals",
         ))
         .refuses(Control::scene("contacts 1 % too stiff", |scene| {
-            scene.change_laws(|law| law.normal_stiffness *= 1.01);
+            scene.change_laws(|law| law.scale_normal(1.01));
         }))
 }
 
@@ -140,7 +140,7 @@ fn glued() -> Claim {
              way are taken for closed; in units of V√(k m)",
         ))
         .refuses(Control::scene("tangential springs 1 % too soft", |scene| {
-            scene.change_laws(|law| law.tangential_stiffness *= 0.99);
+            scene.change_laws(|law| law.scale_tangential(0.99));
         }))
 }
 
@@ -153,7 +153,7 @@ fn sooner(variant: &'static str, of: &str) -> Claim {
         .within(exactly("the paper states an order of fringes and no ratio: sooner by a hundredth or more"))
         .refuses(Control::scene("the slipping zig-zag four times as stiff", |scene| {
             let slips = scene.laws.iter().flatten().any(|law| law.friction == 0.5);
-            scene.change_laws(|law| law.normal_stiffness *= if slips { 4.0 } else { 1.0 });
+            scene.change_laws(|law| law.scale_normal(if slips { 4.0 } else { 1.0 }));
         }))
 }
 

@@ -143,7 +143,7 @@ fn springs(scene: &Scene) -> Vec<Spring> {
             let Some(law) = scene.law(a.material, b.material) else { continue };
             let normal = row(&[(3 * i, e.x), (3 * i + 1, e.y), (3 * j, -e.x), (3 * j + 1, -e.y)]);
             let (pair, driven) = (Some([i, j]), 0.0);
-            springs.push(Spring { stretch: normal, stiffness: law.normal_stiffness, is_shear: false, pair, driven });
+            springs.push(Spring { stretch: normal, stiffness: law.normal_stiffness(), is_shear: false, pair, driven });
             if law.has_friction() {
                 let t = Vector2::new(e.y, -e.x);
                 let shear = row(&[
@@ -156,7 +156,7 @@ fn springs(scene: &Scene) -> Vec<Spring> {
                 ]);
                 springs.push(Spring {
                     stretch: shear,
-                    stiffness: law.tangential_stiffness,
+                    stiffness: law.tangential_stiffness(),
                     is_shear: true,
                     pair,
                     driven,
@@ -169,7 +169,7 @@ fn springs(scene: &Scene) -> Vec<Spring> {
             if let (true, Some(law)) = (touches, scene.law(a.material, wall.material)) {
                 let stretch = row(&[(3 * i, -normal.x), (3 * i + 1, -normal.y)]);
                 let driven = if number == 0 { 1.0 } else { 0.0 };
-                springs.push(Spring { stretch, stiffness: law.normal_stiffness, is_shear: false, pair: None, driven });
+                springs.push(Spring { stretch, stiffness: law.normal_stiffness(), is_shear: false, pair: None, driven });
             }
         }
     }

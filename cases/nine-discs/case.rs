@@ -89,7 +89,7 @@ fn static_forces() -> Vec<Claim> {
                 .of(Run::new(variant, "dem", LEVELS[0].resolution))
                 .equals(MODES, move |done| {
                     let scene = &done[0].scene;
-                    let unit = law(scene).normal_stiffness * travel(&done[0]);
+                    let unit = law(scene).normal_stiffness() * travel(&done[0]);
                     let value = done[0].last(&format!("{contact}.{kind}_force"))?.abs();
                     Ok(Measured::new(value, force(&Modal::of(scene)) * unit, unit))
                 })
@@ -168,13 +168,13 @@ fn discrete() -> Vec<Claim> {
     let of = |variant: &'static str| {
         let (runs, tolerance, control) = if variant == "kappa-0" {
             let control = Control::scene("stiffness off by 1e-8", |scene| {
-                scene.change_laws(|law| law.normal_stiffness *= 1.0 + 1e-8);
+                scene.change_laws(|law| law.scale_normal(1.0 + 1e-8));
             });
             let rounding = judged(1e-11, "rounding of positions, as it adds up over 400 cycles, against δ/R = 1.5e-3");
             (vec![Run::new(variant, "dem", LEVELS[0].resolution)], rounding, control)
         } else {
             let control = Control::scene("tangential stiffness off by 1e-7", |scene| {
-                scene.change_laws(|law| law.tangential_stiffness *= 1.0 + 1e-7);
+                scene.change_laws(|law| law.scale_tangential(1.0 + 1e-7));
             });
             let remainder = judged(1e-9, "the extrapolation's own remainder, of the order of (δ/R)³ with δ/R = 1.5e-3");
             ([1.0, 0.5, 0.25].map(|factor| at_speed(variant, factor)).to_vec(), remainder, control)
@@ -344,7 +344,7 @@ fn speed_of_loading() -> Vec<Claim> {
                 .within(spectrum())
                 .refuses(Control::scene("stiffness × 1.05 under slow loading", |scene| {
                     if scene.walls[0].motion.phases[0].stop == Moment::Cycle(120) {
-                        scene.change_laws(|law| law.normal_stiffness *= 1.05);
+                        scene.change_laws(|law| law.scale_normal(1.05));
                     }
                 })),
         );
@@ -502,8 +502,8 @@ fn distortion() -> Vec<Claim> {
             .within(exactly("only the order is printed"))
             .refuses(Control::scene("κ = 1/10 where it should be 1", |scene| {
                 scene.change_laws(|law| {
-                    if law.tangential_stiffness >= law.normal_stiffness {
-                        law.tangential_stiffness *= 0.1;
+                    if law.tangential_stiffness() >= law.normal_stiffness() {
+                        law.scale_tangential(0.1);
                     }
                 });
             })),

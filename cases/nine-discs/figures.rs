@@ -53,7 +53,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 fn after_stop(done: &Done, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
     let phase = &done.scene.walls[0].motion.phases[0];
     let travel = phase.velocity.norm() * stop as f64 * done.record.provenance.time_step;
-    let rest = Modal::of(&done.scene).at_rest().edge * law(&done.scene).normal_stiffness * travel;
+    let rest = Modal::of(&done.scene).at_rest().edge * law(&done.scene).normal_stiffness() * travel;
     let force = done.series().column("centre-edge.normal_force").unwrap_or_default();
     force
         .iter()

@@ -1,6 +1,7 @@
 //! The nine discs without slip, as two oscillators: static forces, the continuous answer, and the answer of the cycle.
 
-use grainbench_scene::scene::{ContactLaw, Scene};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::scene::Scene;
 use std::f64::consts::SQRT_2;
 
 /// Closed forms for one scene.
@@ -23,8 +24,8 @@ impl Modal {
     pub(crate) fn of(scene: &Scene) -> Self {
         let law = law(scene);
         Self {
-            kappa: if law.has_friction() { law.tangential_stiffness / law.normal_stiffness } else { 0.0 },
-            rate: law.normal_stiffness / scene.grains[0].mass,
+            kappa: if law.has_friction() { law.tangential_stiffness() / law.normal_stiffness() } else { 0.0 },
+            rate: law.normal_stiffness() / scene.grains[0].mass,
         }
     }
 

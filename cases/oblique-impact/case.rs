@@ -40,7 +40,7 @@ fn exact(scene: &Scene) -> Exit {
     let grain = &scene.grains[0];
     let (along, across) = (grain.velocity.x, -grain.velocity.y);
     let decay = 0.5 * law.normal_damping;
-    let omega = (law.normal_stiffness / grain.mass - decay * decay).sqrt();
+    let omega = (law.normal_stiffness() / grain.mass - decay * decay).sqrt();
     let interval = std::f64::consts::PI / omega / f64::from(PARTS);
     let turning = grain.mass * grain.radius * grain.radius / grain.inertia;
     // Slip velocity, stretch of the tangential spring and impulse along the wall over the mass.
@@ -50,10 +50,10 @@ fn exact(scene: &Scene) -> Exit {
         let size = across / omega * (-decay * time).exp();
         let overlap = size * (omega * time).sin();
         let rate = size * (omega * (omega * time).cos() - decay * (omega * time).sin());
-        let limit = law.friction * (law.normal_stiffness * overlap + law.normal_damping * grain.mass * rate).abs();
+        let limit = law.friction * (law.normal_stiffness() * overlap + law.normal_damping * grain.mass * rate).abs();
         stretch += slip * 0.5 * interval;
-        let force = (law.tangential_stiffness * stretch).clamp(-limit, limit);
-        stretch = force / law.tangential_stiffness + slip * 0.5 * interval;
+        let force = (law.tangential_stiffness() * stretch).clamp(-limit, limit);
+        stretch = force / law.tangential_stiffness() + slip * 0.5 * interval;
         slip -= force / grain.mass * (1.0 + turning) * interval;
         impulse += force / grain.mass * interval;
     }
@@ -71,7 +71,7 @@ fn claims() -> Vec<Claim> {
     let stiffness_damping = || {
         Control::scene("stiffness-proportional damping of a fiftieth of the period", |scene| {
             let law = scene.laws[0].unwrap_or_default();
-            let beta = 0.04 * (scene.grains[0].mass / law.normal_stiffness).sqrt();
+            let beta = 0.04 * (scene.grains[0].mass / law.normal_stiffness()).sqrt();
             scene.change_laws(|law| law.stiffness_damping = beta);
         })
     };

@@ -237,7 +237,7 @@ fn twin(variant: &'static str, disc: usize) -> Run {
 /// stage by stage after it.
 fn programs() -> Vec<Claim> {
     let softer = Control::ours("stiffness off by 1e-6 in ours", |scene| {
-        scene.change_laws(|law| law.normal_stiffness *= 1.0 + 1e-6);
+        scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
     });
     let smooth = || Control::ours("friction .1 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
     let [lammps, liggghts] = PAIRS;

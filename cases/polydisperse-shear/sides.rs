@@ -6,7 +6,8 @@
 //! the walls.
 
 use grainbench_scene::motion::Motion;
-use grainbench_scene::scene::{ContactLaw, Scene, Wall, WallShape};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::scene::{Scene, Wall, WallShape};
 use nalgebra::Vector3;
 
 /// Walls at both sides, for all grains but those that are driven.

@@ -79,7 +79,7 @@ fn left_of_the_start(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let (grain, law) = (OneGrain::of(&scene), scene.laws.iter().flatten().next().copied().unwrap_or_default());
     let factor = 1.0 + 1.0 / grain.inertia_factor;
-    let (half, square) = (0.5 * factor * law.tangential_damping, factor * law.tangential_stiffness / grain.mass);
+    let (half, square) = (0.5 * factor * law.tangential_damping, factor * law.tangential_stiffness() / grain.mass);
     (-0.5 * (half - (half * half - square).sqrt())).exp()
 }
 

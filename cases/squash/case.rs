@@ -33,7 +33,7 @@ fn run() -> Run {
 
 /// q = kΔt²/m and the unit of force k v Δt, from the scene and the step that was run.
 fn units(done: &Done) -> (f64, f64) {
-    let stiffness = done.scene.laws.iter().flatten().map(|law| law.normal_stiffness).fold(0.0, f64::max);
+    let stiffness = done.scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
     let time_step = done.record.provenance.time_step;
     let speed = done.scene.walls[0].motion.phases[0].velocity.norm();
     (stiffness * time_step * time_step / done.scene.grains[0].mass, stiffness * speed * time_step)

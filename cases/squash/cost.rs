@@ -34,7 +34,7 @@ pub(crate) fn subjects() -> Vec<Subject> {
         measure: Arc::new(|done| {
             let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
             let scene = &done.scene;
-            let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness).fold(0.0, f64::max);
+            let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
             let speed = scene.walls[0].motion.phases[0].velocity.x;
             let frequency = (3.0 * stiffness / scene.grains[0].mass).sqrt();
             let start = scene.grains[0].position.x;

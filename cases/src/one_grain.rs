@@ -13,6 +13,7 @@
 //! derived here.
 
 use grainbench_harness::run::{Done, Missing};
+use grainbench_scene::contact_law::Springs;
 use grainbench_scene::scene::{Dimension, Scene};
 
 /// The grain, the plane and the law between them.
@@ -63,9 +64,9 @@ impl OneGrain {
             along: scene.gravity.x,
             onto,
             friction: law.friction,
-            tangential_stiffness: law.tangential_stiffness,
+            tangential_stiffness: law.tangential_stiffness(),
             spin: rolling_spin(scene, &grain.spin),
-            overlap_ratio: grain.mass * onto / law.normal_stiffness / grain.radius,
+            overlap_ratio: grain.mass * onto / law.normal_stiffness() / grain.radius,
         }
     }
 
@@ -180,8 +181,7 @@ pub fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
     let stiffness = grain.mass * onto / (ratio * grain.radius);
     let damping = 2.0 * damping_ratio * (stiffness / grain.mass).sqrt();
     scene.change_laws(|law| {
-        law.normal_stiffness = stiffness;
-        law.tangential_stiffness = stiffness * 2.0 / 7.0;
+        law.springs = Springs::Linear { normal: stiffness, tangential: stiffness * 2.0 / 7.0 };
         law.normal_damping = damping;
         law.tangential_damping = damping;
     });

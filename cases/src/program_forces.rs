@@ -12,10 +12,7 @@ const BECAUSE: &str = "the same cycle: overlaps round as positions do";
 
 fn stiffer() -> Control {
     Control::ours("stiffness off by 1e-6 in ours", |scene| {
-        scene.change_laws(|law| {
-            law.normal_stiffness *= 1.0 + 1e-6;
-            law.effective_modulus *= 1.0 + 1e-6;
-        });
+        scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
     })
 }
 
@@ -45,7 +42,7 @@ pub fn nine_discs(variant: &'static str, resolution: Resolution) -> Vec<Claim> {
     const AT_WALLS: &[&str] = &["wall-edge.normal_force", "wall-corner.normal_force", "wall-corner.shear_force"];
     let unit = |scene: &Scene, time_step: f64| {
         let phase = &scene.walls[0].motion.phases[0];
-        let stiffness = scene.laws[0].map_or(0.0, |law| law.normal_stiffness);
+        let stiffness = scene.laws[0].map_or(0.0, |law| law.normal_stiffness());
         stiffness * phase.velocity.norm() * phase.stop.seconds(time_step)
     };
     let of = |pair: [&'static str; 2], quantity: &str, columns: &'static [&'static str]| {

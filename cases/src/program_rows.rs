@@ -53,7 +53,7 @@ pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
 /// Coulomb's limit is felt where a grain slips, and the spring by which it comes to roll everywhere.
 fn telling() -> Control {
     Control::ours("tangential stiffness × 1.001 in ours", |scene| {
-        scene.change_laws(|law| law.tangential_stiffness *= 1.001);
+        scene.change_laws(|law| law.scale_tangential(1.001));
     })
 }
 
@@ -113,7 +113,7 @@ pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(
                 if pair[1] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
             });
             let control = Control::ours("stiffness off by 1e-6 in ours", |scene| {
-                scene.change_laws(|law| law.normal_stiffness *= 1.0 + 1e-6);
+                scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
             });
             let allowed = judged(2e-11, "the same cycle: rounding of positions, 3e-12 of the wall travel a step");
             let quantity = "position over all cycles, worst";
@@ -166,7 +166,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
         let allowed = judged(1e-12, "the same cycle: rounding; relative to the velocity before");
         let runs = || pair.map(|solver| Run::new(variant, solver, resolution));
         let control = Control::ours("E* × 1.00001 in ours", |scene| {
-            scene.change_laws(|law| law.effective_modulus *= 1.00001);
+            scene.change_laws(|law| law.scale_normal(1.00001));
         });
         claims.push(row("velocity over the impact, worst", "m/s", allowed, runs(), control, |done| {
             worst(done, &["a.vx", "a.vz"], done[0].scene.grains[0].velocity.norm())
@@ -174,7 +174,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
         if turns {
             let allowed = judged(1e-12, "the same cycle: rounding; relative to the velocity before over the radius");
             let control = Control::ours("G* × 1.00001 in ours", |scene| {
-                scene.change_laws(|law| law.effective_shear_modulus *= 1.00001);
+                scene.change_laws(|law| law.scale_tangential(1.00001));
             });
             claims.push(row("spin over the impact, worst", "rad/s", allowed, runs(), control, |done| {
                 let grain = &done[0].scene.grains[0];
@@ -235,7 +235,7 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
             claims.push(row("force on the wall, worst", "N", allowed, runs, control, |done| {
                 let (grain, law) = (&done[0].scene.grains[0], done[0].scene.laws[0].unwrap_or_default());
-                let largest = grain.velocity.y.abs() * (law.normal_stiffness * grain.mass).sqrt();
+                let largest = grain.velocity.y.abs() * (law.normal_stiffness() * grain.mass).sqrt();
                 worst(done, &["wall.force_x", "wall.force_y"], largest)
             }));
         }

@@ -282,7 +282,7 @@ pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Resul
         ))
         .refuses(Control::scene("dashpots of a hundredth of critical", |scene| {
             let law = scene.laws[0].unwrap_or_default();
-            let rate = 2e-2 * (law.normal_stiffness / scene.grains[0].mass).sqrt();
+            let rate = 2e-2 * (law.normal_stiffness() / scene.grains[0].mass).sqrt();
             scene.change_laws(|law| law.normal_damping = rate);
         }))
 }

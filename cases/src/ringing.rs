@@ -5,6 +5,7 @@ use crate::elastic::stiffen;
 use grainbench_harness::measure::dominant_frequency;
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::{Constitutive, Deformable};
+use grainbench_scene::contact_law::Springs;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Duration, Sampling};
 
@@ -60,7 +61,10 @@ impl Ringing {
     fn on_springs(self, scene: &mut Scene) {
         self.elastic(scene);
         if let Some((force, _)) = (self.exact)(scene, self.squeeze) {
-            scene.change_laws(|law| law.normal_stiffness = force / (self.share * self.squeeze));
+            scene.change_laws(|law| {
+                let (normal, tangential) = (force / (self.share * self.squeeze), law.tangential_stiffness());
+                law.springs = Springs::Linear { normal, tangential };
+            });
         }
     }
 

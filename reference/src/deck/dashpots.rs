@@ -1,6 +1,7 @@
 //! Dashpots as both programs have them: proportional to the effective mass of the contact.
 
-use grainbench_scene::scene::{ContactLaw, Scene};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::scene::Scene;
 
 /// Coefficients γ of c = γ m_eff (1/s).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -43,7 +44,7 @@ impl Dashpots {
                 mass * other / (mass + other)
             }
         };
-        let (normal, tangential) = (law.normal_stiffness / effective, law.tangential_stiffness / effective);
+        let (normal, tangential) = (law.normal_stiffness() / effective, law.tangential_stiffness() / effective);
         dashpots.normal += law.stiffness_damping * normal + 2.0 * law.damping_ratio * normal.sqrt();
         dashpots.tangential += law.stiffness_damping * tangential;
         Ok(dashpots)

@@ -1,7 +1,8 @@
 //! Contacts as LAMMPS has them: `gran/hooke/history` and `gran/hertz/history`, and `granular` where its law is the
 //! scene's.
 
-use grainbench_scene::scene::{ContactLaw, Scene};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::scene::Scene;
 
 use super::dashpots::{Dashpots, Side};
 use super::outline::grain_materials;
@@ -81,13 +82,13 @@ fn history(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result
         return Ok(format!("hertz/history {normal:?} {tangential:?} 0.0 0.0 {friction:?} 1"));
     }
     let Dashpots { normal, tangential } = Dashpots::of(scene, law, material, side)?;
-    let (k_n, k_t) = (law.normal_stiffness, law.tangential_stiffness);
+    let (k_n, k_t) = (law.normal_stiffness(), law.tangential_stiffness());
     Ok(format!("hooke/history {k_n:?} {k_t:?} {normal:?} {tangential:?} {friction:?} 1"))
 }
 
 /// (4/3)E* and 8G* (Pa).
 pub(crate) fn hertz(law: &ContactLaw) -> (f64, f64) {
-    (4.0 / 3.0 * law.effective_modulus, 8.0 * law.effective_shear_modulus)
+    (4.0 / 3.0 * law.effective_modulus(), 8.0 * law.effective_shear_modulus())
 }
 
 /// `granular` with Tsuji's dashpot, c = α √(k_n a m_eff) with k_n = (4/3)E* and a = √(R_eff δ): the scene's
@@ -135,7 +136,7 @@ fn rolling(scene: &Scene, law: &ContactLaw, material: u16) -> Result<String, Str
         return Err("`granular` has the tangential dashpot as a multiple of the normal one, which is none".to_owned());
     }
     let ratio = if normal == 0.0 { 0.0 } else { tangential / normal };
-    let (k_n, k_t, friction) = (law.normal_stiffness, law.tangential_stiffness, law.friction);
+    let (k_n, k_t, friction) = (law.normal_stiffness(), law.tangential_stiffness(), law.friction);
     let stiffness = 2.25 * k_n * law.rolling_friction * law.rolling_friction;
     Ok(format!(
         "hooke {k_n:?} {normal:?} tangential linear_history {k_t:?} {ratio:?} {friction:?} rolling sds {stiffness:?} 0.0 {:?} \

@@ -2,7 +2,8 @@
 //! `rolling_friction epsd`.
 
 use grainbench_scene::effects::Effects;
-use grainbench_scene::scene::{ContactLaw, Scene};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::scene::Scene;
 
 use super::dashpots::{Dashpots, Side};
 use super::lammps_contact::hertz;
@@ -59,7 +60,7 @@ impl Model {
         }
         type Pick = fn(&(ContactLaw, Dashpots)) -> f64;
         let mut picks: Vec<(&str, Pick)> = match (self.effects.hertz, self.has_moduli()) {
-            (false, _) => vec![("kn", |(law, _)| law.normal_stiffness), ("kt", |(law, _)| law.tangential_stiffness)],
+            (false, _) => vec![("kn", |(law, _)| law.normal_stiffness()), ("kt", |(law, _)| law.tangential_stiffness())],
             (true, false) => vec![("kn", |(law, _)| hertz(law).0), ("kt", |(law, _)| hertz(law).1)],
             (true, true) => Vec::new(),
         };

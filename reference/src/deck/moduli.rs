@@ -1,6 +1,6 @@
 //! Young's moduli and Poisson's ratios of single types that give the effective moduli of pairs.
 
-use grainbench_scene::scene::ContactLaw;
+use grainbench_scene::contact_law::ContactLaw;
 
 /// Young's modulus (Pa) of what does not deform beside any real material.
 const RIGID: f64 = 1e40;
@@ -17,7 +17,7 @@ struct Shares {
 
 impl Shares {
     fn of_pair(law: &ContactLaw) -> Self {
-        Self { normal: 1.0 / law.effective_modulus, tangential: 1.0 / law.effective_shear_modulus }
+        Self { normal: 1.0 / law.effective_modulus(), tangential: 1.0 / law.effective_shear_modulus() }
     }
 
     /// E and ν: b/a = 2(2 − ν)/(1 − ν).
@@ -84,17 +84,15 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
+    use grainbench_scene::contact_law::Springs;
 
     /// 1/E* and 1/G* as two materials have them.
     fn law(first: (f64, f64), second: Option<(f64, f64)>) -> Option<ContactLaw> {
         let of =
             |(young, ratio): (f64, f64)| ((1.0 - ratio * ratio) / young, 2.0 * (2.0 - ratio) * (1.0 + ratio) / young);
         let ((a, b), (c, d)) = (of(first), second.map_or((0.0, 0.0), of));
-        Some(ContactLaw {
-            effective_modulus: 1.0 / (a + c),
-            effective_shear_modulus: 1.0 / (b + d),
-            ..Default::default()
-        })
+        let springs = Springs::Hertz { effective_modulus: 1.0 / (a + c), effective_shear_modulus: 1.0 / (b + d) };
+        Some(ContactLaw { springs, ..Default::default() })
     }
 
     #[test]

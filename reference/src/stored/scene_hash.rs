@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use grainbench_scene::scene::{ContactLaw, Driven, Grain, Scene, Wall};
+use grainbench_scene::scene::{Driven, Grain, Scene, Wall};
 
 use crate::deck::Stepping;
 
@@ -19,25 +19,7 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
         let _ = writeln!(text, "domain {:?} {:?} {:?}", domain.low, domain.high, domain.periodic);
     }
     for law in &scene.laws {
-        // Named one by one: a law that gains a number makes every stored run another one.
-        let &ContactLaw {
-            normal_stiffness,
-            tangential_stiffness,
-            friction,
-            cohesion,
-            stiffness_damping,
-            normal_damping,
-            tangential_damping,
-            effective_modulus,
-            effective_shear_modulus,
-            damping_ratio,
-            rolling_friction,
-            rolling_damping,
-        } = &law.unwrap_or_default();
-        let springs = [normal_stiffness, tangential_stiffness, effective_modulus, effective_shear_modulus];
-        let dashpots = [stiffness_damping, normal_damping, tangential_damping, damping_ratio];
-        let limits = [friction, cohesion, rolling_friction, rolling_damping];
-        let _ = writeln!(text, "law {} {springs:?} {dashpots:?} {limits:?}", law.is_some());
+        let _ = writeln!(text, "law {} {}", law.is_some(), law.unwrap_or_default().identity());
     }
     for Grain { material, radius, mass, inertia, position, velocity, spin } in &scene.grains {
         let _ = writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");

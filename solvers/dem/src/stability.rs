@@ -1,6 +1,7 @@
 //! How large a step any packing of equal grains bears.
 
-use grainbench_scene::scene::{ContactLaw, Dimension, Scene};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::scene::{Dimension, Scene};
 
 /// A fraction of the critical step `2√(m/k_n)` at which no packing of equal grains is unstable.
 ///
@@ -14,7 +15,7 @@ pub fn stable_fraction(scene: &Scene) -> f64 {
         Dimension::Three => 12.0,
     };
     let ratio = |law: &ContactLaw| {
-        let (normal, tangential) = law.stiffness(1.0, 1.0);
+        let (normal, tangential) = law.springs.stiffness(1.0, 1.0);
         if law.has_friction() { tangential / normal } else { 0.0 }
     };
     let worst = scene.laws.iter().flatten().map(ratio).fold(0.0, f64::max);
@@ -41,11 +42,11 @@ pub fn damped_step(scene: &Scene) -> (f64, f64) {
     let mut least = (f64::INFINITY, f64::INFINITY);
     let mut bear = |law: Option<&ContactLaw>, mass: f64| {
         let Some(law) =
-            law.filter(|law| mass.is_finite() && mass > 0.0 && !law.is_hertz() && law.normal_stiffness > 0.0)
+            law.filter(|law| mass.is_finite() && mass > 0.0 && law.normal_stiffness() > 0.0)
         else {
             return;
         };
-        let frequency = (law.normal_stiffness / mass).sqrt();
+        let frequency = (law.normal_stiffness() / mass).sqrt();
         let ratio = 0.5 * (law.stiffness_damping * frequency + law.normal_damping / frequency) + law.damping_ratio;
         let step = 2.0 / frequency * ((1.0 + ratio * ratio).sqrt() - ratio);
         if ratio > 0.0 && step < least.0 {

@@ -6,7 +6,8 @@ use grainbench_dem::convention::{CapNormal, Convention, CoulombCap, History, Ten
 use grainbench_dem::solver::Dem;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::effects::Effects;
-use grainbench_scene::scene::{ContactLaw, Scene};
+use grainbench_scene::contact_law::{ContactLaw, Springs};
+use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Method;
 use grainbench_scene::source::SceneSource;
 use std::collections::BTreeSet;
@@ -34,9 +35,9 @@ fn law_with_everything(hertz: bool) -> ContactLaw {
         ..ContactLaw::default()
     };
     if hertz {
-        ContactLaw { effective_modulus: 1e9, effective_shear_modulus: 3e8, ..law }
+        ContactLaw { springs: Springs::Hertz { effective_modulus: 1e9, effective_shear_modulus: 3e8 }, ..law }
     } else {
-        ContactLaw { normal_stiffness: 1e6, tangential_stiffness: 5e5, ..law }
+        ContactLaw { springs: Springs::Linear { normal: 1e6, tangential: 5e5 }, ..law }
     }
 }
 

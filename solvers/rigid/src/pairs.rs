@@ -1,6 +1,7 @@
 //! Friction and restitution of every pair, from the scene's laws.
 
-use grainbench_scene::scene::{ContactLaw, Scene};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::scene::Scene;
 
 /// One side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,8 +104,8 @@ const MOST_KINDS: usize = 16;
 /// damping ratio ζ and, for linear springs, c/(2√(k_n m)), c = β k_n + γ_n m for the effective mass m of the pair (the
 /// dashpot may pull until the overlap is gone); 1 without damping, 0 from critical damping on.
 fn restitution(law: &ContactLaw, mass: f64) -> f64 {
-    let viscosity = law.stiffness_damping * law.normal_stiffness + law.normal_damping * mass;
-    let linear = if viscosity == 0.0 { 0.0 } else { viscosity / (2.0 * (law.normal_stiffness * mass).sqrt()) };
+    let viscosity = law.stiffness_damping * law.normal_stiffness() + law.normal_damping * mass;
+    let linear = if viscosity == 0.0 { 0.0 } else { viscosity / (2.0 * (law.normal_stiffness() * mass).sqrt()) };
     let ratio = law.damping_ratio + linear;
     if ratio == 0.0 {
         return 1.0;
@@ -115,6 +116,7 @@ fn restitution(law: &ContactLaw, mass: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainbench_scene::contact_law::Springs;
 
     #[test]
     fn tags_tell_grains_from_walls() {
@@ -126,7 +128,8 @@ mod tests {
     #[test]
     fn restitution_of_a_damping_ratio() {
         // k m* = 1, so that ζ = c/2.
-        let law = ContactLaw { normal_stiffness: 2.0, normal_damping: 0.4, ..ContactLaw::default() };
+        let springs = Springs::Linear { normal: 2.0, tangential: 0.0 };
+        let law = ContactLaw { springs, normal_damping: 0.4, ..ContactLaw::default() };
         let expected = (-std::f64::consts::PI * 0.1 / 0.99_f64.sqrt()).exp();
         assert!((restitution(&law, 0.5) - expected).abs() < 1e-15);
         let same = ContactLaw { stiffness_damping: 0.1, normal_damping: 0.0, ..law };

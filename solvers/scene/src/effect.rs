@@ -2,8 +2,9 @@
 //! with which it is compiled in and does nothing. What a scene calls for is derived from it and never typed beside it.
 
 use crate::body::Constitutive;
+use crate::contact_law::{ContactLaw, Springs};
 use crate::motion::{Moment, Phase};
-use crate::scene::{ContactLaw, Scene};
+use crate::scene::Scene;
 use crate::solver::Method;
 use nalgebra::Vector3;
 
@@ -98,7 +99,7 @@ impl Effect {
             Self::Friction => of_law(scene, "friction", |law| law.friction),
             Self::Cohesion => of_law(scene, "cohesion", |law| law.cohesion),
             Self::Hertz => {
-                of_law(scene, "youngs_modulus", |law| if law.is_hertz() { law.effective_modulus } else { 0.0 })
+                of_law(scene, "youngs_modulus", ContactLaw::effective_modulus)
             }
             Self::Restitution => of_law(scene, "restitution", |law| law.damping_ratio),
             Self::RollingResistance => of_law(scene, "rolling_friction", |law| law.rolling_friction),
@@ -205,15 +206,15 @@ impl Effect {
         match self {
             Self::Friction => idle_law(scene, |law| {
                 law.friction = 0.5;
-                law.tangential_stiffness = law.normal_stiffness;
+                bear_shear(law);
             }),
             Self::Cohesion => idle_law(scene, |law| {
                 law.cohesion = 1.0;
-                law.tangential_stiffness = law.normal_stiffness;
+                bear_shear(law);
             }),
             Self::RollingResistance => idle_law(scene, |law| {
                 law.friction = 0.5;
-                law.tangential_stiffness = law.normal_stiffness;
+                bear_shear(law);
                 law.rolling_friction = 0.1;
             }),
             Self::ContactDamping => idle_law(scene, |law| law.normal_damping = 1.0),
@@ -262,6 +263,13 @@ fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Optio
         let (a, b) = (&scene.materials[at / count], &scene.materials[at % count]);
         (value != 0.0).then(|| format!("contacts of {a} and {b}: {key} = {value}"))
     })
+}
+
+/// Gives linear springs a tangential one too, as stiff as the normal one.
+const fn bear_shear(law: &mut ContactLaw) {
+    if let Springs::Linear { normal, tangential } = &mut law.springs {
+        *tangential = *normal;
+    }
 }
 
 /// Adds a material that no grain has, with a law of its own.

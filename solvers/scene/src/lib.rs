@@ -7,6 +7,7 @@ pub mod body;
 pub mod budget;
 mod check;
 pub mod checkpoint;
+pub mod contact_law;
 pub mod drive;
 pub mod effect;
 pub mod effects;

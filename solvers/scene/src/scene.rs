@@ -2,6 +2,7 @@
 
 pub use crate::body::Block;
 use crate::body::{Deformable, Start};
+use crate::contact_law::ContactLaw;
 use crate::file::GrainShape;
 use crate::motion::{Displacement, Motion};
 use nalgebra::Vector3;
@@ -64,74 +65,6 @@ pub struct Grain {
     pub velocity: Vector3<f64>,
     /// Angular velocity (rad/s).
     pub spin: Vector3<f64>,
-}
-
-/// The law of a contact between two materials; see [`crate::file::ContactSpec`] for the meaning of each number.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ContactLaw {
-    /// Normal stiffness k_n (N/m).
-    pub normal_stiffness: f64,
-    /// Tangential stiffness k_s (N/m).
-    pub tangential_stiffness: f64,
-    /// Friction tan φ.
-    pub friction: f64,
-    /// Cohesion c (N).
-    pub cohesion: f64,
-    /// Stiffness-proportional damping β (s).
-    pub stiffness_damping: f64,
-    /// Mass-proportional normal damping γ_n (1/s).
-    pub normal_damping: f64,
-    /// Mass-proportional tangential damping γ_t (1/s).
-    pub tangential_damping: f64,
-    /// Hertz: 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂ (Pa); zero for linear laws.
-    pub effective_modulus: f64,
-    /// Mindlin: 1/G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ (Pa); zero for linear laws.
-    pub effective_shear_modulus: f64,
-    /// Damping ratio ζ from a coefficient of restitution.
-    pub damping_ratio: f64,
-    /// Coefficient of rolling resistance μ_r.
-    pub rolling_friction: f64,
-    /// Damping ratio η_r of the rolling spring.
-    pub rolling_damping: f64,
-}
-
-impl ContactLaw {
-    /// Whether a tangential force can act: it needs strength to be limited to.
-    #[must_use]
-    pub fn has_friction(&self) -> bool {
-        self.friction > 0.0 || self.cohesion > 0.0
-    }
-
-    /// Whether a dashpot acts along the normal or, with friction, along the tangent.
-    #[must_use]
-    pub fn has_damping(&self) -> bool {
-        let tangential = self.has_friction() && self.tangential_damping != 0.0;
-        self.stiffness_damping != 0.0 || self.normal_damping != 0.0 || self.damping_ratio != 0.0 || tangential
-    }
-
-    /// Whether the law is that of Hertz.
-    #[must_use]
-    pub fn is_hertz(&self) -> bool {
-        self.effective_modulus > 0.0
-    }
-
-    /// Whether it has springs; without them it says only what limits a tangential force.
-    #[must_use]
-    pub fn has_stiffness(&self) -> bool {
-        self.is_hertz() || self.normal_stiffness > 0.0
-    }
-
-    /// Stiffness dF/dδ along the normal and along the tangent (N/m) at an overlap (m) of bodies with an effective
-    /// radius R* = R₁R₂/(R₁+R₂) (m): S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and Mindlin, k_n and k_s for linear laws.
-    #[must_use]
-    pub fn stiffness(&self, overlap: f64, effective_radius: f64) -> (f64, f64) {
-        if self.is_hertz() {
-            let root = (effective_radius * overlap).sqrt();
-            (2.0 * self.effective_modulus * root, 8.0 * self.effective_shear_modulus * root)
-        } else {
-            (self.normal_stiffness, self.tangential_stiffness)
-        }
-    }
 }
 
 /// Shape of a wall at the start.
@@ -410,7 +343,7 @@ impl Scene {
             .iter()
             .flatten()
             .map(|law| {
-                let (normal, tangential) = law.stiffness(0.01 * radius, radius);
+                let (normal, tangential) = law.springs.stiffness(0.01 * radius, radius);
                 normal.max(if law.has_friction() { tangential } else { 0.0 })
             })
             .fold(0.0, f64::max);

@@ -5,14 +5,14 @@ use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
 use super::{Options, Touch};
-use grainbench_scene::scene::ContactLaw;
+use crate::laws::Constants;
 use grainbench_scene::space::Space;
 
 /// A grain that touches a wall, as the loop over walls finds it. The wall is a body of infinite mass and does not
 /// rotate by itself.
 pub(crate) struct AtWall<'a, S: Space> {
     /// The law between the materials of grain and wall.
-    pub(crate) law: &'a ContactLaw,
+    pub(crate) law: &'a Constants,
     /// Unit normal e from the grain to the wall.
     pub(crate) normal: S::Vector,
     /// Distance from the grain's centre to the wall (m).

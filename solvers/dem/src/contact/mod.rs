@@ -13,14 +13,14 @@ pub(crate) mod seen;
 pub mod tangential;
 
 use crate::convention::{CapNormal, Convention, Tension, TorqueArm, WallRolling};
-use grainbench_scene::scene::ContactLaw;
+use crate::laws::Constants;
 use grainbench_scene::space::Space;
 
 /// Two bodies that touch, as the stages see them.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch<'a, S: Space> {
     /// The law between their materials.
-    pub law: &'a ContactLaw,
+    pub law: &'a Constants,
     /// Vector from the first centre to the second (m); at a wall the unit vector `e` from the centre to the wall.
     pub between: S::Vector,
     /// The inverse of the length of `between` (1/m).

@@ -46,14 +46,14 @@ macro_rules! linear_stiffness {
     () => {
         #[inline(always)]
         fn tangential_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            touch.law.tangential_stiffness
+            touch.law.springs[1]
         }
         #[inline(always)]
         fn secant_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            touch.law.normal_stiffness
+            touch.law.springs[0]
         }
         fn energy<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            0.5 * touch.law.normal_stiffness * touch.overlap * touch.overlap
+            0.5 * touch.law.springs[0] * touch.overlap * touch.overlap
         }
     };
 }
@@ -64,7 +64,7 @@ impl Normal for Spring {
 
     #[inline(always)]
     fn force<S: Space>(touch: &Touch<'_, S>, _options: &Options) -> NormalForce {
-        let spring = touch.law.normal_stiffness * touch.overlap;
+        let spring = touch.law.springs[0] * touch.overlap;
         NormalForce { total: spring, for_cap: spring }
     }
     linear_stiffness!();
@@ -82,8 +82,8 @@ impl Normal for SpringDashpot {
     #[inline(always)]
     fn force<S: Space>(touch: &Touch<'_, S>, options: &Options) -> NormalForce {
         let law = touch.law;
-        let spring = law.normal_stiffness * touch.overlap;
-        let viscosity = law.stiffness_damping * law.normal_stiffness + law.normal_damping * touch.effective_mass;
+        let spring = law.springs[0] * touch.overlap;
+        let viscosity = law.stiffness_damping * law.springs[0] + law.normal_damping * touch.effective_mass;
         damped(touch, options, spring, viscosity)
     }
     linear_stiffness!();
@@ -102,10 +102,10 @@ impl Normal for SpringRestitution {
     #[inline(always)]
     fn force<S: Space>(touch: &Touch<'_, S>, options: &Options) -> NormalForce {
         let law = touch.law;
-        let spring = law.normal_stiffness * touch.overlap;
-        let viscosity = law.stiffness_damping * law.normal_stiffness
+        let spring = law.springs[0] * touch.overlap;
+        let viscosity = law.stiffness_damping * law.springs[0]
             + law.normal_damping * touch.effective_mass
-            + 2.0 * law.damping_ratio * (law.normal_stiffness * touch.effective_mass).sqrt();
+            + 2.0 * law.damping_ratio * (law.springs[0] * touch.effective_mass).sqrt();
         damped(touch, options, spring, viscosity)
     }
     linear_stiffness!();
@@ -117,11 +117,11 @@ macro_rules! hertz_stiffness {
     () => {
         #[inline(always)]
         fn tangential_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            8.0 * touch.law.effective_shear_modulus * (touch.effective_radius * touch.overlap).sqrt()
+            8.0 * touch.law.springs[1] * (touch.effective_radius * touch.overlap).sqrt()
         }
         #[inline(always)]
         fn secant_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            4.0 / 3.0 * touch.law.effective_modulus * (touch.effective_radius * touch.overlap).sqrt()
+            4.0 / 3.0 * touch.law.springs[0] * (touch.effective_radius * touch.overlap).sqrt()
         }
         fn energy<S: Space>(touch: &Touch<'_, S>) -> f64 {
             0.4 * Self::secant_stiffness(touch) * touch.overlap * touch.overlap

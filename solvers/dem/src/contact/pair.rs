@@ -5,13 +5,13 @@ use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
 use super::{Options, Touch};
-use grainbench_scene::scene::ContactLaw;
+use crate::laws::Constants;
 use grainbench_scene::space::Space;
 
 /// Two grains that touch, as the loop over pairs finds them.
 pub(crate) struct Pair<'a, S: Space> {
     /// The law between their materials.
-    pub(crate) law: &'a ContactLaw,
+    pub(crate) law: &'a Constants,
     /// Vector from the first centre to the second (m).
     pub(crate) between: S::Vector,
     /// Its squared length (m²).

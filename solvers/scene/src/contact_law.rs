@@ -1,0 +1,360 @@
+//! The law of a contact between two materials, from the keys that a user writes to the numbers that act.
+//!
+//! A new law is a variant of [`Springs`] with its word, what it takes from the scene, and how stiff it is.
+
+use crate::check::Checker;
+use crate::error::SceneError;
+use crate::file::{GrainShape, MaterialSpec};
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Force law along the normal, and the tangential spring that goes with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LawKind {
+    /// Linear springs of given stiffness.
+    #[default]
+    Linear,
+    /// Hertz along the normal, Mindlin's spring along the tangent, from E and ν of both materials; spheres only.
+    Hertz,
+    /// Coulomb friction and no spring: for bodies that deform themselves, or not at all.
+    Coulomb,
+}
+
+/// The law of a contact between two materials: a spring and dashpot along the normal, an incremental spring and dashpot
+/// along the tangent, limited by Coulomb friction with cohesion, |F_s| ≤ F_n tan φ + c, and rolling resistance.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ContactSpec {
+    /// The two materials.
+    pub between: [String; 2],
+    /// `linear` (the default), `hertz` or `coulomb`. One scene has one kind.
+    #[serde(default)]
+    pub law: LawKind,
+    /// Normal stiffness k_n (N/m; N/m per metre for discs). Needed for linear laws.
+    #[serde(default)]
+    pub normal_stiffness: Option<f64>,
+    /// Tangential stiffness k_s (N/m). Needed for linear laws with friction or cohesion.
+    #[serde(default)]
+    pub tangential_stiffness: f64,
+    /// Coefficient of friction μ = tan φ. Give this or `friction_angle_deg`; frictionless when both are absent.
+    #[serde(default)]
+    pub friction: Option<f64>,
+    /// Angle of friction φ (degrees).
+    #[serde(default)]
+    pub friction_angle_deg: Option<f64>,
+    /// Cohesion c (N): the part of the shear strength that needs no normal force.
+    #[serde(default)]
+    pub cohesion: f64,
+    /// Stiffness-proportional contact damping β (s): dashpots c_n = β k_n and c_s = β k_s (Cundall & Strack 1979).
+    #[serde(default)]
+    pub stiffness_damping: f64,
+    /// Mass-proportional normal damping γ_n (1/s): dashpot c_n = γ_n m_eff, with m_eff = m₁m₂/(m₁+m₂), m at a wall.
+    #[serde(default)]
+    pub normal_damping: f64,
+    /// Mass-proportional tangential damping γ_t (1/s): dashpot c_s = γ_t m_eff.
+    #[serde(default)]
+    pub tangential_damping: f64,
+    /// Coefficient of restitution e, above 0 and at most 1: a normal dashpot that gives it exactly when the dashpot may
+    /// pull at release, c_n = 2ζ√(k_n m_eff) for linear, 2√(5/6) ζ√(S m_eff) with S = dF/dδ for Hertz contacts, and
+    /// ζ = −ln e/√(π² + ln² e).
+    #[serde(default)]
+    pub restitution: Option<f64>,
+    /// Coefficient of rolling resistance μ_r: a moment of at most μ_r R_eff F_n against rolling, R_eff = R₁R₂/(R₁+R₂),
+    /// R at a wall. An elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r² R_eff² (Ai et al. 2011, model C).
+    #[serde(default)]
+    pub rolling_friction: f64,
+    /// Damping ratio η_r of the rolling spring: a moment −2η_r√(I_r k_r) times the rolling velocity while it has not
+    /// yielded.
+    #[serde(default)]
+    pub rolling_damping: f64,
+}
+
+/// The law of a contact between two materials; see [`ContactSpec`] for the meaning of each number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactLaw {
+    /// The springs along the normal and the tangent.
+    pub springs: Springs,
+    /// Friction tan φ.
+    pub friction: f64,
+    /// Cohesion c (N).
+    pub cohesion: f64,
+    /// Stiffness-proportional damping β (s); of linear springs only.
+    pub stiffness_damping: f64,
+    /// Mass-proportional normal damping γ_n (1/s).
+    pub normal_damping: f64,
+    /// Mass-proportional tangential damping γ_t (1/s).
+    pub tangential_damping: f64,
+    /// Damping ratio ζ from a coefficient of restitution.
+    pub damping_ratio: f64,
+    /// Coefficient of rolling resistance μ_r.
+    pub rolling_friction: f64,
+    /// Damping ratio η_r of the rolling spring.
+    pub rolling_damping: f64,
+}
+
+/// The springs of a contact law.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Springs {
+    /// None: for bodies that deform themselves, or not at all.
+    #[default]
+    Absent,
+    /// F_n = k_n δ, and k_s along the tangent.
+    Linear {
+        /// Normal stiffness k_n (N/m).
+        normal: f64,
+        /// Tangential stiffness k_s (N/m).
+        tangential: f64,
+    },
+    /// F_n = (4/3) E* √R* δ^{3/2}, and Mindlin's k_s = 8 G* √(R* δ) along the tangent.
+    Hertz {
+        /// 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂ (Pa).
+        effective_modulus: f64,
+        /// 1/G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ (Pa).
+        effective_shear_modulus: f64,
+    },
+}
+
+impl Springs {
+    /// The two numbers that say how stiff: k_n and k_s (N/m), or E* and G* (Pa).
+    #[must_use]
+    pub const fn constants(&self) -> [f64; 2] {
+        match *self {
+            Self::Absent => [0.0; 2],
+            Self::Linear { normal, tangential } => [normal, tangential],
+            Self::Hertz { effective_modulus, effective_shear_modulus } => [effective_modulus, effective_shear_modulus],
+        }
+    }
+
+    /// The same law with its two numbers multiplied.
+    #[must_use]
+    pub fn scaled(self, [first, second]: [f64; 2]) -> Self {
+        match self {
+            Self::Absent => Self::Absent,
+            Self::Linear { normal, tangential } => {
+                Self::Linear { normal: normal * first, tangential: tangential * second }
+            }
+            Self::Hertz { effective_modulus, effective_shear_modulus } => Self::Hertz {
+                effective_modulus: effective_modulus * first,
+                effective_shear_modulus: effective_shear_modulus * second,
+            },
+        }
+    }
+
+    /// How far apart surfaces may be for the springs to act (m): bodies that do not overlap exert nothing.
+    #[must_use]
+    pub const fn range(&self) -> f64 {
+        match self {
+            Self::Absent | Self::Linear { .. } | Self::Hertz { .. } => 0.0,
+        }
+    }
+
+    /// Stiffness dF/dδ along the normal and along the tangent (N/m) at an overlap (m) of bodies with an effective
+    /// radius R* = R₁R₂/(R₁+R₂) (m): k_n and k_s for linear laws, S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and Mindlin.
+    #[must_use]
+    pub fn stiffness(&self, overlap: f64, effective_radius: f64) -> (f64, f64) {
+        let root = || (effective_radius * overlap).sqrt();
+        match *self {
+            Self::Absent => (0.0, 0.0),
+            Self::Linear { normal, tangential } => (normal, tangential),
+            Self::Hertz { effective_modulus, effective_shear_modulus } => {
+                (2.0 * effective_modulus * root(), 8.0 * effective_shear_modulus * root())
+            }
+        }
+    }
+
+    /// Secant stiffness F_n/δ (N/m) at an overlap (m) of bodies with an effective radius (m): k_n, or two thirds of
+    /// dF/dδ for F_n ∝ δ^{3/2}.
+    #[must_use]
+    pub fn secant_stiffness(&self, overlap: f64, effective_radius: f64) -> f64 {
+        let (tangent, _) = self.stiffness(overlap, effective_radius);
+        match self {
+            Self::Absent | Self::Linear { .. } => tangent,
+            Self::Hertz { .. } => 2.0 / 3.0 * tangent,
+        }
+    }
+}
+
+impl ContactLaw {
+    /// Whether a tangential force can act: it needs strength to be limited to.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        self.friction > 0.0 || self.cohesion > 0.0
+    }
+
+    /// Whether a dashpot acts along the normal or, with friction, along the tangent.
+    #[must_use]
+    pub fn has_damping(&self) -> bool {
+        let tangential = self.has_friction() && self.tangential_damping != 0.0;
+        self.stiffness_damping != 0.0 || self.normal_damping != 0.0 || self.damping_ratio != 0.0 || tangential
+    }
+
+    /// Whether the law is that of Hertz.
+    #[must_use]
+    pub const fn is_hertz(&self) -> bool {
+        matches!(self.springs, Springs::Hertz { .. })
+    }
+
+    /// Whether it has springs; without them it says only what limits a tangential force.
+    #[must_use]
+    pub const fn has_stiffness(&self) -> bool {
+        !matches!(self.springs, Springs::Absent)
+    }
+
+    /// Stiffness k_n of a linear normal spring (N/m); zero in other laws.
+    #[must_use]
+    pub const fn normal_stiffness(&self) -> f64 {
+        if let Springs::Linear { normal, .. } = self.springs { normal } else { 0.0 }
+    }
+
+    /// Stiffness k_s of a linear tangential spring (N/m); zero in other laws.
+    #[must_use]
+    pub const fn tangential_stiffness(&self) -> f64 {
+        if let Springs::Linear { tangential, .. } = self.springs { tangential } else { 0.0 }
+    }
+
+    /// Hertz's E* (Pa); zero in other laws.
+    #[must_use]
+    pub const fn effective_modulus(&self) -> f64 {
+        if let Springs::Hertz { effective_modulus, .. } = self.springs { effective_modulus } else { 0.0 }
+    }
+
+    /// Mindlin's G* (Pa); zero in other laws.
+    #[must_use]
+    pub const fn effective_shear_modulus(&self) -> f64 {
+        if let Springs::Hertz { effective_shear_modulus, .. } = self.springs { effective_shear_modulus } else { 0.0 }
+    }
+
+    /// Multiplies the stiffness along the normal, whatever the law.
+    pub fn scale_normal(&mut self, by: f64) {
+        self.springs = self.springs.scaled([by, 1.0]);
+    }
+
+    /// Multiplies the stiffness along the tangent, whatever the law.
+    pub fn scale_tangential(&mut self, by: f64) {
+        self.springs = self.springs.scaled([1.0, by]);
+    }
+
+    /// All that distinguishes it from another law, in words that a fingerprint is taken of: every number with all its
+    /// digits, in an order that stays, for stored runs are found by it.
+    #[must_use]
+    pub fn identity(&self) -> String {
+        let moduli = [self.effective_modulus(), self.effective_shear_modulus()];
+        let springs = [self.normal_stiffness(), self.tangential_stiffness(), moduli[0], moduli[1]];
+        let dashpots = [self.stiffness_damping, self.normal_damping, self.tangential_damping, self.damping_ratio];
+        let limits = [self.friction, self.cohesion, self.rolling_friction, self.rolling_damping];
+        format!("{springs:?} {dashpots:?} {limits:?}")
+    }
+}
+
+/// What a law takes from the rest of a scene file.
+pub(crate) struct Surroundings<'a> {
+    pub(crate) check: &'a Checker<'a>,
+    pub(crate) materials: &'a IndexMap<String, MaterialSpec>,
+    pub(crate) grain_shape: GrainShape,
+}
+
+impl ContactSpec {
+    /// The law with all that the scene gives it; `name` is its key in the table of contacts.
+    pub(crate) fn law(&self, name: &str, around: &Surroundings<'_>) -> Result<ContactLaw, SceneError> {
+        let check = around.check;
+        let key = |part: &str| format!("contacts.{name}.{part}");
+        let number = |part: &str, value: f64, unit: &str| check.not_negative(&key(part), value, unit);
+        let friction = match (self.friction, self.friction_angle_deg) {
+            (Some(_), Some(_)) => {
+                return Err(check.error(&key("friction"), "one of `friction` and `friction_angle_deg`", "both"));
+            }
+            (Some(friction), None) => number("friction", friction, "coefficient of friction")?,
+            (None, Some(angle)) if (0.0..90.0).contains(&angle) => angle.to_radians().tan(),
+            (None, Some(angle)) => {
+                let key = key("friction_angle_deg");
+                return Err(check.error(&key, "an angle from 0 to below 90°", &angle.to_string()));
+            }
+            (None, None) => 0.0,
+        };
+        let restitution = self.restitution.unwrap_or(1.0);
+        if !(restitution > 0.0 && restitution <= 1.0) {
+            let found = restitution.to_string();
+            return Err(check.error(&key("restitution"), "a coefficient above 0 and at most 1", &found));
+        }
+        let log = restitution.ln();
+        let law = ContactLaw {
+            springs: Springs::Absent,
+            friction,
+            cohesion: number("cohesion", self.cohesion, "force (N)")?,
+            stiffness_damping: number("stiffness_damping", self.stiffness_damping, "time (s)")?,
+            normal_damping: number("normal_damping", self.normal_damping, "rate (1/s)")?,
+            tangential_damping: number("tangential_damping", self.tangential_damping, "rate (1/s)")?,
+            damping_ratio: -log / (PI * PI + log * log).sqrt(),
+            rolling_friction: number("rolling_friction", self.rolling_friction, "coefficient")?,
+            rolling_damping: number("rolling_damping", self.rolling_damping, "damping ratio")?,
+        };
+        let springs = match self.law {
+            LawKind::Linear => self.linear(name, check, law.has_friction())?,
+            LawKind::Hertz => self.hertz(name, around)?,
+            LawKind::Coulomb if self.normal_stiffness.is_some() || self.tangential_stiffness != 0.0 => {
+                let key = key("normal_stiffness");
+                return Err(check.error(&key, "no stiffness: a `coulomb` contact has no spring", "one"));
+            }
+            LawKind::Coulomb => Springs::Absent,
+        };
+        Ok(ContactLaw { springs, ..law })
+    }
+
+    fn linear(&self, name: &str, check: &Checker<'_>, has_friction: bool) -> Result<Springs, SceneError> {
+        let key = |part: &str| format!("contacts.{name}.{part}");
+        let Some(stiffness) = self.normal_stiffness else {
+            return Err(check.error(&format!("contacts.{name}"), "the key `normal_stiffness`", "none"));
+        };
+        let normal = check.positive(&key("normal_stiffness"), stiffness, "stiffness (N/m)")?;
+        let tangential = if has_friction {
+            let what = "stiffness (N/m), since there is friction";
+            check.positive(&key("tangential_stiffness"), self.tangential_stiffness, what)?
+        } else {
+            check.not_negative(&key("tangential_stiffness"), self.tangential_stiffness, "stiffness (N/m)")?
+        };
+        Ok(Springs::Linear { normal, tangential })
+    }
+
+    /// 1/E* and 1/G* are sums over both materials; a rigid one adds nothing.
+    fn hertz(&self, name: &str, around: &Surroundings<'_>) -> Result<Springs, SceneError> {
+        let check = around.check;
+        let key = |part: &str| format!("contacts.{name}.{part}");
+        if around.grain_shape == GrainShape::Disc {
+            return Err(check.error(&key("law"), "`linear` between discs: Hertz's law is for spheres", "`hertz`"));
+        }
+        if self.normal_stiffness.is_some() || self.tangential_stiffness != 0.0 {
+            let expected = "no stiffness: a Hertz contact takes it from E and ν of the materials";
+            return Err(check.error(&key("normal_stiffness"), expected, "one"));
+        }
+        if self.stiffness_damping != 0.0 {
+            let expected = "`normal_damping` or `restitution` in a Hertz contact, which has no one stiffness";
+            return Err(check.error(&key("stiffness_damping"), expected, &self.stiffness_damping.to_string()));
+        }
+        let (mut compliance, mut shear_compliance) = (0.0, 0.0);
+        for material in &self.between {
+            let of = |part: &str| format!("materials.{material}.{part}");
+            let properties = &around.materials[material.as_str()];
+            if properties.rigid {
+                continue;
+            }
+            let (Some(young), Some(poisson)) = (properties.young_modulus, properties.poisson_ratio) else {
+                let expected = "`young_modulus` and `poisson_ratio` (or `rigid = true`), since it has Hertz contacts";
+                return Err(check.error(&format!("materials.{material}"), expected, "not both"));
+            };
+            check.positive(&of("young_modulus"), young, "modulus (Pa)")?;
+            if !(poisson > -1.0 && poisson <= 0.5) {
+                let found = poisson.to_string();
+                return Err(check.error(&of("poisson_ratio"), "a ratio above −1 and at most 1/2", &found));
+            }
+            compliance += (1.0 - poisson * poisson) / young;
+            shear_compliance += 2.0 * (2.0 - poisson) * (1.0 + poisson) / young;
+        }
+        if compliance == 0.0 {
+            return Err(check.error(&key("between"), "at least one material that is not rigid", "two rigid ones"));
+        }
+        Ok(Springs::Hertz { effective_modulus: 1.0 / compliance, effective_shear_modulus: 1.0 / shear_compliance })
+    }
+}

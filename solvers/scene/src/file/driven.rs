@@ -1,0 +1,21 @@
+//! The keys of `driven`: grains with a prescribed motion.
+
+use super::SideSpec;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Grains that do not obey forces: they move at a constant velocity and do not turn, nor deform. Exactly one of
+/// `grains` and `face`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DrivenSpec {
+    /// All grains of a group.
+    #[serde(default)]
+    pub grains: Option<String>,
+    /// The grains that a face of the domain cuts at the start.
+    #[serde(default)]
+    pub face: Option<SideSpec>,
+    /// Velocity (m/s); at rest when absent.
+    #[serde(default)]
+    pub velocity: Option<Vec<f64>>,
+}

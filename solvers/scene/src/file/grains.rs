@@ -1,0 +1,98 @@
+//! The keys of `grains`: groups of grains, placed one by one, in order or at random.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A group of grains: exactly one of `position`, `lattice`, `random`, `packed` and `file`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GrainsSpec {
+    /// Material by name.
+    pub material: String,
+    /// Radius R (m). Needed unless `random` gives a range, or `packed` or `file` give sizes.
+    #[serde(default)]
+    pub radius: Option<f64>,
+    /// Velocity of every grain of the group (m/s).
+    #[serde(default)]
+    pub velocity: Option<Vec<f64>>,
+    /// Angular velocity (rad/s): one number about z in two dimensions, a vector in three.
+    #[serde(default)]
+    pub spin: Option<SpinSpec>,
+    /// A single grain at this place (m).
+    #[serde(default)]
+    pub position: Option<Vec<f64>>,
+    /// Grains on a square or simple-cubic lattice.
+    #[serde(default)]
+    pub lattice: Option<LatticeSpec>,
+    /// Grains placed at random without overlap, from a seed.
+    #[serde(default)]
+    pub random: Option<RandomSpec>,
+    /// Grains of given sizes, packed densely without overlap, from a seed.
+    #[serde(default)]
+    pub packed: Option<PackedSpec>,
+    /// Grains read from a LAMMPS data file (atom style sphere), plain or gzip.
+    #[serde(default)]
+    pub file: Option<FileSpec>,
+}
+
+/// Angular velocity.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged, expecting = "a number (two dimensions) or a vector of three numbers (three dimensions)")]
+pub enum SpinSpec {
+    /// About z (rad/s).
+    About(f64),
+    /// Vector (rad/s).
+    Vector(Vec<f64>),
+}
+
+/// A square or simple-cubic lattice.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LatticeSpec {
+    /// Centre of the first grain (m).
+    pub origin: Vec<f64>,
+    /// Distance between neighbours along each axis (m).
+    pub spacing: Vec<f64>,
+    /// Number of grains along each axis; x runs fastest.
+    pub count: Vec<u32>,
+}
+
+/// Grains placed at random in the domain without overlap.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RandomSpec {
+    /// How many.
+    pub count: u32,
+    /// Seed of the generator: the same seed gives the same grains on every machine.
+    pub seed: u64,
+    /// Smallest and largest radius (m), uniformly distributed; `radius` of the group when absent.
+    #[serde(default)]
+    pub radius_range: Option<[f64; 2]>,
+    /// Speed of every grain (m/s), in a random direction.
+    #[serde(default)]
+    pub speed: f64,
+}
+
+/// Grains packed densely into the domain without overlap; faces that are not periodic are walls to the packing.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PackedSpec {
+    /// Sizes: pairs of radius (m) and number of grains.
+    pub radii: Vec<(f64, u32)>,
+    /// Seed of the generator: the same seed gives the same packing on every machine.
+    pub seed: u64,
+    /// Whether faces that are not periodic cut grains: such a face holds centres then, not whole grains.
+    #[serde(default)]
+    pub cut: bool,
+}
+
+/// Grains read from a file.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FileSpec {
+    /// Path, relative to the scene file.
+    pub path: String,
+    /// Materials of atom types 1, 2, … by name; the group's material for all when absent.
+    #[serde(default)]
+    pub types: Vec<String>,
+}

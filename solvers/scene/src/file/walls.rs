@@ -1,0 +1,72 @@
+//! The keys of `walls`, and the prescribed motion of a wall.
+
+use super::SpinSpec;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A wall: exactly one of `plane`, `segment` and `rectangle`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WallSpec {
+    /// Material by name.
+    pub material: String,
+    /// An infinite plane (a line in two dimensions), solid behind its normal.
+    #[serde(default)]
+    pub plane: Option<PlaneSpec>,
+    /// A segment between two points (m), solid on both sides; two dimensions only.
+    #[serde(default)]
+    pub segment: Option<[Vec<f64>; 2]>,
+    /// A rectangle, solid on both sides; three dimensions only.
+    #[serde(default)]
+    pub rectangle: Option<RectangleSpec>,
+    /// Prescribed motion: phases that add up.
+    #[serde(default)]
+    pub motion: Vec<MotionSpec>,
+}
+
+/// An infinite plane.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneSpec {
+    /// A point on it (m).
+    pub point: Vec<f64>,
+    /// Direction out of the solid; need not have unit length.
+    pub normal: Vec<f64>,
+}
+
+/// A rectangle: a corner and two perpendicular edges from it.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RectangleSpec {
+    /// One corner (m).
+    pub corner: Vec<f64>,
+    /// The two edges from it (m).
+    pub edges: [Vec<f64>; 2],
+}
+
+/// One phase of a wall's motion.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MotionSpec {
+    /// Velocity (m/s).
+    #[serde(default)]
+    pub velocity: Option<Vec<f64>>,
+    /// Angular velocity (rad/s) about `centre`.
+    #[serde(default)]
+    pub spin: Option<SpinSpec>,
+    /// Centre of rotation (m), which moves along with the wall. Needed with `spin`.
+    #[serde(default)]
+    pub centre: Option<Vec<f64>>,
+    /// Start (s). The beginning of the run when both starts are absent.
+    #[serde(default)]
+    pub start: Option<f64>,
+    /// Stop (s). Never when both stops are absent.
+    #[serde(default)]
+    pub stop: Option<f64>,
+    /// Start in calculation cycles.
+    #[serde(default)]
+    pub start_cycle: Option<u64>,
+    /// Stop in calculation cycles.
+    #[serde(default)]
+    pub stop_cycle: Option<u64>,
+}
