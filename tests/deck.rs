@@ -28,23 +28,23 @@ fn shown_of(case: &str, variant: &str, program: Program, change: impl Fn(&mut Sc
 
 #[test]
 fn an_incline_for_lammps() {
-    insta::assert_snapshot!(shown("incline-disc", "60deg-mu.9", Program::Lammps));
+    insta::assert_snapshot!(shown("incline-disc", "60deg-mu.9", Program::LAMMPS));
 }
 
 #[test]
 fn moving_walls_for_lammps() {
-    insta::assert_snapshot!(shown("nine-discs", "kappa-0", Program::Lammps));
+    insta::assert_snapshot!(shown("nine-discs", "kappa-0", Program::LAMMPS));
 }
 
 #[test]
 fn moving_walls_for_liggghts_are_meshes() {
-    insta::assert_snapshot!(shown("nine-discs", "kappa-0", Program::Liggghts));
+    insta::assert_snapshot!(shown("nine-discs", "kappa-0", Program::LIGGGHTS));
 }
 
 /// A dashpot ∝ stiffness becomes one ∝ effective mass where all grains have one mass.
 #[test]
 fn a_dashpot_of_another_kind_for_liggghts() {
-    insta::assert_snapshot!(shown("collision", "beta-zeta.1", Program::Liggghts));
+    insta::assert_snapshot!(shown("collision", "beta-zeta.1", Program::LIGGGHTS));
 }
 
 /// Hertz contacts: with a coefficient of restitution, which LAMMPS has in `granular` and LIGGGHTS with moduli; and
@@ -85,7 +85,7 @@ fn walls_of_finite_extent_are_flat_blocks() {
     let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
     let phase = |velocity, spin| Phase { velocity, spin, start: Moment::Seconds(0.0), stop: Moment::Never };
     let lines = |case: &str, variant: &str, change: &dyn Fn(&mut Scene)| {
-        let deck = shown_of(case, variant, Program::Lammps, change);
+        let deck = shown_of(case, variant, Program::LAMMPS, change);
         deck.lines().filter(|line| line.contains("wall1")).collect::<Vec<_>>().join("\n")
     };
     let segment = lines("squash", "plain", &|scene| {
@@ -132,7 +132,7 @@ fn refusal(case: &str, variant: &str, program: Program, change: impl Fn(&mut Sce
 #[test]
 fn refusals_give_the_reason() {
     let lammps =
-        |case: &str, variant: &str, change: &dyn Fn(&mut Scene)| refusal(case, variant, Program::Lammps, change);
+        |case: &str, variant: &str, change: &dyn Fn(&mut Scene)| refusal(case, variant, Program::LAMMPS, change);
     let said = [
         lammps("chung-ooi", "1-glass", &|scene| {
             scene.change_laws(|law| (law.damping_ratio, law.friction) = (0.1, 0.3));
@@ -149,7 +149,7 @@ fn refusals_give_the_reason() {
         lammps("cohesive-disc", "plain", &|_| {}),
         lammps("rolling-resistance", "sphere-slope", &|_| {}),
         lammps("collision", "oblique", &|scene| scene.change_laws(|law| law.rolling_friction = 0.1)),
-        refusal("chung-ooi", "3-cast-iron", Program::Liggghts, |scene| {
+        refusal("chung-ooi", "3-cast-iron", Program::LIGGGHTS, |scene| {
             scene.change_laws(|law| law.scale_tangential(2.0));
         }),
         lammps("nine-discs", "static-0", &|_| {}),
@@ -158,8 +158,8 @@ fn refusals_give_the_reason() {
             scene.grains[0].inertia *= 2.0;
         }),
         lammps("collision", "oblique", &|scene| scene.grains[0].inertia *= 1.1),
-        refusal("nine-discs", "kappa-1", Program::Liggghts, |_| {}),
-        refusal("nine-discs", "kappa-0", Program::Liggghts, |scene| {
+        refusal("nine-discs", "kappa-1", Program::LIGGGHTS, |_| {}),
+        refusal("nine-discs", "kappa-0", Program::LIGGGHTS, |scene| {
             scene.walls[0].motion.phases[0].stop = Moment::Seconds(0.1234);
         }),
     ];
@@ -172,7 +172,7 @@ fn a_title_is_no_part_of_the_script() {
     let case = by_name("squash").unwrap();
     let mut scene = case.variant(&case.variants().unwrap()[0]).unwrap();
     scene.title = "mean\nshell rm &\n${x} \"".to_owned();
-    let deck = write_deck(&scene, &case.default_level.resolution, Program::Lammps).unwrap();
+    let deck = write_deck(&scene, &case.default_level.resolution, Program::LAMMPS).unwrap();
     assert!(deck.files[0].1.starts_with("# mean_shell rm ____x_ _\nunits si\n"), "{}", deck.files[0].1);
 }
 

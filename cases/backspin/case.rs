@@ -3,10 +3,10 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
-use crate::one_grain::{OneGrain, State, course, last};
-use crate::program_rows;
-use crate::rigid_rows::{self, Row};
+use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
+use crate::exact::one_grain::{OneGrain, State, course, last};
+use crate::rows::programs;
+use crate::rows::rigid::{self, Row};
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
@@ -38,7 +38,7 @@ const SOURCE: Source =
 fn claims() -> Vec<Claim> {
     let dem =
         VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant), near_rigid(variant)].concat());
-    dem.chain(rigid_rows::backspins(RIGID)).chain(program_rows::one_grain(&VARIANTS)).chain(elastic::claims()).collect()
+    dem.chain(rigid::backspins(RIGID)).chain(programs::one_grain(&VARIANTS)).chain(elastic::claims()).collect()
 }
 
 fn friction() -> Control {
@@ -158,5 +158,5 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         [Axis::linear("time t (s)"), Axis::linear("velocity v, surface speed ΩR (m/s)")],
         curves,
     );
-    Ok(vec![velocity, rigid_rows::figure(runner, RIGID, OneGrain::rigid_backspin)?, elastic::figure(runner)?])
+    Ok(vec![velocity, rigid::figure(runner, RIGID, OneGrain::rigid_backspin)?, elastic::figure(runner)?])
 }

@@ -1,6 +1,6 @@
 //! Two elastic bars meet end to end.
 
-use crate::elastic::stiffen;
+use crate::rows::elastic::stiffen;
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
 

@@ -3,7 +3,7 @@
 #[path = "bessel.rs"]
 mod bessel;
 
-use crate::rigid_rows;
+use crate::rows::rigid;
 use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
@@ -91,7 +91,7 @@ fn claims() -> Vec<Claim> {
         .fair_to_any();
     // Rigid beads have no dispersion, and no unique answer either: many beads touch at once.
     let rigid = claim("velocity of bead 22 at 20/ω₀", "m/s")
-        .of(Run::new(PLAIN, "rigid", rigid_rows::DEFAULT).known(
+        .of(Run::new(PLAIN, "rigid", rigid::DEFAULT).known(
             "contacts are rigid: an impulse passes through all beads in one step, and how many beads that touch at once share \
              it is up to the order in which the engine solves them",
         ))

@@ -1,8 +1,8 @@
 //! Impacts of Hertz spheres: the scenes of benchmark tests 1 to 4 of Chung & Ooi (2011), against closed forms.
 
-use crate::program_forces::forces;
-use crate::program_rows::hertz_impact;
-use crate::rigid_rows;
+use crate::rows::program_forces::forces;
+use crate::rows::programs::hertz_impact;
+use crate::rows::rigid;
 use grainbench_harness::prelude::*;
 use grainbench_scene::contact_law::ContactLaw;
 use std::f64::consts::PI;
@@ -229,7 +229,7 @@ fn more_friction() -> Control {
 /// A rigid-body engine has neither overlap nor duration; restitution it gives back exactly. Friction it limits by the
 /// impulse that stops the approach, μ m v_n, and leaves out what restitution adds: μ(1+e) m v_n is Coulomb's.
 fn rigid() -> Vec<Claim> {
-    let rigid = |run: Run| Run { solver: "rigid", ..run.at(rigid_rows::DEFAULT) };
+    let rigid = |run: Run| Run { solver: "rigid", ..run.at(rigid::DEFAULT) };
     let oblique = || rigid(at_angle(OBLIQUE[0], 60.0));
     let rounding = || {
         computed(

@@ -1,7 +1,7 @@
 //! A cohesive disc on a slope: the threshold between rolling and sliding.
 
-use crate::one_grain::{OneGrain, State, course};
-use crate::rigid_rows;
+use crate::exact::one_grain::{OneGrain, State, course};
+use crate::rows::rigid;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
@@ -76,7 +76,7 @@ fn claims() -> Vec<Claim> {
         )
     });
     let ours = [
-        refusal("rigid", rigid_rows::DEFAULT)
+        refusal("rigid", rigid::DEFAULT)
             .refused("rapier's contacts only push", Control::without(Effect::Cohesion)),
         of("growth of slip, cohesion a thousandth above the threshold", 1.001, "cohesion × .998", 0.998),
         of("growth of slip, cohesion a thousandth below the threshold", 0.999, "cohesion × 1.002", 1.002),

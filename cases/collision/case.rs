@@ -1,7 +1,7 @@
 //! Two discs collide: restitution in both release conventions, momentum and angular momentum.
 
-use crate::program_rows;
-use crate::rigid_rows;
+use crate::rows::programs;
+use crate::rows::rigid;
 use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
@@ -36,11 +36,11 @@ fn claims() -> Vec<Claim> {
     }
     claims.extend(momentum());
     claims.extend(angular_momentum());
-    claims.extend(DAMPED.map(|variant| rigid_rows::restitution(variant, measured_restitution)));
+    claims.extend(DAMPED.map(|variant| rigid::restitution(variant, measured_restitution)));
     claims
-        .extend(AXES.map(|axis| rigid_rows::momentum("oblique", along(axis), move |done| worst_momentum(done, axis))));
-    claims.push(rigid_rows::angular_momentum("oblique", worst_angular_momentum));
-    claims.extend(program_rows::restitution(&DAMPED, LEVELS[1].resolution));
+        .extend(AXES.map(|axis| rigid::momentum("oblique", along(axis), move |done| worst_momentum(done, axis))));
+    claims.push(rigid::angular_momentum("oblique", worst_angular_momentum));
+    claims.extend(programs::restitution(&DAMPED, LEVELS[1].resolution));
     claims
 }
 

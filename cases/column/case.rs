@@ -1,6 +1,6 @@
 //! A column under its own weight.
 
-use crate::elastic::stiffen;
+use crate::rows::elastic::stiffen;
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
 use std::f64::consts::PI;

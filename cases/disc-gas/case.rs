@@ -1,6 +1,6 @@
 //! A hundred elastic discs in a box keep their energy.
 
-use crate::rigid_rows;
+use crate::rows::rigid;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 
@@ -67,7 +67,7 @@ fn claims() -> Vec<Claim> {
             scene.walls.pop();
         }))
         .fair_to_any();
-    vec![conserved, kept_in, rigid_rows::refuses_cycles(PLAIN), rigid_rows::gas_energy(PLAIN, 9.0, energy)]
+    vec![conserved, kept_in, rigid::refuses_cycles(PLAIN), rigid::gas_energy(PLAIN, 9.0, energy)]
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

@@ -7,7 +7,7 @@ mod fringes;
 #[path = "modal.rs"]
 mod modal;
 
-use crate::rigid_rows;
+use crate::rows::rigid;
 use crate::sources::literature::bardenhagen_2001;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
@@ -160,7 +160,7 @@ fn sooner(variant: &'static str, of: &str) -> Claim {
 /// A rigid contact passes an impulse through the whole chain in one step.
 fn rigid() -> Claim {
     claim("time until disc 4 moves at a tenth of the striker's speed", "s")
-        .of(Run::new("line", "rigid", rigid_rows::DEFAULT).known(
+        .of(Run::new("line", "rigid", rigid::DEFAULT).known(
             "contacts are rigid: an impulse passes through all discs in one step, as if waves were infinitely fast",
         ))
         .equals(Source::Derived("modes of the assembly (derivation)"), |done| {

@@ -111,7 +111,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 .of(if cells > 20.0 { run.long() } else { run.slow() })
                 .equals_cited(expected, 1.0, |done| arrival(&done[0], 4))
                 .within(judged(allowed, because))
-                .refuses(Control::scene("discs a fifth softer", |scene| crate::elastic::stiffen(scene, 0.8))),
+                .refuses(Control::scene("discs a fifth softer", |scene| crate::rows::elastic::stiffen(scene, 0.8))),
         );
     }
     // Finer still, two implementations of it part by a fifteenth, and neither is near the finite elements.
@@ -142,7 +142,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 .within(exactly("the paper states an order of fringes and no ratio: sooner by a hundredth or more"))
                 .refuses(Control::scene("the slipping zig-zag four times as stiff", |scene| {
                     if scene.laws.iter().flatten().any(|law| law.friction == 0.5) {
-                        crate::elastic::stiffen(scene, 4.0);
+                        crate::rows::elastic::stiffen(scene, 4.0);
                     }
                 })),
         );

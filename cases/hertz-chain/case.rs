@@ -1,7 +1,7 @@
 //! A solitary wave in a chain of Hertz spheres.
 
-use crate::program_forces::forces;
-use crate::rigid_rows;
+use crate::rows::program_forces::forces;
+use crate::rows::rigid;
 use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::{Duration, Sampling};
@@ -93,7 +93,7 @@ fn claims() -> Vec<Claim> {
             "discretisation of the pulse, and five digits of the coefficient; the long-wave limit is 1.2 % off",
         ))
         .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01))));
-    let rigid = claim("refusal of forces over time", "1").of(Run::new(PLAIN, "rigid", rigid_rows::DEFAULT)).refused(
+    let rigid = claim("refusal of forces over time", "1").of(Run::new(PLAIN, "rigid", rigid::DEFAULT)).refused(
         "momentum passes through rigid beads in one step: there is no wave whose force could peak",
         Control::scene("no probes", |scene| scene.probes.clear()),
     );

@@ -3,10 +3,10 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::incline::{self, Slope};
-use crate::one_grain::OneGrain;
-use crate::program_rows;
-use crate::rigid_rows::{self, Row};
+use crate::rows::incline::{self, Slope};
+use crate::exact::one_grain::OneGrain;
+use crate::rows::programs;
+use crate::rows::rigid::{self, Row};
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
@@ -43,13 +43,13 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn claims() -> Vec<Claim> {
-    let programs = program_rows::one_grain(&SLOPES.iter().map(|slope| slope.variant).collect::<Vec<_>>());
-    [incline::claims(&CASE, SLOPES), rigid_rows::inclines(RIGID), programs, elastic::claims()].concat()
+    let programs = programs::one_grain(&SLOPES.iter().map(|slope| slope.variant).collect::<Vec<_>>());
+    [incline::claims(&CASE, SLOPES), rigid::inclines(RIGID), programs, elastic::claims()].concat()
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut figures = incline::figures(runner, SLOPES)?;
-    figures.push(rigid_rows::figure(runner, RIGID, OneGrain::rigid_incline)?);
+    figures.push(rigid::figure(runner, RIGID, OneGrain::rigid_incline)?);
     figures.extend(elastic::figures(runner)?);
     Ok(figures)
 }

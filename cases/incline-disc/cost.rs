@@ -1,7 +1,7 @@
 //! Rolling and slipping down a plane, over stiffness.
 
-use crate::one_grain::OneGrain;
-use crate::one_grain_cost::displacement;
+use crate::exact::one_grain::OneGrain;
+use crate::rows::one_grain_cost::displacement;
 use grainbench_harness::subject::Subject;
 
 pub(crate) fn subjects() -> Vec<Subject> {

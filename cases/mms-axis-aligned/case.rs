@@ -1,6 +1,6 @@
 //! A manufactured motion along an axis: order of accuracy.
 
-use crate::manufactured::error;
+use crate::exact::manufactured::error;
 use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 

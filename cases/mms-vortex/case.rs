@@ -1,6 +1,6 @@
 //! A manufactured vortex: large rotation and shear.
 
-use crate::manufactured::error;
+use crate::exact::manufactured::error;
 use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;

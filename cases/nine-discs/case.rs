@@ -7,9 +7,9 @@ mod figures;
 #[path = "modal.rs"]
 mod modal;
 
-use crate::program_forces;
-use crate::program_rows;
-use crate::rigid_rows;
+use crate::rows::program_forces;
+use crate::rows::programs;
+use crate::rows::rigid;
 use crate::sources::literature::cundall_strack_1979;
 use grainbench_harness::measure::{dominant_frequency, slope};
 use grainbench_harness::prelude::*;
@@ -56,9 +56,9 @@ fn claims() -> Vec<Claim> {
         damping(),
         slip_in_compression(),
         distortion(),
-        vec![rigid_rows::refuses_cycles("kappa-0")],
-        program_rows::nine_discs(&MODAL, step, travel),
-        program_rows::turning_walls(DISTORTION[1], step, travel),
+        vec![rigid::refuses_cycles("kappa-0")],
+        programs::nine_discs(&MODAL, step, travel),
+        programs::turning_walls(DISTORTION[1], step, travel),
         program_forces::nine_discs("kappa-1", step),
         elastic::DISCS.claims(Run::slow),
     ]

@@ -5,8 +5,8 @@
 //! F(2d/3) in closed form; half of a diameter's compliance lies at each of its contacts, a whole one between two discs,
 //! so that ω² = 3 (dF/dδ)/m.
 
-use crate::elastic::Pressed;
-use crate::ringing::Ringing;
+use crate::rows::elastic::Pressed;
+use crate::rows::ringing::Ringing;
 
 /// Discs of E' = 1.6 GPa, ν = 1/4, whose ringing has periods of some .5 s.
 pub(super) const DISCS: Ringing = Ringing {

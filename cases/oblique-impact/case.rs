@@ -1,7 +1,7 @@
 //! A disc meets a frictional wall at an angle and slips throughout: exact velocities after it.
 
-use crate::incline::more_friction;
-use crate::program_rows;
+use crate::rows::incline::more_friction;
+use crate::rows::programs;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), fraction("dt=.002", 0.002)];
@@ -120,7 +120,7 @@ fn claims() -> Vec<Claim> {
             }
         }
     }
-    claims.extend(program_rows::impact(&VARIANTS, LEVELS[1].resolution));
+    claims.extend(programs::impact(&VARIANTS, LEVELS[1].resolution));
     claims
 }
 

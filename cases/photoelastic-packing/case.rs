@@ -5,7 +5,7 @@ mod elastic;
 #[path = "figures.rs"]
 mod figures;
 
-use crate::program_rows::{PAIRS, layer_of_spheres};
+use crate::rows::programs::{PAIRS, layer_of_spheres};
 use crate::sources::literature::{cundall_strack_1979 as paper, josselin_de_jong_1969 as experiment};
 use crate::stage::Stage;
 use grainbench_harness::compare::twins::{self, Parting};

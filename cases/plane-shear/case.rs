@@ -1,8 +1,8 @@
 //! Ten thousand discs in plane shear, against LAMMPS and LIGGGHTS: moment by moment for as long as that can be
 //! foretold, by means over time after it.
 
-use crate::program_rows::{PAIRS, row};
-use crate::rigid_rows;
+use crate::rows::programs::{PAIRS, row};
+use crate::rows::rigid;
 use grainbench_harness::compare::pointwise::{difference, largest, worst};
 use grainbench_harness::compare::twins::{self, Parting, Sum, TWIN};
 use grainbench_harness::prelude::*;
@@ -93,7 +93,7 @@ fn claims() -> Vec<Claim> {
         }
     }
     claims.push(twins::horizon(PARTING, HORIZON, [long(lammps[0]), long(lammps[0]).adjusted(TWIN, move_one)]));
-    claims.push(rigid_rows::refuses_periodic_axes(PLAIN));
+    claims.push(rigid::refuses_periodic_axes(PLAIN));
     claims
 }
 

@@ -1,7 +1,7 @@
 //! The same slab of grains on springs: its budget, and the programs.
 
 use super::{entry, gained, measures, to_shear};
-use crate::program_rows::{PAIRS, row};
+use crate::rows::programs::{PAIRS, row};
 use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::control::{Red, Wrong};
 use grainbench_harness::prelude::*;

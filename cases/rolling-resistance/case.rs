@@ -1,9 +1,9 @@
 //! Rolling resistance: deceleration on a flat plane, and the threshold of rest on a slope.
 
-use crate::incline::wrong_inertia;
-use crate::one_grain::{OneGrain, State, course};
-use crate::program_rows;
-use crate::rigid_rows;
+use crate::rows::incline::wrong_inertia;
+use crate::exact::one_grain::{OneGrain, State, course};
+use crate::rows::programs;
+use crate::rows::rigid;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
@@ -38,16 +38,16 @@ fn acceleration(scene: &Scene) -> f64 {
 
 fn claims() -> Vec<Claim> {
     let rigid = claim("refusal of rolling resistance", "1")
-        .of(Run::new(FLAT[0], "rigid", rigid_rows::DEFAULT))
+        .of(Run::new(FLAT[0], "rigid", rigid::DEFAULT))
         .refused("rapier has no resistance against rolling", Control::without(Effect::RollingResistance));
     let lammps =
         claim("refusal of a damped rolling spring", "1").of(Run::new(SLOPE[0], "lammps", STEP.resolution)).refused(
             "LAMMPS limits spring and dashpot together, LIGGGHTS and we the spring alone",
             Control::scene("no dashpot", |scene| scene.change_laws(|law| law.rolling_damping = 0.0)),
         );
-    let rolls_off = |variant| program_rows::rolling_off(move |solver| Run { solver, ..tilted(variant, 1.001) });
+    let rolls_off = |variant| programs::rolling_off(move |solver| Run { solver, ..tilted(variant, 1.001) });
     let ours = FLAT.into_iter().flat_map(flat).chain(SLOPE.into_iter().flat_map(threshold)).chain([rigid]);
-    ours.chain(FLAT.into_iter().flat_map(program_rows::rolling)).chain(SLOPE.map(rolls_off)).chain([lammps]).collect()
+    ours.chain(FLAT.into_iter().flat_map(programs::rolling)).chain(SLOPE.map(rolls_off)).chain([lammps]).collect()
 }
 
 fn flat(variant: &'static str) -> Vec<Claim> {

@@ -1,6 +1,6 @@
 //! Two thousand spheres settle in a column: the weight is carried, and the packing is that of both programs.
 
-use crate::program_rows::PAIRS;
+use crate::rows::programs::PAIRS;
 use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::spread;
 use grainbench_scene::scene::Duration;

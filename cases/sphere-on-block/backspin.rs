@@ -1,7 +1,7 @@
 //! The 2001 paper's sphere set down on the deformable plane with backspin: it slides, is spun down, and rolls on.
 
 use super::{FLAT, LEVELS, set_down};
-use crate::elastic_backspin::{excess, sphere};
+use crate::rows::elastic_backspin::{excess, sphere};
 use grainbench_harness::prelude::*;
 
 const VARIANT: &str = "backspin";

@@ -3,7 +3,7 @@
 #[path = "backspin.rs"]
 mod backspin;
 
-use crate::one_grain::{OneGrain, last};
+use crate::exact::one_grain::{OneGrain, last};
 use crate::sources::prototype::{elastic_sphere, nodal_contact_2000, nodal_contact_2001};
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;

@@ -3,7 +3,7 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::rigid_rows;
+use crate::rows::rigid;
 use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
 
@@ -93,7 +93,7 @@ fn claims() -> Vec<Claim> {
                 scene.change_laws(|law| law.normal_damping = 2e-6);
             })),
     );
-    claims.push(rigid_rows::refuses_cycles(PLAIN));
+    claims.push(rigid::refuses_cycles(PLAIN));
     claims.extend(elastic::DISCS.claims(|run| run));
     claims
 }

@@ -6,8 +6,8 @@
 //! elastic one has F(d) in closed form, and as its compliance lies one half at each of its two contacts, ω² = 4
 //! (dF/dd)/m as long as it moves as a whole.
 
-use crate::elastic::Pressed;
-use crate::ringing::Ringing;
+use crate::rows::elastic::Pressed;
+use crate::rows::ringing::Ringing;
 use grainbench_harness::prelude::*;
 
 /// Discs of E' = 16 Pa, ν = 1/4, as heavy as in the example, whose ringing has periods of some 1.6 s.

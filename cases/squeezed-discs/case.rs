@@ -1,6 +1,6 @@
 //! Nine elastic discs squeezed by four walls: how stiff contacts are.
 
-use crate::elastic::{Pressed, stiffen};
+use crate::rows::elastic::{Pressed, stiffen};
 use crate::sources::prototype::squeezed_discs::{LEAST_NODAL_FORCE, MOST_NODAL_FORCE};
 use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;

@@ -3,17 +3,9 @@
 //! A case is a folder beside `src`: `scene.toml`, `case.rs` with claims and figures, and `derivation.md`. A folder that
 //! has a `scene.toml` is in the registry.
 
-pub mod elastic;
-mod elastic_backspin;
-pub mod incline;
-pub mod manufactured;
-pub mod one_grain;
-pub mod one_grain_cost;
-pub mod program_forces;
-pub mod program_rows;
+pub mod exact;
 pub mod registry;
-pub mod rigid_rows;
-mod ringing;
+pub mod rows;
 pub mod solvers;
 pub mod sources;
 pub mod stage;

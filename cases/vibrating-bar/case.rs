@@ -1,6 +1,6 @@
 //! A bar vibrates along its length.
 
-use crate::elastic::stiffen;
+use crate::rows::elastic::stiffen;
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use crate::digits::Digits;
-use crate::dump::DumpReader;
+use crate::read::digits::Digits;
+use crate::read::dump::DumpReader;
 use crate::outputs::is_dump;
-use crate::read_error::ReadError;
-use crate::snapshot::DumpSnapshot;
-use crate::table::{Table, read_table};
+use crate::read::read_error::ReadError;
+use crate::read::snapshot::DumpSnapshot;
+use crate::read::table::{Table, read_table};
 
 /// How one column of the second output differs from that of the first.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,7 +175,7 @@ fn compare_snapshots(name: &str, snapshots: &[DumpSnapshot; 2], columns: &mut Ve
         columns.extend(common(a, b).iter().map(|name| Column::new(name)));
         if columns.is_empty() {
             let have: Vec<&str> = a.columns.iter().map(|column| column.name.as_str()).collect();
-            let expected = format!("a column of {}", crate::read_error::quoted(&have.join(" ")));
+            let expected = format!("a column of {}", crate::read::read_error::quoted(&have.join(" ")));
             return Err(ReadError::at(name, b.first_line.saturating_sub(1), expected, "none"));
         }
     }

@@ -5,11 +5,11 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
 use nalgebra::Vector3;
 
-use crate::contacts::{Forces, contacts};
-use crate::digits::Digits;
+use crate::read::contacts::{Forces, contacts};
+use crate::read::digits::Digits;
 use crate::pair_forces::{PairForce, PairForces};
-use crate::read_error::ReadError;
-use crate::snapshot::{Coordinate, DumpSnapshot};
+use crate::read::read_error::ReadError;
+use crate::read::snapshot::{Coordinate, DumpSnapshot};
 
 /// What a file calls its columns, where that is not what LAMMPS calls them: pairs of `x`, `vx`, `omegaz`, … and the
 /// file's own name.
@@ -203,7 +203,7 @@ impl<'s> Observer<'s> {
     fn columns(&self, file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Columns, ReadError> {
         let missing = |what: &str| {
             let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
-            let found = crate::read_error::quoted(&have.join(" "));
+            let found = crate::read::read_error::quoted(&have.join(" "));
             ReadError::at(file, snapshot.first_line.saturating_sub(1), format!("a column {what}"), found)
         };
         let column = |name: &str| snapshot.column(names.of(name));

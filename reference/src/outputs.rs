@@ -9,15 +9,15 @@ use grainbench_scene::record::{Column, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 
-use crate::digits::Digits;
-use crate::dump::DumpReader;
-use crate::line_reader::LineReader;
-use crate::log::{Log, read_log};
+use crate::read::digits::Digits;
+use crate::read::dump::DumpReader;
+use crate::read::line_reader::LineReader;
+use crate::read::log::{Log, read_log};
 use crate::observer::{Names, Observed, Observer};
 use crate::pair_forces::PairForces;
-use crate::read_error::{ReadError, one_line, quoted};
-use crate::snapshot::{DumpKind, DumpSnapshot};
-use crate::table::{Table, read_table};
+use crate::read::read_error::{ReadError, one_line, quoted};
+use crate::read::snapshot::{DumpKind, DumpSnapshot};
+use crate::read::table::{Table, read_table};
 
 /// Which files, and what they do not say themselves.
 #[derive(Debug, Clone, Default)]

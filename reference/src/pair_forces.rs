@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use grainbench_scene::scene::{ProbeTarget, Scene};
 use nalgebra::Vector3;
 
-use crate::digits::Digits;
+use crate::read::digits::Digits;
 use crate::observer::Names;
-use crate::read_error::{ReadError, quoted};
-use crate::snapshot::DumpSnapshot;
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::snapshot::DumpSnapshot;
 
 /// A force on the first of two grains (N), and how far the printed digits may have moved any of its components.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

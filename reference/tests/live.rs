@@ -54,13 +54,13 @@ fn script(folder: &Path, text: &str) -> PathBuf {
 
 fn run(text: &str) -> Result<Record, RunError> {
     let folder = tempfile::tempdir().unwrap();
-    let live = Live::at(Program::Lammps, &script(folder.path(), text)).with_time_limit(Duration::from_secs(1));
+    let live = Live::at(Program::LAMMPS, &script(folder.path(), text)).with_time_limit(Duration::from_secs(1));
     live.run(&scene(), &Resolution::TimeStep(0.01), &mut ())
 }
 
 #[test]
 fn a_program_that_is_missing() {
-    let live = Live::at(Program::Lammps, Path::new("no/such/program"));
+    let live = Live::at(Program::LAMMPS, Path::new("no/such/program"));
     let error = live.run(&scene(), &Resolution::TimeStep(0.01), &mut ()).unwrap_err();
     assert!(matches!(error, RunError::Program { failure: Failure::NotRun(_), .. }), "{error}");
 }

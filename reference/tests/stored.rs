@@ -20,7 +20,7 @@ const ID: &str = "oblique-impact-damped";
 /// A copy of a stored run that a test may damage.
 fn copy() -> TempDir {
     let copy = tempfile::tempdir().unwrap();
-    for entry in fs::read_dir(folder(Program::Lammps, ID)).unwrap() {
+    for entry in fs::read_dir(folder(Program::LAMMPS, ID)).unwrap() {
         let path = entry.unwrap().path();
         fs::copy(&path, copy.path().join(path.file_name().unwrap())).unwrap();
     }

@@ -4,7 +4,7 @@ use grainbench_scene::record::Series;
 use grainbench_scene::scene::{ProbeTarget, Scene};
 
 use super::outline::AXES;
-use crate::log::Log;
+use crate::read::log::Log;
 
 /// A column of the log that gives one of the series.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,70 +7,19 @@ mod dashpots;
 mod data;
 mod driven;
 mod lammps;
-mod lammps_contact;
 mod liggghts;
-mod liggghts_contact;
 pub(crate) mod logged;
-mod mesh;
-mod moduli;
 mod outline;
-mod region;
+mod program;
 mod schedule;
 
-use std::fmt;
+pub use program::Program;
 
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{ProbeTarget, Scene};
 use grainbench_scene::solver::Resolution;
 
 use crate::observer::Names;
-
-/// Whose input a deck is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Program {
-    /// LAMMPS, `pair_style gran/hooke/history` and its like.
-    Lammps,
-    /// LIGGGHTS, `model hooke/stiffness tangential history` and its like.
-    Liggghts,
-}
-
-impl Program {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Lammps, Self::Liggghts];
-
-    /// Its name, as that of its solver.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Lammps => "lammps",
-            Self::Liggghts => "liggghts",
-        }
-    }
-
-    /// The program of a name.
-    #[must_use]
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|program| program.name() == name)
-    }
-
-    /// What to type, in the folder of the deck.
-    #[must_use]
-    pub const fn command(self) -> &'static str {
-        match self {
-            Self::Lammps => "lmp -in in.lammps",
-            Self::Liggghts => "liggghts -in in.liggghts",
-        }
-    }
-}
-
-impl fmt::Display for Program {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::Lammps => "LAMMPS",
-            Self::Liggghts => "LIGGGHTS",
-        })
-    }
-}
 
 /// Why a program has no deck for a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -154,11 +103,7 @@ pub fn write_deck(scene: &Scene, resolution: &Resolution, program: Program) -> R
     let stepping = Stepping::of(scene, resolution).map_err(DeckError::Resolution)?;
     let unsupported = |reason: String| DeckError::Unsupported { program, reason };
     outline::refuse_what_neither_has(scene).map_err(unsupported)?;
-    let written = match program {
-        Program::Lammps => lammps::files(scene, &stepping),
-        Program::Liggghts => liggghts::files(scene, &stepping),
-    };
-    let Written { files, logged, names } = written.map_err(unsupported)?;
+    let Written { files, logged, names } = program.peer().write(scene, &stepping).map_err(unsupported)?;
     Ok(Deck { files, stepping, logged, names })
 }
 

@@ -1,5 +1,6 @@
 //! What both decks ask of a scene.
 
+use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::file::GrainShape;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
@@ -103,4 +104,9 @@ impl AxisPlane {
         }
         Some(plane)
     }
+}
+
+/// (4/3)E* and 8G* (Pa).
+pub(crate) fn hertz(law: &ContactLaw) -> (f64, f64) {
+    (4.0 / 3.0 * law.effective_modulus(), 8.0 * law.effective_shear_modulus())
 }

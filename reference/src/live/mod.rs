@@ -13,13 +13,13 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, logged, write_deck};
-use crate::dump::DumpReader;
-use crate::log::read_log;
-use crate::numbers::NotFinite;
+use crate::read::dump::DumpReader;
+use crate::read::log::read_log;
+use crate::read::numbers::NotFinite;
 use crate::observer::{Observed, Observer};
 use crate::pair_forces::PairForces;
-use crate::read_error::{ReadError, one_line};
-use crate::snapshot::DumpSnapshot;
+use crate::read::read_error::{ReadError, one_line};
+use crate::read::snapshot::DumpSnapshot;
 
 /// How long a program may take, unless it is given another time.
 const TIME_LIMIT: Duration = Duration::from_secs(600);
@@ -39,11 +39,8 @@ impl Live {
     /// run of it may take ten minutes, or as many seconds as `GRAINBENCH_TIME_LIMIT` says.
     #[must_use]
     pub fn find(program: Program) -> Self {
-        let (variable, usual) = match program {
-            Program::Lammps => ("GRAINBENCH_LAMMPS", "lmp"),
-            Program::Liggghts => ("GRAINBENCH_LIGGGHTS", "liggghts"),
-        };
-        let executable = match env::var_os(variable).filter(|path| !path.is_empty()) {
+        let (variable, usual) = (program.variable(), program.executable());
+        let executable = match env::var_os(&variable).filter(|path| !path.is_empty()) {
             Some(path) => Some(PathBuf::from(&path))
                 .filter(|path| path.is_file())
                 .ok_or_else(|| format!("{variable} names `{}`, where no file is", PathBuf::from(path).display())),

@@ -92,5 +92,5 @@ fn last_lines(folder: &Path) -> Vec<String> {
     let text = String::from_utf8_lossy(&read().unwrap_or_default()).into_owned();
     let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
     let skipped = lines.len().saturating_sub(LAST_LINES);
-    lines[skipped..].iter().map(|line| crate::read_error::one_line(line)).collect()
+    lines[skipped..].iter().map(|line| crate::read::read_error::one_line(line)).collect()
 }

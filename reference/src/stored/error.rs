@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::read_error::{ReadError, one_line};
+use crate::read::read_error::{ReadError, one_line};
 
 /// A stored run that is missing, incomplete, or not what it was when it was stored.
 #[derive(Debug, thiserror::Error)]

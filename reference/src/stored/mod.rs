@@ -17,7 +17,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError};
 
 use crate::deck::{Program, Stepping};
-use crate::table::{Table, read_table};
+use crate::read::table::{Table, read_table};
 pub use drift::{Drift, drift};
 pub use error::StoredError;
 pub use file_hash::hash_file;

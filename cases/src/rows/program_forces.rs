@@ -4,7 +4,7 @@
 //! Both programs evaluate them anew when they are written, with the velocities of the full step: what dashpots add
 //! differs from what moved the grains, and all rows here are undamped.
 
-use crate::program_rows::{PAIRS, layer_of_spheres, row};
+use crate::rows::programs::{PAIRS, layer_of_spheres, row};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 

@@ -4,10 +4,10 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use crate::atom::Atom;
-use crate::data_parser::DataParser;
-use crate::line_reader::LineReader;
-use crate::read_error::ReadError;
+use crate::read::atom::Atom;
+use crate::read::data_parser::DataParser;
+use crate::read::line_reader::LineReader;
+use crate::read::read_error::ReadError;
 
 /// A LAMMPS data file of `atom_style sphere`, or a LIGGGHTS one of `atom_style granular`.
 #[derive(Debug, Clone, PartialEq)]

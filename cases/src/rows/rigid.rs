@@ -15,8 +15,8 @@
 //! b = ω/(hω + 2ζ) and c = b/(hω²), ω = 2πf; hence δ = g_n h c/b = g_n/ω². It is reached within about
 //! 2ζ/ω + 1/(hω²), which is longer the finer the step.
 
-use crate::incline::{more_friction, wrong_inertia};
-use crate::one_grain::{OneGrain, State, last};
+use crate::rows::incline::{more_friction, wrong_inertia};
+use crate::exact::one_grain::{OneGrain, State, last};
 use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;

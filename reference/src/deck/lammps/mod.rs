@@ -1,21 +1,46 @@
 //! LAMMPS: contacts of `gran/hooke/history` and its like between grains and at walls.
 
+mod contact;
+mod region;
+
 use grainbench_scene::effects::Effects;
 use grainbench_scene::scene::{Scene, Wall};
 
-use super::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
-use super::driven::driven;
-use super::lammps_contact::{at_wall, between_grains};
-use super::logged::logged;
-use super::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
-use super::region::region;
-use super::{
+use crate::deck::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
+use crate::deck::driven::driven;
+use contact::{at_wall, between_grains};
+use crate::deck::logged::logged;
+use crate::deck::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
+use region::region;
+use crate::deck::{
     COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs,
     asks_for_wall, heading, thermo,
 };
+use crate::deck::program::Peer;
 use crate::observer::Names;
 
-pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+/// LAMMPS, `pair_style gran/hooke/history` and its like.
+pub(crate) struct Lammps;
+
+impl Peer for Lammps {
+    fn name(&self) -> &'static str {
+        "lammps"
+    }
+
+    fn title(&self) -> &'static str {
+        "LAMMPS"
+    }
+
+    fn executable(&self) -> &'static str {
+        "lmp"
+    }
+
+    fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+        files(scene, stepping)
+    }
+}
+
+fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     one_inertia(scene, inertia_factor(scene))?;
     // LAMMPS reads the density of a data file as a sphere's, in two dimensions too.
     let data = data_file(scene, scene.materials.len(), box_of(scene), of_sphere);

@@ -1,7 +1,7 @@
 //! One snapshot of a dump.
 
-use crate::digits::Digits;
-use crate::numbers::NumberColumn;
+use crate::read::digits::Digits;
+use crate::read::numbers::NumberColumn;
 
 /// What the rows of a dump are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

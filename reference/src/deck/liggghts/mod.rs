@@ -3,6 +3,10 @@
 //! Scenes in the plane are run in two dimensions where every wall is a primitive one. Meshes, which all other walls
 //! need, work in three dimensions only: there the grains are one layer of spheres.
 
+mod contact;
+mod mesh;
+mod moduli;
+
 use std::fmt::Write as _;
 
 use grainbench_scene::effects::Effects;
@@ -10,17 +14,18 @@ use grainbench_scene::motion::Motion;
 use grainbench_scene::scene::{Scene, Wall};
 use nalgebra::{Unit, Vector3};
 
-use super::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
-use super::driven::driven;
-use super::liggghts_contact::{Model, type_of_wall};
-use super::logged::logged;
-use super::mesh::{Triangle, stl, triangles};
-use super::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
-use super::schedule::{Rates, changes, rates_from};
-use super::{
+use crate::deck::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
+use crate::deck::driven::driven;
+use contact::{Model, type_of_wall};
+use crate::deck::logged::logged;
+use mesh::{Triangle, stl, triangles};
+use crate::deck::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
+use crate::deck::schedule::{Rates, changes, rates_from};
+use crate::deck::{
     COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_force,
     asks_for_pairs, asks_for_wall, heading, thermo,
 };
+use crate::deck::program::Peer;
 use crate::observer::Names;
 
 /// A wall that needs a mesh.
@@ -30,7 +35,28 @@ struct Mesh<'s> {
     triangles: Vec<Triangle>,
 }
 
-pub(crate) fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+/// LIGGGHTS, `model hooke/stiffness tangential history` and its like.
+pub(crate) struct Liggghts;
+
+impl Peer for Liggghts {
+    fn name(&self) -> &'static str {
+        "liggghts"
+    }
+
+    fn title(&self) -> &'static str {
+        "LIGGGHTS"
+    }
+
+    fn executable(&self) -> &'static str {
+        "liggghts"
+    }
+
+    fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+        files(scene, stepping)
+    }
+}
+
+fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     let mut meshes = Vec::new();
     let (mut low, mut high) = box_of(scene);
     let (centre, reach) = (0.5 * (low + high), (high - low).norm() + way(scene, stepping));

@@ -1,8 +1,8 @@
 //! The header of a data file: how many, and in which box.
 
-use crate::fields::Fields;
-use crate::line_reader::Line;
-use crate::read_error::{ReadError, quoted};
+use crate::read::fields::Fields;
+use crate::read::line_reader::Line;
+use crate::read::read_error::{ReadError, quoted};
 
 /// The keywords of the three bounds.
 const BOUNDS: [[&str; 2]; 3] = [["xlo", "xhi"], ["ylo", "yhi"], ["zlo", "zhi"]];

@@ -1,7 +1,7 @@
 //! Elastic discs between walls that move in by a little and stop: the force at rest, the frequency at which they ring,
 //! and the spring that they show; without friction, beside rigid discs on springs that have their force at rest.
 
-use crate::elastic::stiffen;
+use crate::rows::elastic::stiffen;
 use grainbench_harness::measure::dominant_frequency;
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::{Constitutive, Deformable};

@@ -1,7 +1,7 @@
 //! Rows of the programs `lammps` and `liggghts`, stored or run now: our solver in a program's convention gives what the
 //! program gives.
 
-use crate::incline::{DAMPING, at_overlap};
+use crate::rows::incline::{DAMPING, at_overlap};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 use grainbench_scene::file::GrainShape;

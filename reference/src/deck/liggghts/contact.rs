@@ -5,10 +5,9 @@ use grainbench_scene::effects::Effects;
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
-use super::dashpots::{Dashpots, Side};
-use super::lammps_contact::hertz;
+use crate::deck::dashpots::{Dashpots, Side};
 use super::moduli::moduli;
-use super::outline::grain_materials;
+use crate::deck::outline::{grain_materials, hertz};
 
 /// The model of all contacts.
 #[derive(Clone, Copy)]

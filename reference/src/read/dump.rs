@@ -4,12 +4,12 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use crate::blocks::Blocks;
-use crate::dump_header::DumpHeader;
-use crate::line_reader::blocks;
-use crate::numbers::{NotFinite, RowForm};
-use crate::read_error::{ReadError, quoted};
-use crate::snapshot::{DumpKind, DumpSnapshot};
+use crate::read::blocks::Blocks;
+use crate::read::dump_header::DumpHeader;
+use crate::read::line_reader::blocks;
+use crate::read::numbers::{NotFinite, RowForm};
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::snapshot::{DumpKind, DumpSnapshot};
 
 /// Reads the snapshots of a dump one after the other; memory is that of the largest one.
 pub struct DumpReader<'r> {

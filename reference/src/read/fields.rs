@@ -2,8 +2,8 @@
 
 use std::str::FromStr;
 
-use crate::line_reader::Line;
-use crate::read_error::{ReadError, quoted};
+use crate::read::line_reader::Line;
+use crate::read::read_error::{ReadError, quoted};
 
 /// Walks over the fields of a line; every fault names the column of the field.
 pub(crate) struct Fields<'l> {

@@ -4,8 +4,8 @@
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
-use super::dashpots::{Dashpots, Side};
-use super::outline::grain_materials;
+use crate::deck::dashpots::{Dashpots, Side};
+use crate::deck::outline::{grain_materials, hertz};
 
 /// The lines that give the one law that LAMMPS has between grains.
 pub(crate) fn between_grains(scene: &Scene) -> Result<String, String> {
@@ -84,11 +84,6 @@ fn history(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result
     let Dashpots { normal, tangential } = Dashpots::of(scene, law, material, side)?;
     let (k_n, k_t) = (law.normal_stiffness(), law.tangential_stiffness());
     Ok(format!("hooke/history {k_n:?} {k_t:?} {normal:?} {tangential:?} {friction:?} 1"))
-}
-
-/// (4/3)E* and 8G* (Pa).
-pub(crate) fn hertz(law: &ContactLaw) -> (f64, f64) {
-    (4.0 / 3.0 * law.effective_modulus(), 8.0 * law.effective_shear_modulus())
 }
 
 /// `granular` with Tsuji's dashpot, c = α √(k_n a m_eff) with k_n = (4/3)E* and a = √(R_eff δ): the scene's

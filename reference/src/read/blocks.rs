@@ -2,8 +2,8 @@
 
 use std::io::{ErrorKind, Read};
 
-use crate::line_reader::Line;
-use crate::read_error::{ReadError, quoted};
+use crate::read::line_reader::Line;
+use crate::read::read_error::{ReadError, quoted};
 
 /// The longest line that is read, in bytes: a row of a dump with a few thousand columns. A file without line ends must
 /// not fill the memory before it is refused.

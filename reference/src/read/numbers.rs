@@ -1,8 +1,8 @@
 //! Rows of numbers between blanks or commas, parsed from bytes.
 
-use crate::blocks::RawLine;
-use crate::digits::Digits;
-use crate::read_error::{ReadError, quoted};
+use crate::read::blocks::RawLine;
+use crate::read::digits::Digits;
+use crate::read::read_error::{ReadError, quoted};
 
 /// One column of a table of numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! What stands above the rows of a snapshot.
 
-use crate::blocks::Blocks;
-use crate::fields::Fields;
-use crate::line_reader::Line;
-use crate::numbers::NumberColumn;
-use crate::read_error::{ReadError, quoted};
-use crate::snapshot::DumpKind;
+use crate::read::blocks::Blocks;
+use crate::read::fields::Fields;
+use crate::read::line_reader::Line;
+use crate::read::numbers::NumberColumn;
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::snapshot::DumpKind;
 
 /// More rows than that fit no memory; it keeps the line numbers of rows within bounds.
 const MOST_ROWS: u64 = u32::MAX as u64;

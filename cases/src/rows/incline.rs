@@ -1,6 +1,6 @@
 //! Claims that inclines share, whether the grain is a disc or a sphere.
 
-use crate::one_grain::{OneGrain, State, course, last, rest_at_overlap};
+use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
 use grainbench_harness::measure::slope as fitted;
 use grainbench_harness::prelude::*;
 

@@ -2,9 +2,9 @@
 
 use std::io::BufRead;
 
-use crate::blocks::{Blocks, RawLine};
-use crate::decoding::{Decoded, decoded};
-use crate::read_error::ReadError;
+use crate::read::blocks::{Blocks, RawLine};
+use crate::read::decoding::{Decoded, decoded};
+use crate::read::read_error::ReadError;
 
 /// Reads an input, plain, gzip or zstd, line by line, and refuses what is not text.
 pub(crate) struct LineReader<'r> {
@@ -87,9 +87,9 @@ mod tests {
 
     #[test]
     fn bounds_the_line() {
-        assert_eq!(fault(&[b'x'; crate::blocks::LONGEST_LINE]), "none");
+        assert_eq!(fault(&[b'x'; crate::read::blocks::LONGEST_LINE]), "none");
         assert_eq!(
-            fault(&[b'x'; crate::blocks::LONGEST_LINE + 1]),
+            fault(&[b'x'; crate::read::blocks::LONGEST_LINE + 1]),
             "f:1: expected a line of at most 65536 bytes, found a longer one"
         );
     }

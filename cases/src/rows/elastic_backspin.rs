@@ -1,7 +1,7 @@
 //! Backspin of an elastic grain, on a rigid plane and on a deformable one: what rows of both are read from, and what an
 //! independent prototype says of the sphere.
 
-use crate::one_grain::{OneGrain, course, last};
+use crate::exact::one_grain::{OneGrain, course, last};
 use crate::sources::prototype::elastic_sphere::{BACKSPIN, WORK};
 use grainbench_harness::prelude::*;
 

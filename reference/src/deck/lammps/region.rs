@@ -7,8 +7,8 @@ use grainbench_scene::motion::{Moment, Motion, Phase};
 use grainbench_scene::scene::{Wall, WallShape};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
-use super::Stepping;
-use super::outline::AXES;
+use crate::deck::Stepping;
+use crate::deck::outline::AXES;
 
 /// What a region is before it turns, and how far it turns before the run begins.
 struct Placed {

@@ -4,10 +4,10 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use crate::digits::Digits;
-use crate::line_reader::blocks;
-use crate::numbers::{NotFinite, NumberColumn, RowForm};
-use crate::read_error::{ReadError, quoted};
+use crate::read::digits::Digits;
+use crate::read::line_reader::blocks;
+use crate::read::numbers::{NotFinite, NumberColumn, RowForm};
+use crate::read::read_error::{ReadError, quoted};
 
 /// A table of numbers.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -4,10 +4,10 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use crate::line_reader::{Line, LineReader};
-use crate::numbers::{NotFinite, NumberColumn, RowForm};
-use crate::read_error::{ReadError, quoted};
-use crate::table::Table;
+use crate::read::line_reader::{Line, LineReader};
+use crate::read::numbers::{NotFinite, NumberColumn, RowForm};
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::table::Table;
 
 /// One `run` of a log.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use crate::atom::Atom;
-use crate::data_header::DataHeader;
-use crate::fields::Fields;
-use crate::line_reader::Line;
-use crate::read_error::{ReadError, quoted};
+use crate::read::atom::Atom;
+use crate::read::data_header::DataHeader;
+use crate::read::fields::Fields;
+use crate::read::line_reader::Line;
+use crate::read::read_error::{ReadError, quoted};
 
 /// The sections that may follow the header.
 #[derive(Clone, Copy, PartialEq, Eq)]

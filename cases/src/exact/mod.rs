@@ -1,0 +1,4 @@
+//! Closed forms that several cases are judged by; those of one case stand in its folder.
+
+pub mod manufactured;
+pub mod one_grain;

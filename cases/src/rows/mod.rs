@@ -1,0 +1,10 @@
+//! Rows that several cases have: each file a family of claims over one kind of run.
+
+pub mod elastic;
+pub(crate) mod elastic_backspin;
+pub mod incline;
+pub mod one_grain_cost;
+pub mod program_forces;
+pub mod programs;
+pub mod rigid;
+pub(crate) mod ringing;

@@ -1,0 +1,20 @@
+//! Readers for files, one format each: what a file holds, or an error that names the file, the place, what was expected
+//! there and what was found.
+
+pub(crate) mod atom;
+mod blocks;
+pub(crate) mod contacts;
+pub(crate) mod data_file;
+mod data_header;
+mod data_parser;
+mod decoding;
+pub(crate) mod digits;
+pub(crate) mod dump;
+mod dump_header;
+mod fields;
+pub(crate) mod line_reader;
+pub(crate) mod log;
+pub(crate) mod numbers;
+pub(crate) mod read_error;
+pub(crate) mod snapshot;
+pub(crate) mod table;
