@@ -6,9 +6,9 @@
 use grainbench::cases::registry;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
+use grainbench::scene::contact_law::{ContactLaw, Springs};
 use grainbench::scene::effects::Effects;
 use grainbench::scene::record::Record;
-use grainbench::scene::contact_law::{ContactLaw, Springs};
 use grainbench::scene::scene::{Duration, Scene};
 use grainbench::scene::solver::{Resolution, Solver};
 

@@ -8,6 +8,7 @@ use grainbench::cases::registry::{self, CASES, read_grains};
 use grainbench::cases::runner;
 use grainbench::dem::convention::Convention;
 use grainbench::harness::case::PLAIN;
+use grainbench::harness::course::of_case;
 use grainbench::mpm::solver::Mpm;
 use grainbench::reports::plot;
 use grainbench::scene::solver::{Resolution, Solver};
@@ -82,7 +83,7 @@ fn pictures_are_drawn() {
         [("nine-discs", "forces-distortion"), ("incline-disc", "compliance"), ("incline-disc", "elastic")]
     {
         let case = registry::by_name(case).unwrap();
-        let figures = (case.figures)(&runner(case)).unwrap();
+        let figures = of_case(case, &runner(case), &(case.claims)()).unwrap();
         let figure = figures.iter().find(|candidate| candidate.name == figure).unwrap();
         let path = format!("reports/readme/{}-{}.svg", case.name, figure.name);
         expect_file(&path, &plot::draw(figure).unwrap());

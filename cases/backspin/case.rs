@@ -3,8 +3,8 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
 use crate::exact::one_grain::{OneGrain, State, course, last};
+use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
 use crate::rows::programs;
 use crate::rows::rigid::{self, Row};
 use grainbench_harness::prelude::*;

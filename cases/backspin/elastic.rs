@@ -5,9 +5,9 @@
 //! times larger moduli lead to the rigid answer, which needs no reference. The mean speed from .5 s on leaves out the
 //! ringing of the contact, which nothing damps.
 
+use crate::exact::one_grain::course;
 use crate::rows::elastic::{Rest, settle, stiffen};
 use crate::rows::elastic_backspin::{excess, rolling, slippery, sphere};
-use crate::exact::one_grain::course;
 use grainbench_harness::prelude::*;
 
 const SPHERE: Rest = Rest { duration: 0.6, damping: 20.0 };
@@ -115,8 +115,8 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::rows::elastic_backspin::ROLLS;
     use crate::exact::one_grain::OneGrain;
+    use crate::rows::elastic_backspin::ROLLS;
 
     #[test]
     fn both_variants_roll_by_then() {

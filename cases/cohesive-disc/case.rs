@@ -76,8 +76,7 @@ fn claims() -> Vec<Claim> {
         )
     });
     let ours = [
-        refusal("rigid", rigid::DEFAULT)
-            .refused("rapier's contacts only push", Control::without(Effect::Cohesion)),
+        refusal("rigid", rigid::DEFAULT).refused("rapier's contacts only push", Control::without(Effect::Cohesion)),
         of("growth of slip, cohesion a thousandth above the threshold", 1.001, "cohesion × .998", 0.998),
         of("growth of slip, cohesion a thousandth below the threshold", 0.999, "cohesion × 1.002", 1.002),
         of("growth of slip, half the cohesion", 0.5, "cohesion × 1.002", 1.002),

@@ -2,7 +2,6 @@
 
 use crate::rows::programs;
 use crate::rows::rigid;
-use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
@@ -37,8 +36,7 @@ fn claims() -> Vec<Claim> {
     claims.extend(momentum());
     claims.extend(angular_momentum());
     claims.extend(DAMPED.map(|variant| rigid::restitution(variant, measured_restitution)));
-    claims
-        .extend(AXES.map(|axis| rigid::momentum("oblique", along(axis), move |done| worst_momentum(done, axis))));
+    claims.extend(AXES.map(|axis| rigid::momentum("oblique", along(axis), move |done| worst_momentum(done, axis))));
     claims.push(rigid::angular_momentum("oblique", worst_angular_momentum));
     claims.extend(programs::restitution(&DAMPED, LEVELS[1].resolution));
     claims
@@ -124,16 +122,11 @@ fn step(at: i32) -> Resolution {
 fn convergence(variant: &'static str, solver: &'static str) -> Claim {
     claim("order in Δt of the restitution's error", "1")
         .of_all((0..16).map(|at| Run::new(variant, solver, step(at))))
-        .converges(1.0, Source::Derived("dashpot half a step late: first order (derivation)"), move |done| {
-            let points: Result<Vec<(f64, f64)>, Missing> = done
-                .iter()
-                .map(|done| {
-                    let exact = exact_restitution(pair(&done.scene).2, solver == "dem");
-                    Ok((done.record.provenance.time_step, measured_restitution(done)?.value - exact))
-                })
-                .collect();
-            Ok(slope(&points?))
+        .sweep(move |done| {
+            let exact = exact_restitution(pair(&done.scene).2, solver == "dem");
+            Ok((done.record.provenance.time_step, measured_restitution(done)?.value - exact))
         })
+        .converges(1.0, Source::Derived("dashpot half a step late: first order (derivation)"))
         .within(judged(
             0.15,
             "fitted over 16 steps: release falls anywhere within a step, which scatters the error by its own size",

@@ -8,6 +8,14 @@ use std::f64::consts::PI;
 const LEVELS: &[Level] = &[cells("H/12", 12.5, 2), cells("H/25", 25.0, 2), cells("H/50", 50.0, 2)];
 const SOURCE: Source = Source::Derived("u_tt = c² u_yy − g on a fixed base (derivation)");
 
+const DISPLACEMENT: Plate = Plate {
+    name: "displacement",
+    title: "Displacement of the centre of mass",
+    caption: "Let go at once: a chain of parabolas with the period 4H/c = 10 s; cells along the height in the legend.",
+    axes: ["time t (s)", "displacement (m)"],
+    logarithmic: false,
+};
+
 pub(crate) static CASE: Case = Case {
     name: "column",
     title: "A column under its own weight",
@@ -19,7 +27,7 @@ pub(crate) static CASE: Case = Case {
     levels: LEVELS,
     default_level: LEVELS[1],
     claims,
-    figures,
+    figures: no_more,
     home: &crate::registry::HOME,
 };
 
@@ -109,39 +117,12 @@ fn claims() -> Vec<Claim> {
 fn swinging(level: Level, allowed: f64) -> Claim {
     claim(format!("displacement of the centre of mass over three periods, worst, {} cells", level.name), "m")
         .of(Run::new("swinging", "mpm", level.resolution))
-        .equals(SOURCE, |done| {
-            let column = Column::of(&done[0].scene);
-            let y = done[0].column("column.y")?;
-            let moved: Vec<f64> = y.iter().map(|now| now - y[0]).collect();
-            Ok(Measured::worst(&done[0].series().time, &moved, |time| column.swing(time), 2.0 * column.sag()))
-        })
+        .series(|done| from_start(done, "column.y"))
+        .follows(SOURCE, |done, time| Column::of(&done.scene).swing(time), |done| 2.0 * Column::of(&done.scene).sag())
         .within(estimated(
             allowed,
             "dispersion of the grid, and the strain of .0005; in units of the largest displacement",
         ))
         .refuses(softer())
-}
-
-fn moved(done: &Done) -> Result<Vec<(f64, f64)>, Missing> {
-    let y = done.column("column.y")?;
-    Ok(done.series().time.iter().zip(y).map(|(&time, now)| (time, now - y[0])).collect())
-}
-
-fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    let mut curves = Vec::new();
-    for variant in ["swinging", "static"] {
-        let done = runner.run(&Run::new(variant, "mpm", LEVELS[1].resolution))?;
-        curves.push(Curve::new(variant, Stroke::Line, moved(&done).unwrap_or_default()));
-        let column = Column::of(&done.scene);
-        let exact = |time| if variant == "static" { -column.sag() } else { column.swing(time) };
-        let times = (0..=300).map(|k| f64::from(k) / 10.0);
-        curves.push(Curve::new(format!("{variant}, exact"), Stroke::Dashed, times.map(|t| (t, exact(t))).collect()));
-    }
-    Ok(vec![Figure::graph(
-        "displacement",
-        "Displacement of the centre of mass",
-        "Let go at once: a chain of parabolas with the period 4H/c = 10 s. Damped: to the static shape.",
-        [Axis::linear("time t (s)"), Axis::linear("displacement (m)")],
-        curves,
-    )])
+        .drawn(&DISPLACEMENT, level.name)
 }

@@ -169,7 +169,13 @@ fn springs(scene: &Scene) -> Vec<Spring> {
             if let (true, Some(law)) = (touches, scene.law(a.material, wall.material)) {
                 let stretch = row(&[(3 * i, -normal.x), (3 * i + 1, -normal.y)]);
                 let driven = if number == 0 { 1.0 } else { 0.0 };
-                springs.push(Spring { stretch, stiffness: law.normal_stiffness(), is_shear: false, pair: None, driven });
+                springs.push(Spring {
+                    stretch,
+                    stiffness: law.normal_stiffness(),
+                    is_shear: false,
+                    pair: None,
+                    driven,
+                });
             }
         }
     }

@@ -2,7 +2,6 @@
 
 use crate::rows::program_forces::forces;
 use crate::rows::rigid;
-use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::{Duration, Sampling};
 use std::f64::consts::PI;
@@ -73,11 +72,8 @@ fn scale(scene: &Scene) -> f64 {
 fn claims() -> Vec<Claim> {
     let exponent = claim("exponent of the speed in the force", "1")
         .of_all(SPEEDS.map(strike))
-        .equals(Source::Derived("scaling of F = kδ^{3/2} (derivation)"), |done| {
-            let points: Result<Vec<(f64, f64)>, Missing> =
-                done.iter().map(|done| wave(done).map(|(speed, force)| (force, speed))).collect();
-            Ok(Measured::new(slope(&points?), 1.0 / 6.0, 1.0 / 6.0))
-        })
+        .sweep(|done| wave(done).map(|(speed, force)| (force, speed)))
+        .scales(1.0 / 6.0, 1.0 / 6.0, Source::Derived("scaling of F = kδ^{3/2} (derivation)"))
         .within(judged(2e-5, "discretisation of the pulse, the same at every speed but for rounding; relative to 1/6"))
         .refuses(Control::scene("a dashpot of γ = 2000/s, which does not scale", |scene| {
             scene.change_laws(|law| law.normal_damping = 2000.0);

@@ -3,8 +3,8 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::rows::incline::{self, Slope};
 use crate::exact::one_grain::OneGrain;
+use crate::rows::incline::{self, Slope};
 use crate::rows::programs;
 use crate::rows::rigid::{self, Row};
 use grainbench_harness::prelude::*;

@@ -6,8 +6,8 @@
 //! from four resolutions (quadratic B-splines, APIC, springs at the surface). Larger moduli need no reference: they
 //! lead to the rigid answer.
 
-use crate::rows::elastic::{Rest, settle, stiffen};
 use crate::exact::one_grain::{OneGrain, State, course, last};
+use crate::rows::elastic::{Rest, settle, stiffen};
 use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::{elastic_disc, nodal_contact_2000 as nodal};
 use grainbench_harness::measure::slope as fitted;

@@ -4,8 +4,8 @@
 //! and is stretched before it slips. The expected values are an independent prototype's (quadratic B-splines, APIC,
 //! springs at the surface), extrapolated from R/2, R/4 and R/8.
 
-use crate::rows::elastic::{Rest, settle};
 use crate::exact::one_grain::{OneGrain, last};
+use crate::rows::elastic::{Rest, settle};
 use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::elastic_sphere;
 use grainbench_harness::prelude::*;

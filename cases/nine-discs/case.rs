@@ -11,7 +11,7 @@ use crate::rows::program_forces;
 use crate::rows::programs;
 use crate::rows::rigid;
 use crate::sources::literature::cundall_strack_1979;
-use grainbench_harness::measure::{dominant_frequency, slope};
+use grainbench_harness::measure::dominant_frequency;
 use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::Duration;
@@ -203,16 +203,11 @@ fn discrete() -> Vec<Claim> {
 fn geometry() -> Claim {
     claim("exponent in δ/R of the deviation from the linear answer", "1")
         .of_all([1.0, 0.5, 0.25].map(|factor| at_speed("kappa-1", factor)))
-        .equals(Source::Derived("normals turn by (a − b)/2R (derivation)"), |done| {
-            let points: Result<Vec<(f64, f64)>, Missing> = done
-                .iter()
-                .map(|done| {
-                    let worst = worst(&done.series().time, &inward(done)?, &exact_cycles(done))?;
-                    Ok((travel(done), worst.error()))
-                })
-                .collect();
-            Ok(Measured::new(slope(&points?), 1.0, 1.0))
+        .sweep(|done| {
+            let worst = worst(&done.series().time, &inward(done)?, &exact_cycles(done))?;
+            Ok((travel(done), worst.error()))
         })
+        .scales(1.0, 1.0, Source::Derived("normals turn by (a − b)/2R (derivation)"))
         .within(judged(0.05, "fitted over a factor of four"))
         .refuses(Control::scene("mass off by a thousandth", |scene| {
             scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.001);
@@ -262,13 +257,8 @@ fn continuous() -> Vec<Claim> {
         claims.push(
             claim("order in Δt of that deviation", "1")
                 .of_all(LEVELS.iter().map(|&level| modal_run(variant, level)))
-                .converges(2.0, Source::Derived("central differences are of second order"), |done| {
-                    let points: Result<Vec<(f64, f64)>, Missing> = done
-                        .iter()
-                        .map(|done| Ok((done.record.provenance.time_step, modal_error(done)?.error())))
-                        .collect();
-                    Ok(slope(&points?))
-                })
+                .sweep(|done| Ok((done.record.provenance.time_step, modal_error(done)?.error())))
+                .converges(2.0, Source::Derived("central differences are of second order"))
                 .within(judged(0.1, "fitted over two halvings"))
                 .refuses(lighter()),
         );

@@ -5,8 +5,8 @@
 //! reach through the walls from the start: they are of a material of their own, the same but that it has no law with
 //! the walls.
 
-use grainbench_scene::motion::Motion;
 use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::motion::Motion;
 use grainbench_scene::scene::{Scene, Wall, WallShape};
 use nalgebra::Vector3;
 

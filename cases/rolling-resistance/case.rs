@@ -1,7 +1,7 @@
 //! Rolling resistance: deceleration on a flat plane, and the threshold of rest on a slope.
 
-use crate::rows::incline::wrong_inertia;
 use crate::exact::one_grain::{OneGrain, State, course};
+use crate::rows::incline::wrong_inertia;
 use crate::rows::programs;
 use crate::rows::rigid;
 use grainbench_harness::prelude::*;

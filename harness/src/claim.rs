@@ -22,6 +22,7 @@
 //! ```
 
 use crate::control::{Control, Red};
+use crate::course::{Plate, Trace};
 use crate::evidence::Evidence;
 use crate::expect::{Bound, Expected, Measured};
 use crate::run::{Done, Missing, Run, Set, Standing};
@@ -71,6 +72,10 @@ pub struct Claim {
     pub measure: Measure,
     /// What it must refuse.
     pub control: Control,
+    /// Both curves, where a whole course is compared.
+    pub trace: Option<Trace>,
+    /// The graph that it is drawn in, and its label there.
+    pub drawn: Option<(&'static Plate, String)>,
 }
 
 /// Begins a claim: a quantity in words, and its unit.
@@ -89,10 +94,11 @@ pub struct Quantity {
 /// A claim of which something is expected, but not how nearly.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Expecting {
-    quantity: Quantity,
-    expectation: Expectation,
-    source: Source,
-    measure: Measure,
+    pub(crate) quantity: Quantity,
+    pub(crate) expectation: Expectation,
+    pub(crate) source: Source,
+    pub(crate) measure: Measure,
+    pub(crate) trace: Option<Trace>,
 }
 
 /// A claim that has no control yet.
@@ -115,13 +121,13 @@ impl Quantity {
         self
     }
 
-    fn expects(
+    pub(crate) fn expects(
         self,
         expectation: Expectation,
         source: Source,
         measure: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
     ) -> Expecting {
-        Expecting { quantity: self, expectation, source, measure: Arc::new(measure) }
+        Expecting { quantity: self, expectation, source, measure: Arc::new(measure), trace: None }
     }
 
     /// Equals, at one moment or over time, what the source says of the scene.
@@ -262,6 +268,10 @@ fn scale_of(bound: Bound) -> f64 {
 }
 
 impl Expecting {
+    pub(crate) fn traced(self, trace: Trace) -> Self {
+        Self { trace: Some(trace), ..self }
+    }
+
     /// How far it may be off.
     pub fn within(self, tolerance: Tolerance) -> Tolerated {
         Tolerated { expecting: self, tolerance }
@@ -272,9 +282,10 @@ impl Tolerated {
     /// What it must refuse, by its value.
     #[must_use]
     pub fn refuses(self, control: Control) -> Claim {
-        let Self { expecting: Expecting { quantity, expectation, source, measure }, tolerance } = self;
+        let Self { expecting: Expecting { quantity, expectation, source, measure, trace }, tolerance } = self;
         let Quantity { quantity, unit, runs } = quantity;
-        Claim { quantity, unit, scope: Scope::Named, runs, expectation, source, tolerance, measure, control }
+        let (scope, drawn) = (Scope::Named, None);
+        Claim { quantity, unit, scope, runs, expectation, source, tolerance, measure, control, trace, drawn }
     }
 
     /// Wrong physics that ends the run, or leaves nothing to read.
@@ -289,6 +300,12 @@ impl Claim {
     #[must_use]
     pub fn fair_to_any(self) -> Self {
         Self { scope: Scope::AnySolver, ..self }
+    }
+
+    /// Draws what is compared, of a claim of a whole course.
+    #[must_use]
+    pub fn drawn(self, plate: &'static Plate, label: impl Into<String>) -> Self {
+        Self { drawn: Some((plate, label.into())), ..self }
     }
 
     /// What kind of evidence it is: by its source and by what is expected.

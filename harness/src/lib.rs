@@ -10,6 +10,7 @@ pub mod claim;
 pub mod compare;
 pub mod conformance;
 pub mod control;
+pub mod course;
 pub mod evidence;
 pub mod expect;
 pub mod figure;

@@ -3,6 +3,7 @@
 pub use crate::case::{Case, Home, Level, PLAIN, cells, fraction};
 pub use crate::claim::{Claim, Measure, claim};
 pub use crate::control::Control;
+pub use crate::course::{Plate, from_start, no_more, samples};
 pub use crate::expect::{Bound, Expected, Measured};
 pub use crate::figure::{Axis, Curve, Figure, Stroke};
 pub use crate::run::{Change, Done, Missing, Run};

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::outputs::is_dump;
 use crate::read::digits::Digits;
 use crate::read::dump::DumpReader;
-use crate::outputs::is_dump;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 use crate::read::table::{Table, read_table};

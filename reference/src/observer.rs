@@ -5,9 +5,9 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
 use nalgebra::Vector3;
 
+use crate::pair_forces::{PairForce, PairForces};
 use crate::read::contacts::{Forces, contacts};
 use crate::read::digits::Digits;
-use crate::pair_forces::{PairForce, PairForces};
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
 

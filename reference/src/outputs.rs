@@ -9,12 +9,12 @@ use grainbench_scene::record::{Column, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 
+use crate::observer::{Names, Observed, Observer};
+use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
 use crate::read::dump::DumpReader;
 use crate::read::line_reader::LineReader;
 use crate::read::log::{Log, read_log};
-use crate::observer::{Names, Observed, Observer};
-use crate::pair_forces::PairForces;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 use crate::read::table::{Table, read_table};

@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use grainbench_scene::scene::{ProbeTarget, Scene};
 use nalgebra::Vector3;
 
-use crate::read::digits::Digits;
 use crate::observer::Names;
+use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 

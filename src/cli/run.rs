@@ -6,6 +6,7 @@ use super::provenance::provenance;
 use super::select::{self, Selected};
 use grainbench::cases::{registry, solvers};
 use grainbench::harness::conformance;
+use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
 use grainbench::harness::run::{Done, Run};
 use grainbench::harness::runner::Runner;
@@ -205,7 +206,7 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
             }
         }
         Task::Draw(_) => {
-            at.figures.get_or_init(|| (at.selected.case.figures)(&at.runner));
+            at.figures.get_or_init(|| course::of_case(at.selected.case, &at.runner, &at.selected.claims));
         }
     }
     progress.advance();

@@ -1,12 +1,19 @@
 //! Claims that inclines share, whether the grain is a disc or a sphere.
 
 use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
-use grainbench_harness::measure::slope as fitted;
 use grainbench_harness::prelude::*;
 
 /// Where the rigid answers are printed.
 const RIGID: Source =
     Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
+
+const COMPLIANCE: Plate = Plate {
+    name: "compliance",
+    title: "Error against the rigid answer is the contact's compliance",
+    caption: "Sticking grains: ∝ overlap/R. Slipping grains: ∝ √(overlap/R), since the spring must first be stretched.",
+    axes: ["static overlap / R", "|x − x_rigid| / x_rigid at 1 s"],
+    logarithmic: true,
+};
 
 /// One slope: variant, whether it rolls, and the error against the rigid answer that is allowed at overlap/R = 1e-3.
 #[derive(Clone, Copy, Debug)]
@@ -106,11 +113,8 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
             .refuses(Control::scene("friction ×1.05", more_friction)),
         claim("order in Δt of that displacement", "1")
             .of_all(STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))))
-            .converges(2.0, Source::Derived("central differences are of second order"), move |done| {
-                let points: Result<Vec<(f64, f64)>, _> =
-                    done.iter().map(|done| Ok((done.record.provenance.time_step, error(done)?.error()))).collect();
-                Ok(fitted(&points?))
-            })
+            .sweep(move |done| Ok((done.record.provenance.time_step, error(done)?.error())))
+            .converges(2.0, Source::Derived("central differences are of second order"))
             .within(judged(2e-3, "fitted over three halvings; the next power of Δt is seen at the coarsest"))
             .refuses(Control::scene("friction ×1.05", more_friction)),
     ]
@@ -145,19 +149,18 @@ fn exponent(slope: Slope) -> Claim {
     let expected = if slope.sticks { 1.0 } else { 0.5 };
     claim("exponent of the displacement's error in overlap/R, 1e-3 to 1e-5", "1")
         .of_all(OVERLAPS.iter().map(|&ratio| at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP)))
-        .equals(
+        .sweep(|done| {
+            let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
+            Ok((OneGrain::of(&done.scene).overlap_ratio, error))
+        })
+        .scales(
+            expected,
+            1.0,
             Source::Derived("elastic phase before slip lasts ∝ √(overlap/R), its stretch ∝ overlap/R (derivation)"),
-            move |done| {
-                let error = |done: &Done| {
-                    let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
-                    Ok((OneGrain::of(&done.scene).overlap_ratio, error))
-                };
-                let points: Result<Vec<(f64, f64)>, _> = done.iter().map(error).collect();
-                Ok(Measured::new(fitted(&points?), expected, 1.0))
-            },
         )
         .within(judged(2e-3, "fitted over two decades; higher powers of the overlap are small there"))
         .refuses(telling(slope))
+        .drawn(&COMPLIANCE, format!("{} ({})", slope.variant, if slope.sticks { "rolls" } else { "slips" }))
 }
 
 /// Wrong physics that is felt: inertia where the grain rolls, friction where it slips.
@@ -222,14 +225,13 @@ fn final_motion(slope: Slope) -> Vec<Claim> {
     ]
 }
 
-/// Motion against the rigid answer, and how the error falls with the overlap.
+/// Motion against the rigid answer.
 ///
 /// # Errors
 /// When a run fails.
 pub fn figures(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
     let mut motion = Vec::new();
     let mut spin = Vec::new();
-    let mut sweep = Vec::new();
     for slope in slopes {
         let done = runner.run(&at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
         let grain = OneGrain::of(&done.scene);
@@ -241,16 +243,6 @@ pub fn figures(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunErro
         let exact = |of: &dyn Fn(f64) -> f64| (0..=50).map(|k| f64::from(k) / 50.0).map(|t| (t, of(t))).collect();
         motion.push(curve(format!("{}, rigid", slope.variant), Stroke::Dashed, exact(&|t| grain.rigid_incline(t).x)));
         spin.push(curve(format!("{}, rigid", slope.variant), Stroke::Dashed, exact(&|t| grain.rigid_incline(t).omega)));
-        let mut points = Vec::new();
-        for ratio in OVERLAPS {
-            let done = runner.run(&at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP))?;
-            if let Ok((t, state)) = last(&done) {
-                let exact = OneGrain::of(&done.scene).rigid_incline(t).x;
-                points.push((ratio, ((state.x - exact) / exact).abs()));
-            }
-        }
-        let kind = if slope.sticks { "rolls" } else { "slips" };
-        sweep.push(curve(format!("{} ({kind})", slope.variant), Stroke::MarkedLine, points));
     }
     Ok(vec![
         Figure::graph(
@@ -266,13 +258,6 @@ pub fn figures(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunErro
             "The same runs: what a grain that only slides would miss.",
             [Axis::linear("time t (s)"), Axis::linear("spin Ω (rad/s)")],
             spin,
-        ),
-        Figure::graph(
-            "compliance",
-            "Error against the rigid answer is the contact's compliance",
-            "Sticking grains: ∝ overlap/R. Slipping grains: ∝ √(overlap/R), since the spring must first be stretched.",
-            [Axis::log("static overlap / R"), Axis::log("|x − x_rigid| / x_rigid at 1 s")],
-            sweep,
         ),
     ])
 }

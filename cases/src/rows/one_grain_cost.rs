@@ -1,9 +1,9 @@
 //! What accuracy is measured by where one grain moves on a plane: its displacement against the rigid answer, over the
 //! stiffness of the contact and of the grain.
 
-use crate::rows::incline::DAMPING;
 use crate::exact::one_grain::{OneGrain, State, last, rest_at_overlap};
 use crate::registry;
+use crate::rows::incline::DAMPING;
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{Lane, Subject};
 use grainbench_scene::body::{Constitutive, Deformable, Settle};

@@ -15,9 +15,8 @@
 //! b = ω/(hω + 2ζ) and c = b/(hω²), ω = 2πf; hence δ = g_n h c/b = g_n/ω². It is reached within about
 //! 2ζ/ω + 1/(hω²), which is longer the finer the step.
 
-use crate::rows::incline::{more_friction, wrong_inertia};
 use crate::exact::one_grain::{OneGrain, State, last};
-use grainbench_harness::measure::slope;
+use crate::rows::incline::{more_friction, wrong_inertia};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
 use grainbench_scene::scene::Duration;
@@ -101,15 +100,12 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, bec
 fn order(row: Row, allowed: f64, because: &'static str, exact: fn(&OneGrain, f64) -> f64) -> Claim {
     claim("order in Δt of the displacement's error", "1")
         .of_all(FITTED.iter().map(|&substeps| run(row.variant, Resolution::substeps(substeps))))
-        .converges(1.0, ORDER_SOURCE, move |done| {
-            let error = |done: &Done| {
-                let (t, state) = last(done)?;
-                let exact = exact(&OneGrain::of(&done.scene), t);
-                Ok((done.record.provenance.time_step, (state.x - exact) / exact))
-            };
-            let points: Result<Vec<(f64, f64)>, Missing> = done.iter().map(error).collect();
-            Ok(slope(&points?))
+        .sweep(move |done| {
+            let (t, state) = last(done)?;
+            let exact = exact(&OneGrain::of(&done.scene), t);
+            Ok((done.record.provenance.time_step, (state.x - exact) / exact))
         })
+        .converges(1.0, ORDER_SOURCE)
         .within(judged(allowed, because))
         .refuses(wrong(row))
 }

@@ -13,11 +13,11 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, logged, write_deck};
+use crate::observer::{Observed, Observer};
+use crate::pair_forces::PairForces;
 use crate::read::dump::DumpReader;
 use crate::read::log::read_log;
 use crate::read::numbers::NotFinite;
-use crate::observer::{Observed, Observer};
-use crate::pair_forces::PairForces;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
 

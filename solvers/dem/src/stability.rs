@@ -41,9 +41,7 @@ pub fn damped_step(scene: &Scene) -> (f64, f64) {
     }
     let mut least = (f64::INFINITY, f64::INFINITY);
     let mut bear = |law: Option<&ContactLaw>, mass: f64| {
-        let Some(law) =
-            law.filter(|law| mass.is_finite() && mass > 0.0 && law.normal_stiffness() > 0.0)
-        else {
+        let Some(law) = law.filter(|law| mass.is_finite() && mass > 0.0 && law.normal_stiffness() > 0.0) else {
             return;
         };
         let frequency = (law.normal_stiffness() / mass).sqrt();

@@ -4,9 +4,9 @@
 
 use grainbench_dem::convention::{CapNormal, Convention, CoulombCap, History, Tension, TorqueArm, WallRolling};
 use grainbench_dem::solver::Dem;
+use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::effects::Effects;
-use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Method;
 use grainbench_scene::source::SceneSource;

@@ -98,9 +98,7 @@ impl Effect {
         match self {
             Self::Friction => of_law(scene, "friction", |law| law.friction),
             Self::Cohesion => of_law(scene, "cohesion", |law| law.cohesion),
-            Self::Hertz => {
-                of_law(scene, "youngs_modulus", ContactLaw::effective_modulus)
-            }
+            Self::Hertz => of_law(scene, "youngs_modulus", ContactLaw::effective_modulus),
             Self::Restitution => of_law(scene, "restitution", |law| law.damping_ratio),
             Self::RollingResistance => of_law(scene, "rolling_friction", |law| law.rolling_friction),
             Self::ContactDamping => [

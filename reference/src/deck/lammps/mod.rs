@@ -8,16 +8,16 @@ use grainbench_scene::scene::{Scene, Wall};
 
 use crate::deck::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
 use crate::deck::driven::driven;
-use contact::{at_wall, between_grains};
 use crate::deck::logged::logged;
 use crate::deck::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
-use region::region;
+use crate::deck::program::Peer;
 use crate::deck::{
     COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs,
     asks_for_wall, heading, thermo,
 };
-use crate::deck::program::Peer;
 use crate::observer::Names;
+use contact::{at_wall, between_grains};
+use region::region;
 
 /// LAMMPS, `pair_style gran/hooke/history` and its like.
 pub(crate) struct Lammps;

@@ -1,12 +1,12 @@
 //! Contacts as LIGGGHTS has them: `hooke/stiffness`, `hertz/stiffness` and `hertz` with `tangential history`, and
 //! `rolling_friction epsd`.
 
-use grainbench_scene::effects::Effects;
 use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::effects::Effects;
 use grainbench_scene::scene::Scene;
 
-use crate::deck::dashpots::{Dashpots, Side};
 use super::moduli::moduli;
+use crate::deck::dashpots::{Dashpots, Side};
 use crate::deck::outline::{grain_materials, hertz};
 
 /// The model of all contacts.
@@ -59,7 +59,9 @@ impl Model {
         }
         type Pick = fn(&(ContactLaw, Dashpots)) -> f64;
         let mut picks: Vec<(&str, Pick)> = match (self.effects.hertz, self.has_moduli()) {
-            (false, _) => vec![("kn", |(law, _)| law.normal_stiffness()), ("kt", |(law, _)| law.tangential_stiffness())],
+            (false, _) => {
+                vec![("kn", |(law, _)| law.normal_stiffness()), ("kt", |(law, _)| law.tangential_stiffness())]
+            }
             (true, false) => vec![("kn", |(law, _)| hertz(law).0), ("kt", |(law, _)| hertz(law).1)],
             (true, true) => Vec::new(),
         };

@@ -16,17 +16,17 @@ use nalgebra::{Unit, Vector3};
 
 use crate::deck::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
 use crate::deck::driven::driven;
-use contact::{Model, type_of_wall};
 use crate::deck::logged::logged;
-use mesh::{Triangle, stl, triangles};
 use crate::deck::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
+use crate::deck::program::Peer;
 use crate::deck::schedule::{Rates, changes, rates_from};
 use crate::deck::{
     COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_force,
     asks_for_pairs, asks_for_wall, heading, thermo,
 };
-use crate::deck::program::Peer;
 use crate::observer::Names;
+use contact::{Model, type_of_wall};
+use mesh::{Triangle, stl, triangles};
 
 /// A wall that needs a mesh.
 struct Mesh<'s> {

@@ -1,0 +1,214 @@
+//! Claims of a whole course: a time series that follows what is exact, an error that falls with the resolution. What is
+//! compared is what is drawn, so that the figure comes from the claim.
+
+use crate::case::Case;
+use crate::claim::{Claim, Expectation, Expecting, Quantity};
+use crate::expect::{Bound, Expected, Measured};
+use crate::figure::{Axis, Curve, Figure, Stroke};
+use crate::measure::slope;
+use crate::run::{Done, Missing};
+use crate::runner::Runner;
+use crate::source::Source;
+use grainbench_scene::solver::RunError;
+use std::sync::Arc;
+
+/// Points (x, y).
+pub type Points = Vec<(f64, f64)>;
+
+/// The largest number of points that a curve is drawn with.
+const DRAWN: usize = 300;
+
+/// Both curves of a claim: what was measured, and what was expected where it is a curve too.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traced {
+    /// Measured points.
+    pub measured: Points,
+    /// Expected points.
+    pub expected: Points,
+    /// The power that the expected ones show, where they are a guide beside levels of resolution.
+    pub slope: Option<f64>,
+}
+
+/// Reads both curves from the runs of a claim.
+pub type Trace = Arc<dyn Fn(&[Done]) -> Result<Traced, Missing> + Send + Sync>;
+
+/// The graph that a claim is drawn in; claims of one plate share it.
+#[derive(Debug)]
+pub struct Plate {
+    /// Name of the figure.
+    pub name: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What one should see in it.
+    pub caption: &'static str,
+    /// Labels of both axes.
+    pub axes: [&'static str; 2],
+    /// Whether the axes are logarithmic.
+    pub logarithmic: bool,
+}
+
+/// Time (s) and value of every sample of a column.
+///
+/// # Errors
+/// When the record lacks the column.
+pub fn samples(done: &Done, column: &str) -> Result<Points, Missing> {
+    Ok(done.series().time.iter().copied().zip(done.column(column)?.iter().copied()).collect())
+}
+
+/// The same less the first value.
+///
+/// # Errors
+/// When the record lacks the column.
+pub fn from_start(done: &Done, column: &str) -> Result<Points, Missing> {
+    let mut points = samples(done, column)?;
+    let start = points[0].1;
+    points.iter_mut().for_each(|(_, value)| *value -= start);
+    Ok(points)
+}
+
+/// A claim of a time series of which nothing is expected yet.
+#[must_use = "a claim ends with what it refuses"]
+pub struct Series {
+    quantity: Quantity,
+    read: Arc<dyn Fn(&Done) -> Result<Points, Missing> + Send + Sync>,
+}
+
+/// A claim of an error over levels of resolution, of which nothing is expected yet.
+#[must_use = "a claim ends with what it refuses"]
+pub struct Sweep {
+    quantity: Quantity,
+    read: Arc<dyn Fn(&Done) -> Result<(f64, f64), Missing> + Send + Sync>,
+}
+
+impl Quantity {
+    /// Read at every sample of the first run.
+    pub fn series(self, read: impl Fn(&Done) -> Result<Points, Missing> + Send + Sync + 'static) -> Series {
+        Series { quantity: self, read: Arc::new(read) }
+    }
+
+    /// Read of every run: a step, a cell or what else the runs differ in, and the error.
+    pub fn sweep(self, read: impl Fn(&Done) -> Result<(f64, f64), Missing> + Send + Sync + 'static) -> Sweep {
+        Sweep { quantity: self, read: Arc::new(read) }
+    }
+}
+
+impl Series {
+    /// Follows, at every sample, what the source says of the scene; errors are in units of `scale`.
+    pub fn follows(
+        self,
+        source: Source,
+        exact: impl Fn(&Done, f64) -> f64 + Send + Sync + 'static,
+        scale: impl Fn(&Done) -> f64 + Send + Sync + 'static,
+    ) -> Expecting {
+        let read = self.read;
+        let trace: Trace = Arc::new(move |done| {
+            let measured = read(&done[0])?;
+            let expected = measured.iter().map(|&(time, _)| (time, exact(&done[0], time))).collect();
+            Ok(Traced { measured, expected, slope: None })
+        });
+        let compared = Arc::clone(&trace);
+        let compare = move |done: &[Done]| {
+            let Traced { measured, expected, .. } = compared(done)?;
+            let (time, values): (Vec<f64>, Vec<f64>) = measured.into_iter().unzip();
+            let expected: Vec<f64> = expected.into_iter().map(|(_, value)| value).collect();
+            Ok(Measured::worst_of(&time, &values, &expected, scale(&done[0])))
+        };
+        self.quantity.equals(source, compare).traced(trace)
+    }
+}
+
+impl Sweep {
+    fn falls(self, bound: Bound, source: Source, power: Option<f64>) -> Expecting {
+        let fitted = Arc::clone(&self.read);
+        let read = self.read;
+        let trace: Trace = Arc::new(move |done| {
+            let measured: Points =
+                done.iter().map(|done| read(done).map(|(x, y)| (x, y.abs()))).collect::<Result<_, _>>()?;
+            let ends = measured.iter().copied().reduce(|a, b| if b.0 < a.0 { b } else { a });
+            let widest = measured.iter().map(|point| point.0).fold(0.0, f64::max);
+            let guide = power.zip(ends).map(|(power, (x, y))| vec![(x, y), (widest, y * (widest / x).powf(power))]);
+            Ok(Traced { measured, expected: guide.unwrap_or_default(), slope: power })
+        });
+        let measure = move |done: &[Done]| {
+            let points: Result<Points, Missing> = done.iter().map(|done| fitted(done)).collect();
+            Ok(Measured::new(slope(&points?), Expected::Bound(bound), 1.0))
+        };
+        self.quantity.expects(Expectation::Converges(bound), source, measure).traced(trace)
+    }
+
+    /// Grows or falls with this power, which the source says and is no order of convergence; errors are in units of
+    /// `scale`.
+    pub fn scales(self, power: f64, scale: f64, source: Source) -> Expecting {
+        let expecting = self.falls(Bound::Order(power), source, Some(power));
+        let fitted = Arc::clone(&expecting.measure);
+        let measure = Arc::new(move |done: &[Done]| Ok(Measured::new(fitted(done)?.value, power, scale)));
+        Expecting { expectation: Expectation::Equals, measure, ..expecting }
+    }
+
+    /// Falls with this power, fitted over all runs.
+    pub fn converges(self, order: f64, source: Source) -> Expecting {
+        self.falls(Bound::Order(order), source, Some(order))
+    }
+
+    /// Falls with this power or a higher one.
+    pub fn converges_at_least(self, order: f64, source: Source) -> Expecting {
+        self.falls(Bound::AtLeast(order), source, Some(order))
+    }
+
+    /// Falls with this power at most, or does not fall.
+    pub fn converges_at_most(self, order: f64, source: Source) -> Expecting {
+        self.falls(Bound::AtMost(order), source, None)
+    }
+}
+
+/// The figures of some claims: a graph for each plate, in the order in which claims name them.
+///
+/// # Errors
+/// When a run fails. A claim whose records lack what it reads is left out.
+pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunError> {
+    let mut figures: Vec<Figure> = Vec::new();
+    for claim in claims {
+        let (Some((plate, label)), Some(trace)) = (&claim.drawn, &claim.trace) else { continue };
+        let done: Vec<Done> = claim.runs.iter().map(|run| runner.run(run)).collect::<Result<_, _>>()?;
+        let Ok(traced) = trace(&done) else { continue };
+        let axis = |label| if plate.logarithmic { Axis::log(label) } else { Axis::linear(label) };
+        let at = figures.iter().position(|figure| figure.name == plate.name).unwrap_or_else(|| {
+            figures.push(Figure::graph(plate.name, plate.title, plate.caption, plate.axes.map(axis), Vec::new()));
+            figures.len() - 1
+        });
+        let Some(graph) = figures[at].graph_mut() else { continue };
+        let expected = thinned(traced.expected);
+        let is_there = graph.curves.iter().any(|curve| curve.stroke == Stroke::Dashed && curve.points == expected);
+        let stroke = if matches!(claim.runs.as_slice(), [_]) { Stroke::Line } else { Stroke::MarkedLine };
+        graph.curves.push(Curve::new(label.clone(), stroke, thinned(traced.measured)));
+        if !is_there && !expected.is_empty() {
+            let label = traced.slope.map_or_else(|| format!("{label}, exact"), |power| format!("slope {power:.3}"));
+            graph.curves.push(Curve::new(label, Stroke::Dashed, expected));
+        }
+    }
+    Ok(figures)
+}
+
+/// At most [`DRAWN`] points, evenly over the course.
+fn thinned(points: Points) -> Points {
+    let every = points.len().div_ceil(DRAWN).max(1);
+    points.into_iter().step_by(every).collect()
+}
+
+/// For a case whose figures are all those of its claims.
+///
+/// # Errors
+/// Never.
+pub const fn no_more(_: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(Vec::new())
+}
+
+/// All figures of a case: those of some of its claims, and its own.
+///
+/// # Errors
+/// When a run fails.
+pub fn of_case(case: &Case, runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunError> {
+    let mut all = figures(runner, claims)?;
+    all.extend((case.figures)(runner)?);
+    Ok(all)
+}
