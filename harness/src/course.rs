@@ -66,18 +66,21 @@ pub fn from_start(done: &Done, column: &str) -> Result<Points, Missing> {
     Ok(points)
 }
 
+/// Reads something of a run.
+type Read<T> = Arc<dyn Fn(&Done) -> Result<T, Missing> + Send + Sync>;
+
 /// A claim of a time series of which nothing is expected yet.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Series {
     quantity: Quantity,
-    read: Arc<dyn Fn(&Done) -> Result<Points, Missing> + Send + Sync>,
+    read: Read<Points>,
 }
 
 /// A claim of an error over levels of resolution, of which nothing is expected yet.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Sweep {
     quantity: Quantity,
-    read: Arc<dyn Fn(&Done) -> Result<(f64, f64), Missing> + Send + Sync>,
+    read: Read<(f64, f64)>,
 }
 
 impl Quantity {
@@ -166,27 +169,49 @@ impl Sweep {
 /// # Errors
 /// When a run fails. A claim whose records lack what it reads is left out.
 pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunError> {
-    let mut figures: Vec<Figure> = Vec::new();
+    let mut graphs: Vec<(&'static Plate, Vec<Curve>, Vec<Curve>)> = Vec::new();
     for claim in claims {
         let (Some((plate, label)), Some(trace)) = (&claim.drawn, &claim.trace) else { continue };
         let done: Vec<Done> = claim.runs.iter().map(|run| runner.run(run)).collect::<Result<_, _>>()?;
         let Ok(traced) = trace(&done) else { continue };
-        let axis = |label| if plate.logarithmic { Axis::log(label) } else { Axis::linear(label) };
-        let at = figures.iter().position(|figure| figure.name == plate.name).unwrap_or_else(|| {
-            figures.push(Figure::graph(plate.name, plate.title, plate.caption, plate.axes.map(axis), Vec::new()));
-            figures.len() - 1
+        let at = graphs.iter().position(|(drawn, ..)| drawn.name == plate.name).unwrap_or_else(|| {
+            graphs.push((plate, Vec::new(), Vec::new()));
+            graphs.len() - 1
         });
-        let Some(graph) = figures[at].graph_mut() else { continue };
-        let expected = thinned(traced.expected);
-        let is_there = graph.curves.iter().any(|curve| curve.stroke == Stroke::Dashed && curve.points == expected);
-        let stroke = if matches!(claim.runs.as_slice(), [_]) { Stroke::Line } else { Stroke::MarkedLine };
-        graph.curves.push(Curve::new(label.clone(), stroke, thinned(traced.measured)));
-        if !is_there && !expected.is_empty() {
-            let label = traced.slope.map_or_else(|| format!("{label}, exact"), |power| format!("slope {power:.3}"));
-            graph.curves.push(Curve::new(label, Stroke::Dashed, expected));
+        let (_, measured, expected) = &mut graphs[at];
+        let stroke = if traced.slope.is_some() { Stroke::MarkedLine } else { Stroke::Line };
+        measured.push(Curve::new(label.clone(), stroke, thinned(traced.measured)));
+        let curve = thinned(traced.expected);
+        if !curve.is_empty() && !expected.iter().any(|drawn| looks_alike(&drawn.points, &curve)) {
+            let rounded = |power: f64| format!("slope {}", (power * 1e3).round() / 1e3);
+            let label = traced.slope.map_or_else(|| format!("{label}, exact"), rounded);
+            expected.push(Curve::new(label, Stroke::Dashed, curve));
         }
     }
-    Ok(figures)
+    let figure = |(plate, measured, mut expected): (&Plate, Vec<Curve>, Vec<Curve>)| {
+        let axis = |label| if plate.logarithmic { Axis::log(label) } else { Axis::linear(label) };
+        if let ([exact], [_, _, ..], false) = (expected.as_mut_slice(), measured.as_slice(), plate.logarithmic) {
+            "exact".clone_into(&mut exact.label);
+        }
+        Figure::graph(plate.name, plate.title, plate.caption, plate.axes.map(axis), [measured, expected].concat())
+    };
+    Ok(graphs.into_iter().map(figure).collect())
+}
+
+/// Whether two curves would be drawn on top of each other: they differ by less than a line is wide.
+fn looks_alike(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
+    const LINE: f64 = 2e-3;
+    let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        let all = a.iter().chain(b).map(of);
+        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
+    };
+    let (low, high) = ends(&|point| point.1);
+    b.iter().all(|&(x, y)| {
+        let after = a.partition_point(|point| point.0 < x).clamp(1, a.len().max(2) - 1);
+        let (Some(&(x0, y0)), Some(&(x1, y1))) = (a.get(after - 1), a.get(after)) else { return false };
+        let share = if x1 > x0 { (x - x0) / (x1 - x0) } else { 0.0 };
+        (y0 + share.clamp(0.0, 1.0) * (y1 - y0) - y).abs() <= LINE * (high - low)
+    })
 }
 
 /// At most [`DRAWN`] points, evenly over the course.
@@ -211,4 +236,20 @@ pub fn of_case(case: &Case, runner: &Runner, claims: &[Claim]) -> Result<Vec<Fig
     let mut all = figures(runner, claims)?;
     all.extend((case.figures)(runner)?);
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_at_other_times_are_one_curve() {
+        let sine = |count: u32| -> Points {
+            (0..=count).map(|k| f64::from(k) / f64::from(count)).map(|x| (x, (6.0 * x).sin())).collect()
+        };
+        assert!(looks_alike(&sine(200), &sine(173)));
+        let other: Points = sine(173).into_iter().map(|(x, y)| (x, 1.01 * y)).collect();
+        assert!(!looks_alike(&sine(200), &other));
+        assert!(!looks_alike(&[], &sine(9)) && !looks_alike(&[(0.0, 0.0)], &sine(9)));
+    }
 }

@@ -177,14 +177,6 @@ impl Figure {
             drawing: Drawing::Graph(Graph { x, y, curves }),
         }
     }
-    /// The graph, where it is one.
-    pub(crate) const fn graph_mut(&mut self) -> Option<&mut Graph> {
-        match &mut self.drawing {
-            Drawing::Graph(graph) => Some(graph),
-            Drawing::Forces(_) | Drawing::Field(_) => None,
-        }
-    }
-
     /// A field.
     #[must_use]
     pub fn field(name: &str, title: &str, caption: &str, field: Field) -> Self {

@@ -66,9 +66,9 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     } else {
         let mut text = String::new();
         for entry in &study.ledger {
-            let key = if entry.on { format!(" ({})", entry.key) } else { String::new() };
+            let key = if entry.on { entry.key.clone() } else { entry.tried.join(", ") };
             let scene = format!("{}/{}", entry.case, entry.variant);
-            text.push_str(&format!("{scene:<32} {}: {}{key}\n", entry.effect, entry.worth.word()));
+            text.push_str(&format!("{scene:<32} {}: {} ({key})\n", entry.effect, entry.worth.word()));
         }
         print(&format!(
             "{text}{reused} of {pieces} pieces were done before\n{}\n",

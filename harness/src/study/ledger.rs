@@ -70,4 +70,7 @@ pub struct Entry {
     pub counts: Option<f64>,
     /// Processor time with the effect over that without it.
     pub time: Option<f64>,
+    /// The solvers that an absent effect was tried with.
+    #[serde(default)]
+    pub tried: Vec<String>,
 }

@@ -71,7 +71,7 @@ fn table(ledger: &[Entry]) -> Markup {
                     tr class=(class(entry.worth)) {
                         th scope="row" { (entry.case) "/" (entry.variant) }
                         td { (entry.effect) }
-                        td { (entry.key) }
+                        td { @if entry.on { (entry.key) } @else { "off; tried with " (entry.tried.join(", ")) } }
                         td.verdict { span.mark class=(class(entry.worth)) { (entry.worth.word()) } }
                         td.wide {
                             @if let Some(shift) = farthest(entry) {

@@ -142,12 +142,13 @@ impl Effect {
         self != Self::Plasticity || method == Method::Grid
     }
 
-    /// The kind of solver that it is tried with where it is absent.
+    /// The kinds of solver that leave it out of their loops where it is absent, and are tried with it there.
     #[must_use]
-    pub const fn tried_with(self) -> Method {
+    pub const fn left_out_by(self) -> &'static [Method] {
         match self {
-            Self::Plasticity => Method::Grid,
-            _ => Method::Dem,
+            Self::Plasticity => &[Method::Grid],
+            Self::Friction | Self::GlobalDamping | Self::Gravity | Self::MovingWalls => &[Method::Dem, Method::Grid],
+            _ => &[Method::Dem],
         }
     }
 

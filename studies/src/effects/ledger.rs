@@ -1,6 +1,6 @@
 //! The ledger of a case.
 
-use super::idle::try_idly;
+use super::idle::{Idle, try_idly};
 use crate::identity;
 use crate::shelf::Shelf;
 use grainbench_harness::case::Case;
@@ -12,6 +12,7 @@ use grainbench_harness::study::ledger::{Entry, Shift, Worth};
 use grainbench_reports::WriteError;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
+use grainbench_scene::scene::Duration::Seconds;
 use grainbench_scene::solver::{Method, RunError};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,6 +20,9 @@ use std::time::Duration;
 
 /// How long an absent effect is tried, beyond the fewest runs.
 const PATIENCE: Duration = Duration::from_millis(300);
+
+/// Steps of a method with a grid that an absent effect is tried in.
+const STEPS_OF_A_GRID: u64 = 200;
 
 /// One scene of a case with one effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,6 +121,7 @@ impl Ledger {
             shifts: Vec::new(),
             counts: None,
             time: None,
+            tried: Vec::new(),
         }
     }
 
@@ -200,19 +205,35 @@ impl Ledger {
         !run.aside && !self.solvers.is_program(run.solver)
     }
 
-    /// The first run of the variant by the kind of solver that knows the effect, with the effect compiled in.
+    /// The first run of the variant by each kind of solver that leaves the effect out, with the effect compiled in. It
+    /// is inert where it is for all of them; counts and times are those of the first.
     fn idle(&self, piece: &Piece) -> Option<Entry> {
-        let method = Some(piece.effect.tried_with());
+        let mut entry = Entry { worth: Worth::Inert, ..self.blank(piece) };
+        for &method in piece.effect.left_out_by() {
+            let Some((solver, idle)) = self.idle_with(piece, method) else { continue };
+            if !idle.same {
+                entry.worth = Worth::NotInert;
+            }
+            entry.counts.get_or_insert(idle.counts);
+            entry.time.get_or_insert(idle.time);
+            entry.tried.push(solver.to_owned());
+        }
+        (!entry.tried.is_empty()).then_some(entry)
+    }
+
+    fn idle_with(&self, piece: &Piece, method: Method) -> Option<(&'static str, Idle)> {
         let is_ours =
-            |run: &&Run| self.is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == method;
+            |run: &&Run| self.is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == Some(method);
         let run = self.claims.iter().flat_map(|claim| &claim.runs).find(is_ours)?;
-        let scene = self.runner.scene(run).ok()?;
+        let mut scene = self.runner.scene(run).ok()?;
+        if method == Method::Grid {
+            // A grid says its step only when it runs.
+            let ran = self.runner.run(run).ok()?.record;
+            scene.duration = Seconds(ran.provenance.time_step * ran.cost.steps.min(STEPS_OF_A_GRID) as f64);
+        }
         let solver = self.solvers.find(run.solver)?;
         let idle = try_idly(&*solver, &scene, &run.resolution, piece.effect, PATIENCE).ok()??;
-        let mut entry = self.blank(piece);
-        entry.worth = if idle.same { Worth::Inert } else { Worth::NotInert };
-        (entry.counts, entry.time) = (Some(idle.counts), Some(idle.time));
-        Some(entry)
+        Some((run.solver, idle))
     }
 }
 
