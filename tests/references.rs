@@ -65,8 +65,8 @@ fn none_is_stale_and_another_scene_is() {
 fn the_time_step_is_worth_little_where_it_is_small() {
     for of in stored::all().iter().filter(|of| of.id.starts_with("incline") && of.id.ends_with("0.5")) {
         let (stored, scene) = (StoredRun::load(&folder(of.program, &of.id)).unwrap(), of.scene().unwrap());
-        let (run, twin) = (stored.series(&scene), stored.half_step(&scene));
-        let (x, half) = (run.column("grain.x").unwrap(), twin.column("grain.x").unwrap());
+        let (run, half_step) = (stored.series(&scene), stored.half_step(&scene));
+        let (x, half) = (run.column("grain.x").unwrap(), half_step.column("grain.x").unwrap());
         let worst = x.iter().zip(half).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst < 1e-3 * x.last().unwrap() && worst > 0.0, "{}: {worst}", of.id);
     }

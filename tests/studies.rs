@@ -11,7 +11,7 @@ use grainbench::cases::solvers::Registry;
 use grainbench::harness::study::stability::Hardness;
 use grainbench::scene::effect::Effect;
 use grainbench::studies::effects::ledger::Ledger;
-use grainbench::studies::shelf::Shelf;
+use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::stability::assembly;
 use grainbench::studies::stability::hard;
 use grainbench::studies::stability::limit::of_assembly;
@@ -25,7 +25,7 @@ use std::time::Duration;
 #[test]
 fn exact_limits_are_found_to_half_a_hundredth() {
     for assembly in assembly::all().unwrap() {
-        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &Shelf::none()).unwrap();
+        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &ResultCache::none()).unwrap();
         let error = limit.error.unwrap_or_else(|| panic!("{}: {}", limit.scene, limit.detail));
         assert!(error.abs() < 0.005, "{} {:?}: {:?}, exact {}", limit.scene, limit.at, limit.found, assembly.exact);
     }
@@ -39,7 +39,7 @@ fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
             law.scale_normal(1.05);
             law.scale_tangential(1.05);
         });
-        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &Shelf::none()).unwrap();
+        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &ResultCache::none()).unwrap();
         assert!(limit.error.is_none_or(|error| error < -0.012), "{} {:?}: {:?}", limit.scene, limit.at, limit.error);
     }
 }

@@ -8,7 +8,7 @@ mod figures;
 use crate::rows::programs::{PAIRS, layer_of_spheres};
 use crate::sources::literature::{cundall_strack_1979 as paper, josselin_de_jong_1969 as experiment};
 use crate::stage::Stage;
-use grainbench_harness::compare::twins::{self, Parting};
+use grainbench_harness::compare::perturbed::{self, Parting};
 use grainbench_harness::prelude::*;
 use grainbench_harness::run::Standing;
 use grainbench_harness::source::Cited;
@@ -207,7 +207,7 @@ fn step() -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// What twins are watched by, and programs.
+/// What perturbed runs are watched by, and programs.
 const PARTING: Parting =
     Parting { columns: &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"] };
 
@@ -226,14 +226,14 @@ fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {
 }
 
 /// Ours, a disc moved by one unit in the last place.
-fn twin(variant: &'static str, disc: usize) -> Run {
+fn perturbed(variant: &'static str, disc: usize) -> Run {
     Run::new(variant, PAIRS[0][0], STEP).slow().adjusted(&format!("disc {} moved by 1 ulp", disc + 1), move |scene| {
         let place = &mut scene.grains[disc].position.x;
         *place = place.next_up();
     })
 }
 
-/// Both programs from the same start, with dashpots that both have: sample by sample for as long as twins are together,
+/// Both programs from the same start, with dashpots that both have: sample by sample for as long as perturbed runs are together,
 /// stage by stage after it.
 fn programs() -> Vec<Claim> {
     let softer = Control::ours("stiffness off by 1e-6 in ours", |scene| {
@@ -242,32 +242,32 @@ fn programs() -> Vec<Claim> {
     let smooth = || Control::ours("friction .1 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
     let [lammps, liggghts] = PAIRS;
     let of = |pair: [&'static str; 2]| {
-        let twins = [Run::new("first", lammps[0], STEP).slow().aside(), twin("first", 0).aside()];
-        pair.map(|solver| common("first", solver, pair[1])).into_iter().chain(twins).collect::<Vec<Run>>()
+        let perturbed = [Run::new("first", lammps[0], STEP).slow().aside(), perturbed("first", 0).aside()];
+        pair.map(|solver| common("first", solver, pair[1])).into_iter().chain(perturbed).collect::<Vec<Run>>()
     };
     let mut known = of(liggghts);
     known[0].standing = Standing::Known(STALE_STRETCH);
     let without = Control::without_the_error("our solver, which forgets", liggghts[0], STEP);
     let mut claims = vec![
-        twins::pointwise(PARTING, of(lammps), softer),
-        twins::pointwise(PARTING, known, without),
-        twins::horizon(PARTING, HORIZON, [Run::new("first", lammps[0], STEP).slow(), twin("first", 0)]),
+        perturbed::pointwise(PARTING, of(lammps), softer),
+        perturbed::pointwise(PARTING, known, without),
+        perturbed::horizon(PARTING, HORIZON, [Run::new("first", lammps[0], STEP).slow(), perturbed("first", 0)]),
     ];
     for pair in PAIRS {
         for (stage, part) in [("A", 2), ("B", 1)] {
-            let twins = (0..4).map(|disc| twin("programs", disc).aside());
-            let runs = pair.map(|solver| common("programs", solver, pair[1])).into_iter().chain(twins);
+            let perturbed = (0..4).map(|disc| perturbed("programs", disc).aside());
+            let runs = pair.map(|solver| common("programs", solver, pair[1])).into_iter().chain(perturbed);
             claims.push(
                 claim(format!("F_H/F_V at stage {stage}, against {}", pair[1]), "1")
                     .of_all(runs)
                     .agrees(Source::Program, move |done| {
-                        let twins =
-                            done[2..].iter().map(|twin| ratio_in(twin, part)).collect::<Result<Vec<f64>, _>>()?;
-                        let interval = spread(&twins).ok_or_else(|| Missing("twins that differ".to_owned()))?;
+                        let perturbed =
+                            done[2..].iter().map(|perturbed| ratio_in(perturbed, part)).collect::<Result<Vec<f64>, _>>()?;
+                        let interval = spread(&perturbed).ok_or_else(|| Missing("perturbed runs that differ".to_owned()))?;
                         Ok(Measured::new(ratio_in(&done[0], part)?, ratio_in(&done[1], part)?, interval))
                     })
                     .within(one_interval(
-                        "in units of the 99 % interval of the difference of two twins, from the spread of four",
+                        "in units of the 99 % interval of the difference of two perturbed runs, from the spread of four",
                     ))
                     .refuses(smooth()),
             );

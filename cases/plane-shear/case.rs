@@ -3,10 +3,10 @@
 
 use crate::rows::programs::{PAIRS, row};
 use crate::rows::rigid;
+use grainbench_harness::compare::perturbed::{self, PERTURBED, Parting, Sum};
 use grainbench_harness::compare::pointwise::{difference, largest, worst};
-use grainbench_harness::compare::twins::{self, Parting, Sum, TWIN};
 use grainbench_harness::prelude::*;
-use grainbench_scene::twin::move_one;
+use grainbench_scene::perturbed::move_one;
 
 const LEVELS: &[Level] = &[
     Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
@@ -67,7 +67,7 @@ fn long(solver: &'static str) -> Run {
     Run::new("long", solver, LEVELS[0].resolution)
 }
 
-/// How twins part: of our solver in LAMMPS' convention.
+/// How perturbed runs part: of our solver in LAMMPS' convention.
 const PARTING: Parting = Parting { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
 
 fn claims() -> Vec<Claim> {
@@ -75,24 +75,24 @@ fn claims() -> Vec<Claim> {
     let [lammps, liggghts] = PAIRS;
     let other = |solver| Control::solver("ours in the convention of the other program", solver);
     let without = Control::without_the_error("our solver, which forgets", liggghts[0], LEVELS[0].resolution);
-    let with_twins = |runs: [Run; 2]| {
-        let twins = [long(lammps[0]).aside(), long(lammps[0]).adjusted(TWIN, move_one).aside()];
-        [runs, twins].concat()
+    let with_perturbed = |runs: [Run; 2]| {
+        let perturbed = [long(lammps[0]).aside(), long(lammps[0]).adjusted(PERTURBED, move_one).aside()];
+        [runs, perturbed].concat()
     };
     let known = [long(liggghts[0]).known(STALE_STRETCH).slow(), long(liggghts[1])];
     let mut claims = vec![
         beginning(2000, lammps.map(short), other(liggghts[0])),
         beginning(85, liggghts.map(first), other(lammps[0])),
-        twins::pointwise(PARTING, with_twins(lammps.map(long)), other(liggghts[0])),
-        twins::pointwise(PARTING, with_twins(known), without),
+        perturbed::pointwise(PARTING, with_perturbed(lammps.map(long)), other(liggghts[0])),
+        perturbed::pointwise(PARTING, with_perturbed(known), without),
     ];
     for pair in PAIRS {
         for sum in SUMS {
             let runs = pair.map(long).map(Run::slow);
-            claims.push(twins::statistics(PARTING, sum, with_twins(runs), friction.clone()));
+            claims.push(perturbed::statistics(PARTING, sum, with_perturbed(runs), friction.clone()));
         }
     }
-    claims.push(twins::horizon(PARTING, HORIZON, [long(lammps[0]), long(lammps[0]).adjusted(TWIN, move_one)]));
+    claims.push(perturbed::horizon(PARTING, HORIZON, [long(lammps[0]), long(lammps[0]).adjusted(PERTURBED, move_one)]));
     claims.push(rigid::refuses_periodic_axes(PLAIN));
     claims
 }
@@ -109,9 +109,9 @@ fn beginning(steps: u32, runs: [Run; 2], control: Control) -> Claim {
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let right = runner.run(&long(PAIRS[0][0]))?;
-    let twin = runner.run(&long(PAIRS[0][0]).adjusted(TWIN, move_one))?;
-    let horizon = twins::time_of_horizon(PARTING, &right, &twin).unwrap_or(f64::NAN);
-    let mut partings = vec![("a twin moved by 1 ulp".to_owned(), right, twin)];
+    let perturbed = runner.run(&long(PAIRS[0][0]).adjusted(PERTURBED, move_one))?;
+    let horizon = perturbed::time_of_horizon(PARTING, &right, &perturbed).unwrap_or(f64::NAN);
+    let mut partings = vec![("ours, one position moved by 1 ulp".to_owned(), right, perturbed)];
     let mut courses = Vec::new();
     for [ours, program] in PAIRS {
         let ours = runner.run(&long(ours))?;

@@ -140,7 +140,7 @@ fn a_damaged_series_is_placed() {
 }
 
 #[test]
-fn a_twin_sampled_at_other_times_is_refused() {
+fn a_half_step_run_sampled_at_other_times_is_refused() {
     let folder = copy();
     edit(folder.path(), "series-half-step.csv.gz", "\n20,0.0002,", "\n20,0.00021,", true);
     assert_eq!(

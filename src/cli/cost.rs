@@ -11,7 +11,7 @@ use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, wr
 use grainbench::studies::Follow;
 use grainbench::studies::cost::against::compare;
 use grainbench::studies::cost::run::{Meter, Wanted};
-use grainbench::studies::shelf::Shelf;
+use grainbench::studies::result_cache::ResultCache;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -48,9 +48,9 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     refuse_unknown(&arguments.solver)?;
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
     check_writable(&arguments.out)?;
-    let shelf = Shelf::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::input)?;
+    let cache = ResultCache::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::input)?;
     let wanted = Wanted { solvers: arguments.solver.clone(), all: arguments.levels == "all" };
-    let meter = Meter::new(&shelf, wanted, &solvers::Registry);
+    let meter = Meter::new(&cache, wanted, &solvers::Registry);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
     if pieces == 0 {
         return Err(Fault::input("expected at least one point, found none of the cases and solvers named"));

@@ -9,7 +9,7 @@ use grainbench::cases::solvers::Registry;
 use grainbench::harness::study::ledger::Worth;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::studies::effects::ledger::{Ledger, Piece};
-use grainbench::studies::shelf::Shelf;
+use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::{Follow, identity};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
 pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     let mut ledgers = ledgers(&arguments.cases)?;
     check_writable(&arguments.out)?;
-    let shelf = Shelf::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::input)?;
+    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::input)?;
     let program = identity::of_this_program();
     let start = Instant::now();
     let pieces: usize = ledgers.iter().map(|(_, pieces)| pieces.len()).sum();
@@ -49,7 +49,7 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     for (at, (ledger, pieces)) in ledgers.iter_mut().enumerate() {
         for piece in pieces.iter() {
             follower.now(&format!("{} · {}", piece.variant, piece.effect.word()));
-            let (entry, reused) = ledger.entry(&program, piece, &shelf).map_err(Fault::input)?;
+            let (entry, reused) = ledger.entry(&program, piece, &cache).map_err(Fault::input)?;
             study.ledger.extend(entry);
             follower.done(reused);
         }

@@ -8,7 +8,7 @@ use grainbench::harness::case::PLAIN;
 use grainbench::harness::study::stability::{Hardness, Limit};
 use grainbench::reports::number;
 use grainbench::reports::study::{Study, study_json, write_study};
-use grainbench::studies::shelf::Shelf;
+use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::stability::assembly::{self, Assembly};
 use grainbench::studies::stability::hard::{self, HardCase};
 use grainbench::studies::stability::limit;
@@ -57,7 +57,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let hard = hard::all();
     let pieces = select(arguments, &assemblies, &hard)?;
     check_writable(&arguments.out)?;
-    let shelf = Shelf::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::input)?;
+    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::input)?;
     let program = identity::of_this_program();
     let start = Instant::now();
     let mut written = start;
@@ -67,7 +67,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
     let mut study = Study::new(provenance(words.clone(), 0.0));
     for (at, piece) in pieces.iter().enumerate() {
-        let reused = do_piece(piece, &program, &shelf, &mut study, &mut follower)?;
+        let reused = do_piece(piece, &program, &cache, &mut study, &mut follower)?;
         follower.done(reused);
         let last = at + 1 == pieces.len();
         if last || written.elapsed() > EVERY {
@@ -96,14 +96,14 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
 fn do_piece(
     piece: &Piece<'_>,
     program: &str,
-    shelf: &Shelf,
+    cache: &ResultCache,
     study: &mut Study,
     follower: &mut Follower,
 ) -> Result<bool, Fault> {
     match *piece {
         Piece::Assembly(assembly, solver) => {
             follower.now(&format!("{} · {solver}", assembly.name));
-            let asked = limit::of_assembly(program, assembly, (&solvers::Registry, solver), shelf);
+            let asked = limit::of_assembly(program, assembly, (&solvers::Registry, solver), cache);
             let (limit, reused) = asked.map_err(Fault::input)?;
             study.limits.push(limit);
             Ok(reused)
@@ -112,14 +112,14 @@ fn do_piece(
             follower.now(&format!("{BAR} · {setting}"));
             let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;
             let scene = bar.variant(PLAIN)?;
-            let asked = limit::of_bar(program, &scene, (&solvers::Registry, setting), cells, shelf);
+            let asked = limit::of_bar(program, &scene, (&solvers::Registry, setting), cells, cache);
             let (limit, reused) = asked.map_err(Fault::input)?;
             study.limits.push(limit);
             Ok(reused)
         }
         Piece::Hard(case, solver) => {
             follower.now(&format!("{} · {solver}", case.name));
-            let asked = hard::verdict(program, case, (&solvers::Registry, solver), shelf);
+            let asked = hard::verdict(program, case, (&solvers::Registry, solver), cache);
             let (row, reused) = asked.map_err(Fault::input)?;
             study.hard.push(row);
             Ok(reused)

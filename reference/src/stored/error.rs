@@ -64,10 +64,10 @@ pub enum StoredError {
         /// The column.
         name: String,
     },
-    /// The run and its twin cannot be compared line by line.
+    /// The run and its half-step run cannot be compared line by line.
     #[error("{}: expected the times of `series.csv.gz`, found {found}", shown(path))]
     Twin {
-        /// The twin's series.
+        /// The half-step run's series.
         path: PathBuf,
         /// How it differs.
         found: String,

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::io::Write as _;
 
 use flate2::{Compression, GzBuilder};
+use grainbench_scene::perturbed::{PARTED, move_one};
 use grainbench_scene::record::{Record, Series};
 use grainbench_scene::refined::refined;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver};
-use grainbench_scene::twin::{PARTED, move_one};
 
 use super::drift::drift;
 use super::scene_hash::scene_hash;
@@ -28,7 +28,7 @@ pub struct Made {
     pub files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs the scene and its twin with half the time step, and writes both down. `id` is what `reference build` calls it,
+/// Runs the scene, and again with half the time step, and writes both down. `id` is what `reference build` calls it,
 /// and `date` the day (YYYY-MM-DD).
 ///
 /// # Errors
@@ -45,8 +45,8 @@ pub fn make(
     let fail = |reason: String| RunError::Resolution { solver: program.name().to_owned(), reason };
     let stepping = Stepping::of(scene, resolution).map_err(fail)?;
     let run = live.run(scene, resolution, &mut ())?;
-    let (twin_scene, twin_resolution) = refined(scene, stepping.time_step, [stepping.steps, stepping.interval], 2);
-    let twin = live.run(&twin_scene, &twin_resolution, &mut ())?;
+    let (half_scene, half_resolution) = refined(scene, stepping.time_step, [stepping.steps, stepping.interval], 2);
+    let half = live.run(&half_scene, &half_resolution, &mut ())?;
     let mut moved_scene = scene.clone();
     move_one(&mut moved_scene);
     let moved = live.run(&moved_scene, resolution, &mut ())?;
@@ -60,7 +60,7 @@ pub fn make(
         }
     }
     files.push((SERIES.to_owned(), compressed(&table(&run, program)?)));
-    files.push((HALF_STEP_SERIES.to_owned(), compressed(&table(&twin, program)?)));
+    files.push((HALF_STEP_SERIES.to_owned(), compressed(&table(&half, program)?)));
     let mut commands =
         vec![program.command().to_owned(), format!("grainbench reference build {}/{id}", program.name())];
     let packed = files.iter().filter_map(|(name, _)| name.strip_suffix(".gz")).filter(|name| !name.ends_with(".csv"));
@@ -107,10 +107,10 @@ fn table(record: &Record, program: Program) -> Result<String, RunError> {
     Ok(text)
 }
 
-/// The last step at which a twin is within [`PARTED`]; none where it is so to the end.
-fn predictable_steps(run: &Series, twin: &Series) -> Option<u64> {
+/// The last step at which a perturbed run is within [`PARTED`]; none where it is so to the end.
+fn predictable_steps(run: &Series, perturbed: &Series) -> Option<u64> {
     let parted = |step: u64| {
-        drift(run, twin, step).iter().any(|column| column.error().is_nan() || column.error().abs() > PARTED)
+        drift(run, perturbed, step).iter().any(|column| column.error().is_nan() || column.error().abs() > PARTED)
     };
     let first = run.step.partition_point(|&step| !parted(step));
     (first < run.step.len()).then(|| run.step[first.saturating_sub(1)])

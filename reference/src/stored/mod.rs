@@ -61,7 +61,7 @@ impl StoredRun {
             Err(StoredError::Unlisted { provenance: directory.join(PROVENANCE), name: name.to_owned() })
         };
         let (series, half_step) = (read_table(&listed(SERIES)?)?, read_table(&listed(HALF_STEP_SERIES)?)?);
-        check_twin(directory, &series, &half_step)?;
+        check_half_step(directory, &series, &half_step)?;
         Ok(Self { directory: directory.to_owned(), provenance, series, half_step })
     }
 
@@ -166,22 +166,22 @@ fn verify(directory: &Path, name: &str, expected: &str) -> Result<(), StoredErro
     }
 }
 
-/// Refuses a series without steps or times, and a twin that was sampled at other times.
-fn check_twin(directory: &Path, run: &Table, twin: &Table) -> Result<(), StoredError> {
+/// Refuses a series without steps or times, and a half-step run that was sampled at other times.
+fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), StoredError> {
     let column = |table: &Table, file: &str, name: &str| -> Result<Vec<f64>, StoredError> {
         let path = directory.join(file);
         let missing = || StoredError::Column { path, name: name.to_owned() };
         Ok(table.values(table.column(name).ok_or_else(missing)?).collect())
     };
     column(run, SERIES, "step")?;
-    let (of_run, of_twin) = (column(run, SERIES, "time")?, column(twin, HALF_STEP_SERIES, "time")?);
+    let (of_run, of_half) = (column(run, SERIES, "time")?, column(half, HALF_STEP_SERIES, "time")?);
     let differing = |found: String| StoredError::Twin { path: directory.join(HALF_STEP_SERIES), found };
-    if of_run.len() != of_twin.len() {
-        return Err(differing(format!("{} rows where that has {}", of_twin.len(), of_run.len())));
+    if of_run.len() != of_half.len() {
+        return Err(differing(format!("{} rows where that has {}", of_half.len(), of_run.len())));
     }
     // Steps are summed up in the programs, so that equal times differ in their last digits.
-    match of_run.iter().zip(&of_twin).find(|(run, twin)| (**run - **twin).abs() > 1e-9 * run.max(**twin)) {
-        Some((run, twin)) => Err(differing(format!("{twin:?} where that has {run:?}"))),
+    match of_run.iter().zip(&of_half).find(|(run, half)| (**run - **half).abs() > 1e-9 * run.max(**half)) {
+        Some((run, half)) => Err(differing(format!("{half:?} where that has {run:?}"))),
         None => Ok(()),
     }
 }

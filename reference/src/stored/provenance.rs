@@ -18,7 +18,7 @@ pub struct Provenance {
     pub title: String,
     /// BLAKE3 hash of everything in the scene that the run depends on; see [`crate::stored::scene_hash`].
     pub scene: String,
-    /// The last stored step up to which the run can be predicted: a twin of it in the same program, with one position
+    /// The last stored step up to which the run can be predicted: a perturbed run in the same program, with one position
     /// moved by one unit in the last place, is within a billionth of it, in units of what moves. None where it is so to
     /// the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]

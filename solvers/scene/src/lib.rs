@@ -18,6 +18,7 @@ pub mod manufactured;
 pub mod motion;
 pub mod overlap;
 pub mod packing;
+pub mod perturbed;
 mod probe;
 pub mod record;
 pub mod recorder;
@@ -28,7 +29,6 @@ pub mod solver;
 pub mod source;
 pub mod space;
 pub mod terms;
-pub mod twin;
 
 /// The vectors of scenes and records, for who writes a solver.
 pub use nalgebra;

@@ -1,4 +1,4 @@
-//! The twin of a run with a finer time step, sampled at the same times.
+//! A run again with a finer time step, sampled at the same times.
 
 use crate::motion::Moment;
 use crate::scene::{Duration, Sampling, Scene};

@@ -2,7 +2,7 @@
 
 use super::knobs::{self, Turn};
 use crate::clock::{self, Clocked};
-use crate::shelf::Shelf;
+use crate::result_cache::ResultCache;
 use crate::{Follow, identity};
 use grainbench_harness::run::{Change, Done};
 use grainbench_harness::solvers::Solvers;
@@ -55,7 +55,7 @@ struct Task {
     method: Method,
     scene: Arc<Scene>,
     solver: Arc<dyn Solver>,
-    /// Name on the shelf.
+    /// The result cache.
     name: String,
     /// Processor time of a run of one step (s), of a program; what a program needs to start is no part of what steps
     /// cost. It is that of the scene, whatever the step.
@@ -86,7 +86,7 @@ pub struct Meter<'a> {
     /// Hash of this program.
     pub program: String,
     /// Where finished points are kept.
-    pub shelf: &'a Shelf,
+    pub cache: &'a ResultCache,
     /// What is wanted.
     pub wanted: Wanted,
     /// Gives the solver of a name.
@@ -96,8 +96,8 @@ pub struct Meter<'a> {
 impl<'a> Meter<'a> {
     /// A meter of some solvers.
     #[must_use]
-    pub fn new(shelf: &'a Shelf, wanted: Wanted, solvers: &'a dyn Solvers) -> Self {
-        Self { program: identity::of_this_program(), shelf, wanted, solvers }
+    pub fn new(cache: &'a ResultCache, wanted: Wanted, solvers: &'a dyn Solvers) -> Self {
+        Self { program: identity::of_this_program(), cache, wanted, solvers }
     }
 
     /// How many points a subject has.
@@ -112,7 +112,7 @@ impl<'a> Meter<'a> {
     /// When a point cannot be kept.
     pub fn diagram(&self, subject: &Subject, follow: &mut dyn Follow) -> Result<Diagram, WriteError> {
         let tasks = self.tasks(subject);
-        let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.shelf.take(&task.name)).collect();
+        let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.cache.take(&task.name)).collect();
         points.iter().flatten().for_each(|_| follow.done(true));
         let mut open: Vec<(usize, f64, Point)> = Vec::new();
         for (at, task) in tasks.iter().enumerate() {
@@ -126,7 +126,7 @@ impl<'a> Meter<'a> {
                 let repetitions = if whole < WARM { Vec::new() } else { point.repetitions };
                 open.push((at, whole, Point { repetitions, ..point }));
             } else {
-                self.shelf.put(&task.name, &point)?;
+                self.cache.put(&task.name, &point)?;
                 points[at] = Some(point);
                 follow.done(false);
             }
@@ -139,7 +139,7 @@ impl<'a> Meter<'a> {
         }
         for (at, _, mut point) in open {
             summarise(&mut point);
-            self.shelf.put(&tasks[at].name, &point)?;
+            self.cache.put(&tasks[at].name, &point)?;
             points[at] = Some(point);
             follow.done(false);
         }

@@ -2,7 +2,7 @@
 
 use super::idle::{Idle, try_idly};
 use crate::identity;
-use crate::shelf::Shelf;
+use crate::result_cache::ResultCache;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::{Done, Run, Set, Standing};
@@ -75,18 +75,23 @@ impl Ledger {
         pieces
     }
 
-    /// The entry of a piece, from the shelf where it stands there, and whether it did; nothing of an absent effect that
+    /// The entry of a piece, from the result cache where it stands there, and whether it did; nothing of an absent effect that
     /// has no value that does nothing.
     ///
     /// # Errors
     /// When it cannot be kept.
-    pub fn entry(&mut self, program: &str, piece: &Piece, shelf: &Shelf) -> Result<(Option<Entry>, bool), WriteError> {
+    pub fn entry(
+        &mut self,
+        program: &str,
+        piece: &Piece,
+        cache: &ResultCache,
+    ) -> Result<(Option<Entry>, bool), WriteError> {
         let name = identity::of_words(program, &["effect", self.case.name, piece.variant, piece.effect.word()]);
-        if let Some(entry) = shelf.take(&name) {
+        if let Some(entry) = cache.take(&name) {
             return Ok((entry, true));
         }
         let entry = if piece.key.is_some() { Some(self.switched_off(piece)) } else { self.idle(piece) };
-        shelf.put(&name, &entry)?;
+        cache.put(&name, &entry)?;
         Ok((entry, false))
     }
 

@@ -5,7 +5,7 @@ use super::assembly::Assembly;
 use super::bisection::largest;
 use super::failure::{Failure, of_error};
 use crate::identity;
-use crate::shelf::Shelf;
+use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::study::stability::Limit;
 use grainbench_reports::WriteError;
@@ -27,7 +27,7 @@ pub const GRIDS: [&str; 6] =
 /// Energy over that at the start that counts as growth.
 const MORE_ENERGY: f64 = 1.1;
 
-/// The limit of an assembly with a solver, from the shelf where it stands there; and whether it did.
+/// The limit of an assembly with a solver, from the result cache where it stands there; and whether it did.
 ///
 /// # Errors
 /// When it cannot be kept.
@@ -35,11 +35,11 @@ pub fn of_assembly(
     program: &str,
     assembly: &Assembly,
     (solvers, solver): (&dyn Solvers, &str),
-    shelf: &Shelf,
+    cache: &ResultCache,
 ) -> Result<(Limit, bool), WriteError> {
     let text = format!("{:?}", assembly.scene);
     let name = identity::of_words(program, &["limit", assembly.name, &text, solver]);
-    if let Some(limit) = shelf.take(&name) {
+    if let Some(limit) = cache.take(&name) {
         return Ok((limit, true));
     }
     let mut limit = Limit {
@@ -65,7 +65,7 @@ pub fn of_assembly(
             });
         }
     }
-    shelf.put(&name, &limit)?;
+    cache.put(&name, &limit)?;
     Ok((limit, false))
 }
 
@@ -79,10 +79,10 @@ pub fn of_bar(
     bar: &Scene,
     (solvers, setting): (&dyn Solvers, &str),
     cells: f64,
-    shelf: &Shelf,
+    cache: &ResultCache,
 ) -> Result<(Limit, bool), WriteError> {
     let name = identity::of_words(program, &["bar", setting, &cells.to_string()]);
-    if let Some(limit) = shelf.take(&name) {
+    if let Some(limit) = cache.take(&name) {
         return Ok((limit, true));
     }
     let mut limit = Limit {
@@ -103,7 +103,7 @@ pub fn of_bar(
         Some(solver) => fill(&mut limit, [0.05, 0.8], 2, |courant| vibrate(&*solver, bar, cells, courant)),
         None => "there is no such solver".clone_into(&mut limit.detail),
     }
-    shelf.put(&name, &limit)?;
+    cache.put(&name, &limit)?;
     Ok((limit, false))
 }
 

@@ -8,7 +8,7 @@ use super::PATIENCE as LIMIT;
 use super::failure::{Failure, finite, of_error};
 use crate::cost::knobs::nominal_seconds;
 use crate::identity;
-use crate::shelf::Shelf;
+use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::study::stability::{Hard, Hardness};
 use grainbench_reports::WriteError;
@@ -77,7 +77,7 @@ fn changed(
     HardCase { name, must, scene, check }
 }
 
-/// The verdict of a solver, from the shelf where it stands there; and whether it did.
+/// The verdict of a solver, from the result cache where it stands there; and whether it did.
 ///
 /// # Errors
 /// When it cannot be kept.
@@ -85,15 +85,15 @@ pub fn verdict(
     program: &str,
     case: &HardCase,
     (solvers, solver): (&dyn Solvers, &str),
-    shelf: &Shelf,
+    cache: &ResultCache,
 ) -> Result<(Hard, bool), WriteError> {
     let text = format!("{:?}", case.scene);
     let name = identity::of_words(program, &["hard", &case.name, &text, solver]);
-    if let Some(row) = shelf.take(&name) {
+    if let Some(row) = cache.take(&name) {
         return Ok((row, true));
     }
     let row = judge(case, solvers, solver);
-    shelf.put(&name, &row)?;
+    cache.put(&name, &row)?;
     Ok((row, false))
 }
 

@@ -1,9 +1,9 @@
-//! The twin that tells for how long a run can be foretold: the same scene, one position moved by one unit in the last
+//! The perturbed run that tells for how long a run can be foretold: the same scene, one position moved by one unit in the last
 //! place.
 
 use crate::scene::Scene;
 
-/// How far twins have parted when comparison moment by moment ends, in units of the largest value.
+/// How far perturbed runs have parted when comparison moment by moment ends, in units of the largest value.
 pub const PARTED: f64 = 1e-9;
 
 /// Moves the grain in the middle of the list by one unit in the last place.

@@ -9,28 +9,28 @@ use std::path::{Path, PathBuf};
 
 /// Where finished pieces are kept, or nowhere.
 #[derive(Clone, Debug)]
-pub struct Shelf {
+pub struct ResultCache {
     folder: Option<PathBuf>,
     fresh: bool,
 }
 
-impl Shelf {
-    /// A shelf in a folder, which is made when it is not there; with `fresh`, what stands on it is not taken.
+impl ResultCache {
+    /// A result cache in a folder, which is made when it is not there; with `fresh`, what stands on it is not taken.
     ///
     /// # Errors
     /// When the folder cannot be made.
     pub fn open(folder: &Path, fresh: bool) -> Result<Self, WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
-        let shelf = Self { folder: Some(folder.to_owned()), fresh };
+        let cache = Self { folder: Some(folder.to_owned()), fresh };
         // Of a program that was killed while it wrote, here or in the directory of the report; what has its name is
         // whole.
         for place in [Some(folder), folder.parent()].into_iter().flatten() {
             sweep(place).map_err(|source| WriteError::new(place, source))?;
         }
-        Ok(shelf)
+        Ok(cache)
     }
 
-    /// No shelf: nothing is kept, nothing is found.
+    /// No result cache: nothing is kept, nothing is found.
     #[must_use]
     pub const fn none() -> Self {
         Self { folder: None, fresh: false }
@@ -83,14 +83,14 @@ mod tests {
     #[test]
     fn gives_back_what_was_kept_and_nothing_that_was_damaged() {
         let folder = tempfile::tempdir().unwrap();
-        let shelf = Shelf::open(folder.path(), false).unwrap();
-        assert_eq!(shelf.take::<u32>("a"), None);
-        shelf.put("a", &7_u32).unwrap();
-        assert_eq!(shelf.take::<u32>("a"), Some(7));
-        assert_eq!(Shelf::open(folder.path(), true).unwrap().take::<u32>("a"), None);
+        let cache = ResultCache::open(folder.path(), false).unwrap();
+        assert_eq!(cache.take::<u32>("a"), None);
+        cache.put("a", &7_u32).unwrap();
+        assert_eq!(cache.take::<u32>("a"), Some(7));
+        assert_eq!(ResultCache::open(folder.path(), true).unwrap().take::<u32>("a"), None);
         fs::write(folder.path().join("a.json"), "[7").unwrap();
-        assert_eq!(shelf.take::<u32>("a"), None);
-        assert_eq!(Shelf::none().take::<u32>("a"), None);
+        assert_eq!(cache.take::<u32>("a"), None);
+        assert_eq!(ResultCache::none().take::<u32>("a"), None);
     }
 
     #[test]
@@ -102,7 +102,7 @@ mod tests {
             fs::write(place.join(".grainbench-x/half"), "{").unwrap();
             fs::write(place.join("mine"), "").unwrap();
         }
-        Shelf::open(&folder, false).unwrap();
+        ResultCache::open(&folder, false).unwrap();
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
         assert_eq!(fs::read_dir(out.path()).unwrap().count(), 2);
     }

@@ -1,11 +1,11 @@
 //! Comparing runs that no two machines can repeat for long: moment by moment up to the predictability horizon, by means
 //! with confidence intervals after it.
 //!
-//! The horizon is measured: a twin of the run, one position moved by one unit in the last place, is within [`PARTED`]
+//! The horizon is measured: a run perturbed by one unit in the last place of one position is within [`PARTED`]
 //! of it up to there. Two programs that do the same arithmetic in another order differ by many such units at once,
 //! which is what [`ALLOWED`] leaves room for.
 //!
-//! Runs of a claim stand in one order: ours, the program's, our run again and its twin.
+//! Runs of a claim stand in one order: ours, the program's, our run again and its perturbed run.
 
 use super::pointwise::{largest, together};
 use crate::claim::{Claim, claim};
@@ -15,66 +15,66 @@ use crate::run::{Done, Missing, Run};
 use crate::source::Source;
 use crate::statistics::{BLOCKS, difference as of_blocks};
 use crate::tolerance::{computed, one_interval};
+use grainbench_scene::perturbed::PARTED;
 use grainbench_scene::scene::Duration;
-use grainbench_scene::twin::PARTED;
 
 /// How far two programs may be apart before that, in the same units.
 pub const ALLOWED: f64 = 1e-8;
-/// The adjustment that makes a twin, by name.
-pub const TWIN: &str = "one position moved by 1 ulp";
+/// The adjustment that makes a perturbed run, by name.
+pub const PERTURBED: &str = "one position moved by 1 ulp";
 
-/// Which columns of the series twins are watched by.
+/// Which columns of the series perturbed runs are watched by.
 #[derive(Clone, Copy, Debug)]
 pub struct Parting {
     /// The columns.
     pub columns: &'static [&'static str],
 }
 
-/// The last sample up to which twins are within [`PARTED`].
-fn last_together(of: Parting, run: &Done, twin: &Done) -> Result<usize, Missing> {
+/// The last sample up to which perturbed runs are within [`PARTED`].
+fn last_together(of: Parting, run: &Done, perturbed: &Done) -> Result<usize, Missing> {
     let mut last = run.series().step.len();
     for column in of.columns {
-        let (b, a) = together(twin, run, column)?;
+        let (b, a) = together(perturbed, run, column)?;
         let scale = PARTED * largest(&a);
         let parted = |(a, b): (&f64, &f64)| (a - b).is_nan() || (a - b).abs() > scale;
         last = last.min(a.iter().zip(&b).position(parted).unwrap_or(last));
     }
-    last.checked_sub(1).ok_or_else(|| Missing("moment at which twins are together".to_owned()))
+    last.checked_sub(1).ok_or_else(|| Missing("moment at which perturbed runs are together".to_owned()))
 }
 
-/// The step of the horizon, from our run and its twin.
-fn step_of_horizon(of: Parting, run: &Done, twin: &Done) -> Result<u64, Missing> {
-    Ok(run.series().step[last_together(of, run, twin)?])
+/// The step of the horizon, from our run and its perturbed run.
+fn step_of_horizon(of: Parting, run: &Done, perturbed: &Done) -> Result<u64, Missing> {
+    Ok(run.series().step[last_together(of, run, perturbed)?])
 }
 
 /// The time of the horizon (s).
 ///
 /// # Errors
 /// When a column is missing.
-pub fn time_of_horizon(of: Parting, run: &Done, twin: &Done) -> Result<f64, Missing> {
-    Ok(run.series().time[last_together(of, run, twin)?])
+pub fn time_of_horizon(of: Parting, run: &Done, perturbed: &Done) -> Result<f64, Missing> {
+    Ok(run.series().time[last_together(of, run, perturbed)?])
 }
 
 /// The horizon itself, which nobody knows beforehand: what it was when the case was written.
 #[must_use]
 pub fn horizon(of: Parting, steps: u64, runs: [Run; 2]) -> Claim {
     let expected = steps as f64;
-    claim(format!("predictability horizon in steps: twins part by {PARTED:e}"), "1")
+    claim(format!("predictability horizon in steps: perturbed runs part by {PARTED:e}"), "1")
         .of_all(runs)
         .equals(
-            Source::Regression("steps until a run and its twin, one position moved by one unit in the last place, part"),
+            Source::Regression("steps until a run and its perturbed run, one position moved by one unit in the last place, part"),
             move |done| Ok(Measured::new(step_of_horizon(of, &done[0], &done[1])? as f64, expected, expected)),
         )
         .within(computed(
             0.25,
             "growth of a disturbance is exponential: a factor ten in it, or in where it begins, is a quarter of the way",
         ))
-        .refuses(Control::scene("a run that ends before twins can part", |scene| {
+        .refuses(Control::scene("a run that ends before perturbed runs can part", |scene| {
             scene.duration = Duration::Cycles(400);
         }))
 }
 
-/// All watched columns of ours (first run) and a program (second) up to the horizon that the twins (third and fourth)
+/// All watched columns of ours (first run) and a program (second) up to the horizon that the perturbed runs (third and fourth)
 /// have.
 #[must_use]
 pub fn pointwise(of: Parting, runs: Vec<Run>, control: Control) -> Claim {
@@ -91,7 +91,8 @@ pub fn pointwise(of: Parting, runs: Vec<Run>, control: Control) -> Claim {
                     let scale = largest(&theirs);
                     let series = done[1].series();
                     let until = series.step.partition_point(|&step| step <= horizon);
-                    let relative = |values: &[f64]| values[..until].iter().map(|value| value / scale).collect::<Vec<f64>>();
+                    let relative =
+                        |values: &[f64]| values[..until].iter().map(|value| value / scale).collect::<Vec<f64>>();
                     Ok(Measured::worst_of(&series.time[..until], &relative(&ours), &relative(&theirs), 1.0))
                 })
                 .collect();
@@ -99,7 +100,7 @@ pub fn pointwise(of: Parting, runs: Vec<Run>, control: Control) -> Claim {
         })
         .within(computed(
             ALLOWED,
-            "ten times what the twins have parted by at the horizon, for two programs round every sum otherwise; relative \
+            "ten times what they have parted by at the horizon, for two programs round every sum otherwise; relative \
              to the largest value",
         ))
         .refuses(control)
