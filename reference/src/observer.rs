@@ -279,6 +279,19 @@ impl<'s> Observer<'s> {
 }
 
 impl Observed {
+    /// Keeps the first samples, and the snapshots up to them.
+    pub fn keep(&mut self, samples: usize) {
+        let series = &mut self.series;
+        if samples >= series.step.len() {
+            return;
+        }
+        series.step.truncate(samples);
+        series.time.truncate(samples);
+        series.values.iter_mut().chain(&mut self.uncertainty).for_each(|values| values.truncate(samples));
+        let last = series.step.last().copied().unwrap_or_default();
+        self.snapshots.retain(|snapshot| snapshot.step <= last);
+    }
+
     /// Adds a column of a scene's series that was learnt otherwise, taken as exact.
     pub(crate) fn add(&mut self, scene: &Scene, name: &str, values: Vec<f64>) {
         let columns = Recorder::new(scene, 1.0, 1).finish().0.columns;

@@ -1,6 +1,7 @@
 //! Against the exact answers of a case's gates.
 
-use super::{Candidate, widened};
+use super::covered::Covered;
+use super::{Candidate, judged};
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Done;
 use grainbench_harness::verdict::{Outcome, Verdict};
@@ -16,6 +17,7 @@ pub(super) fn exact(
     candidate: &Candidate,
     outputs: &Outputs,
     observed: &Observed,
+    covered: &Covered,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Verdict {
     let scene = Arc::new(candidate.scene.clone());
@@ -31,6 +33,9 @@ pub(super) fn exact(
         because: claim.tolerance.because.clone(),
         ..row(claim.quantity.clone(), claim.unit)
     };
+    if let Some(why) = covered.why_not() {
+        return row.left(Outcome::NoReference, why);
+    }
     let found = match measured(observed.series.clone()) {
         Ok(found) => found,
         Err(missing) => return row.left(Outcome::NoReference, missing.to_string()),
@@ -46,7 +51,7 @@ pub(super) fn exact(
             open += moved(1.0).max(moved(-1.0));
         }
     }
-    widened(row, open, outputs).judged(&found)
+    judged(row, open, outputs, &found)
 }
 
 fn record(scene: &Scene, outputs: &Outputs, observed: &Observed, series: Series) -> Record {

@@ -1,16 +1,19 @@
 //! Judging what any program left of a case: by the exact answers of the case's gates, by what our solvers make of the
 //! same scene, and by the stored runs of other programs.
 
+mod covered;
 mod exact;
 mod figures;
 mod ours;
 mod stored;
 
+use covered::Covered;
 use exact::exact;
 use figures::figures;
 use grainbench_harness::case::{Case, PLAIN};
 use grainbench_harness::claim::Claim;
 use grainbench_harness::evidence::Evidence;
+use grainbench_harness::expect::Measured;
 use grainbench_harness::scope::Scope;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
@@ -67,9 +70,17 @@ struct Candidate {
 
 /// Judges the outputs of a case's scene, of one variant or of whichever they start as.
 ///
+/// Where they do not reach the end of the run, a row of its own is red, or amber where `partial` says that a part is
+/// meant, and claims of the whole run are not judged.
+///
 /// # Errors
 /// When the files cannot be read, or start as no scene of the case does.
-pub fn check(case: &'static Case, variant: Option<&str>, outputs: &Outputs) -> Result<Section, NotChecked> {
+pub fn check(
+    case: &'static Case,
+    variant: Option<&str>,
+    outputs: &Outputs,
+    partial: bool,
+) -> Result<Section, NotChecked> {
     let mut first_miss = None;
     let mut matching: Vec<(Candidate, Observed)> = Vec::new();
     for candidate in candidates(case, variant)? {
@@ -98,8 +109,9 @@ pub fn check(case: &'static Case, variant: Option<&str>, outputs: &Outputs) -> R
         let variants = variants.join(", ");
         return Err(NotChecked::Ambiguous { file: outputs.name(), case: case.name.to_owned(), variants });
     }
-    if let Some((candidate, observed)) = matching.first() {
-        return Ok(section(case, candidate, outputs, observed));
+    if let Some((candidate, observed)) = matching.first_mut() {
+        let covered = Covered::of(&candidate.scene, outputs.time_step(), observed);
+        return Ok(section(case, candidate, outputs, observed, &covered, partial));
     }
     Err(first_miss.unwrap_or_else(|| NotChecked::OtherScene {
         file: outputs.name(),
@@ -161,7 +173,14 @@ fn misplaced(scene: &Scene, observed: &Observed) -> Option<(String, String)> {
     None
 }
 
-fn section(case: &'static Case, candidate: &Candidate, outputs: &Outputs, observed: &Observed) -> Section {
+fn section(
+    case: &'static Case,
+    candidate: &Candidate,
+    outputs: &Outputs,
+    observed: &Observed,
+    covered: &Covered,
+    partial: bool,
+) -> Section {
     let file = outputs.name();
     let step = outputs.time_step();
     let row = |quantity: String, unit: &str| {
@@ -175,13 +194,13 @@ fn section(case: &'static Case, candidate: &Candidate, outputs: &Outputs, observ
             ..Verdict::open(case.name, quantity, unit)
         }
     };
-    let mut verdicts: Vec<Verdict> =
-        candidate.claims.iter().map(|claim| exact(claim, candidate, outputs, observed, &row)).collect();
+    let mut verdicts = vec![covered.row(partial, row("time of the last sample".to_owned(), "s"))];
+    verdicts.extend(candidate.claims.iter().map(|claim| exact(claim, candidate, outputs, observed, covered, &row)));
     let (compared, figures) = step.map_or_else(
         || (Err("the files do not tell the time step (--dt gives it)".to_owned()), Vec::new()),
         |step| match ours(&candidate.scene, step, observed) {
             Ok(ours) => {
-                (Ok(compare(&candidate.scene, &ours, outputs, observed, &row)), figures(&ours, &file, observed))
+                (Ok(compare(&candidate.scene, &ours, outputs, observed, covered, &row)), figures(&ours, &file, observed))
             }
             Err(reason) => (Err(reason), Vec::new()),
         },
@@ -210,6 +229,17 @@ fn section(case: &'static Case, candidate: &Candidate, outputs: &Outputs, observ
         controls: Vec::new(),
         runs: Vec::new(),
     }
+}
+
+/// The row of what was found, its tolerance widened by what the printed digits leave open. What may be off by as much as
+/// it is itself tells nothing.
+fn judged(row: Verdict, open: f64, outputs: &Outputs, found: &Measured) -> Verdict {
+    let row = widened(row, open, outputs).judged(found);
+    if row.outcome == Outcome::Pass && row.allowed >= 1.0 {
+        let allowed = number::fraction(row.allowed);
+        return row.left(Outcome::NoReference, format!("cannot tell: {allowed} of the signal is allowed"));
+    }
+    row
 }
 
 /// The row with its tolerance widened by what the printed digits leave open.

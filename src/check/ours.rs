@@ -1,6 +1,6 @@
 //! Against what our solvers make of the same scene.
 
-use super::widened;
+use super::covered::Covered;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::compare::peers::{Compared, Peer, against};
@@ -64,6 +64,7 @@ pub(super) fn compare(
     ours: &[Peer],
     outputs: &Outputs,
     observed: &Observed,
+    covered: &Covered,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Vec<Verdict> {
     let radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
@@ -86,10 +87,16 @@ pub(super) fn compare(
     let Some((nearest, columns)) = against(&observed.series, &observed.uncertainty, ours, is_compared, scale) else {
         return Vec::new();
     };
-    columns.into_iter().map(|of| judged(&of, nearest, outputs, row)).collect()
+    columns.into_iter().map(|of| column(&of, nearest, outputs, covered, row)).collect()
 }
 
-fn judged(of: &Compared<'_>, nearest: &str, outputs: &Outputs, row: &dyn Fn(String, &str) -> Verdict) -> Verdict {
+fn column(
+    of: &Compared<'_>,
+    nearest: &str,
+    outputs: &Outputs,
+    covered: &Covered,
+    row: &dyn Fn(String, &str) -> Verdict,
+) -> Verdict {
     // Programs print forces with the velocities of the full step, half a step after those that moved the grains: of a
     // dashpot that is twice what half the step changes.
     let times = if of.unit == "N" { 3.0 } else { 1.0 };
@@ -104,7 +111,7 @@ fn judged(of: &Compared<'_>, nearest: &str, outputs: &Outputs, row: &dyn Fn(Stri
             if times > 1.0 { format!(", taken {times} times") } else { String::new() },
             number::fraction(FLOOR)
         ),
-        ..row(format!("{} over the run, worst", of.name), of.unit)
+        ..row(format!("{}, {}", of.name, covered.words()), of.unit)
     };
-    widened(row, of.open, outputs).judged(&of.measured)
+    super::judged(row, of.open, outputs, &of.measured)
 }

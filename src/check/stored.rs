@@ -1,7 +1,7 @@
 //! Against the stored runs of LAMMPS and LIGGGHTS of the same scene.
 
 use super::ours::is_compared;
-use super::{Candidate, widened};
+use super::{Candidate, judged};
 use grainbench_cases::stored;
 use grainbench_harness::case::Case;
 use grainbench_harness::compare::peers::{Peer, against};
@@ -34,7 +34,8 @@ pub(super) fn compare(
     let Some((nearest, columns)) = against(&observed.series, &observed.uncertainty, &runs, is_compared, scale) else {
         return Vec::new();
     };
-    let judged = columns.into_iter().map(|of| {
+    let rows = columns.into_iter().map(|of| {
+        let until = number::significant(of.measured.course.last().map_or(0.0, |(time, _)| *time), 6);
         let row = Verdict {
             source: nearest.to_owned(),
             tolerance: Made::Estimated,
@@ -45,11 +46,11 @@ pub(super) fn compare(
                 number::fraction(of.halved),
                 number::fraction(FLOOR)
             ),
-            ..row(format!("{} at {} stored samples, worst", of.name, of.samples), of.unit)
+            ..row(format!("{}, worst of {} stored samples to t = {until} s", of.name, of.samples), of.unit)
         };
-        widened(row, of.open, outputs).judged(&of.measured)
+        judged(row, of.open, outputs, &of.measured)
     });
-    judged.collect()
+    rows.collect()
 }
 
 /// The stored runs of the scene; those that are stale or damaged judge nothing.

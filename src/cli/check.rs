@@ -1,8 +1,8 @@
 //! `grainbench check`: what any program left of a case, judged.
 
-use super::exit::{Fault, Outcome, check_writable, print};
+use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
-use super::run::exit_code;
+use super::run::{exit_code, is_judged};
 use super::simulate::{path_and_value, positive};
 use super::subject::Variant;
 use grainbench::check::check as judge;
@@ -12,6 +12,7 @@ use grainbench::reference::outputs::{Outputs, Sources};
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, line, write_report};
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::time::Instant;
 
 /// What the command takes.
@@ -35,6 +36,12 @@ pub(crate) struct Arguments {
     /// of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
+    /// A part of the run is meant: that the files end before it does is amber and not red.
+    #[arg(long)]
+    partial: bool,
+    /// Everything that is not green is red.
+    #[arg(long)]
+    strict: bool,
     /// Directory for the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
@@ -55,7 +62,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     };
     let outputs = Outputs::survey(sources).map_err(Fault::input)?;
     check_writable(&arguments.out)?;
-    let section = judge(named.case, named.variant, &outputs).map_err(Fault::input)?;
+    let section = judge(named.case, named.variant, &outputs, arguments.partial).map_err(Fault::input)?;
     let words = vec!["check".to_owned(), arguments.case.clone(), outputs.name()];
     let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
     write_report(&arguments.out, &report).map_err(Fault::input)?;
@@ -64,7 +71,9 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     } else {
         print(&format!("{}{}\n", rows(&report), arguments.out.join("index.html").display()))?;
     }
-    Ok(exit_code(&report))
+    // That a file reaches the end says nothing of what is in it.
+    let mut of_quantities = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(1));
+    if of_quantities.any(is_judged) { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
 }
 
 /// A line a row, and how many passed.

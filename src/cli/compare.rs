@@ -26,6 +26,9 @@ pub(crate) struct Arguments {
     /// Largest difference that passes, as a part of the column's largest magnitude (of coordinates: largest change).
     #[arg(long, value_name = "FRACTION", default_value_t = 1e-6, value_parser = positive, allow_hyphen_values = true)]
     tolerance: f64,
+    /// Everything that is not green is red.
+    #[arg(long)]
+    strict: bool,
     /// Directory for the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
@@ -51,7 +54,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         let counts = format!("{compared} steps or rows compared, {alone} in one of them alone");
         print(&format!("{}{counts}\n{}\n", rows(&report), arguments.out.join("index.html").display()))?;
     }
-    Ok(exit_code(&report))
+    Ok(exit_code(&report, arguments.strict))
 }
 
 /// What the two outputs are called: as their files are, or with their folders where those are called alike.

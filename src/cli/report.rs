@@ -50,7 +50,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     let report = Report::load(&arguments.dir).map_err(Fault::input)?;
     write_report(&arguments.dir, &report).map_err(Fault::input)?;
     print(&format!("{}\n{page}", summary_table(&report)))?;
-    Ok(run::exit_code(&report))
+    Ok(run::exit_code(&report, false))
 }
 
 /// Pictures of a simulation, and of others beside it.

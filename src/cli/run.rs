@@ -48,6 +48,9 @@ pub(crate) struct Options {
     /// Run `lammps` and `liggghts` even where a run of theirs is stored.
     #[arg(long)]
     live: bool,
+    /// Everything that is not green is red: amber rows, and programs that are not installed.
+    #[arg(long)]
+    strict: bool,
     /// Leave out the negative controls.
     #[arg(long)]
     no_controls: bool,
@@ -72,7 +75,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     } else {
         print(&format!("{}\n{}\n", summary_table(&report), options.out.join("index.html").display()))?;
     }
-    Ok(exit_code(&report))
+    Ok(exit_code(&report, options.strict))
 }
 
 /// What every solver owes whatever its method, of the solvers named; all of ours when none is.
@@ -104,17 +107,25 @@ fn conformance(named: &[String]) -> Option<Section> {
     })
 }
 
-/// Success, or red when a row failed, a control stayed green, or a solver of ours broke.
-pub(crate) fn exit_code(report: &Report) -> ExitCode {
+/// Success, or red when a row failed or has a stale reference, a control stayed green, a solver of ours broke, or nothing
+/// was judged; where all must be green, also when a row is not.
+pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
+    use verdict::Outcome::{Broken, Fail, Pass, Stale};
     let red_row = |verdict: &Verdict| match verdict.outcome {
-        verdict::Outcome::Fail => true,
-        verdict::Outcome::Broken => is_ours(&verdict.solver),
-        _ => false,
+        Fail | Stale => true,
+        Broken => is_ours(&verdict.solver),
+        outcome => strict && outcome != Pass,
     };
-    let is_red = report.sections.iter().any(|section| {
-        section.verdicts.iter().any(red_row) || section.controls.iter().any(|control| !control.turned_red)
-    });
+    let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
+    let mut controls = report.sections.iter().flat_map(|section| &section.controls);
+    let is_red = rows().any(red_row) || !rows().any(is_judged) || controls.any(|control| !control.turned_red);
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
+}
+
+/// Whether a row says something of its quantity: a solver that refuses the scene does, what is not there does not.
+pub(crate) const fn is_judged(verdict: &Verdict) -> bool {
+    use verdict::Outcome::{Broken, Fail, Known, Pass, Unsupported};
+    matches!(verdict.outcome, Pass | Fail | Known | Unsupported | Broken)
 }
 
 /// Other people's programs may break without it being our failure.
