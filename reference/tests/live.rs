@@ -91,19 +91,59 @@ fn a_program_that_leaves_nonsense() {
     assert!(error.ends_with("dump.grains:1: expected a line `ITEM: …`, found `nonsense`"), "{error}");
 }
 
-/// NaN is kept, for gates to refuse it.
+/// What a program leaves that does its run: three samples, x at the second as given, and a log.
+fn whole(x: &str, steps: &str) -> String {
+    format!(
+        "for step in {steps}; do x=$step; [ $step = 1 ] && x={x}; printf \"ITEM: TIMESTEP\\n$step\\nITEM: NUMBER OF ATOMS\\n\
+         1\\nITEM: BOX BOUNDS ff ff pp\\n0 1\\n0 1\\n0 1\\nITEM: ATOMS id x y vx vy omegaz\\n1 $x 0 1 0 0\\n\"; done \
+         > dump.grains\nprintf 'LAMMPS (1 Jan 2030)\\nStep Time\\n0 0\\n\
+         Loop time of 0.25 on 1 procs for 2 steps with 1 atoms\\n' > log.run"
+    )
+}
+
 #[test]
-fn a_program_that_leaves_nan() {
-    let dump = "for step in 0 1 2; do printf \"ITEM: TIMESTEP\\n$step\\nITEM: NUMBER OF ATOMS\\n1\\nITEM: BOX BOUNDS ff ff pp\\n\
-                0 1\\n0 1\\n0 1\\nITEM: ATOMS id x y vx vy omegaz\\n1 nan 0 1 0 0\\n\"; done > dump.grains\n\
-                printf 'LAMMPS (1 Jan 2030)\\nStep Time\\n0 0\\n\
-                Loop time of 0.25 on 1 procs for 2 steps with 1 atoms\\n' > log.run";
-    let record = run(dump).unwrap();
-    assert!(record.series.column("disc.x").unwrap().iter().all(|x| x.is_nan()));
-    assert_eq!(record.series.column("disc.vx").unwrap(), [1.0; 3]);
+fn a_program_that_does_its_run() {
+    let record = run(&whole("1", "0 1 2")).unwrap();
+    assert_eq!(record.series.column("disc.x").unwrap(), [0.0, 1.0, 2.0]);
     assert_eq!(record.series.time, [0.0, 0.01, 0.02]);
     assert!(record.series.column("disc.angle").is_none(), "no dump tells it");
     assert_eq!((record.cost.steps, record.cost.wall_seconds), (2, 0.25));
     assert_eq!(record.provenance.options, ["LAMMPS (1 Jan 2030)"]);
     assert_eq!(record.snapshots.iter().map(|snapshot| snapshot.step).collect::<Vec<_>>(), [0, 2]);
+}
+
+/// What was not seen to its end is not judged, nor what is no number: the program has failed.
+#[test]
+fn a_program_that_leaves_less_than_its_run() {
+    let said = |text: &str| run(text).unwrap_err().to_string();
+    let short = said(&whole("1", "0 1"));
+    assert!(short.ends_with("expected samples to step 2, found the last at step 1"), "{short}");
+    let gap = said(&whole("1", "0 2"));
+    assert!(gap.ends_with("expected a sample at step 1, found step 2"), "{gap}");
+    let nan = said(&whole("nan", "0 1 2"));
+    assert!(nan.ends_with("expected finite numbers, found disc.x = NaN at step 1"), "{nan}");
+}
+
+#[test]
+fn a_program_that_fills_the_disk_is_ended() {
+    let error = run("yes > dump.grains").unwrap_err().to_string();
+    assert!(error.contains("MB for the samples of this scene, found more"), "{error}");
+}
+
+/// Whoever it started ends with it, and it ends with us: the shell that guards it is told by a pipe that closes.
+#[test]
+fn a_program_ends_with_all_that_it_started() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = folder.path().join("told");
+    let text = format!("sleep 60 & echo $! > {}; wait", told.display());
+    assert!(run(&text).unwrap_err().to_string().contains("was ended after 1 s"));
+    let child = fs::read_to_string(told).unwrap();
+    let is_there =
+        || fs::read_to_string(format!("/proc/{}/stat", child.trim())).is_ok_and(|stat| !stat.contains(") Z"));
+    (0..100).for_each(|_| {
+        if is_there() {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    });
+    assert!(!is_there(), "process {child} goes on");
 }

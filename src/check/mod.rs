@@ -199,9 +199,10 @@ fn section(
     let (compared, figures) = step.map_or_else(
         || (Err("the files do not tell the time step (--dt gives it)".to_owned()), Vec::new()),
         |step| match ours(&candidate.scene, step, observed) {
-            Ok(ours) => {
-                (Ok(compare(&candidate.scene, &ours, outputs, observed, covered, &row)), figures(&ours, &file, observed))
-            }
+            Ok(ours) => (
+                Ok(compare(&candidate.scene, &ours, outputs, observed, covered, &row)),
+                figures(&ours, &file, observed),
+            ),
             Err(reason) => (Err(reason), Vec::new()),
         },
     );

@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use grainbench_scene::effects::Effects;
-use grainbench_scene::record::{Cost, Provenance, Record};
+use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
-use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, logged, write_deck};
+use process::Limits;
+
+use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
 use crate::observer::{Observed, Observer};
 use crate::pair_forces::PairForces;
 use crate::read::dump::DumpReader;
@@ -99,7 +101,8 @@ impl Solver for Live {
         watch.begin(stepping.time_step, stepping.steps);
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let folder = process::scratch(&deck).map_err(|error| fail(Failure::NotRun(error.to_string()), Vec::new()))?;
-        let screen = process::run(executable, &deck.files[0].0, folder.path(), self.time_limit)
+        let limits = Limits { time: self.time_limit, bytes: most_bytes(scene, stepping) };
+        let screen = process::run(executable, &deck.files[0].0, folder.path(), limits)
             .map_err(|(failure, last_lines)| fail(failure, last_lines))?;
         let unusable = |error: ReadError| fail(Failure::Output(error.to_string()), screen.clone());
         let mut observed = observe(scene, &deck, folder.path()).map_err(unusable)?;
@@ -107,6 +110,7 @@ impl Solver for Live {
         for (column, values) in logged::read(&deck.logged, &log, &observed.series) {
             observed.add(scene, &column, values);
         }
+        complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing), screen.clone()))?;
         watch.progress(stepping.steps, stepping.steps);
         let seconds = log.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum();
         let critical = scene.critical_time_step();
@@ -132,7 +136,38 @@ impl Solver for Live {
     }
 }
 
-/// Reads what a deck's run left in a folder. Values that are not finite are kept: gates have something to say of them.
+/// Most that a run may leave (B): room for a start, and for every sample 4 kB a grain, which is four times what its
+/// columns and a dozen contacts take.
+fn most_bytes(scene: &Scene, stepping: Stepping) -> u64 {
+    let samples = stepping.steps / stepping.interval + 2;
+    (64 << 20) + samples.saturating_mul(4096).saturating_mul(scene.grains.len() as u64)
+}
+
+/// Refuses a series that lacks a sample that its deck asks for, and one with a value that is not finite.
+fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
+    let due = (0..=stepping.steps / stepping.interval).map(|sample| sample * stepping.interval);
+    let due = due.chain((!stepping.ends_on_a_sample()).then_some(stepping.steps));
+    let mut found = series.step.iter().copied();
+    for step in due {
+        match found.next() {
+            Some(at) if at == step => {}
+            Some(at) => return Err(format!("expected a sample at step {step}, found step {at}")),
+            None => {
+                let (last, steps) = (series.step.last().copied().unwrap_or_default(), stepping.steps);
+                return Err(format!("expected samples to step {steps}, found the last at step {last}"));
+            }
+        }
+    }
+    for (column, values) in series.columns.iter().zip(&series.values) {
+        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+            let (name, step, value) = (&column.name, series.step[at], values[at]);
+            return Err(format!("expected finite numbers, found {name} = {value} at step {step}"));
+        }
+    }
+    Ok(())
+}
+
+/// Reads what a deck's run left in a folder. Values that are not finite are kept: they are told of by name and step.
 fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadError> {
     let stepping = deck.stepping;
     let mut snapshot = DumpSnapshot::default();

@@ -30,17 +30,37 @@ pub(crate) fn scratch(deck: &Deck) -> io::Result<TempDir> {
     Ok(folder)
 }
 
+/// What a program may take.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// Time.
+    pub(crate) time: Duration,
+    /// All that it may leave in its folder (B).
+    pub(crate) bytes: u64,
+}
+
+/// Runs a program, and ends it with all that it has started when its own standard input closes: when we close it, and
+/// when we end, however that comes about. Its process group is that of the shell, which keeps its number in use.
+const GUARD: &str = "exec 3<&0 </dev/null
+\"$0\" \"$@\" 3<&- & program=$!
+(cat <&3 >/dev/null; kill -9 -$$) &
+wait $program";
+
 /// Runs the program to its end and gives the last lines that it printed.
 pub(crate) fn run(
     executable: &Path,
     input: &str,
     folder: &Path,
-    time_limit: Duration,
+    limits: Limits,
 ) -> Result<Vec<String>, (Failure, Vec<String>)> {
-    let not_run = |error: io::Error| (Failure::NotRun(error.to_string()), Vec::new());
+    let not_run = |error: io::Error| (Failure::NotRun(format!("{}: {error}", executable.display())), Vec::new());
+    fs::metadata(executable).map_err(not_run)?;
     let screen = File::create(folder.join(SCREEN)).map_err(not_run)?;
     let errors = screen.try_clone().map_err(not_run)?;
-    let mut child = Command::new(executable)
+    let mut guard = Command::new("sh");
+    guard
+        .args(["-c", GUARD])
+        .arg(executable)
         .args(["-in", input, "-log", LOG])
         .current_dir(folder)
         // One process, one thread: sums in another order would end in other digits.
@@ -49,34 +69,53 @@ pub(crate) fn run(
         .env("OMPI_MCA_ess_singleton_isolated", "1")
         // And the search for fabrics between machines, three quarters of the time of a start.
         .env("OMPI_MCA_pml", "ob1")
-        .stdin(Stdio::null())
+        .stdin(Stdio::piped())
         .stdout(screen)
-        .stderr(errors)
-        .spawn()
-        .map_err(|error| (Failure::NotRun(format!("{}: {error}", executable.display())), Vec::new()))?;
+        .stderr(errors);
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut guard, 0);
+    let mut child = guard.spawn().map_err(not_run)?;
     let start = Instant::now();
     let mut pause = Duration::from_millis(1);
     let status = loop {
-        match child.try_wait() {
+        let failure = match child.try_wait() {
             Ok(Some(status)) => break status,
-            Ok(None) if start.elapsed() < time_limit => {
+            Err(error) => Failure::NotRun(error.to_string()),
+            Ok(None) if start.elapsed() >= limits.time => Failure::TimeOut(limits.time.as_secs()),
+            Ok(None) if size(folder) > limits.bytes => Failure::Output(format!(
+                "expected at most {} MB for the samples of this scene, found more",
+                limits.bytes / 1_000_000
+            )),
+            Ok(None) => {
                 sleep(pause);
                 pause = (pause * 2).min(Duration::from_millis(20));
+                continue;
             }
-            other => {
-                // It may have ended by itself in the meantime.
-                let _ = child.kill();
-                let _ = child.wait();
-                let failure = match other {
-                    Err(error) => Failure::NotRun(error.to_string()),
-                    Ok(_) => Failure::TimeOut(time_limit.as_secs()),
-                };
-                return Err((failure, last_lines(folder)));
-            }
-        }
+        };
+        // The guard ends the program; it may have ended by itself in the meantime.
+        drop(child.stdin.take());
+        let _ = child.wait();
+        return Err((failure, last_lines(folder)));
     };
     let last_lines = last_lines(folder);
-    if status.success() { Ok(last_lines) } else { Err((Failure::Crash(status.to_string()), last_lines)) }
+    match status.code() {
+        Some(0) if size(folder) > limits.bytes => {
+            let most = limits.bytes / 1_000_000;
+            Err((Failure::Output(format!("expected at most {most} MB for this scene, found more")), last_lines))
+        }
+        Some(0) => Ok(last_lines),
+        // What a shell says of a program that it could not start.
+        Some(126 | 127) => Err((Failure::NotRun(executable.display().to_string()), last_lines)),
+        // And of one that a signal ended.
+        Some(code @ 129..=192) => Err((Failure::Crash(format!("signal {}", code - 128)), last_lines)),
+        _ => Err((Failure::Crash(status.to_string()), last_lines)),
+    }
+}
+
+/// All that is in a folder (B).
+fn size(folder: &Path) -> u64 {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.filter_map(|entry| entry.metadata().ok()).map(|of| of.len()).sum()
 }
 
 /// The last lines of what was printed; LIGGGHTS prints bytes that are not UTF-8.
