@@ -1,19 +1,21 @@
 //! `grainbench compare`: two outputs against each other.
 
 use super::check::rows;
-use super::exit::{Fault, Outcome, check_writable, print};
+use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
-use super::run::exit_code;
-use super::simulate::positive;
+use super::run::{exit_code, is_judged};
+use super::simulate::{path_and_value, positive};
 use grainbench::harness::evidence::Evidence;
-use grainbench::harness::expect::Measured;
+use grainbench::harness::expect::{Bound, Expected, Measured};
 use grainbench::harness::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use grainbench::harness::tolerance::Made;
 use grainbench::harness::verdict::{self, Verdict};
-use grainbench::reference::comparison::{Comparison, Difference, compare as differences};
+use grainbench::reference::comparison::{self, Comparison, Difference, Key};
+use grainbench::reference::observer::Names;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, number, write_report};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::time::Instant;
 
 /// What the command takes.
@@ -26,6 +28,19 @@ pub(crate) struct Arguments {
     /// Largest difference that passes, as a part of the column's largest magnitude (of coordinates: largest change).
     #[arg(long, value_name = "FRACTION", default_value_t = 1e-6, value_parser = positive, allow_hyphen_values = true)]
     tolerance: f64,
+    /// Only these columns, by the names that the first file has.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    columns: Vec<String>,
+    /// What the second file calls columns of the first, such as `x=xu,fx=f_x`.
+    #[arg(long, value_name = "FIRST=SECOND,…", value_delimiter = ',', value_parser = path_and_value)]
+    map: Vec<(String, String)>,
+    /// Time step in seconds, one for both or one for each, where files tell steps and no times.
+    #[arg(long, value_name = "SECONDS[,SECONDS]", value_delimiter = ',', num_args = 1..=2, value_parser = positive,
+          allow_hyphen_values = true)]
+    dt: Vec<f64>,
+    /// Samples that one of them lacks are meant: amber and not red.
+    #[arg(long)]
+    allow_missing: bool,
     /// Everything that is not green is red.
     #[arg(long)]
     strict: bool,
@@ -40,7 +55,12 @@ pub(crate) struct Arguments {
 /// Compares and writes the report.
 pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
-    let comparison = differences(&arguments.a, &arguments.b).map_err(Fault::input)?;
+    let options = comparison::Options {
+        columns: arguments.columns.clone(),
+        names: Names(arguments.map.clone()),
+        time_steps: [arguments.dt.first().copied(), arguments.dt.last().copied()],
+    };
+    let comparison = comparison::compare(&arguments.a, &arguments.b, &options).map_err(Fault::input)?;
     check_writable(&arguments.out)?;
     let section = section(arguments, &comparison);
     let [a, b] = names(arguments);
@@ -50,11 +70,11 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {
-        let Comparison { compared, alone, .. } = comparison;
-        let counts = format!("{compared} steps or rows compared, {alone} in one of them alone");
+        let counts = counts(&comparison);
         print(&format!("{}{counts}\n{}\n", rows(&report), arguments.out.join("index.html").display()))?;
     }
-    Ok(exit_code(&report, arguments.strict))
+    let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
+    if columns.any(is_judged) { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
 }
 
 /// What the two outputs are called: as their files are, or with their folders where those are called alike.
@@ -69,25 +89,65 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
     Section {
         name: "compare".to_owned(),
         title: format!("{b} against {a}"),
-        claim: format!(
-            "Both have the same values at the {} steps or rows that they share; {} are in one of them alone.",
-            comparison.compared, comparison.alone
-        ),
+        claim: format!("Whether both have the same values: {}.", counts(comparison)),
         derivation:
             "Rows are matched by id, coordinates are unscaled, and tolerances are widened by half a unit of the last \
-                     printed place of each file."
+             printed place of each file. Where steps differ the second is interpolated in straight lines, and an eighth \
+             of its largest second difference is left open."
                 .to_owned(),
         weak: "Two outputs that agree may both be wrong; and grains in motion part, however right both are, once \
                differences of rounding have grown."
             .to_owned(),
-        figures: figure(&comparison.differences).into_iter().collect(),
-        verdicts: comparison.differences.iter().map(|of| row(of, arguments.tolerance, &a, &b)).collect(),
+        figures: figure(&comparison.differences, comparison.key).into_iter().collect(),
+        verdicts: shared(comparison, arguments.allow_missing, &a, &b)
+            .into_iter()
+            .chain(comparison.differences.iter().map(|of| row(of, comparison.key, arguments.tolerance, &a, &b)))
+            .collect(),
         controls: Vec::new(),
         runs: Vec::new(),
     }
 }
 
-fn row(of: &Difference, tolerance: f64, a: &str, b: &str) -> Verdict {
+/// How many samples were compared, in words.
+fn counts(comparison: &Comparison) -> String {
+    let Comparison { compared, interpolated, samples: [a, b], key, .. } = comparison;
+    let between = if *interpolated > 0 { format!(", {interpolated} of them interpolated") } else { String::new() };
+    let noun = if *key == Key::Row { "rows" } else { "samples" };
+    format!("{compared} {noun} compared by {}{between}, of {a} and {b}", key.word())
+}
+
+/// How much of both was compared: every sample of the one with fewer, to the end of the longer.
+fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Verdict; 2] {
+    let unit = if comparison.key == Key::Time { "s" } else { "1" };
+    let row = |quantity: String, unit: &str, value: f64, least: f64| {
+        let row = Verdict {
+            solver: b.to_owned(),
+            allowed: if unit == "s" { 1e-6 } else { 0.0 },
+            because: "what only one of them has is not compared".to_owned(),
+            evidence: Evidence::Invariant,
+            source: a.to_owned(),
+            ..Verdict::open("compare", quantity, unit)
+        };
+        let scale = if least > 0.0 { least } else { 1.0 };
+        let row = row.judged(&Measured::new(value, Expected::Bound(Bound::AtLeast(least)), scale));
+        if row.outcome == verdict::Outcome::Fail && allow_missing {
+            return row.left(verdict::Outcome::Known, "missing samples are meant (--allow-missing)");
+        }
+        row
+    };
+    let fewest = comparison.samples[0].min(comparison.samples[1]) as f64;
+    // Of the one that ends later all but what is within a sample of the other.
+    let end = comparison.last[0].max(comparison.last[1]);
+    let last = if comparison.last_compared > end - comparison.interval { comparison.last_compared } else { end };
+    // Of a file that is sampled at other times, those of the first are what counts.
+    let least = if comparison.key == Key::Time { comparison.samples[0] as f64 } else { fewest };
+    [
+        row("samples that were compared".to_owned(), "1", comparison.compared as f64, least),
+        row(format!("last {} that was compared", comparison.key.word()), unit, comparison.last_compared, last),
+    ]
+}
+
+fn row(of: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
     let open = of.open / of.scale;
     let row = Verdict {
         solver: b.to_owned(),
@@ -104,14 +164,20 @@ fn row(of: &Difference, tolerance: f64, a: &str, b: &str) -> Verdict {
     };
     let first = of.course.iter().find(|(_, off)| off.is_nan() || off / of.scale > row.allowed);
     let row = row.judged(&Measured::new(of.second, of.first, of.scale));
-    match first.filter(|_| row.outcome == verdict::Outcome::Fail) {
-        Some((step, _)) => Verdict { detail: Some(format!("first outside at step or row {step}")), ..row },
-        None => row,
+    match (row.outcome, first) {
+        (verdict::Outcome::Fail, Some((at, _))) => {
+            Verdict { detail: Some(format!("first outside at {} {at}", key.word())), ..row }
+        }
+        (verdict::Outcome::Pass, _) if row.allowed >= 1.0 => {
+            let allowed = number::fraction(row.allowed);
+            row.left(verdict::Outcome::NoReference, format!("cannot tell: {allowed} of the column is allowed"))
+        }
+        _ => row,
     }
 }
 
 /// How the differences grow.
-fn figure(differences: &[Difference]) -> Option<Figure> {
+fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
     const MOST: usize = 6;
     let mut curves = Vec::new();
     for of in differences {
@@ -130,6 +196,6 @@ fn figure(differences: &[Difference]) -> Option<Figure> {
         name: "differences".to_owned(),
         title: "How the differences grow".to_owned(),
         caption: "The largest difference of each column at each step, in units of its scale.".to_owned(),
-        drawing: Drawing::Graph(Graph { x: axis("step or row", false), y: axis("difference / scale", true), curves }),
+        drawing: Drawing::Graph(Graph { x: axis(key.word(), false), y: axis("difference / scale", true), curves }),
     })
 }

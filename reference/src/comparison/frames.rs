@@ -1,0 +1,176 @@
+//! An output as a sequence of frames, whether it is a dump or a table: at each step, time or row, the numbers of some
+//! columns.
+
+use std::path::Path;
+use std::vec;
+
+use super::Options;
+use crate::observer::Names;
+use crate::read::digits::Digits;
+use crate::read::dump::DumpReader;
+use crate::read::read_error::ReadError;
+use crate::read::snapshot::DumpSnapshot;
+use crate::read::table::{Table, read_table};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Where a frame stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    /// The step, where the file tells it.
+    pub(super) step: Option<u64>,
+    /// The time (s), where the file or its time step tells it.
+    pub(super) time: Option<f64>,
+    /// The number of the frame, from 0.
+    pub(super) number: u64,
+    /// The line that errors name.
+    pub(super) line: u64,
+}
+
+/// The numbers at one place.
+#[derive(Debug, Clone)]
+pub(super) struct Frame {
+    pub(super) place: Place,
+    /// Ids of the rows in their order, where the file tells them.
+    pub(super) ids: Option<Vec<f64>>,
+    /// For each column all rows in the order of their ids.
+    pub(super) values: Vec<Vec<f64>>,
+}
+
+/// Frame after frame of a file.
+pub(super) struct Frames {
+    pub(super) file: String,
+    time_step: Option<f64>,
+    names: Names,
+    /// The columns that are told, by our names.
+    wanted: Vec<String>,
+    number: u64,
+    from: From,
+}
+
+enum From {
+    Dump { reader: Box<DumpReader<'static>>, snapshot: DumpSnapshot },
+    Table { table: Table, step: Option<usize>, time: Option<usize>, rows: vec::IntoIter<usize> },
+}
+
+impl Frames {
+    /// Of a file: of the first (0) or the second (1) of two.
+    pub(super) fn open(path: &Path, is_dump: bool, which: usize, options: &Options) -> Result<Self, ReadError> {
+        let names = if which == 1 { options.names.clone() } else { Names::default() };
+        let from = if is_dump {
+            From::Dump { reader: Box::new(DumpReader::open(path)?), snapshot: DumpSnapshot::default() }
+        } else {
+            let table = read_table(path)?;
+            let time = ["time", "t"].into_iter().find_map(|name| table.column(names.of(name)));
+            let (step, rows) = (table.column(names.of("step")), (0..table.rows()).collect::<Vec<_>>());
+            From::Table { step, time, rows: rows.into_iter(), table }
+        };
+        let (file, time_step) = (path.to_string_lossy().into_owned(), options.time_steps[which]);
+        Ok(Self { file, time_step, names, wanted: Vec::new(), number: 0, from })
+    }
+
+    /// Asks for these columns from now on, by our names.
+    pub(super) fn want(&mut self, columns: &[String]) {
+        columns.clone_into(&mut self.wanted);
+    }
+
+    /// The columns that the file has, by our names: coordinates, then others, without ids and words. Of a dump once its
+    /// first frame was read.
+    pub(super) fn columns(&self) -> Vec<String> {
+        let ours = |theirs: &str| {
+            let renamed = self.names.0.iter().find(|(_, known)| known == theirs);
+            renamed.map_or_else(|| theirs.to_owned(), |(ours, _)| ours.clone())
+        };
+        match &self.from {
+            From::Dump { snapshot, .. } => {
+                let axes: Vec<_> = (0..3).filter_map(|axis| Some((axis, self.coordinate(snapshot, axis)?))).collect();
+                let mut names: Vec<String> = axes.iter().map(|(axis, _)| AXES[*axis].to_owned()).collect();
+                let others = snapshot.columns.iter().enumerate().filter(|(at, column)| {
+                    !(column.is_text || column.name == "id" || axes.iter().any(|(_, axis)| axis.column == *at))
+                });
+                names.extend(others.map(|(_, column)| ours(&column.name)));
+                names
+            }
+            From::Table { table, step, time, .. } => {
+                let keys = [*step, *time];
+                let columns = table.columns.iter().enumerate().filter(|(at, _)| !keys.contains(&Some(*at)));
+                columns.map(|(_, column)| ours(&column.name)).collect()
+            }
+        }
+    }
+
+    fn coordinate(&self, snapshot: &DumpSnapshot, axis: usize) -> Option<crate::read::snapshot::Coordinate> {
+        match self.names.of(AXES[axis]) {
+            theirs if theirs == AXES[axis] => snapshot.coordinate(axis),
+            theirs => snapshot.coordinate_named(theirs, axis),
+        }
+    }
+
+    /// The next frame; none at the end of the file.
+    pub(super) fn next(&mut self) -> Result<Option<Frame>, ReadError> {
+        let number = self.number;
+        self.number += 1;
+        match &mut self.from {
+            From::Dump { reader, snapshot } => {
+                if !reader.read(snapshot)? {
+                    return Ok(None);
+                }
+            }
+            From::Table { rows, table, step, time } => {
+                let Some(row) = rows.next() else { return Ok(None) };
+                let value = |at: usize| table.values(at).nth(row).unwrap_or(f64::NAN);
+                let step = step.map(|at| value(at) as u64);
+                let time = time.map(value).or_else(|| Some(step? as f64 * self.time_step?));
+                let place = Place { step, time, number, line: number + 2 };
+                let column = |name: &String| table.column(self.names.of(name)).map_or(f64::NAN, value);
+                let values = self.wanted.iter().map(|name| vec![column(name)]).collect();
+                return Ok(Some(Frame { place, ids: None, values }));
+            }
+        }
+        let From::Dump { snapshot, .. } = &self.from else { return Ok(None) };
+        Ok(Some(self.of_snapshot(snapshot, number)))
+    }
+
+    fn of_snapshot(&self, snapshot: &DumpSnapshot, number: u64) -> Frame {
+        let mut order: Vec<usize> = (0..snapshot.rows()).collect();
+        let id = snapshot.column(self.names.of("id"));
+        if let Some(id) = id {
+            order.sort_by(|&a, &b| snapshot.row(a)[id].total_cmp(&snapshot.row(b)[id]));
+        }
+        let values = self.wanted.iter().map(|name| {
+            let axis = AXES.iter().position(|axis| axis == name);
+            if let Some(coordinate) = axis.and_then(|axis| self.coordinate(snapshot, axis)) {
+                return order.iter().map(|&row| coordinate.of(snapshot.row(row))).collect();
+            }
+            let at = snapshot.column(self.names.of(name));
+            order.iter().map(|&row| at.map_or(f64::NAN, |at| snapshot.row(row)[at])).collect()
+        });
+        let time = snapshot.time.or_else(|| Some(snapshot.step as f64 * self.time_step?));
+        Frame {
+            place: Place { step: Some(snapshot.step), time, number, line: snapshot.first_line },
+            ids: id.map(|id| order.iter().map(|&row| snapshot.row(row)[id]).collect()),
+            values: values.collect(),
+        }
+    }
+
+    /// What the printed digits of a column leave open at a value, once all was read.
+    pub(super) fn open_at(&self, name: &str, value: f64) -> f64 {
+        match &self.from {
+            From::Dump { snapshot, .. } => {
+                let of_file: Digits = snapshot.digits();
+                let axis = AXES.iter().position(|axis| *axis == name);
+                if let Some(coordinate) = axis.and_then(|axis| self.coordinate(snapshot, axis)) {
+                    let printed = if coordinate.scale() == 1.0 { value } else { 1.0 };
+                    let digits = snapshot.columns[coordinate.column].digits;
+                    return coordinate.scale() * digits.uncertainty(printed, &of_file);
+                }
+                let at = snapshot.column(self.names.of(name));
+                at.map_or(0.0, |at| snapshot.columns[at].digits.uncertainty(value, &of_file))
+            }
+            From::Table { table, .. } => {
+                let at = table.column(self.names.of(name));
+                at.map_or(0.0, |at| table.columns[at].digits.uncertainty(value, &table.digits()))
+            }
+        }
+    }
+}
