@@ -52,9 +52,11 @@ impl From<&RunError> for Outcome {
             RunError::Unsupported { .. } => Self::Unsupported,
             RunError::NotAvailable { .. } => Self::NotAvailable,
             RunError::Stale { .. } => Self::Stale,
-            RunError::Resolution { .. } | RunError::Program { .. } | RunError::Broken(_) | RunError::Checkpoint(_) => {
-                Self::Broken
-            }
+            RunError::Resolution { .. }
+            | RunError::Program { .. }
+            | RunError::Broken(_)
+            | RunError::NotFinite { .. }
+            | RunError::Checkpoint(_) => Self::Broken,
         }
     }
 }

@@ -30,6 +30,8 @@ pub struct Sources {
     pub names: Names,
     /// Time step (s), where no file says it.
     pub time_step: Option<f64>,
+    /// Most rows that a snapshot of the scene can have; any number where none is said.
+    pub most_rows: Option<u64>,
 }
 
 /// Why outputs cannot be taken for a run.
@@ -102,7 +104,7 @@ impl Outputs {
             if !is_dump(file)? {
                 return Err(OutputError::MixedFiles(shown(file)));
             }
-            let mut reader = DumpReader::open(file)?;
+            let mut reader = DumpReader::open(file)?.at_most(outputs.sources.most_rows.unwrap_or(u64::MAX));
             let mut snapshot = DumpSnapshot::default();
             while reader.read(&mut snapshot)? {
                 if snapshot.kind == DumpKind::Atoms && outputs.ids.is_empty() {

@@ -15,6 +15,8 @@ use grainbench_scene::solver::Solver;
 
 /// What our solvers owe each other beside what is measured: a millionth of the scale.
 const FLOOR: f64 = 1e-6;
+/// Most particle-steps that one of our solvers is run for: about half an hour.
+const MOST_WORK: f64 = 2e10;
 /// Most values of our runs that are compared.
 const MOST_SAMPLES: u64 = 2_000_000;
 
@@ -31,6 +33,10 @@ pub(super) fn ours(scene: &Scene, step: f64, observed: &Observed) -> Result<Vec<
     let interval = steps.iter().fold(0, |all, &step| common_divisor(all, step)).max(1);
     if last / interval > MOST_SAMPLES {
         return Err(format!("{} samples are more than {MOST_SAMPLES}", last / interval));
+    }
+    let work = last as f64 * scene.grains.len() as f64;
+    if work > MOST_WORK {
+        return Err(format!("{last} steps of {step} s are more than our solvers are run for here"));
     }
     let run = |convention: Convention, halves: u64| {
         let scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };

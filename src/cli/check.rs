@@ -6,6 +6,7 @@ use super::run::{exit_code, is_judged};
 use super::simulate::{path_and_value, positive};
 use super::subject::Variant;
 use grainbench::check::check as judge;
+use grainbench::harness::case::Case;
 use grainbench::harness::verdict;
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources};
@@ -59,6 +60,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
         log: arguments.log.clone(),
         names: Names(arguments.map.clone()),
         time_step: arguments.dt,
+        most_rows: Some(most_rows(named.case)?),
     };
     let outputs = Outputs::survey(sources).map_err(Fault::input)?;
     check_writable(&arguments.out)?;
@@ -74,6 +76,16 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     // That a file reaches the end says nothing of what is in it.
     let mut of_quantities = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(1));
     if of_quantities.any(is_judged) { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
+}
+
+/// Most rows that a snapshot of a case can have: a grain has a dozen contacts at most, and walls.
+fn most_rows(case: &Case) -> Result<u64, Fault> {
+    let mut most = 0;
+    for variant in case.variants()? {
+        let scene = case.variant(&variant)?;
+        most = most.max(scene.grains.len() * (16 + scene.walls.len()));
+    }
+    Ok(most as u64)
 }
 
 /// A line a row, and how many passed.

@@ -10,7 +10,7 @@ use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
 use grainbench::scene::record::{Cost, Provenance, Record, Snapshot};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Method, Resolution, RunError, Solver, Watch};
 use grainbench::scene::source::SceneSource;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -53,6 +53,17 @@ pub(crate) struct Arguments {
     /// Courant number c Δt/h, of solvers with a grid.
     #[arg(long, value_name = "NUMBER", default_value_t = Resolution::COURANT, value_parser = positive)]
     courant: f64,
+    /// Time steps in each sixtieth of a second, of solvers for rigid bodies.
+    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..))]
+    substeps: u32,
+    /// Iterations of the constraint solver in each time step, of solvers for rigid bodies.
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        default_value_t = Resolution::RIGID_ITERATIONS,
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
+    iterations: u32,
     /// Take a time step of the critical one or above.
     #[arg(long)]
     allow_unstable: bool,
@@ -134,7 +145,11 @@ fn solver(name: &str) -> Result<Box<dyn Solver>, Fault> {
 
 /// The resolution asked for, unless it is above the critical step and nobody said that this is meant.
 fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault> {
-    if arguments.solver.starts_with("mpm") {
+    if Method::of(&arguments.solver) == Some(Method::Rigid) {
+        let &Arguments { substeps, iterations, .. } = arguments;
+        return Ok(Resolution::Rigid { step: Resolution::RIGID_STEP, substeps, iterations });
+    }
+    if Method::of(&arguments.solver) == Some(Method::Grid) {
         let &Arguments { cells, points, courant, .. } = arguments;
         if courant >= 1.0 && !arguments.allow_unstable {
             return Err(Fault::input(format!(
@@ -164,7 +179,7 @@ fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault>
 fn fault(error: RunError) -> Fault {
     match error {
         RunError::Broken(broken) => Fault::Broken(broken.to_string()),
-        RunError::Program { .. } => Fault::Broken(error.to_string()),
+        RunError::Program { .. } | RunError::NotFinite { .. } => Fault::Broken(error.to_string()),
         RunError::Unsupported { .. }
         | RunError::Resolution { .. }
         | RunError::NotAvailable { .. }

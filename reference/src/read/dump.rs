@@ -17,6 +17,8 @@ pub struct DumpReader<'r> {
     form: RowForm,
     units: Option<String>,
     last_step: Option<u64>,
+    /// Most rows of a snapshot.
+    most_rows: u64,
     /// Ids of a snapshot with their rows, kept for their memory.
     ids: Vec<(u64, u32)>,
 }
@@ -40,7 +42,14 @@ impl<'r> DumpReader<'r> {
     /// The beginning cannot be read, or announces a compression that is not read here.
     pub fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
         let form = RowForm { separator: None, not_finite: NotFinite::default() };
-        Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, ids: Vec::new() })
+        let most_rows = u64::MAX;
+        Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, most_rows, ids: Vec::new() })
+    }
+
+    /// Refuses snapshots of more rows than can belong to a scene.
+    #[must_use]
+    pub fn at_most(self, rows: u64) -> Self {
+        Self { most_rows: rows, ..self }
     }
 
     /// Whether NaN and infinity are read; they are refused otherwise.
@@ -88,8 +97,16 @@ impl<'r> DumpReader<'r> {
         snapshot.first_line = self.blocks.number() + 1;
         // The declared count is a claim; memory follows the rows that are really there.
         snapshot.values.clear();
+        if header.rows > self.most_rows {
+            let expected = format!("at most {} rows, for no more can belong to the scene", self.most_rows);
+            return Err(ReadError::at(self.blocks.name(), self.blocks.number(), expected, header.rows.to_string()));
+        }
         for row in 0..header.rows {
             self.read_row(row, header.rows, snapshot)?;
+            if snapshot.values.len() > MOST_NUMBERS {
+                let expected = format!("at most {MOST_NUMBERS} numbers in a snapshot");
+                return Err(ReadError::at(self.blocks.name(), self.blocks.number(), expected, "more"));
+            }
         }
         if snapshot.kind == DumpKind::Atoms {
             self.check_ids(snapshot)?;
@@ -149,6 +166,9 @@ impl<'r> DumpReader<'r> {
         ReadError::at(self.blocks.name(), self.blocks.number().max(1), expected, found)
     }
 }
+
+/// Most numbers that are read of a snapshot (half a gigabyte).
+const MOST_NUMBERS: usize = 1 << 26;
 
 /// Whole numbers up to here are numbers of their own in f64.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;

@@ -9,6 +9,9 @@ use crate::read::line_reader::blocks;
 use crate::read::numbers::{NotFinite, NumberColumn, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 
+/// Most numbers that are read of a table: what is made of one takes ten times as much memory.
+const MOST_NUMBERS: usize = 1 << 24;
+
 /// A table of numbers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
@@ -73,6 +76,10 @@ pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError>
             continue;
         }
         if !table.columns.is_empty() {
+            if table.values.len() > MOST_NUMBERS {
+                let line = line.text()?;
+                return Err(line.error(format!("at most {MOST_NUMBERS} numbers in a table"), "more"));
+            }
             form.read(line, &mut table.columns, &mut table.values)?;
             continue;
         }

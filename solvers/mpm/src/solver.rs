@@ -8,11 +8,13 @@ use grainbench_scene::body::{BlockShape, Hold};
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
+use grainbench_scene::memory;
 use grainbench_scene::record::{Cost, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps};
 use grainbench_scene::space::{Plane, Solid, Space};
+use std::f64::consts::PI;
 
 /// The material point method in one setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +73,16 @@ impl Mpm {
         if !(positive(cells) && positive(courant) && (1..=64).contains(&points)) {
             return Err(self.resolution_error(format!("expected positive numbers, found {resolution}")));
         }
-        let lattice = lattice(scene, &self.setting, scene.reference_length / cells);
+        let cell = scene.reference_length / cells;
+        if let Some(found) = beyond_memory(scene, cell, points) {
+            return Err(self.resolution_error(format!("expected points and nodes that fit into memory, found {found}")));
+        }
+        let cells_of = |axis: usize| scene.domain.map_or(0.0, |domain| (domain.high[axis] - domain.low[axis]) / cell);
+        if let Some(axis) = (0..scene.dimension.count()).find(|&axis| cells_of(axis) >= f64::from(i32::MAX)) {
+            let found = format!("expected a domain of fewer than 2^31 cells along an axis, found {:e}", cells_of(axis));
+            return Err(self.resolution_error(found));
+        }
+        let lattice = lattice(scene, &self.setting, cell);
         let cell = lattice.shortest(scene.dimension.count());
         let smallest = scene.grains.iter().enumerate().min_by(|(_, a), (_, b)| a.radius.total_cmp(&b.radius));
         if let Some((at, grain)) = smallest.filter(|(_, grain)| grain.radius < SMALLEST * cell) {
@@ -80,6 +91,15 @@ impl Mpm {
                 at + 1,
                 grain.radius / cell,
                 (SMALLEST * scene.reference_length / grain.radius).ceil()
+            )));
+        }
+        let dimensions = scene.dimension.count();
+        if let Some(body) = scene.bodies.iter().find(|body| body.shape.length(dimensions) < SMALLEST * cell) {
+            return Err(self.resolution_error(format!(
+                "expected a body at least {SMALLEST} cells wide, found `{}` with {:.3}: {} cells would do for it",
+                body.name,
+                body.shape.length(dimensions) / cell,
+                (SMALLEST * scene.reference_length / body.shape.length(dimensions)).ceil()
             )));
         }
         let speed = scene.fastest_wave();
@@ -93,8 +113,8 @@ impl Mpm {
         if damped >= 2.0 {
             return Err(self.resolution_error(format!("expected damping times step below 2, found {damped}")));
         }
-        if steps >= 1e15 || steps.is_nan() {
-            return Err(self.resolution_error(format!("expected a number of steps below 1e15, found {steps:e}")));
+        if let Some(refusal) = beyond_steps(steps) {
+            return Err(self.resolution_error(refusal));
         }
         Ok(Plan { lattice, points, time_step: time / steps, steps: steps as u64, critical })
     }
@@ -148,6 +168,37 @@ impl Mpm {
 
 /// Steps after which a watcher hears of progress at the latest.
 const STEPS_BETWEEN_PROGRESS: u64 = 500;
+
+/// What a material point takes, its share of tracers and springs with it (B).
+const BYTES_OF_A_POINT: f64 = 600.0;
+/// What a node takes in each body that reaches it (B).
+const BYTES_OF_A_NODE: f64 = 150.0;
+
+/// What is wrong with the points and nodes that a scene needs with cells of a length (m): more than there is memory for.
+fn beyond_memory(scene: &Scene, cell: f64, points: u32) -> Option<String> {
+    let dimensions = scene.dimension.count();
+    let in_cells = |volume: f64| volume / cell.powi(dimensions as i32);
+    let boxed = |length: f64| (length / cell + 4.0).powi(dimensions as i32);
+    let of_bodies = scene.bodies.iter().map(|body| {
+        let nodes = match body.shape {
+            BlockShape::Box { .. } => in_cells(body.shape.volume(dimensions)),
+            BlockShape::Annulus { outer, .. } => boxed(2.0 * outer),
+        };
+        (in_cells(body.shape.volume(dimensions)), nodes)
+    });
+    let of_grains = scene.grains.iter().map(|grain| {
+        let volume = match dimensions {
+            2 => PI * grain.radius.powi(2),
+            _ => 4.0 / 3.0 * PI * grain.radius.powi(3),
+        };
+        (in_cells(volume), boxed(2.0 * grain.radius))
+    });
+    let (filled, nodes) = of_bodies.chain(of_grains).fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
+    let of_cell = f64::from(points).powi(dimensions as i32) * BYTES_OF_A_POINT;
+    memory::beyond(filled, of_cell)
+        .or_else(|| memory::beyond(nodes, BYTES_OF_A_NODE))
+        .map(|words| format!("cells {words}"))
+}
 
 /// Cells that a radius must have: a body smaller than a cell shows the grid no gradient of its own.
 const SMALLEST: f64 = 0.5;

@@ -8,7 +8,7 @@ use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Cost, Look, Provenance, Record};
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps};
 use grainbench_scene::terms::{Less, Terms};
 
 /// The release of rapier that is built in.
@@ -93,6 +93,9 @@ impl Rigid {
         };
         // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
         let steps = (time / step * (1.0 - 1e-12)).ceil().max(1.0) * f64::from(substeps);
+        if let Some(refusal) = beyond_steps(steps) {
+            return Err(error(refusal));
+        }
         Ok((time / steps, steps as u64, iterations as usize))
     }
 

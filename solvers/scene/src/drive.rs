@@ -88,6 +88,10 @@ impl Course<'_> {
             if (begins || now > first) && recorder.is_due(now) {
                 let look = stepper.look(recorder.is_snapshot(now));
                 recorder.take(scene, look);
+                if let Some((column, value)) = recorder.not_finite() {
+                    let (column, time) = (column.to_owned(), now as f64 * time_step);
+                    return Err(RunError::NotFinite { time, step: now, column, value });
+                }
             }
             watch.progress(now, steps);
             if now == steps {

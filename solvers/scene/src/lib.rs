@@ -15,6 +15,7 @@ pub mod error;
 pub mod file;
 pub mod generate;
 pub mod manufactured;
+pub mod memory;
 pub mod motion;
 pub mod overlap;
 pub mod packing;

@@ -86,6 +86,15 @@ impl Recorder {
         }
     }
 
+    /// The column whose last sample is no finite number, with that.
+    #[must_use]
+    pub fn not_finite(&self) -> Option<(&str, f64)> {
+        let last = |at: usize| self.series.values[at].last().copied();
+        let columns = self.series.columns.iter().enumerate();
+        let mut found = columns.filter_map(|(at, column)| Some((column.name.as_str(), last(at)?)));
+        found.find(|(_, value)| !value.is_finite())
+    }
+
     /// The time series and the snapshots.
     #[must_use]
     pub fn finish(self) -> (Series, Vec<Snapshot>) {

@@ -92,6 +92,13 @@ impl Resolution {
                 "the scene has no contact, so no critical time step; expected a time step in seconds".to_owned()
             });
         }
+        let asked = match scene.duration {
+            Duration::Cycles(cycles) => cycles as f64,
+            Duration::Seconds(time) => time / wanted,
+        };
+        if let Some(refusal) = beyond_steps(asked) {
+            return Err(refusal);
+        }
         Ok(match (scene.duration, self) {
             (Duration::Cycles(cycles), _) => (wanted, cycles),
             (Duration::Seconds(time), Self::TimeStep(_)) => (wanted, ((time / wanted).round() as u64).max(1)),
@@ -102,6 +109,16 @@ impl Resolution {
             }
         })
     }
+}
+
+/// Most steps that any solver takes: at a million a second they would take thirty years.
+const MOST_STEPS: f64 = 1e15;
+
+/// What is wrong with so many steps; none where they can be taken.
+#[must_use]
+pub fn beyond_steps(steps: f64) -> Option<String> {
+    (steps.is_nan() || steps >= MOST_STEPS)
+        .then(|| format!("expected fewer than {MOST_STEPS:e} steps, found {steps:.3e}"))
 }
 
 impl fmt::Display for Resolution {
@@ -292,6 +309,18 @@ pub enum RunError {
         solver: String,
         /// What it lacks.
         reason: String,
+    },
+    /// A quantity is no finite number any more, though every grain is where it can be.
+    #[error("the simulation broke at t = {time:.6e} s (step {step}): `{column}` became {value}")]
+    NotFinite {
+        /// Time (s).
+        time: f64,
+        /// Step.
+        step: u64,
+        /// The column of the series.
+        column: String,
+        /// What it became.
+        value: f64,
     },
     /// The resolution makes no sense for this solver.
     #[error("{solver}: {reason}")]

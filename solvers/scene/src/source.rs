@@ -20,7 +20,7 @@ impl SceneSource {
     /// Reads a scene file.
     ///
     /// # Errors
-    /// When the file cannot be read or is not UTF-8.
+    /// When the file cannot be read or is not UTF-8, or a variant has an unknown key or a value of the wrong type.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let name = path.display().to_string();
         let bytes = std::fs::read(path).map_err(|cause| SceneError {
@@ -47,7 +47,12 @@ impl SceneSource {
             });
         }
         let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        Ok(Self { name, directory, text, variant: None, overrides: Vec::new() })
+        let source = Self { name, directory, text, variant: None, overrides: Vec::new() };
+        // A slip in a variant that nobody asked for today is one all the same.
+        for variant in source.variants()? {
+            source.clone().variant(&variant).scene_file()?;
+        }
+        Ok(source)
     }
 
     /// A scene from text that is already at hand.

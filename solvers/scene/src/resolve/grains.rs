@@ -4,11 +4,15 @@ use super::{Groups, Resolver};
 use crate::error::SceneError;
 use crate::file::{FileSpec, GrainShape, GrainsSpec, PackedSpec};
 use crate::generate;
+use crate::memory;
 use crate::overlap::{self, Deepest};
 use crate::packing;
 use crate::scene::{Domain, Grain, Wall};
 use indexmap::IndexMap;
 use nalgebra::Vector3;
+
+/// What a grain takes in a scene, a solver and a snapshot of all (B).
+const BYTES_OF_A_GRAIN: f64 = 1e3;
 
 impl Resolver<'_> {
     pub(super) fn grains(
@@ -167,12 +171,39 @@ impl Resolver<'_> {
         Ok(())
     }
 
+    /// A grain wider than a period would touch itself, and one outside sides that are fixed is in no domain.
+    pub(super) fn refuse_outside(&self, domain: &Domain, grains: &[Grain], groups: &Groups) -> Result<(), SceneError> {
+        for (name, range) in groups {
+            for (at, grain) in range.clone().zip(&grains[range.clone()]) {
+                for axis in 0..self.check.dimension.count() {
+                    let (low, high, centre) = (domain.low[axis], domain.high[axis], grain.position[axis]);
+                    let letter = ['x', 'y', 'z'][axis];
+                    if domain.periodic[axis] && 2.0 * grain.radius > high - low {
+                        let expected =
+                            format!("a period along {letter} no shorter than a grain, {} m", 2.0 * grain.radius);
+                        return Err(self.check.error("domain", &expected, &format!("{} m", high - low)));
+                    }
+                    let slack = 1e-9 * (high - low);
+                    if !domain.periodic[axis] && !(low - slack..=high + slack).contains(&centre) {
+                        let key = format!("grains.{name}");
+                        let expected = format!("grain {} within the domain, {letter} from {low} to {high} m", at + 1);
+                        return Err(self.check.error(&key, &expected, &format!("{letter} = {centre} m")));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Memory for more grains than any machine steps is asked for by mistake.
     fn refuse_too_many(&self, key: &str, count: u128) -> Result<(), SceneError> {
         if count > 100_000_000 {
             return Err(self.check.error(key, "at most 100 million grains", &count.to_string()));
         }
-        Ok(())
+        match memory::beyond(count as f64, "grains", BYTES_OF_A_GRAIN) {
+            Some(found) => Err(self.check.error(key, "grains that fit into memory", &found)),
+            None => Ok(()),
+        }
     }
 
     fn grains_from_file(

@@ -78,6 +78,9 @@ impl Resolver<'_> {
             }
         }
         let (mut grains, groups) = self.grains(grain_shape, domain.as_ref())?;
+        if let Some(domain) = &domain {
+            self.refuse_outside(domain, &grains, &groups)?;
+        }
         let driven = self.driven(&mut grains, &groups, domain.as_ref())?;
         let deformable = self.deformable()?;
         let bodies = self.bodies()?;
