@@ -194,10 +194,9 @@ fn beyond_memory(scene: &Scene, cell: f64, points: u32) -> Option<String> {
         (in_cells(volume), boxed(2.0 * grain.radius))
     });
     let (filled, nodes) = of_bodies.chain(of_grains).fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
-    let of_cell = f64::from(points).powi(dimensions as i32) * BYTES_OF_A_POINT;
-    memory::beyond(filled, of_cell)
-        .or_else(|| memory::beyond(nodes, BYTES_OF_A_NODE))
-        .map(|words| format!("cells {words}"))
+    let in_cell = f64::from(points).powi(dimensions as i32);
+    memory::beyond(filled * in_cell, "points", BYTES_OF_A_POINT)
+        .or_else(|| memory::beyond(nodes, "nodes", BYTES_OF_A_NODE))
 }
 
 /// Cells that a radius must have: a body smaller than a cell shows the grid no gradient of its own.
