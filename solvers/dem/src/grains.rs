@@ -50,7 +50,7 @@ impl<S: Space, R: Rotation<S>> Grains<S, R> {
         let movement =
             |grain: &Grain| Movement { velocity: S::restrict(grain.velocity), inverse_mass: 1.0 / grain.mass };
         let ids = || (0..all.len()).map(|id| id as u32);
-        Self {
+        let mut grains = Self {
             place: all.iter().map(place).collect(),
             movement: all.iter().map(movement).collect(),
             rotation: all.iter().map(|grain| R::new(S::restrict_spin(grain.spin), 1.0 / grain.inertia)).collect(),
@@ -59,7 +59,12 @@ impl<S: Space, R: Rotation<S>> Grains<S, R> {
             material: all.iter().map(|grain| grain.material).collect(),
             id: ids().collect(),
             slot: ids().collect(),
+        };
+        // Nothing moves a driven grain: to what meets it, it is as heavy as a wall.
+        for &driven in scene.driven.iter().flat_map(|driven| &driven.grains) {
+            grains.movement[driven].inverse_mass = 0.0;
         }
+        grains
     }
 
     /// Number of grains.

@@ -102,6 +102,17 @@ impl Mpm {
                 (SMALLEST * scene.reference_length / body.shape.length(dimensions)).ceil()
             )));
         }
+        for (body, axis) in scene.bodies.iter().flat_map(|body| (0..dimensions).map(move |axis| (body, axis))) {
+            let BlockShape::Box { low, high } = body.shape else { continue };
+            let between = (high[axis] - low[axis]) / lattice.cell[axis];
+            if body.sides[axis].iter().all(|side| *side != Hold::Free) && between < BETWEEN_SIDES {
+                return Err(self.resolution_error(format!(
+                    "expected at least {BETWEEN_SIDES} cells between two sides of `{}` that are held, found {between:.3}: \
+                     in fewer the motion of both sides is folded into the same nodes, which makes energy",
+                    body.name
+                )));
+            }
+        }
         let speed = scene.fastest_wave();
         let critical = lattice.shortest(scene.dimension.count()) / speed;
         let Duration::Seconds(time) = scene.duration else {
@@ -201,6 +212,10 @@ fn beyond_memory(scene: &Scene, cell: f64, points: u32) -> Option<String> {
 
 /// Cells that a radius must have: a body smaller than a cell shows the grid no gradient of its own.
 const SMALLEST: f64 = 0.5;
+
+/// Cells that must lie between two sides that are held: with one, energy was seen to grow 2e7-fold in 60 periods; with
+/// 1.5 it stays within .2 %.
+const BETWEEN_SIDES: f64 = 1.5;
 
 /// A simulation under way.
 struct Running<S: Space> {

@@ -48,18 +48,26 @@ impl<S: Space> Pair<'_, S> {
             normal: self.between * inverse_distance,
             overlap,
             velocity: self.velocity,
-            effective_mass: if N::DAMPED { 1.0 / (self.inverse_masses[0] + self.inverse_masses[1]) } else { 0.0 },
+            effective_mass: if N::DAMPED { harmonic(self.inverse_masses) } else { 0.0 },
             effective_radius: if N::CURVED || R::ACTIVE { first * second / (first + second) } else { 0.0 },
         };
         let arms = self.radii.map(|radius| radius - options.arm_reduction * overlap);
         let turning = match self.spins {
             [Some(a), Some(b)] => {
                 let about = |k: usize| self.inertia[k] + self.radii[k] * self.radii[k] / self.inverse_masses[k];
-                let inertia = if R::ACTIVE { 1.0 / (1.0 / about(0) + 1.0 / about(1)) } else { 0.0 };
+                let inertia = if R::ACTIVE { harmonic([1.0 / about(0), 1.0 / about(1)]) } else { 0.0 };
                 Some(Turning { surface: a * arms[0] + b * arms[1], relative: a - b, inertia })
             }
             _ => None,
         };
         stages::<S, N, T, R, RECORD>(&touch, arms, turning, options, elapsed, history)
     }
+}
+
+/// The mass (kg), or moment of inertia (kg m²), of two bodies against each other, from the inverses of both; none where
+/// both are driven: they do not feel each other.
+#[inline(always)]
+fn harmonic([first, second]: [f64; 2]) -> f64 {
+    let inverse = first + second;
+    if inverse > 0.0 { 1.0 / inverse } else { 0.0 }
 }

@@ -374,7 +374,8 @@ impl<S: Space> Shared<S> {
                     ([node.slot, slot], [mass, mass_of(other as usize, slot)])
                 }
             };
-            if masses[0] > 0.0 && masses[1] > 0.0 {
+            // A node that the place does not reach, where it lies on a line of the grid, has no normal from it.
+            if node.weight > 0.0 && masses[0] > 0.0 && masses[1] > 0.0 {
                 self.meetings.push(Meeting {
                     key: key(lattice.wrapped(place)),
                     body: body as u32,
