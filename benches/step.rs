@@ -88,7 +88,7 @@ fn scaling(criterion: &mut Criterion) {
     group.sample_size(20);
     for count in [10_u32, 32, 100, 316] {
         let scene = lattice(count);
-        let mut simulation = start(&scene, Convention::CUNDALL_STRACK, 0.1);
+        let mut simulation = start(&scene, Convention::DEFAULT, 0.1);
         group.throughput(Throughput::Elements(10 * scene.grains.len() as u64));
         group.bench_with_input(BenchmarkId::from_parameter(count * count), &count, |bencher, _| {
             bencher.iter(|| simulation.advance(black_box(10)));

@@ -65,7 +65,7 @@ fn counted_loop() {
     if name.ends_with("with-idle-friction") {
         assert!(Effect::Friction.switch_on_idly(&mut scene));
     }
-    let mut simulation = Dem::new(Convention::CUNDALL_STRACK).start(&scene, step).unwrap();
+    let mut simulation = Dem::new(Convention::DEFAULT).start(&scene, step).unwrap();
     simulation.advance(steps).unwrap();
     assert_eq!(simulation.cost().neighbour_builds, 1);
 }
@@ -119,7 +119,7 @@ fn dense_shear_without_friction_takes_fewer_instructions() {
 /// nothing.
 #[test]
 fn what_is_absent_is_no_part_of_the_kernel() {
-    let kernel = |scene: &Scene| Dem::new(Convention::CUNDALL_STRACK).start(scene, 1e-4).unwrap().layout();
+    let kernel = |scene: &Scene| Dem::new(Convention::DEFAULT).start(scene, 1e-4).unwrap().layout();
     for mut scene in [lattice(), dense_shear()] {
         let without = kernel(&scene);
         assert!(without.contains("Frictionless") && !without.contains("Coulomb"), "{without}");

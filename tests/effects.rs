@@ -27,7 +27,7 @@ fn with_idle_friction(scene: &Scene) -> Scene {
 }
 
 fn run(scene: &Scene, resolution: Resolution) -> Record {
-    Dem::new(Convention::CUNDALL_STRACK).run(scene, &resolution, &mut ()).unwrap()
+    Dem::new(Convention::DEFAULT).run(scene, &resolution, &mut ()).unwrap()
 }
 
 #[test]

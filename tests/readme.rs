@@ -99,7 +99,7 @@ fn the_scene_runs() {
     for variant in [PLAIN, "icy"] {
         let source = if variant == PLAIN { source.clone() } else { source.clone().variant(variant) };
         let scene = source.scene(&read_grains).unwrap();
-        let record = grainbench::dem::solver::Dem::new(Convention::CUNDALL_STRACK)
+        let record = grainbench::dem::solver::Dem::new(Convention::DEFAULT)
             .run(&scene, &Resolution::CriticalFraction(0.1), &mut ())
             .unwrap();
         // Rolls at (2/3) g sin θ; on ice it slides at g (sin θ − μ cos θ). Both to the compliance of the contact.

@@ -166,7 +166,7 @@ fn restitution() -> Vec<Claim> {
 }
 
 fn at_angle(variant: &'static str, degrees: f64) -> Run {
-    Run::new(variant, "dem", STEP.resolution).adjusted(&format!("{degrees}° from the normal"), move |scene| {
+    Run::new(variant, "dem:1979", STEP.resolution).adjusted(&format!("{degrees}° from the normal"), move |scene| {
         let velocity = &mut scene.grains[0].velocity;
         let (speed, angle) = (velocity.norm(), degrees.to_radians());
         (velocity.x, velocity.z) = (speed * angle.sin(), -speed * angle.cos());
@@ -178,7 +178,8 @@ fn tangential(done: &Done) -> Result<f64, Missing> {
     Ok(done.last("a.vx")? / done.scene.grains[0].velocity.x)
 }
 
-/// μ(1+e) with the restitution that the law was given.
+/// μ(1+e) with the restitution that the law was given: the impulse of friction where the limit is that of the spring, for
+/// ∫F_spring dt = m(1+e)v, and what the dashpot does cancels over the impact.
 fn impulse(scene: &Scene) -> f64 {
     let law = law(scene);
     let ratio = law.damping_ratio;

@@ -48,7 +48,10 @@ pub(super) fn ours(scene: &Scene, step: f64, observed: &Observed) -> Result<Vec<
         let half_step = (convention == Convention::LAMMPS).then(|| run(convention, 2)).transpose()?;
         Ok(Peer { name: convention.name.to_owned(), series: run(convention, 1)?, half_step })
     };
-    [Convention::CUNDALL_STRACK, Convention::LAMMPS, Convention::LIGGGHTS].map(peer).into_iter().collect()
+    [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS, Convention::LIGGGHTS]
+        .map(peer)
+        .into_iter()
+        .collect()
 }
 
 fn common_divisor(a: u64, b: u64) -> u64 {

@@ -8,7 +8,8 @@ pub enum CoulombCap {
     /// The tangential spring; the tangential dashpot is added only while the contact sticks
     /// (Cundall & Strack 1979; LIGGGHTS `tangential history`).
     Spring,
-    /// Spring and dashpot together; the spring is reset to match (LAMMPS `gran/hooke/history`).
+    /// Spring and dashpot together; the spring is reset to match (Luding 2008, Granular Matter 10, 235, eq. 22; LAMMPS
+    /// `gran/hooke/history`).
     SpringAndDashpot,
 }
 
@@ -19,6 +20,9 @@ pub enum CapNormal {
     Spring,
     /// The magnitude of spring and dashpot together (LAMMPS, LIGGGHTS).
     Total,
+    /// Spring and dashpot together where they push, none where they pull: Coulomb's law as it is written,
+    /// |F_s| ≤ F_n tan φ + c.
+    Pushing,
 }
 
 /// Distance from a grain's centre at which tangential forces act.
@@ -78,9 +82,20 @@ pub struct Convention {
 }
 
 impl Convention {
-    /// Cundall & Strack 1979.
-    pub const CUNDALL_STRACK: Self = Self {
+    /// Ours: Coulomb's limit holds at every step, for spring and dashpot together.
+    pub const DEFAULT: Self = Self {
         name: "dem",
+        coulomb_cap: CoulombCap::SpringAndDashpot,
+        cap_normal: CapNormal::Pushing,
+        torque_arm: TorqueArm::Radius,
+        tension: Tension::Allowed,
+        history: History::Turned,
+        wall_rolling: WallRolling::Spin,
+    };
+    /// Cundall & Strack 1979 to the letter: the limit is that of the springs, and the tangential dashpot is added to it
+    /// while the contact sticks, however large it is.
+    pub const CUNDALL_STRACK: Self = Self {
+        name: "dem:1979",
         coulomb_cap: CoulombCap::Spring,
         cap_normal: CapNormal::Spring,
         torque_arm: TorqueArm::Radius,
@@ -108,11 +123,11 @@ impl Convention {
         history: History::Projected,
         wall_rolling: WallRolling::Surface,
     };
-    /// Cundall & Strack with the normal force never below zero.
-    pub const NO_TENSION: Self = Self { name: "dem:no-tension", tension: Tension::Clipped, ..Self::CUNDALL_STRACK };
+    /// Ours with the normal force never below zero.
+    pub const NO_TENSION: Self = Self { name: "dem:no-tension", tension: Tension::Clipped, ..Self::DEFAULT };
 
     /// Every preset.
-    pub const ALL: [Self; 4] = [Self::CUNDALL_STRACK, Self::LAMMPS, Self::LIGGGHTS, Self::NO_TENSION];
+    pub const ALL: [Self; 5] = [Self::DEFAULT, Self::CUNDALL_STRACK, Self::LAMMPS, Self::LIGGGHTS, Self::NO_TENSION];
 
     /// The options in words, for a record.
     #[must_use]
@@ -130,6 +145,7 @@ impl Convention {
                 match self.cap_normal {
                     CapNormal::Spring => "normal spring force",
                     CapNormal::Total => "total normal force",
+                    CapNormal::Pushing => "total normal force where it pushes",
                 }
             ),
             format!(

@@ -3,7 +3,7 @@
 use crate::contact::Options;
 use crate::contact::normal::{Hertz, HertzDashpot, Spring, SpringDashpot, SpringRestitution};
 use crate::contact::rolling::{ElasticPlastic, FreeRolling};
-use crate::contact::tangential::{CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
+use crate::contact::tangential::{CapAsLammps, CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
 use crate::convention::{Convention, CoulombCap, History};
 use crate::edge::Simulation;
 use crate::simulation::Kernel;
@@ -83,7 +83,7 @@ impl Dem {
                         kernel!($normal, Coulomb<CapOnTotal, Turned>, $rolling)
                     }
                     (CoulombCap::SpringAndDashpot, History::Projected) => {
-                        kernel!($normal, Coulomb<CapOnTotal, Projected>, $rolling)
+                        kernel!($normal, Coulomb<CapAsLammps, Projected>, $rolling)
                     }
                 }
             };

@@ -105,7 +105,7 @@ fn conventions() -> Vec<Convention> {
             .collect();
     };
     vary([|to| to.coulomb_cap = CoulombCap::Spring, |to| to.coulomb_cap = CoulombCap::SpringAndDashpot]);
-    vary([|to| to.cap_normal = CapNormal::Spring, |to| to.cap_normal = CapNormal::Total]);
+    vary([|to| to.cap_normal = CapNormal::Spring, |to| to.cap_normal = CapNormal::Pushing]);
     vary([|to| to.torque_arm = TorqueArm::Radius, |to| to.torque_arm = TorqueArm::ContactPoint]);
     vary([|to| to.tension = Tension::Allowed, |to| to.tension = Tension::Clipped]);
     vary([|to| to.history = History::Turned, |to| to.history = History::Projected]);

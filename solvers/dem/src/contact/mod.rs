@@ -47,6 +47,8 @@ pub struct Options {
     pub least_normal_force: f64,
     /// Weight of the dashpot in the normal force that Coulomb's limit is proportional to: 0 or 1.
     pub dashpot_in_cap: f64,
+    /// Weight of a normal force that pulls in Coulomb's limit: 0 or 1.
+    pub pull_in_cap: f64,
     /// Whether grains roll at walls by their surface's velocity over the distance of the wall, and not by their spin.
     pub rolls_by_surface: bool,
 }
@@ -66,7 +68,11 @@ impl Options {
             },
             dashpot_in_cap: match convention.cap_normal {
                 CapNormal::Spring => 0.0,
-                CapNormal::Total => 1.0,
+                CapNormal::Total | CapNormal::Pushing => 1.0,
+            },
+            pull_in_cap: match convention.cap_normal {
+                CapNormal::Spring | CapNormal::Total => 1.0,
+                CapNormal::Pushing => 0.0,
             },
             rolls_by_surface: matches!(convention.wall_rolling, WallRolling::Surface),
         }

@@ -34,7 +34,8 @@ pub trait Normal: Copy + Send + 'static {
 fn damped<S: Space>(touch: &Touch<'_, S>, options: &Options, spring: f64, viscosity: f64) -> NormalForce {
     let dashpot = viscosity * S::dot(touch.velocity, touch.normal);
     let total = (spring + dashpot).max(options.least_normal_force);
-    NormalForce { total, for_cap: (spring + options.dashpot_in_cap * (total - spring)).abs() }
+    let signed = spring + options.dashpot_in_cap * (total - spring);
+    NormalForce { total, for_cap: signed.max(-signed * options.pull_in_cap) }
 }
 
 /// A linear spring, F_n = k_n δ.

@@ -124,7 +124,8 @@ impl Cap for CapOnSpring {
     }
 }
 
-/// The limit acts on spring and dashpot together; the spring is reset so that their sum is the limit.
+/// The limit acts on spring and dashpot together; the spring is reset so that their sum is the limit (Luding 2008,
+/// Granular Matter 10, 235, eq. 22).
 #[derive(Clone, Copy, Debug)]
 pub struct CapOnTotal;
 
@@ -144,14 +145,35 @@ impl Cap for CapOnTotal {
         let mut force = -(*stretch * stiffness + slip * viscosity);
         let squared = S::tangent_squared(force);
         let slipping = squared > limit * limit;
-        if slipping && S::tangent_squared(*stretch) == 0.0 {
-            // LAMMPS drops a force beyond the limit where there is no stretch yet: seen in its evaluation at the start.
-            force = S::NO_TANGENT;
-        } else if slipping {
+        if slipping {
             force = force * (limit / squared.sqrt());
             *stretch = -(force + slip * viscosity) * (1.0 / stiffness);
         }
         Shear { force, slipping }
+    }
+}
+
+/// The same, but that a force beyond the limit is dropped where there is no stretch yet: seen of LAMMPS in its evaluation
+/// at the start.
+#[derive(Clone, Copy, Debug)]
+pub struct CapAsLammps;
+
+impl Cap for CapAsLammps {
+    #[inline(always)]
+    fn limit<S: Space, const DAMPED: bool>(
+        stretch: &mut S::Tangent,
+        slip: S::Tangent,
+        stiffness: f64,
+        viscosity: f64,
+        limit: f64,
+    ) -> Shear<S> {
+        let before = *stretch;
+        let shear = CapOnTotal::limit::<S, DAMPED>(stretch, slip, stiffness, viscosity, limit);
+        if DAMPED && viscosity != 0.0 && shear.slipping && S::tangent_squared(before) == 0.0 {
+            *stretch = before;
+            return Shear { force: S::NO_TANGENT, ..shear };
+        }
+        shear
     }
 }
 

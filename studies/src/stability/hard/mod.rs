@@ -256,7 +256,7 @@ mod tests {
                 grain.velocity += nalgebra::Vector3::new(-1e9, -2e9, 0.0);
             }
             let snapshot = grainbench_scene::record::Snapshot::of_grains(&scene, 1, 1.0, grains);
-            let solver = Dem::new(Convention::CUNDALL_STRACK);
+            let solver = Dem::new(Convention::DEFAULT);
             let mut short = crate::stability::assembly::all().unwrap().swap_remove(0).scene;
             short.duration = grainbench_scene::scene::Duration::Cycles(1);
             let mut record = solver.run(&short, &Resolution::TimeStep(0.1), &mut ()).unwrap();
