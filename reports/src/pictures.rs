@@ -46,7 +46,7 @@ pub fn write_pictures(dir: &Path, records: &[&Record], figures: &[Figure]) -> Re
         }
     };
     out.write("index.html", shell(&format!("grainbench · {title}"), &body))?;
-    out.commit()?;
+    out.commit_beside()?;
     Ok(())
 }
 

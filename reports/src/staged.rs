@@ -6,7 +6,9 @@ use std::path::{Component, Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::write::{WriteError, parent_of, temporary_in};
+use crate::manifest::{MANIFEST, Manifest};
+use crate::scratch::{Lock, temporary_in};
+use crate::write::{WriteError, parent_of};
 
 /// Files on their way into a directory. They gather in a hidden sibling and move into place at
 /// [`StagedDir::commit`]; dropped before that, nothing of them remains.
@@ -19,6 +21,8 @@ pub struct StagedDir {
     files: Vec<PathBuf>,
     /// Missing parents of the target that had to be made, outermost first; they go when nothing is committed.
     made: Vec<PathBuf>,
+    /// Whether a manifest stands with the files.
+    manifest: bool,
 }
 
 impl StagedDir {
@@ -28,7 +32,7 @@ impl StagedDir {
     /// When `target` is a file, or nothing can be written beside it.
     pub fn new(target: impl Into<PathBuf>) -> Result<Self, WriteError> {
         let target = target.into();
-        let mut staged = Self { target, holder: None, files: Vec::new(), made: Vec::new() };
+        let mut staged = Self { target, holder: None, files: Vec::new(), made: Vec::new(), manifest: true };
         staged.prepare().map_err(|source| WriteError::new(&staged.target, source))?;
         Ok(staged)
     }
@@ -53,6 +57,13 @@ impl StagedDir {
         fs::create_dir(holder.path().join("new"))?;
         self.holder = Some(holder);
         Ok(())
+    }
+
+    /// The same without a manifest, for directories whose files are listed elsewhere.
+    #[must_use]
+    pub fn without_manifest(mut self) -> Self {
+        self.manifest = false;
+        self
     }
 
     /// The directory that the files will stand in.
@@ -97,18 +108,66 @@ impl StagedDir {
         Ok(())
     }
 
-    /// Moves all files into place. Files of the same name are replaced, other files are left alone; when one
-    /// cannot be moved, those already moved go back.
+    /// Moves all files into place. Files of the same name are replaced, files that an earlier run left go, and other files
+    /// are left alone; when one cannot be moved, those already moved go back. Until all is done the manifest says that
+    /// the directory is mixed; one process at a time is at it.
     ///
     /// # Errors
     /// When a file cannot be put in place; all files are then as they were.
-    pub fn commit(mut self) -> Result<(), WriteError> {
+    pub fn commit(self) -> Result<(), WriteError> {
+        self.put_in_place(false)
+    }
+
+    /// The same, but that files that an earlier run left stay: what is added belongs to them.
+    ///
+    /// # Errors
+    /// As of [`StagedDir::commit`].
+    pub fn commit_beside(self) -> Result<(), WriteError> {
+        self.put_in_place(true)
+    }
+
+    fn put_in_place(mut self, keep: bool) -> Result<(), WriteError> {
         let holder = self.staging().map_err(|source| WriteError::new(&self.target, source))?.to_path_buf();
-        if self.target.exists() {
-            self.replace_files(&holder)?;
-        } else {
-            fs::rename(holder.join("new"), &self.target).map_err(|source| WriteError::new(&self.target, source))?;
+        let at_target = |source| WriteError::new(&self.target, source);
+        let mut manifest = Manifest { whole: true, files: self.files.clone() };
+        if !self.target.exists() {
+            if self.manifest {
+                manifest.write(&holder.join("new")).map_err(at_target)?;
+            }
+            match fs::rename(holder.join("new"), &self.target) {
+                // Another may have been quicker.
+                Err(_) if self.target.is_dir() => {}
+                done => {
+                    self.made.clear();
+                    return done.map_err(at_target);
+                }
+            }
         }
+        let _lock = Lock::of(&self.target).map_err(at_target)?;
+        if !self.manifest {
+            self.replace_files(&holder)?;
+            self.made.clear();
+            return Ok(());
+        }
+        let before = Manifest::read(&self.target);
+        let stood = before.as_ref().map(|of| of.files.clone()).unwrap_or_default();
+        let both = stood.iter().chain(&self.files).cloned().collect();
+        Manifest { whole: false, files: both }.write(&self.target).map_err(at_target)?;
+        if let Err(error) = self.replace_files(&holder) {
+            let _ = match before {
+                Some(before) => before.write(&self.target),
+                None => fs::remove_file(self.target.join(MANIFEST)),
+            };
+            return Err(error);
+        }
+        for left in stood.iter().filter(|name| !self.files.contains(name)) {
+            if keep {
+                manifest.files.push(left.clone());
+            } else {
+                remove_within(&self.target, left);
+            }
+        }
+        manifest.write(&self.target).map_err(at_target)?;
         self.made.clear();
         Ok(())
     }
@@ -137,6 +196,18 @@ impl StagedDir {
             }
         }
         Ok(())
+    }
+}
+
+/// Takes away a file of an earlier run, and folders that are empty then. A manifest that names something outside is not
+/// heeded.
+fn remove_within(directory: &Path, name: &Path) {
+    if !name.components().all(|part| matches!(part, Component::Normal(_))) {
+        return;
+    }
+    let _ = fs::remove_file(directory.join(name));
+    for folder in name.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
+        let _ = fs::remove_dir(directory.join(folder));
     }
 }
 
@@ -200,7 +271,27 @@ mod tests {
         staged.commit().unwrap();
         assert_eq!(fs::read_to_string(dir.path().join("a.txt")).unwrap(), "new");
         assert_eq!(fs::read_to_string(dir.path().join("mine.txt")).unwrap(), "mine");
-        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3);
+    }
+
+    #[test]
+    fn what_an_earlier_run_left_goes_and_a_mixed_directory_is_told() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("out");
+        let write = |names: &[&str]| {
+            let mut staged = StagedDir::new(&target).unwrap();
+            names.iter().for_each(|name| staged.write(name, "x").unwrap());
+            staged.commit().unwrap();
+        };
+        write(&["a.txt", "frames/1.vtk", "frames/2.vtk"]);
+        fs::write(target.join("mine.txt"), "mine").unwrap();
+        write(&["a.txt"]);
+        let left: std::collections::BTreeSet<_> =
+            fs::read_dir(&target).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, ["a.txt", "manifest.json", "mine.txt"].map(Into::into).into());
+        assert!(crate::refuse_mixed(&target).is_ok());
+        Manifest { whole: false, files: Vec::new() }.write(&target).unwrap();
+        assert!(crate::refuse_mixed(&target).is_err());
     }
 
     #[test]

@@ -4,8 +4,9 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, TempDir};
 use thiserror::Error;
+
+use crate::scratch::temporary_in;
 
 /// A file or directory that could not be written.
 #[derive(Debug, Error)]
@@ -48,19 +49,6 @@ pub(crate) fn parent_of(path: &Path) -> &Path {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     }
-}
-
-/// A hidden directory on the same file system, so that a rename out of it is atomic. Files are made inside it
-/// rather than by `NamedTempFile` so that they get the permissions of any other new file.
-pub(crate) fn temporary_in(parent: &Path) -> io::Result<TempDir> {
-    Builder::new().prefix(".grainbench-").tempdir_in(parent).map_err(without_its_path)
-}
-
-/// What the system said, without the temporary name that nobody asked for.
-fn without_its_path(error: io::Error) -> io::Error {
-    let inner =
-        error.get_ref().and_then(|wrapper| wrapper.source()).and_then(|inner| inner.downcast_ref::<io::Error>());
-    inner.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
 }
 
 #[cfg(test)]

@@ -108,7 +108,7 @@ fn build(arguments: &Build) -> Outcome {
         let made = make(of.program, &of.id, &of.title(), &date, &scene, &of.run.resolution);
         let said = match made {
             Ok(made) => {
-                let mut out = StagedDir::new(&target).map_err(Fault::input)?;
+                let mut out = StagedDir::new(&target).map_err(Fault::input)?.without_manifest();
                 let bytes: usize = made.files.iter().map(|(_, bytes)| bytes.len()).sum();
                 for (name, bytes) in &made.files {
                     out.write(name, bytes).map_err(Fault::input)?;

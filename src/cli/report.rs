@@ -8,7 +8,7 @@ use grainbench::reports::record_figures::{self, Named, is_plane};
 use grainbench::reports::report::Report;
 use grainbench::reports::store::REPORT_FILE;
 use grainbench::reports::study::{STUDY_FILE, load_study, write_study};
-use grainbench::reports::{summary_table, write_pictures, write_report};
+use grainbench::reports::{refuse_mixed, summary_table, write_pictures, write_report};
 use grainbench::scene::record::Record;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -29,6 +29,9 @@ pub(crate) struct Arguments {
 /// Reads what stands in a directory and writes page, figures and result files again. Ends as the run ended.
 pub(crate) fn report(arguments: &Arguments) -> Outcome {
     let page = format!("{}\n", arguments.dir.join("index.html").display());
+    for dir in std::iter::once(&arguments.dir).chain(&arguments.beside) {
+        refuse_mixed(dir).map_err(Fault::input)?;
+    }
     let holds = |file: &str| arguments.dir.join(file).is_file();
     if holds(RECORD_FILE) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
         pictures(arguments)?;

@@ -120,7 +120,8 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
     let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
     let store = arguments.checkpoint.clone().map(|path| Store { path, every: arguments.checkpoint_every });
-    let mut watcher = Watcher { critical: scene.critical_time_step(), header, progress: None, store };
+    let (method, critical) = (Method::of(&arguments.solver), scene.critical_time_step());
+    let mut watcher = Watcher { method, critical, header, progress: None, store };
     let record = match &from {
         None => solver.run(&scene, &resolution, &mut watcher),
         Some(checkpoint) => solver.restart(&scene, &resolution, checkpoint, &mut watcher),
@@ -218,6 +219,7 @@ fn footer(record: &Record, arguments: &Arguments) -> String {
 
 /// Tells people what runs, once the solver has taken it up, and how far it is.
 struct Watcher {
+    method: Option<Method>,
     critical: f64,
     header: Option<String>,
     progress: Option<Progress>,
@@ -226,7 +228,9 @@ struct Watcher {
 
 impl Watch for Watcher {
     fn begin(&mut self, time_step: f64, steps: u64) {
-        let of_critical = if self.critical.is_finite() {
+        let of_critical = if self.method == Some(Method::Grid) {
+            "within the Courant number of the grid".to_owned()
+        } else if self.critical.is_finite() {
             let fraction = number::significant(time_step / self.critical, 4);
             format!("{fraction} of the critical step {:.6e} s", self.critical)
         } else {

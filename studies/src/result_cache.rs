@@ -1,6 +1,6 @@
 //! Finished pieces of work, each in a file of its own under a name that says what it is.
 
-use grainbench_reports::{WriteError, write_file};
+use grainbench_reports::{WriteError, sweep, write_file};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs;
@@ -61,20 +61,6 @@ impl ResultCache {
     }
 }
 
-/// Takes away what was on its way into a folder.
-fn sweep(folder: &Path) -> io::Result<()> {
-    // The parent of a bare name is the current directory.
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        let left = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".grainbench-"));
-        if left && path.is_dir() {
-            fs::remove_dir_all(path)?;
-        }
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -91,19 +77,5 @@ mod tests {
         fs::write(folder.path().join("a.json"), "[7").unwrap();
         assert_eq!(cache.take::<u32>("a"), None);
         assert_eq!(ResultCache::none().take::<u32>("a"), None);
-    }
-
-    #[test]
-    fn clears_what_a_killed_program_left_beside() {
-        let out = tempfile::tempdir().unwrap();
-        let folder = out.path().join("points");
-        for place in [out.path(), &folder] {
-            fs::create_dir_all(place.join(".grainbench-x")).unwrap();
-            fs::write(place.join(".grainbench-x/half"), "{").unwrap();
-            fs::write(place.join("mine"), "").unwrap();
-        }
-        ResultCache::open(&folder, false).unwrap();
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
-        assert_eq!(fs::read_dir(out.path()).unwrap().count(), 2);
     }
 }

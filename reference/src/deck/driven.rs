@@ -1,5 +1,6 @@
 //! Grains that are moved as walls are: groups of their own, which `fix move` moves.
 
+use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
 use super::outline::is_flat;
@@ -21,5 +22,10 @@ pub(crate) fn driven(scene: &Scene) -> (Vec<String>, &'static str) {
         groups.push_str(&format!(" driven{number}"));
     }
     lines.push(format!("group free subtract all{groups}"));
+    if scene.laws.iter().flatten().any(ContactLaw::has_damping) {
+        // What is frozen is as heavy as a wall to dashpots; `fix move` moves it all the same.
+        lines.push(format!("group heavy union{groups}"));
+        lines.push("fix heavy heavy freeze".to_owned());
+    }
     (lines, "free")
 }

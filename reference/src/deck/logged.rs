@@ -86,8 +86,10 @@ pub(crate) fn read(logged: &[Logged], log: &Log, series: &Series) -> Vec<(String
                 continue;
             };
             for (step, value) in run.thermo.values(step).zip(run.thermo.values(at)) {
-                if let Ok(place) = series.step.binary_search(&(step as u64)) {
-                    values[place] = value;
+                // The step at which a run ends is printed once more by the one after it, before its lists of neighbours
+                // are made: what was printed first holds.
+                if let Some(first) = series.step.binary_search(&(step as u64)).ok().filter(|&at| values[at].is_nan()) {
+                    values[first] = value;
                 }
             }
         }

@@ -15,10 +15,6 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     if scene.global_damping != 0.0 {
         return Err("mass-proportional damping of translation and rotation (`global_damping`) is in neither".to_owned());
     }
-    if !scene.driven.is_empty() && laws().any(ContactLaw::has_damping) {
-        let here = "to dashpots a driven grain is as heavy as a wall here";
-        return Err(format!("{here}; both take its own mass"));
-    }
     if laws().any(|law| law.cohesion != 0.0) {
         let here = "cohesion is shear strength that needs no load here, |F_s| <= F_n tan phi + c, and never pulls";
         return Err(format!("{here}; both have cohesion only as an attraction along the normal"));

@@ -158,7 +158,7 @@ impl fmt::Display for Contact {
         formatter.write_str(match self {
             Self::NoSlip => "no slip: one velocity field",
             Self::Kinematic => "nodal contact on approach (2000)",
-            Self::Traction => "nodal contact under compressive traction (2001)",
+            Self::Traction => "nodal contact under compressive traction (2001), which keeps no Coulomb limit at walls",
             Self::Gap => "nodal contact where surfaces have met",
             Self::Penalty => "springs between surfaces",
         })

@@ -13,10 +13,11 @@ pub struct WallSpec {
     /// An infinite plane (a line in two dimensions), solid behind its normal.
     #[serde(default)]
     pub plane: Option<PlaneSpec>,
-    /// A segment between two points (m), solid on both sides; two dimensions only.
+    /// A segment between two points (m), solid on both sides; two dimensions only. Each wall is a surface of its own: a
+    /// grain at the joint of two touches both, and feels both.
     #[serde(default)]
     pub segment: Option<[Vec<f64>; 2]>,
-    /// A rectangle, solid on both sides; three dimensions only.
+    /// A rectangle, solid on both sides; three dimensions only. At the joint of two a grain touches both.
     #[serde(default)]
     pub rectangle: Option<RectangleSpec>,
     /// Prescribed motion: phases that add up.
