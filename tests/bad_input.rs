@@ -130,6 +130,11 @@ refused_edits! {
     segment_of_no_length: "plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }" => "segment = [[0.0, 0.0], [0.0, 0.0]]";
     periodic_without_domain: "[materials.rock]" => "[domain]\nperiodic = [true, false]\n\n[materials.rock]";
     domain_upside_down: "[materials.rock]" => "[domain]\nlow = [1.0, 0.0]\nhigh = [0.0, 1.0]\n\n[materials.rock]";
+    period_shorter_than_a_grain:
+        "[materials.rock]" => "[domain]\nlow = [0.0, 0.0]\nhigh = [0.19, 1.0]\nperiodic = [true, false]\n\n[materials.rock]";
+    grain_outside_the_domain: "[materials.rock]" => "[domain]\nlow = [-1.0, 0.0]\nhigh = [1.0, 0.2]\n\n[materials.rock]";
+    unknown_key_in_a_variant_not_asked_for: "contacts.rock.friction = 0.1" => "contacts.rock.frction = 0.1";
+    more_steps_than_can_be_taken: "duration = 0.01" => "duration = 1e200";
     toml_syntax: "radius = 0.1" => "radius = = 0.1";
     missing_data_file: "radius = 0.1\nposition = [0.0, 0.1]" => "file = { path = \"no-such.data\" }";
     huge_lattice:

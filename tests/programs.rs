@@ -19,7 +19,7 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
         (command.status.code(), text(command.stdout), text(command.stderr))
     };
     let (code, out, _) = program(&["run", "backspin/disc", "--solver", "lammps", "--live", "--json"]);
-    assert_eq!(code, Some(0));
+    assert_eq!(code, Some(1), "nothing was judged");
     let results: Value = serde_json::from_str(&out).unwrap();
     let rows = results["verdicts"].as_array().unwrap();
     assert!(!rows.is_empty() && rows.iter().all(|row| row["verdict"] == "not-available"), "{out}");

@@ -431,7 +431,7 @@ fn slip_in_compression() -> Vec<Claim> {
             (0.0, Control::scene("friction halved", |scene| scene.change_laws(|law| law.friction *= 0.5)))
         };
         claim("most contacts slipping at once in slow compression", "1")
-            .of(Run::new(variant, "dem", LEVELS[0].resolution))
+            .of(Run::new(variant, "dem:1979", LEVELS[0].resolution))
             .equals(
                 Source::Derived("tan φ against κb/(δ − b): .4286 at κ = 2/3, .5556 at κ = 1 (derivation)"),
                 move |done| {
@@ -463,7 +463,7 @@ fn apart(a: &Done, b: &Done) -> Result<f64, Missing> {
 
 fn distortion() -> Vec<Claim> {
     let runs = |variants: &[usize]| -> Vec<Run> {
-        variants.iter().map(|&at| Run::new(DISTORTION[at], "dem", LEVELS[0].resolution)).collect()
+        variants.iter().map(|&at| Run::new(DISTORTION[at], "dem:1979", LEVELS[0].resolution)).collect()
     };
     vec![
         claim("30°: F_n after compression, κ = 1 over κ = 2/3", "1")

@@ -24,7 +24,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
              corners and at the centre, and the corners of the other diagonal have come off the walls, as in Fig. 8(b).",
         ),
     ] {
-        let done = runner.run(&Run::new(variant, "dem", LEVELS[0].resolution))?;
+        let done = runner.run(&Run::new(variant, "dem:1979", LEVELS[0].resolution))?;
         if let Some(snapshot) = done.record.snapshots.last() {
             all.push(Figure::forces(name, title, caption, force_plot(snapshot)));
         }
@@ -124,7 +124,7 @@ fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
 fn distortion(runner: &Runner, name: &str, angle: &str, variants: [&'static str; 2]) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for (variant, kappa) in variants.into_iter().zip(["2/3", "1"]) {
-        let done = runner.run(&Run::new(variant, "dem", LEVELS[0].resolution))?;
+        let done = runner.run(&Run::new(variant, "dem:1979", LEVELS[0].resolution))?;
         for (column, force) in [("centre-edge.normal_force", "F_n"), ("centre-edge.shear_force", "F_s")] {
             let values = done.series().column(column).unwrap_or_default();
             let points =

@@ -63,7 +63,8 @@ const IMPOSED: &str = "imposed by the motion of the walls (derivation)";
 const FOUND: &str = "how near the search for the motion of the walls ends";
 
 fn run(variant: &'static str) -> Run {
-    Run::new(variant, "dem", LEVELS[0].resolution)
+    // The paper's rule: the motion of the walls was found with it.
+    Run::new(variant, "dem:1979", LEVELS[0].resolution)
 }
 
 /// Stages A and B.

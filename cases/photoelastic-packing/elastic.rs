@@ -45,7 +45,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 Ok(Measured::new(b / a, 1.0, 1.0))
             })
             .within(judged(1e-4, "discs on springs lose 1e-5"))
-            .refuses(Control::without_the_error("discs on springs", "dem", LEVELS[0].resolution)),
+            .refuses(Control::without_the_error("discs on springs", "dem:1979", LEVELS[0].resolution)),
         claim("F_H/F_V at stage B, 50 elastic discs against discs on springs", "1")
             .of_all([discs(), run("fifty").aside()])
             .agrees(

@@ -67,7 +67,7 @@ pub(crate) fn watch(
 ) -> Result<Snapshot, Box<dyn Error>> {
     // That of a whole run of the scene, for which steps are fitted into its duration.
     let (time_step, _) = RUNG.steps(scene)?;
-    let mut simulation = Dem::new(Convention::DEFAULT).start(scene, time_step)?;
+    let mut simulation = Dem::new(Convention::CUNDALL_STRACK).start(scene, time_step)?;
     let (steps, stride) = ((time / time_step).round() as u64, (every / time_step).round().max(1.0) as u64);
     while simulation.step() < steps {
         simulation.advance(stride.min(steps - simulation.step()))?;

@@ -67,7 +67,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     let section = judge(named.case, named.variant, &outputs, arguments.partial).map_err(Fault::input)?;
     let words = vec!["check".to_owned(), arguments.case.clone(), outputs.name()];
     let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
-    write_report(&arguments.out, &report).map_err(Fault::input)?;
+    write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {

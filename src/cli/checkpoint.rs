@@ -4,6 +4,7 @@ use super::exit::Fault;
 use grainbench::reports::write_file;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Where checkpoints go, each in the place of the one before.
@@ -14,6 +15,26 @@ pub(crate) struct Store {
 }
 
 impl Store {
+    /// Refuses a place where something else stands than a checkpoint of ours: it would be replaced.
+    pub(crate) fn refuse_others(&self) -> Result<(), Fault> {
+        let refused = |found: &str| {
+            let there = self.path.display();
+            Err(Fault::input(format!(
+                "--checkpoint {there}: expected no file, or a checkpoint to replace; found {found}"
+            )))
+        };
+        match fs::symlink_metadata(&self.path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+            Err(error) => refused(&error.to_string()),
+            Ok(of) if !of.is_file() => refused("something that is no file"),
+            Ok(_) => match Checkpoint::is_one(&self.path) {
+                Ok(true) => Ok(()),
+                Ok(false) => refused("another file"),
+                Err(error) => refused(&error.to_string()),
+            },
+        }
+    }
+
     /// Stores a checkpoint, whole or not at all.
     pub(crate) fn put(&self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
         write_file(&self.path, checkpoint.to_bytes()?).map_err(|error| CheckpointError::NotStored(error.to_string()))

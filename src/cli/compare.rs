@@ -66,7 +66,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let [a, b] = names(arguments);
     let words = vec!["compare".to_owned(), a, b];
     let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
-    write_report(&arguments.out, &report).map_err(Fault::input)?;
+    write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {

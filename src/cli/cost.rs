@@ -48,7 +48,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     refuse_unknown(&arguments.solver)?;
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
     check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::input)?;
+    let cache = ResultCache::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::writing)?;
     let wanted = Wanted { solvers: arguments.solver.clone(), all: arguments.levels == "all" };
     let meter = Meter::new(&cache, wanted, &solvers::Registry);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
@@ -59,7 +59,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let mut follower = Follower::new(pieces as u64, "points");
     let mut study = Study::new(provenance(words(arguments), 0.0));
     for (at, subject) in subjects.iter().enumerate() {
-        let diagram = meter.diagram(subject, &mut follower).map_err(Fault::input)?;
+        let diagram = meter.diagram(subject, &mut follower).map_err(Fault::writing)?;
         if diagram.points.is_empty() {
             continue;
         }
@@ -68,7 +68,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         if at + 1 < subjects.len() {
             options.push(format!("unfinished: {} of {} quantities", at + 1, subjects.len()));
             study.provenance = provenance(options, start.elapsed().as_secs_f64());
-            write_study(&arguments.out, &study).map_err(Fault::input)?;
+            write_study(&arguments.out, &study).map_err(Fault::writing)?;
         }
     }
     study.provenance = provenance(words(arguments), start.elapsed().as_secs_f64());
@@ -77,7 +77,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         study.changes = compare(old, &new);
         study.against = Some(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
     }
-    write_study(&arguments.out, &study).map_err(Fault::input)?;
+    write_study(&arguments.out, &study).map_err(Fault::writing)?;
     let reused = follower.end();
     if arguments.json {
         print(&study_json(&study).map_err(Fault::input)?)?;

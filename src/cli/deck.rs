@@ -60,11 +60,11 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         DeckError::Resolution(_) => Fault::input(error),
     })?;
     check_writable(&arguments.out)?;
-    let mut out = StagedDir::new(&arguments.out).map_err(Fault::input)?.without_manifest();
+    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?.without_manifest();
     for (name, text) in &deck.files {
-        out.write(name, text).map_err(Fault::input)?;
+        out.write(name, text).map_err(Fault::writing)?;
     }
-    out.commit().map_err(Fault::input)?;
+    out.commit().map_err(Fault::writing)?;
     let (stepping, out) = (&deck.stepping, arguments.out.display());
     print(&format!(
         "scene      {}\nprogram    {program}\ntime step  {:.6e} s\nsteps      {}\nfiles      {}\nrun        cd {out} && {}\n",

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
 pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     let mut ledgers = ledgers(&arguments.cases)?;
     check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::input)?;
+    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::writing)?;
     let program = identity::of_this_program();
     let start = Instant::now();
     let pieces: usize = ledgers.iter().map(|(_, pieces)| pieces.len()).sum();
@@ -49,7 +49,7 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     for (at, (ledger, pieces)) in ledgers.iter_mut().enumerate() {
         for piece in pieces.iter() {
             follower.now(&format!("{} · {}", piece.variant, piece.effect.word()));
-            let (entry, reused) = ledger.entry(&program, piece, &cache).map_err(Fault::input)?;
+            let (entry, reused) = ledger.entry(&program, piece, &cache).map_err(Fault::writing)?;
             study.ledger.extend(entry);
             follower.done(reused);
         }
@@ -58,7 +58,7 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
             options.push(format!("unfinished: {} of {count} cases", at + 1));
         }
         study.provenance = provenance(options, start.elapsed().as_secs_f64());
-        write_study(&arguments.out, &study).map_err(Fault::input)?;
+        write_study(&arguments.out, &study).map_err(Fault::writing)?;
     }
     let reused = follower.end();
     if arguments.json {

@@ -108,12 +108,12 @@ fn build(arguments: &Build) -> Outcome {
         let made = make(of.program, &of.id, &of.title(), &date, &scene, &of.run.resolution);
         let said = match made {
             Ok(made) => {
-                let mut out = StagedDir::new(&target).map_err(Fault::input)?.without_manifest();
+                let mut out = StagedDir::new(&target).map_err(Fault::writing)?.without_manifest();
                 let bytes: usize = made.files.iter().map(|(_, bytes)| bytes.len()).sum();
                 for (name, bytes) in &made.files {
-                    out.write(name, bytes).map_err(Fault::input)?;
+                    out.write(name, bytes).map_err(Fault::writing)?;
                 }
-                out.commit().map_err(Fault::input)?;
+                out.commit().map_err(Fault::writing)?;
                 format!("made           {}/{} ({bytes} bytes)\n", of.program.name(), of.id)
             }
             Err(error @ RunError::NotAvailable { .. }) => {
@@ -171,7 +171,7 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
         drop(progress);
         lines.push_str(&format!("{}: {} of {} rows\n", case.name, stored.estimate.len(), claims.len()));
         let text = toml::to_string(&stored).map_err(Fault::input)?;
-        write_file(uncertainty::file(case.name), text.as_bytes()).map_err(Fault::input)?;
+        write_file(uncertainty::file(case.name), text.as_bytes()).map_err(Fault::writing)?;
     }
     print(&lines)?;
     Ok(ExitCode::SUCCESS)
@@ -209,7 +209,7 @@ fn verify(arguments: &Verify) -> Outcome {
     };
     let words = [vec!["reference verify".to_owned()], arguments.ids.clone()].concat();
     let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
-    write_report(&arguments.out, &report).map_err(Fault::input)?;
+    write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {

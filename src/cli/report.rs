@@ -46,12 +46,12 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     }
     if holds(STUDY_FILE) {
         let study = load_study(&arguments.dir).map_err(Fault::input)?;
-        write_study(&arguments.dir, &study).map_err(Fault::input)?;
+        write_study(&arguments.dir, &study).map_err(Fault::writing)?;
         print(&page)?;
         return Ok(ExitCode::SUCCESS);
     }
     let report = Report::load(&arguments.dir).map_err(Fault::input)?;
-    write_report(&arguments.dir, &report).map_err(Fault::input)?;
+    write_report(&arguments.dir, &report).map_err(Fault::writing)?;
     print(&format!("{}\n{page}", summary_table(&report)))?;
     Ok(run::exit_code(&report, false))
 }
@@ -71,7 +71,7 @@ fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     let records: Vec<Record> = dirs.map(|dir| read(dir)).collect::<Result<_, _>>()?;
     let named: Vec<Named<'_>> = records.iter().map(|record| Named { name: name(record, &records), record }).collect();
     let figures = record_figures::figures(&named, arguments.fringe_stress);
-    write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::input)
+    write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::writing)
 }
 
 /// What tells a record from the others: nothing, the solver, or solver and resolution.

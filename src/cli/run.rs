@@ -69,7 +69,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     }
     let provenance = provenance(words(cases, options), start.elapsed().as_secs_f64());
     let report = Report { provenance, sections };
-    write_report(&options.out, &report).map_err(Fault::input)?;
+    write_report(&options.out, &report).map_err(Fault::writing)?;
     if options.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {

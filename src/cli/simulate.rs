@@ -90,6 +90,9 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+/// Most keys that are overridden on a command line.
+const MOST_OVERRIDES: usize = 1000;
+
 /// A key and its value.
 pub(crate) fn path_and_value(text: &str) -> Result<(String, String), String> {
     let (path, value) = text.split_once('=').ok_or("expected path=value, found no `=`")?;
@@ -110,6 +113,12 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     if let Some(variant) = &arguments.variant {
         source = source.variant(variant);
     }
+    if arguments.set.len() > MOST_OVERRIDES {
+        let found = arguments.set.len();
+        return Err(Fault::input(format!(
+            "--set: expected at most {MOST_OVERRIDES} keys, found {found}: edit the scene"
+        )));
+    }
     for (path, value) in &arguments.set {
         source = source.set(path, value);
     }
@@ -121,6 +130,9 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
     let store = arguments.checkpoint.clone().map(|path| Store { path, every: arguments.checkpoint_every });
     let (method, critical) = (Method::of(&arguments.solver), scene.critical_time_step());
+    if let Some(store) = &store {
+        store.refuse_others()?;
+    }
     let mut watcher = Watcher { method, critical, header, progress: None, store };
     let record = match &from {
         None => solver.run(&scene, &resolution, &mut watcher),
@@ -190,9 +202,9 @@ fn fault(error: RunError) -> Fault {
 }
 
 fn write(record: &Record, arguments: &Arguments) -> Result<(), Fault> {
-    let mut out = StagedDir::new(&arguments.out).map_err(Fault::input)?;
-    export::write_record(record, &mut out).map_err(Fault::input)?;
-    out.commit().map_err(Fault::input)
+    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
+    export::write_record(record, &mut out).map_err(Fault::writing)?;
+    out.commit().map_err(Fault::writing)
 }
 
 /// What is known before the first step.

@@ -57,7 +57,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let hard = hard::all();
     let pieces = select(arguments, &assemblies, &hard)?;
     check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::input)?;
+    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::writing)?;
     let program = identity::of_this_program();
     let start = Instant::now();
     let mut written = start;
@@ -76,7 +76,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
                 options.push(format!("unfinished: {} of {} limits and cases", at + 1, pieces.len()));
             }
             study.provenance = provenance(options, start.elapsed().as_secs_f64());
-            write_study(&arguments.out, &study).map_err(Fault::input)?;
+            write_study(&arguments.out, &study).map_err(Fault::writing)?;
             written = Instant::now();
         }
     }
@@ -104,7 +104,7 @@ fn do_piece(
         Piece::Assembly(assembly, solver) => {
             follower.now(&format!("{} · {solver}", assembly.name));
             let asked = limit::of_assembly(program, assembly, (&solvers::Registry, solver), cache);
-            let (limit, reused) = asked.map_err(Fault::input)?;
+            let (limit, reused) = asked.map_err(Fault::writing)?;
             study.limits.push(limit);
             Ok(reused)
         }
@@ -113,14 +113,14 @@ fn do_piece(
             let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;
             let scene = bar.variant(PLAIN)?;
             let asked = limit::of_bar(program, &scene, (&solvers::Registry, setting), cells, cache);
-            let (limit, reused) = asked.map_err(Fault::input)?;
+            let (limit, reused) = asked.map_err(Fault::writing)?;
             study.limits.push(limit);
             Ok(reused)
         }
         Piece::Hard(case, solver) => {
             follower.now(&format!("{} · {solver}", case.name));
             let asked = hard::verdict(program, case, (&solvers::Registry, solver), cache);
-            let (row, reused) = asked.map_err(Fault::input)?;
+            let (row, reused) = asked.map_err(Fault::writing)?;
             study.hard.push(row);
             Ok(reused)
         }

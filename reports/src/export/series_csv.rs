@@ -11,7 +11,7 @@ use grainbench_scene::record::Series;
 /// When `out` refuses.
 pub fn write(series: &Series, out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    let columns = series.columns.iter().map(|column| format!("{} ({})", column.name, column.unit));
+    let columns = series.columns.iter().map(|column| harmless(format!("{} ({})", column.name, column.unit)));
     table.write_record(["step".into(), "time (s)".into()].into_iter().chain(columns))?;
     for (sample, (step, time)) in series.step.iter().zip(&series.time).enumerate() {
         let values = series
@@ -22,6 +22,11 @@ pub fn write(series: &Series, out: impl Write) -> io::Result<()> {
         table.write_record([step.to_string(), format!("{time:?}")].into_iter().chain(values))?;
     }
     table.flush()
+}
+
+/// A head that no spreadsheet takes for a formula: probes are named by whoever wrote the scene.
+fn harmless(head: String) -> String {
+    if head.starts_with(['=', '+', '-', '@']) { format!("'{head}") } else { head }
 }
 
 #[cfg(test)]

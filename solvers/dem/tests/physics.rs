@@ -241,3 +241,39 @@ fn friction_never_passes_coulombs_limit() {
     assert!(most(Convention::DEFAULT) <= 1.0 + 4.0 * f64::EPSILON, "{}", most(Convention::DEFAULT));
     assert!(most(Convention::CUNDALL_STRACK) > 100.0, "{}", most(Convention::CUNDALL_STRACK));
 }
+
+/// Two discs that touch across the corner of two periodic axes push each other apart along the line through it.
+#[test]
+fn grains_meet_across_the_corner_of_two_periodic_axes() {
+    let record = run("dimension = 2\nduration_cycles = 1\n\
+         [domain]\nlow = [0.0, 0.0]\nhigh = [1.0, 2.0]\nperiodic = [true, true]\n\
+         [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.06, 0.075]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 0.1\nposition = [0.94, 1.925]\n\
+         [probes]\na.grain = 'a'\nb.grain = 'b'\nc.contact = ['a', 'b']\n");
+    // From a to the image of b: (−.12, −.15), .192094 apart; k = 1e6.
+    let overlap = 0.2 - (0.12_f64 * 0.12 + 0.15 * 0.15).sqrt();
+    assert!((record.series.column("c.overlap").unwrap()[0] - overlap).abs() < 1e-15);
+    assert!((record.series.column("c.normal_force").unwrap()[0] - 1e6 * overlap).abs() < 1e-8);
+    let velocity = ["a.vx", "a.vy", "b.vx", "b.vy"].map(|column| last(&record, column));
+    assert!(velocity[0] > 0.0 && velocity[1] > 0.0, "{velocity:?}");
+    assert!((velocity[1] / velocity[0] - 1.25).abs() < 1e-12, "along the line of centres: {velocity:?}");
+    assert!((velocity[0] + velocity[2]).abs() < 1e-15 && (velocity[1] + velocity[3]).abs() < 1e-15);
+}
+
+/// A wall that turns under a disc drags it as a belt would: the velocity of the wall where they touch is ω × r.
+#[test]
+fn a_turning_wall_drags_by_its_velocity_where_it_touches() {
+    // The plane turns about (0, 2) with .3 rad/s, so that at the origin it moves by +.6 m/s along x; in one cycle the
+    // spring is stretched by that times Δt.
+    let record = run("dimension = 2\nduration_cycles = 2\n\
+         materials.n.density = 1000.0\n\
+         contacts.n = { between = ['n', 'n'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 100.0 }\n\
+         [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [0.0, 0.099]\n\
+         [walls.w]\nmaterial = 'n'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+         motion = [{ spin = 0.3, centre = [0.0, 2.0] }]\n\
+         [probes]\ng.grain = 'g'\nc.contact = ['g', 'w']\n");
+    let step = record.provenance.time_step;
+    let force = record.series.column("c.shear_force").unwrap()[1].abs();
+    assert!((force / (5.0e5 * 0.6 * step) - 1.0).abs() < 1e-2, "{force} for {}", 5.0e5 * 0.6 * step);
+    assert!(last(&record, "g.vx") > 0.0, "the disc is carried along");
+}

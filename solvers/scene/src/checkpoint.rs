@@ -153,6 +153,17 @@ impl Checkpoint {
         Ok(bytes)
     }
 
+    /// Whether a file begins as a checkpoint of any format does.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn is_one(path: &std::path::Path) -> std::io::Result<bool> {
+        let mut start = Vec::new();
+        let file = std::fs::File::open(path)?;
+        std::io::Read::read_to_end(&mut std::io::Read::take(file, MAGIC.len() as u64), &mut start)?;
+        Ok(start == MAGIC)
+    }
+
     /// A checkpoint from the bytes of a file.
     ///
     /// # Errors

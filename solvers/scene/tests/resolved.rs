@@ -1,0 +1,70 @@
+//! What the resolver makes of a scene, against numbers worked out by hand: closed forms that read the resolved scene would
+//! share its mistakes.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use grainbench_scene::contact_law::Springs;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+
+fn scene(text: &str) -> Scene {
+    let source = SceneSource::from_text("test", Path::new(""), text);
+    source.scene(&|_| Err("no files".to_owned())).unwrap()
+}
+
+fn close(found: f64, expected: f64) {
+    assert!((found - expected).abs() <= 1e-9 * expected.abs(), "{found} for {expected}");
+}
+
+/// Steel on glass: E = 210 and 70 GPa, ν = .3 and .2. 1/E* = .91/210 + .96/70 = 3.79/210 per GPa; G = 80.769230769 and
+/// 29.166666667 GPa, 1/G* = 1.7/80.769230769 + 1.8/29.166666667 = .0210476190 + .0617142857 per GPa.
+#[test]
+fn moduli_of_two_materials() {
+    let scene = scene(
+        "title = 't'\ndimension = 3\nduration = 1.0\n\
+         [materials]\nsteel = { density = 7800.0, young_modulus = 210e9, poisson_ratio = 0.3 }\n\
+         glass = { density = 2500.0, young_modulus = 70e9, poisson_ratio = 0.2 }\n\
+         [contacts.pair]\nbetween = ['steel', 'glass']\nlaw = 'hertz'\nrestitution = 0.5\n\
+         [grains.a]\nmaterial = 'steel'\nradius = 0.01\nposition = [0.0, 0.0, 0.0]\n\
+         [grains.b]\nmaterial = 'glass'\nradius = 0.02\nposition = [0.1, 0.0, 0.0]\n",
+    );
+    let law = scene.law(0, 1).unwrap();
+    let Springs::Hertz { effective_modulus, effective_shear_modulus } = law.springs else { panic!("{law:?}") };
+    close(effective_modulus, 210e9 / 3.79);
+    close(effective_shear_modulus, 1e9 / 0.082_761_904_761_904_76);
+    // ζ = ln 2/√(π² + ln² 2).
+    close(law.damping_ratio, 0.215_453_761_966);
+    // F_n/δ = (4/3) E* √(R* δ) with R* = 1/150 m at δ = 1e-6 m: two thirds of dF/dδ.
+    let (tangent, shear) = law.springs.stiffness(1e-6, 1.0 / 150.0);
+    close(law.springs.secant_stiffness(1e-6, 1.0 / 150.0), 4.0 / 3.0 * 210e9 / 3.79 * 8.164_965_809_277_26e-5);
+    close(tangent, 2.0 * 210e9 / 3.79 * 8.164_965_809_277_26e-5);
+    close(shear, 8.0 * 1e9 / 0.082_761_904_761_904_76 * 8.164_965_809_277_26e-5);
+}
+
+/// 9.8 m/s² on a slope of 60°: sin 60° = .8660254037844386. A disc of 1000 kg/m³ and .5 m a metre deep has 785.398163 kg
+/// and half m R²; a sphere 523.598776 kg and 2/5 m R².
+#[test]
+fn slopes_masses_and_inertia() {
+    let of = |dimension: u8, position: &str| {
+        scene(&format!(
+            "title = 't'\ndimension = {dimension}\nduration = 1.0\ngravity = {{ magnitude = 9.8, slope_deg = 60.0 }}\n\
+             materials.m.density = 1000.0\ncontacts.m = {{ between = ['m', 'm'], normal_stiffness = 4.0e6, \
+             friction_angle_deg = 30.0, tangential_stiffness = 1.0 }}\n\
+             [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = {position}\n"
+        ))
+    };
+    let disc = of(2, "[0.0, 0.0]");
+    close(disc.gravity.x, 8.487_048_957_087_498);
+    close(disc.gravity.y, -4.9);
+    close(disc.grains[0].mass, 785.398_163_397_448_3);
+    close(disc.grains[0].inertia, 98.174_770_424_681_03);
+    close(disc.laws[0].unwrap().friction, 0.577_350_269_189_625_8);
+    // 2 √(m/k) = 2 √(785.398…/4e6).
+    close(disc.critical_time_step(), 2.0 * 0.014_012_478_040_994_82);
+    let sphere = of(3, "[0.0, 0.0, 0.0]");
+    close(sphere.gravity.x, 8.487_048_957_087_498);
+    close(sphere.gravity.z, -4.9);
+    close(sphere.grains[0].mass, 523.598_775_598_298_9);
+    close(sphere.grains[0].inertia, 52.359_877_559_829_89);
+}
