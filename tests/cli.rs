@@ -153,6 +153,7 @@ fn run_leaves_its_files_and_a_summary() {
         "figures/squash-forces.svg",
         "index.html",
         "junit.xml",
+        "manifest.json",
         "points.csv",
         "report.json",
         "results.json",
@@ -236,6 +237,7 @@ fn simulate_leaves_its_record() {
     assert_eq!(
         files(&directory.path().join("out")),
         [
+            "manifest.json",
             "record.json",
             "series.csv",
             "snapshots.dump",

@@ -1,0 +1,132 @@
+//! Scenes that once hung, panicked, filled the memory or gave numbers that are none, with an exit code that said nothing of
+//! it: each ends in an error that says what is wrong, or runs.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::grainbench;
+use std::fs;
+
+const ELASTIC: &str = "title = 't'\ndimension = 2\nduration = 0.01\n\
+     [materials.m]\ndensity = 1000.0\nyoung_modulus = 1.0e6\npoisson_ratio = 0.3\n\
+     [contacts.m]\nbetween = ['m', 'm']\nlaw = 'coulomb'\n";
+const RIGID: &str = "title = 't'\ndimension = 2\nduration = 0.01\n[materials.m]\ndensity = 1000.0\n\
+     [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n\
+     [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n[probes]\na.grain = 'a'\n";
+
+/// Exit code and what was said of a scene with more behind it, and more arguments.
+fn simulated(scene: &str, more: &str, arguments: &[&str]) -> (i32, String) {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("s.toml"), format!("{scene}{more}")).unwrap();
+    let answer = grainbench(directory.path(), &[&["simulate", "s.toml", "--solver"], arguments].concat());
+    (answer.code.unwrap(), answer.err)
+}
+
+#[test]
+fn what_does_not_fit_into_memory_is_counted_and_refused() {
+    let (code, said) = simulated(
+        ELASTIC,
+        "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.7976931348623157e308, 1.0] }\n",
+        &["mpm"],
+    );
+    assert!(code == 2 && said.contains("expected points and nodes that fit into memory"), "{said}");
+    let (code, said) = simulated(
+        ELASTIC,
+        "[grains.a]\nmaterial = 'm'\nradius = 0.01\nposition = [0.0, 60.0]\n\
+         [bodies.b]\nmaterial = 'm'\nbox = { low = [-50000.0, 0.0], high = [50000.0, 50000.0] }\n",
+        &["mpm"],
+    );
+    assert!(code == 2 && said.contains("points, about"), "{said}");
+}
+
+#[test]
+fn bodies_that_the_grid_does_not_see_are_refused() {
+    let body = "reference_length = 20.0\n";
+    let (code, said) = simulated(
+        &format!("{body}{ELASTIC}"),
+        "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\n",
+        &["mpm"],
+    );
+    assert!(code == 2 && said.contains("expected a body at least 0.5 cells wide, found `b` with 0.400"), "{said}");
+}
+
+/// With one cell between two sides that are held, energy grew 2e7-fold.
+#[test]
+fn one_cell_between_two_held_sides_is_refused() {
+    let bar = "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [10.0, 1.0] }\nfixed = ['x-low']\n\
+               sliding = ['y-low', 'y-high']\nwave = { amplitude = 0.01 }\n";
+    let (code, said) = simulated(ELASTIC, bar, &["mpm", "--cells", "1"]);
+    assert!(code == 2 && said.contains("cells between two sides of `b` that are held, found 1.000"), "{said}");
+    assert_eq!(simulated(ELASTIC, bar, &["mpm", "--cells", "2"]).0, 0);
+}
+
+/// A plane that lies on a line of the grid.
+#[test]
+fn contact_on_a_line_of_the_grid_runs() {
+    let (code, said) = simulated(
+        &format!("largest_initial_overlap = 0.5\n{ELASTIC}"),
+        "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 0.5] }\n\
+         [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n[probes]\nb.body = 'b'\n",
+        &["mpm:gap"],
+    );
+    assert_eq!(code, 0, "{said}");
+}
+
+#[test]
+fn rigid_bodies_run_without_being_told_how_finely() {
+    assert_eq!(simulated(RIGID, "", &["rigid"]), (0, String::new()));
+    let (code, said) = simulated(RIGID, "", &["rigid", "--substeps", "0"]);
+    assert!(code == 2 && said.contains("substeps"), "{said}");
+}
+
+#[test]
+fn more_steps_than_any_solver_takes_are_refused_by_each() {
+    for solver in ["dem", "rigid"] {
+        let (code, said) = simulated(&RIGID.replace("duration = 0.01", "duration = 1e200"), "", &[solver]);
+        assert!(code == 2 && said.contains("expected fewer than 1e15 steps"), "{solver}: {said}");
+    }
+    let body = "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\n";
+    let (code, said) = simulated(&ELASTIC.replace("duration = 0.01", "duration = 1e200"), body, &["mpm"]);
+    assert!(code == 2 && said.contains("expected fewer than 1e15 steps"), "{said}");
+}
+
+#[test]
+fn a_checkpoint_replaces_a_checkpoint_and_nothing_else() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(directory.path().join(name), text).unwrap();
+    write("s.toml", RIGID);
+    write("letter", "dear reader");
+    let run = |place: &str| {
+        let arguments = ["simulate", "s.toml", "--solver", "dem", "--checkpoint", place, "--checkpoint-every", "1"];
+        let answer = grainbench(directory.path(), &arguments);
+        (answer.code.unwrap(), answer.err)
+    };
+    let (code, said) = run("letter");
+    assert!(code == 2 && said.contains("found another file"), "{said}");
+    assert_eq!(fs::read_to_string(directory.path().join("letter")).unwrap(), "dear reader");
+    let (code, said) = run("/dev/null");
+    assert!(code == 2 && said.contains("found something that is no file"), "{said}");
+    assert_eq!((run("kept").0, run("kept").0), (0, 0));
+}
+
+/// What would steer a terminal is written out.
+#[test]
+fn titles_do_not_steer_a_terminal() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("s.toml"), RIGID.replace("title = 't'", "title = \"a\\u001b[2Jb\\u202ec\""))
+        .unwrap();
+    let answer = grainbench(directory.path(), &["simulate", "s.toml", "--solver", "dem"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(answer.out.contains("a\\u{1b}[2Jb\\u{202e}c"), "{}", answer.out);
+    assert!(!answer.out.contains('\u{1b}') && !answer.out.contains('\u{202e}'));
+}
+
+#[test]
+fn thousands_of_overrides_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("s.toml"), RIGID).unwrap();
+    let many: Vec<&str> = std::iter::repeat_n(["--set", "duration=0.01"], 1001).flatten().collect();
+    let answer = grainbench(directory.path(), &[&["simulate", "s.toml", "--solver", "dem"][..], &many].concat());
+    assert!(answer.code == Some(2) && answer.err.contains("at most 1000 keys, found 1001"), "{}", answer.err);
+}
