@@ -162,3 +162,29 @@ fn killed_and_continued(scene: &str, options: &[&str], every: &str) {
     assert_eq!(continued.code, Some(0), "{}", continued.err);
     assert_eq!(left(&path.join("straight")), left(&path.join("continued")), "{options:?}");
 }
+
+/// Ctrl-C leaves what is finished, and says so.
+#[test]
+#[cfg(unix)]
+fn an_interrupted_run_leaves_what_is_finished() {
+    let directory = tempfile::tempdir().unwrap();
+    let child = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+        .args(["run", "--out", "out"])
+        .current_dir(directory.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Long enough to have begun, far shorter than the registry takes.
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let ended = child.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(1), "{said}");
+    assert!(said.contains("interrupted: ") && said.contains("the report holds what was finished"), "{said}");
+    let results = std::fs::read_to_string(directory.path().join("out/results.json")).unwrap();
+    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    let options = results["provenance"]["options"].to_string();
+    assert!(options.contains("interrupted: "), "{options}");
+}

@@ -7,6 +7,7 @@ mod cost;
 mod deck;
 mod effects;
 mod exit;
+mod interrupt;
 mod list;
 mod progress;
 mod provenance;

@@ -1,6 +1,7 @@
 //! `grainbench run`: judge the gates of cases and write the report.
 
 use super::exit::{self, Fault, Outcome, RED, check_writable, print};
+use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::select::{self, Selected};
@@ -62,12 +63,18 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     check_writable(&options.out)?;
     let start = Instant::now();
     let thorough = options.levels.iter().any(|level| level == "all");
-    let mut sections = judge(&selected, !options.no_controls, options.live, thorough);
+    let interrupt = Interrupt::listen();
+    let (mut sections, left) = judge(&selected, !options.no_controls, options.live, thorough, &interrupt);
     // What every solver owes belongs to the whole registry, and not to a case.
-    if cases.is_empty() && (options.levels.is_empty() || thorough) {
+    if cases.is_empty() && (options.levels.is_empty() || thorough) && left == 0 {
         sections.extend(conformance(&options.solver));
     }
-    let provenance = provenance(words(cases, options), start.elapsed().as_secs_f64());
+    let mut words = words(cases, options);
+    if left > 0 {
+        exit::say("warning", &format!("interrupted: {left} checks were left out; the report holds what was finished"));
+        words.push(format!("interrupted: {left} checks left out"));
+    }
+    let provenance = provenance(words, start.elapsed().as_secs_f64());
     let report = Report { provenance, sections };
     write_report(&options.out, &report).map_err(Fault::writing)?;
     if options.json {
@@ -75,7 +82,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     } else {
         print(&format!("{}\n{}\n", summary_table(&report), options.out.join("index.html").display()))?;
     }
-    Ok(exit_code(&report, options.strict))
+    if left > 0 { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, options.strict)) }
 }
 
 /// What every solver owes whatever its method, of the solvers named; all of ours when none is.
@@ -165,12 +172,19 @@ enum Task {
     Draw(usize),
 }
 
-fn judge(selected: &[Selected], with_controls: bool, live: bool, thorough: bool) -> Vec<Section> {
+/// Sections of what was done, and how many checks were left out because somebody asked to end.
+fn judge(
+    selected: &[Selected],
+    with_controls: bool,
+    live: bool,
+    thorough: bool,
+    interrupt: &Interrupt,
+) -> (Vec<Section>, usize) {
     let work: Vec<Work<'_>> = selected.iter().map(|selected| Work::new(selected, live, thorough)).collect();
     let tasks = tasks(selected, with_controls);
     let progress = Progress::new(tasks.len() as u64, "checks");
     let next = AtomicUsize::new(0);
-    let take = || tasks.get(next.fetch_add(1, Ordering::Relaxed));
+    let take = || if interrupt.is_asked() { None } else { tasks.get(next.fetch_add(1, Ordering::Relaxed)) };
     // Plain threads: gates wait for runs that they share, and a pool that lends a waiting thread to another gate
     // could let a run wait for itself.
     std::thread::scope(|scope| {
@@ -183,7 +197,8 @@ fn judge(selected: &[Selected], with_controls: bool, live: bool, thorough: bool)
         }
     });
     drop(progress);
-    work.into_iter().map(Work::section).collect()
+    let left = tasks.len() - next.into_inner().min(tasks.len());
+    (work.into_iter().map(Work::section).collect(), left)
 }
 
 /// Each gate and then its control, so that two threads at one case seldom wait for the same run; figures last, when
