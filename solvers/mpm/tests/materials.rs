@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use grainbench_mpm::material::{Hypoelastic, Law, NeoHookean, State, VonMises};
+use grainbench_mpm::off::Off;
+use grainbench_scene::space::{Plane, Solid, Space};
 use nalgebra::Matrix3;
 
 const BULK: f64 = 11.4e9;
@@ -82,6 +84,32 @@ fn rotation_makes_no_stress() {
     let rate = 2.0 * (std::f64::consts::PI / f64::from(steps)).tan();
     strained(law, &mut state, Matrix3::new(0.0, -rate, 0.0, rate, 0.0, 0.0, 0.0, 0.0, 0.0) * f64::from(steps), steps);
     assert!((state.stress - before).norm() < 1e-11);
+}
+
+/// A quarter turn carries the stress along, σ' = R σ Rᵀ: what lies along x lies along y then, and shear changes its sign. A
+/// whole turn would come back to the same stress whichever way it went.
+#[test]
+fn a_quarter_turn_carries_the_stress_along() {
+    fn turned<S: Space>(gradient: Matrix3<f64>, steps: u32) -> Matrix3<f64> {
+        let law = Hypoelastic { bulk_modulus: BULK, shear_modulus: SHEAR };
+        let increment = S::restrict_gradient(gradient);
+        let mut stress = S::restrict_symmetric(STRESS);
+        for _ in 0..steps {
+            stress = law.follow::<S>(increment, 1.0, increment, stress, &mut Off);
+        }
+        S::embed_symmetric(stress)
+    }
+    const STRESS: Matrix3<f64> = Matrix3::new(1.0, 2.0, 0.0, 2.0, -3.0, 0.0, 0.0, 0.0, 4.0);
+    let steps = 250;
+    let rate = 2.0 * (std::f64::consts::FRAC_PI_4 / f64::from(steps)).tan();
+    let about_z = Matrix3::new(0.0, -rate, 0.0, rate, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let expected = Matrix3::new(-3.0, -2.0, 0.0, -2.0, 1.0, 0.0, 0.0, 0.0, 4.0);
+    assert!((turned::<Plane>(about_z, steps) - expected).norm() < 1e-11);
+    assert!((turned::<Solid>(about_z, steps) - expected).norm() < 1e-11);
+    // About x: y goes to z, z to −y.
+    let about_x = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -rate, 0.0, rate, 0.0);
+    let expected = Matrix3::new(1.0, 0.0, 2.0, 0.0, 4.0, 0.0, 2.0, 0.0, -3.0);
+    assert!((turned::<Solid>(about_x, steps) - expected).norm() < 1e-11);
 }
 
 /// The stress is the derivative of the energy, and of the pressure asked for.
