@@ -133,7 +133,8 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     if let Some(store) = &store {
         store.refuse_others()?;
     }
-    let mut watcher = Watcher { method, critical, header, progress: None, store };
+    let grains = scene.grains.len();
+    let mut watcher = Watcher { grains, method, critical, header, progress: None, store };
     let record = match &from {
         None => solver.run(&scene, &resolution, &mut watcher),
         Some(checkpoint) => solver.restart(&scene, &resolution, checkpoint, &mut watcher),
@@ -231,11 +232,31 @@ fn footer(record: &Record, arguments: &Arguments) -> String {
 
 /// Tells people what runs, once the solver has taken it up, and how far it is.
 struct Watcher {
+    grains: usize,
     method: Option<Method>,
     critical: f64,
     header: Option<String>,
     progress: Option<Progress>,
     store: Option<Store>,
+}
+
+impl Watcher {
+    /// How long so many steps may take, where that is long: grains on springs go through about ten million
+    /// particle-steps a second. Of methods with a grid the progress tells it.
+    fn estimate(&self, steps: u64) -> String {
+        const A_SECOND: f64 = 1e7;
+        let seconds = steps as f64 * self.grains as f64 / A_SECOND;
+        if self.method == Some(Method::Grid) || seconds < 10.0 {
+            return String::new();
+        }
+        let (size, unit) = match seconds {
+            ..600.0 => (seconds, "s"),
+            ..36e3 => (seconds / 60.0, "min"),
+            ..1e6 => (seconds / 3600.0, "h"),
+            _ => (seconds / 86400.0, "days"),
+        };
+        format!(", about {} {unit} at ten million particle-steps a second", number::significant(size, 2))
+    }
 }
 
 impl Watch for Watcher {
@@ -249,9 +270,11 @@ impl Watch for Watcher {
             "no contact can occur, hence no critical step".to_owned()
         };
         if let Some(header) = self.header.take() {
+            let estimate = self.estimate(steps);
             let steps = number::count(steps);
             // A header that nobody reads any more is no reason to give up the run.
-            let _ = print(&format!("{header}time step  {time_step:.6e} s, {of_critical}\nsteps      {steps}\n"));
+            let _ =
+                print(&format!("{header}time step  {time_step:.6e} s, {of_critical}\nsteps      {steps}{estimate}\n"));
         }
         self.progress = Some(Progress::new(steps, "steps"));
     }
