@@ -216,7 +216,7 @@ fn a_driven_grain_has_no_finite_mass() {
          [grains.free]\nmaterial = 'n'\nradius = 0.5\nposition = [-1.1, 0.0]\nvelocity = [1.0, 0.0]\n\
          [grains.held]\nmaterial = 'n'\nradius = 0.5\nposition = [0.0, 0.0]\n\
          [driven.held]\ngrains = 'held'\n[probes]\nfree.grain = 'free'\n";
-    // Of first order in the step: .480 at a tenth of the critical one, .496 here; .618 with the mass of a free grain.
+    // Of first order in the step: .480 at a tenth of the critical one, .4996 here; .618 with the mass of a free grain.
     let rebound = -last(&run(text), "free.vx");
     assert!((rebound - 0.5).abs() < 5e-3, "{rebound}");
 }
