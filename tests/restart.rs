@@ -165,7 +165,7 @@ fn killed_and_continued(scene: &str, options: &[&str], every: &str) {
 
 /// Ctrl-C leaves what is finished, and says so.
 #[test]
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 fn an_interrupted_run_leaves_what_is_finished() {
     let directory = tempfile::tempdir().unwrap();
     let child = Command::new(env!("CARGO_BIN_EXE_grainbench"))
@@ -175,8 +175,15 @@ fn an_interrupted_run_leaves_what_is_finished() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Long enough to have begun, far shorter than the registry takes.
-    std::thread::sleep(std::time::Duration::from_millis(1500));
+    // It listens once it catches the signal; the registry takes far longer than that.
+    let catches = || {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap().trim().to_owned();
+        u64::from_str_radix(&caught, 16).unwrap() & (1 << 1) != 0
+    };
+    while !catches() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
     let ended = child.wait_with_output().unwrap();

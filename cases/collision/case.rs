@@ -209,34 +209,30 @@ fn at_the_limit() -> Claim {
 fn coulomb() -> Vec<Claim> {
     let of = |quantity: &str, unit, solver| claim(quantity, unit).of(Run::new("oblique", solver, LEVELS[1].resolution));
     let within = |solver: &'static str| {
-        of("|F_s| − μ F_n where it pushes, largest over the impact", "N", solver)
-            .equals(
-                Source::Derived("Coulomb's law, |F_s| ≤ μ max(F_n, 0), reached throughout (derivation)"),
-                |done| {
-                    let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
-                    let (normal, shear) =
-                        (done[0].column("contact.normal_force")?, done[0].column("contact.shear_force")?);
-                    let beyond =
-                        normal.iter().zip(shear).map(|(normal, shear)| shear.abs() - law.friction * normal.max(0.0));
-                    let largest = normal.iter().map(|force| law.friction * force).fold(0.0, f64::max);
-                    Ok(Measured::new(beyond.fold(f64::NEG_INFINITY, f64::max), 0.0, largest))
-                },
-            )
-            .within(computed(
-                4.0 * f64::EPSILON,
-                "a root, a quotient and two products round by ε; in units of the largest",
-            ))
+        of("|F_s| − μ F_n where it pushes, largest over the impact, over the largest μ F_n", "1", solver)
+            .at_most(0.0, Source::Derived("Coulomb's law, |F_s| ≤ μ max(F_n, 0) (derivation)"), |done| {
+                let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
+                let (normal, shear) = (done[0].column("contact.normal_force")?, done[0].column("contact.shear_force")?);
+                let beyond =
+                    normal.iter().zip(shear).map(|(normal, shear)| shear.abs() - law.friction * normal.max(0.0));
+                let largest = normal.iter().map(|force| law.friction * force).fold(0.0, f64::max);
+                Ok(beyond.fold(f64::NEG_INFINITY, f64::max) / largest)
+            })
+            .within(computed(4.0 * f64::EPSILON, "a root, a quotient and two products round by ε"))
             .refuses(Control::solver("the limit of the spring alone", "dem:1979"))
     };
     let spin = of("spin that friction gives the first disc, against R μ Σ F_n Δt/I where it pushes", "rad/s", "dem")
-        .equals(Source::Derived("Coulomb's limit at every step (derivation)"), |done| {
-            let grain = &done[0].scene.grains[0];
-            let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
-            let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
-            let impulse = law.friction * pushes * done[0].record.provenance.time_step;
-            let expected = -impulse * grain.radius / grain.inertia;
-            Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
-        })
+        .holds(
+            "sliding throughout, the friction recorded is μ times the normal force recorded, and turns the disc",
+            |done| {
+                let grain = &done[0].scene.grains[0];
+                let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
+                let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
+                let impulse = law.friction * pushes * done[0].record.provenance.time_step;
+                let expected = -impulse * grain.radius / grain.inertia;
+                Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+            },
+        )
         .within(rounding(3.0, "the spin, at most 1.5 times its change, and the sum round by ε in every step"))
         .refuses(Control::solver("the limit of the spring alone", "dem:1979"));
     vec![within("dem"), within("dem:no-tension"), spin]

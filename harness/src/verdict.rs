@@ -155,6 +155,16 @@ impl Verdict {
         }
     }
 
+    /// The row, unless as much is allowed as its scale is: what may be off by as much as it is itself tells nothing.
+    #[must_use]
+    pub fn unless_all_passes(self) -> Self {
+        if self.outcome == Outcome::Pass && self.allowed >= 1.0 {
+            let times = format!("cannot tell: {:.3} times what it is measured by is allowed", self.allowed);
+            return self.left(Outcome::NoReference, times);
+        }
+        self
+    }
+
     /// How it turned red, if it did.
     #[must_use]
     pub fn red(&self) -> Option<Red> {

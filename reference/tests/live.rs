@@ -140,7 +140,7 @@ fn a_program_ends_with_all_that_it_started() {
     let child = fs::read_to_string(told).unwrap();
     let is_there =
         || fs::read_to_string(format!("/proc/{}/stat", child.trim())).is_ok_and(|stat| !stat.contains(") Z"));
-    (0..100).for_each(|_| {
+    (0..500).for_each(|_| {
         if is_there() {
             std::thread::sleep(Duration::from_millis(20));
         }

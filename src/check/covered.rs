@@ -30,7 +30,9 @@ impl Covered {
             Duration::Seconds(seconds) => Some(seconds),
             Duration::Cycles(cycles) => step.map(|step| step * cycles as f64),
         };
-        let slack = 0.5 * step.unwrap_or_default() + PRINTED * whole.unwrap_or_default();
+        // A step that was told wrongly must not make an end of anything.
+        let most = 0.01 * whole.unwrap_or_default();
+        let slack = (0.5 * step.unwrap_or_default()).min(most) + PRINTED * whole.unwrap_or_default();
         if let Some(whole) = whole {
             observed.keep(observed.series.time.partition_point(|&time| time <= whole + slack));
         }

@@ -119,16 +119,16 @@ fn counts(comparison: &Comparison) -> String {
 /// How much of both was compared: every sample of the one with fewer, to the end of the longer.
 fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Verdict; 2] {
     let unit = if comparison.key == Key::Time { "s" } else { "1" };
-    let row = |quantity: String, unit: &str, value: f64, least: f64| {
+    let row = |quantity: String, unit: &str, value: f64, least: f64, slack: f64| {
+        let scale = if least > 0.0 { least } else { 1.0 };
         let row = Verdict {
             solver: b.to_owned(),
-            allowed: if unit == "s" { 1e-6 } else { 0.0 },
+            allowed: slack / scale,
             because: "what only one of them has is not compared".to_owned(),
             evidence: Evidence::Invariant,
             source: a.to_owned(),
             ..Verdict::open("compare", quantity, unit)
         };
-        let scale = if least > 0.0 { least } else { 1.0 };
         let row = row.judged(&Measured::new(value, Expected::Bound(Bound::AtLeast(least)), scale));
         if row.outcome == verdict::Outcome::Fail && allow_missing {
             return row.left(verdict::Outcome::Known, "missing samples are meant (--allow-missing)");
@@ -136,14 +136,13 @@ fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Ve
         row
     };
     let fewest = comparison.samples[0].min(comparison.samples[1]) as f64;
-    // Of the one that ends later all but what is within a sample of the other.
-    let end = comparison.last[0].max(comparison.last[1]);
-    let last = if comparison.last_compared > end - comparison.interval { comparison.last_compared } else { end };
+    // Of the one that ends later all but less than an interval: a whole one is a sample that is missing.
+    let (end, slack) = (comparison.last[0].max(comparison.last[1]), (1.0 - 1e-6) * comparison.interval);
     // Of a file that is sampled at other times, those of the first are what counts.
     let least = if comparison.key == Key::Time { comparison.samples[0] as f64 } else { fewest };
     [
-        row("samples that were compared".to_owned(), "1", comparison.compared as f64, least),
-        row(format!("last {} that was compared", comparison.key.word()), unit, comparison.last_compared, last),
+        row("samples that were compared".to_owned(), "1", comparison.compared as f64, least, 0.0),
+        row(format!("last {} that was compared", comparison.key.word()), unit, comparison.last_compared, end, slack),
     ]
 }
 
@@ -168,11 +167,7 @@ fn row(of: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
         (verdict::Outcome::Fail, Some((at, _))) => {
             Verdict { detail: Some(format!("first outside at {} {at}", key.word())), ..row }
         }
-        (verdict::Outcome::Pass, _) if row.allowed >= 1.0 => {
-            let allowed = number::fraction(row.allowed);
-            row.left(verdict::Outcome::NoReference, format!("cannot tell: {allowed} of the column is allowed"))
-        }
-        _ => row,
+        _ => row.unless_all_passes(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Exit codes, messages, and what is printed.
 
 use grainbench::scene::error::{SceneError, did_you_mean};
+use grainbench::scene::text::tamed;
 use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -73,36 +74,19 @@ impl From<SceneError> for Fault {
 /// A line on the standard error. Nobody is left to tell when that is closed.
 pub(crate) fn say(kind: &str, message: &str) {
     let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
-    let _ = writeln!(io::stderr(), "{kind}: {}", plain(&one_line));
+    let _ = writeln!(io::stderr(), "{kind}: {}", tamed(&one_line, |_| false));
 }
 
 /// Prints text on the standard output. A reader who has seen enough, as `head` has, is no error.
 pub(crate) fn print(text: &str) -> Result<(), Fault> {
     let mut out = io::stdout().lock();
-    match out.write_all(plain(text).as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(tamed(text, |character| matches!(character, '\n' | '\t')).as_bytes()).and_then(|()| out.flush())
+    {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Fault::input(format!("cannot write the standard output: {error}")))
         }
         _ => Ok(()),
     }
-}
-
-/// Text as a terminal may show it: what would steer it, or turn the direction of writing, is written out. Titles, names of
-/// files and of keys are other people's.
-fn plain(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for character in text.chars() {
-        let disguises = matches!(
-            character,
-            '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}'
-        );
-        if (character.is_control() && !matches!(character, '\n' | '\t')) || disguises {
-            safe.extend(character.escape_unicode());
-        } else {
-            safe.push(character);
-        }
-    }
-    safe
 }
 
 /// Prints a value as JSON.

@@ -1,5 +1,6 @@
 //! The one error of every reader here.
 
+use grainbench_scene::text::tamed;
 use std::fmt;
 use std::io;
 
@@ -109,19 +110,7 @@ pub(crate) fn quoted(text: &str) -> String {
 
 /// `text` with every character that could break or disguise the line (controls, separators, directions) escaped.
 pub(crate) fn one_line(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for character in text.chars() {
-        let disguises = matches!(
-            character,
-            '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}'
-        );
-        if character.is_control() || disguises {
-            safe.extend(character.escape_unicode());
-        } else {
-            safe.push(character);
-        }
-    }
-    safe
+    tamed(text, |_| false)
 }
 
 #[cfg(test)]

@@ -30,6 +30,7 @@ pub mod solver;
 pub mod source;
 pub mod space;
 pub mod terms;
+pub mod text;
 
 /// The vectors of scenes and records, for who writes a solver.
 pub use nalgebra;
