@@ -1,0 +1,310 @@
+#!/usr/bin/env python3
+"""Which planted defects do the gates find? Sixty are drawn by lot, each is planted, and it is written down what turns red.
+
+    python3 benches/planted/planted.py [--seed N] [--each 15] [--only-run] [--longest SECONDS]
+
+Signs, factors, indices and terms of sums, as many each of grains on springs, material points, scenes (what resolves them
+and their probes too) and readers of files. All are built into one copy of the tree under `target/planted`, in which the
+environment variable PLANTED chooses the one that acts: with none chosen every row must equal the plain build to the last
+bit. Each defect meets the main job, `grainbench run`; those that it lets pass meet the tests, quickest first. What is known
+is kept in `results.jsonl`, so that a run that was stopped goes on where it was. Needs python 3.9 and nothing else; takes
+about a minute a defect after a build, and as long as the tests for each one that the main job lets pass.
+"""
+
+import argparse
+import json
+import os
+import random
+import re
+import resource
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+import defects  # noqa: E402  (beside this file, and nothing is to be left there)
+
+ROOT = Path(__file__).resolve().parents[2]
+CLASSES = {"dem": "solvers/dem/src", "mpm": "solvers/mpm/src", "scene": "solvers/scene/src", "files": "reference/src/read"}
+CHOOSER = '''//! Which planted defect acts: the one that the environment names.
+
+use std::sync::OnceLock;
+
+/// Whether the defect of this number acts.
+pub fn on(number: u32) -> bool {
+    static CHOSEN: OnceLock<u32> = OnceLock::new();
+    *CHOSEN.get_or_init(|| std::env::var("PLANTED").ok().and_then(|text| text.parse().ok()).unwrap_or(0)) == number
+}
+'''
+# What a run may take: a defect may ask for any amount.
+MEMORY = 12 << 30
+RED = ("fail", "broken", "stale")
+
+
+def command(words, where, **more):
+    """Runs a program to its end, and ends this one where it fails."""
+    done = subprocess.run(words, cwd=where, text=True, **more)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, words))}: {done.returncode}\n{(done.stderr or '')[-3000:]}")
+    return done.stdout
+
+
+def bounded():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def attempt(words, where, number, seconds, more=None):
+    """Exit code, output and time of a program in which a defect acts; a code of None where it was stopped."""
+    environment = {**os.environ, "PLANTED": str(number), "INSTA_UPDATE": "no", "CI": "true", **(more or {})}
+    begun = time.monotonic()
+    with subprocess.Popen(words, cwd=where, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          stdin=subprocess.DEVNULL, preexec_fn=bounded, start_new_session=True) as child:
+        try:
+            said, code = child.communicate(timeout=seconds)[0], child.returncode
+        except subprocess.TimeoutExpired:
+            # With all that it started: they are a group of their own.
+            os.killpg(child.pid, 9)
+            said, code = child.communicate()[0], None
+    return code, said.decode(errors="replace"), time.monotonic() - begun
+
+
+class Planting:
+    """A copy of the tree with defects in it."""
+
+    def __init__(self, work, seed, each):
+        self.work, self.seed, self.each = work / f"seed-{seed}", seed, each
+        self.tree, self.target = self.work / "tree", work / "target"
+        self.work.mkdir(parents=True, exist_ok=True)
+        self.environment = {**os.environ, "CARGO_TARGET_DIR": str(self.target)}
+
+    def texts(self):
+        """The files of each class, as they are without defects."""
+        return {name: {str(path.relative_to(self.tree)): command(["git", "show", f"HEAD:{path.relative_to(self.tree)}"],
+                                                                 self.tree, capture_output=True)
+                       for path in sorted((self.tree / folder).rglob("*.rs")) if path.name != "planted.rs"}
+                for name, folder in CLASSES.items()}
+
+    def draw(self):
+        """Draws, plants, leaves out what does not compile, and numbers what is left."""
+        known = self.work / "drawn.json"
+        if known.exists():
+            return json.loads(known.read_text())
+        if not self.tree.exists():
+            command(["git", "clone", "--quiet", str(ROOT), str(self.tree)], ROOT, capture_output=True)
+        texts = self.texts()
+        lot, drawn = random.Random(self.seed), {}
+        for name, files in texts.items():
+            candidates = [defect for file, text in files.items() for defect in defects.of_file(file, text)]
+            drawn[name] = defects.draw(lot, candidates, 2 * self.each)
+            print(f"{name}: {len(drawn[name])} of {len(candidates)} places drawn")
+        while True:
+            dropped = self.broken(self.plant(texts, drawn))
+            if not dropped:
+                break
+            print(f"{len(dropped)} do not compile")
+            drawn = {name: [defect for defect in some if defect.key not in dropped] for name, some in drawn.items()}
+        drawn = {name: some[:self.each] for name, some in drawn.items()}
+        self.plant(texts, drawn)
+        rows = [{"number": number, "class": name, "file": defect.file, "line": defect.line, "kind": defect.kind,
+                 "shown": defect.shown} for number, (name, defect) in enumerate(flat(drawn), 1)]
+        known.write_text(json.dumps(rows, indent=1))
+        return rows
+
+    def plant(self, texts, drawn):
+        """Writes all files; for each defect the file and the lines in which it stands."""
+        by_file, stands = {}, {}
+        for number, (_, defect) in enumerate(flat(drawn), 1):
+            by_file.setdefault(defect.file, []).append((number, defect))
+        for file, text in (item for files in texts.values() for item in files.items()):
+            crate = "crate" if file.startswith(CLASSES["scene"]) else "grainbench_scene"
+            new, lines = defects.planted(text, by_file.get(file, []), f"{crate}::planted::on")
+            if file == f"{CLASSES['scene']}/lib.rs":
+                new = new.replace("\npub mod ", "\npub mod planted;\npub mod ", 1)
+            write(self.tree / file, new)
+            for number, defect in by_file.get(file, []):
+                stands[defect.key] = (file, *lines[number])
+        write(self.tree / CLASSES["scene"] / "planted.rs", CHOOSER)
+        return stands
+
+    def broken(self, stands):
+        """Which defects the compiler refuses: those on whose lines it complains, or whose function it does not take."""
+        packages = [word for name in ("scene", "dem", "mpm", "reference") for word in ("-p", f"grainbench-{name}")]
+        said = subprocess.run(["cargo", "check", "--release", "--keep-going", "--message-format=json", *packages],
+                              cwd=self.tree, env=self.environment, text=True, capture_output=True)
+        dropped, errors = set(), 0
+        for message in (json.loads(line) for line in said.stdout.splitlines() if line.startswith("{")):
+            message = message.get("message") or {}
+            if not isinstance(message, dict) or message.get("level") != "error":
+                continue
+            errors += 1
+            for span in message["spans"]:
+                at = [(key, alone, whole) for key, (file, alone, whole) in stands.items()
+                      if file == span["file_name"] and whole[0] <= span["line_start"] <= whole[1]]
+                exact = {key for key, alone, _ in at if alone[0] <= span["line_start"] <= alone[1]}
+                dropped |= exact or {key for key, _, _ in at}
+        if said.returncode != 0 and not dropped:
+            sys.exit(f"{errors} errors at no defect:\n{said.stderr[-3000:]}")
+        return dropped
+
+    def build(self):
+        """The program, and the tests as (name, executable, folder to run it in)."""
+        command(["cargo", "build", "--release"], self.tree, env=self.environment)
+        said = command(["cargo", "test", "--release", "--no-run", "--message-format=json"], self.tree,
+                       env=self.environment, stdout=subprocess.PIPE)
+        found = []
+        for message in (json.loads(line) for line in said.splitlines() if line.startswith("{")):
+            if message.get("executable") and message["profile"]["test"]:
+                folder = Path(message["manifest_path"]).parent
+                name = f"{folder.relative_to(self.tree)}/{message['target']['name']}".removeprefix("./")
+                found.append((name, message["executable"], folder))
+        return self.target / "release" / "grainbench", found
+
+
+def flat(drawn):
+    return [(name, defect) for name, some in drawn.items() for defect in some]
+
+
+def write(path, text):
+    """Leaves files that are as they should be alone, for what was compiled of them is."""
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+
+
+def results(folder):
+    """Rows and controls that a run left, without its times."""
+    try:
+        left = json.loads((folder / "results.json").read_text())
+    except (OSError, ValueError):
+        return None
+    return left["verdicts"], [{**control, "seconds": 0} for control in left["controls"]]
+
+
+def row_name(row):
+    return " · ".join(row[key] for key in ("case", "variant", "solver", "quantity"))
+
+
+def judge(program, work, number, seconds, plain):
+    """What the main job says of a defect: the first thing that is red, or nothing, and how many rows it moved."""
+    out = work / "out"
+    code, said, took = attempt([str(program), "run", "--out", str(out)], work, number, seconds)
+    left = results(out) if code in (0, 1) else None
+    subprocess.run(["rm", "-rf", str(out)], check=False)
+    answer = {"seconds": round(took, 1), "caught": None, "red": 0, "moved": None}
+    if code is None:
+        answer["caught"] = f"run: not ended after {seconds:.0f} s"
+    elif left is None:
+        last = [line for line in said.splitlines() if line.strip() and not line.startswith("note:")][-3:]
+        answer["caught"] = f"run: ended with {code}: {' | '.join(last)[:150]}"
+    else:
+        rows, controls = left
+        answer["moved"] = sum(row != was for row, was in zip(rows, plain[0])) + abs(len(rows) - len(plain[0]))
+        red = [f"run: {row['verdict']}: {row_name(row)}" for row in rows if row["verdict"] in RED]
+        red += [f"run: control stayed green: {row_name(row)}" for row in controls if not row["turned_red"]]
+        answer["red"] = len(red)
+        if red or code != 0:
+            answer["caught"] = red[0] if red else f"run: ended with {code}"
+    return answer
+
+
+def try_tests(tests, number):
+    """The first test that is red; none where all are green."""
+    for name, executable, folder, usual in tests:
+        more = {"CARGO_MANIFEST_DIR": str(folder)}
+        code, said, _ = attempt([executable], folder, number, 4 * usual + 60, more)
+        if code != 0:
+            failed = re.search(r"^test (.*?) \.\.\. .*FAILED", said, re.MULTILINE) or \
+                re.search(r"^    (\S+)$", said, re.MULTILINE)
+            word = failed.group(1) if failed else ("not ended" if code is None else f"ended with {code}")
+            return f"{name}: {word}"
+    return None
+
+
+def measured(tests, kept, longest):
+    """The tests that pass with no defect within a time, quickest first; those that do not look at the text of the tree,
+    or judge the rows of the main job once more."""
+    if kept.exists():
+        times = json.loads(kept.read_text())
+    else:
+        times = {}
+        for name, executable, folder in tests:
+            code, _, took = attempt([executable], folder, 0, longest, {"CARGO_MANIFEST_DIR": str(folder)})
+            times[name] = took if code == 0 else None
+            why = "takes too long" if code is None else "red without a defect"
+            print(f"{name}: {f'{took:.1f} s' if code == 0 else f'left out, {why}'}", flush=True)
+        kept.write_text(json.dumps(times, indent=1))
+    return sorted(((*test, times[test[0]]) for test in tests if times.get(test[0]) is not None), key=lambda test: test[3])
+
+
+def table(rows, known):
+    print("\n| place | kind | what | moved rows | caught by |\n|---|---|---|---|---|")
+    for row in rows:
+        answer = known.get(row["number"], {})
+        shown, caught = row["shown"].replace("|", "¦"), (answer.get("caught") or "**nothing**").replace("|", "¦")
+        print(f"| {row['file']}:{row['line']} | {row['kind']} | `{shown}` | {answer.get('moved', '')} | {caught} |")
+    found = Counter(row["class"] for row in rows if known.get(row["number"], {}).get("caught"))
+    by_run = Counter(row["class"] for row in rows if (known.get(row["number"], {}).get("caught") or "").startswith("run:"))
+    print("\n| class | planted | caught by the main job | caught by it or the tests |\n|---|---|---|---|")
+    for name in CLASSES:
+        count = sum(row["class"] == name for row in rows)
+        print(f"| {name} | {count} | {by_run[name]} | {found[name]} |")
+    print(f"| all | {len(rows)} | {by_run.total()} | {found.total()} |")
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--seed", type=int, help="of the lot; printed where none is given")
+    options.add_argument("--each", type=int, default=15, help="defects of each class")
+    options.add_argument("--only-run", action="store_true", help="the main job alone, no tests")
+    options.add_argument("--longest", type=float, default=1800, help="seconds that one test program may take")
+    options.add_argument("--work", type=Path, default=ROOT / "target" / "planted")
+    asked = options.parse_args()
+    seed = asked.seed if asked.seed is not None else random.SystemRandom().randrange(10**6)
+    print(f"seed {seed}", flush=True)
+    planting = Planting(asked.work.resolve(), seed, asked.each)
+    rows = planting.draw()
+    program, tests = planting.build()
+
+    command(["cargo", "build", "--release"], ROOT)
+    out = planting.work / "out"
+    judged = {}
+    for name, which in (("plain", ROOT / "target" / "release" / "grainbench"), ("none chosen", program)):
+        code, said, took = attempt([str(which), "run", "--out", str(out)], planting.work, 0, 1800)
+        judged[name] = results(out)
+        subprocess.run(["rm", "-rf", str(out)], check=False)
+        if code != 0 or judged[name] is None:
+            sys.exit(f"{name}: ended with {code}\n{said[-2000:]}")
+        print(f"{name}: {len(judged[name][0])} rows in {took:.0f} s", flush=True)
+    if judged["plain"] != judged["none chosen"]:
+        sys.exit("with no defect chosen rows are others than those of the plain build")
+    print("with no defect chosen all rows and controls equal those of the plain build, in every bit", flush=True)
+
+    kept = planting.work / "results.jsonl"
+    known = {}
+    if kept.exists():
+        known = {row["number"]: row for row in map(json.loads, kept.read_text().splitlines())}
+
+    def note(row, answer, tested):
+        known[row["number"]] = {"number": row["number"], "tested": tested, **answer}
+        with kept.open("a") as file:
+            file.write(json.dumps(known[row["number"]]) + "\n")
+        caught = answer["caught"] or ("nothing" if tested else "nothing so far")
+        print(f"{row['number']:3} {row['file']}:{row['line']} {row['kind']}: {caught}", flush=True)
+
+    for row in rows:
+        if row["number"] not in known:
+            note(row, judge(program, planting.work, row["number"], 5 * took + 60, judged["plain"]), False)
+    if not asked.only_run:
+        tests = measured(tests, planting.work / "tests.json", asked.longest)
+        for row in rows:
+            answer = known[row["number"]]
+            if not answer["caught"] and not answer["tested"]:
+                note(row, {**answer, "caught": try_tests(tests, row["number"])}, True)
+    table(rows, known)
+
+
+if __name__ == "__main__":
+    main()
