@@ -36,7 +36,7 @@ pub enum StoredError {
         source: Box<toml::de::Error>,
     },
     /// A file of the run is no longer the one that was stored.
-    #[error("{}: expected the file with BLAKE3 {expected}, found {found}", shown(path))]
+    #[error("{}: expected the file with BLAKE3 {}, found {found}", shown(path), one_line(expected))]
     Changed {
         /// The file.
         path: PathBuf,

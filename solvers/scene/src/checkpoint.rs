@@ -5,6 +5,7 @@
 //! a number.
 
 use crate::scene::Scene;
+use crate::text::tamed;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -42,7 +43,7 @@ pub enum CheckpointError {
     #[error("the checkpoint is damaged: {0}")]
     Damaged(String),
     /// It belongs to another run.
-    #[error("the checkpoint is of another run: expected {what} {expected}, found {found}")]
+    #[error("the checkpoint is of another run: expected {what} {expected}, found {}", tamed(found, |_| false))]
     OtherRun {
         /// What differs.
         what: &'static str,

@@ -1,10 +1,11 @@
 //! What is wrong with a scene, said so that its author can mend it.
 
+use crate::text::tamed;
 use thiserror::Error;
 
 /// A scene that cannot be used: which file, where, what was expected and what stood there.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{place}: {}expected {expected}, found {found}{}", key_prefix(key), help_suffix(help.as_deref()))]
+#[error("{}", tamed(&told(self), |_| false))]
 pub struct SceneError {
     /// File and line, or the `--set` that brought the value in.
     pub place: String,
@@ -16,6 +17,12 @@ pub struct SceneError {
     pub found: String,
     /// How to mend it, where that is known.
     pub help: Option<String>,
+}
+
+/// In one sentence, with whatever stood in the file as it stood there.
+fn told(error: &SceneError) -> String {
+    let SceneError { place, key, expected, found, help } = error;
+    format!("{place}: {}expected {expected}, found {found}{}", key_prefix(key), help_suffix(help.as_deref()))
 }
 
 fn key_prefix(key: &str) -> String {
@@ -35,4 +42,22 @@ pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) ->
         .filter(|(likeness, _)| *likeness > 0.75)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What stood in the file stands in the message, but steers nothing.
+    #[test]
+    fn is_one_line_whatever_stood_there() {
+        let error = SceneError {
+            place: "s.toml:3".to_owned(),
+            key: "title".to_owned(),
+            expected: "TOML".to_owned(),
+            found: "a\u{1b}[2J\nb".to_owned(),
+            help: None,
+        };
+        assert_eq!(error.to_string(), "s.toml:3: title: expected TOML, found a\\u{1b}[2J\\u{a}b");
+    }
 }
