@@ -91,6 +91,20 @@ fn more_steps_than_any_solver_takes_are_refused_by_each() {
     assert!(code == 2 && said.contains("expected fewer than 1e15 steps"), "{said}");
 }
 
+/// A record of bodies alone had no bounds, and could not be read back.
+#[test]
+fn a_record_of_bodies_alone_is_read_back() {
+    let directory = tempfile::tempdir().unwrap();
+    let body = "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 0.5] }\n[output]\nsnapshots = 1\n";
+    fs::write(directory.path().join("s.toml"), format!("{ELASTIC}{body}")).unwrap();
+    let simulate = ["simulate", "s.toml", "--solver", "mpm", "--cells", "4", "--out", "out"];
+    assert_eq!(grainbench(directory.path(), &simulate).code, Some(0));
+    let answer = grainbench(directory.path(), &["report", "out"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let record = fs::read_to_string(directory.path().join("out/record.json")).unwrap();
+    assert!(record.contains("\"bounds\":[[0.0,0.0,-0.5],[1.0,0.5,0.5]]"), "{record}");
+}
+
 #[test]
 fn a_checkpoint_replaces_a_checkpoint_and_nothing_else() {
     let directory = tempfile::tempdir().unwrap();

@@ -73,6 +73,18 @@ pub enum BlockShape {
 }
 
 impl BlockShape {
+    /// Corners of the box around it (m).
+    #[must_use]
+    pub fn corners(&self) -> (Vector3<f64>, Vector3<f64>) {
+        match *self {
+            Self::Box { low, high } => (low, high),
+            Self::Annulus { centre, outer, .. } => {
+                let reach = Vector3::new(outer, outer, 0.0);
+                (centre - reach, centre + reach)
+            }
+        }
+    }
+
     /// Volume (m³; m² in the plane).
     #[must_use]
     pub fn volume(&self, dimensions: usize) -> f64 {

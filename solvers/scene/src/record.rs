@@ -232,18 +232,26 @@ impl Snapshot {
     }
 }
 
-/// Corners of the domain (m), or of the box around all grains where the scene has none; z from −0.5 to 0.5 in the
-/// plane.
+/// Corners of the domain (m), or of the box around all grains where the scene has none, or of that around its bodies as
+/// they start where there are no grains either; z from −0.5 to 0.5 in the plane.
 #[must_use]
 pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {
     if let Some(domain) = scene.domain {
         return (domain.low, domain.high);
     }
     let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-    let (mut low, mut high) = grains.iter().fold(start, |(low, high), grain| {
+    let of_grain = |grain: &GrainState| {
         let reach = Vector3::repeat(grain.radius);
-        (low.inf(&(grain.position - reach)), high.sup(&(grain.position + reach)))
-    });
+        (grain.position - reach, grain.position + reach)
+    };
+    let around = |boxes: &mut dyn Iterator<Item = (Vector3<f64>, Vector3<f64>)>| {
+        boxes.fold(start, |(low, high), of| (low.inf(&of.0), high.sup(&of.1)))
+    };
+    let (mut low, mut high) = match (grains, &scene.bodies[..]) {
+        ([], []) => (Vector3::zeros(), Vector3::zeros()),
+        ([], bodies) => around(&mut bodies.iter().map(|body| body.shape.corners())),
+        _ => around(&mut grains.iter().map(of_grain)),
+    };
     if scene.dimension.count() == 2 {
         (low.z, high.z) = (-0.5, 0.5);
     }
