@@ -43,6 +43,18 @@ pub(crate) struct Grains<S: Space, R: Rotation<S>> {
 }
 
 impl<S: Space, R: Rotation<S>> Grains<S, R> {
+    /// Whether these can be the same grains, sorted otherwise.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        let Self { place, movement, rotation, force, torque, material, id, slot } = self;
+        let count = other.len();
+        let lengths = [place.len(), movement.len(), rotation.len(), force.len(), torque.len(), id.len(), slot.len()];
+        let mut placed = slot.iter().enumerate();
+        lengths.iter().all(|&length| length == count)
+            && material.len() == count
+            && placed.all(|(place, &slot)| id.get(slot as usize).is_some_and(|&id| id as usize == place))
+            && (0..count).all(|slot| material[slot] == other.material[other.slot[id[slot] as usize] as usize])
+    }
+
     /// The grains as the scene has them at the start, without forces.
     pub(crate) fn new(scene: &Scene) -> Self {
         let all = &scene.grains;

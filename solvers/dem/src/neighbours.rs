@@ -37,6 +37,17 @@ impl<H: Copy + Default> Pairs<H> {
         self.start.push(self.partner.len() as u32);
     }
 
+    /// Whether these are pairs of so many grains: rows that follow one another, and a history for each pair.
+    fn is_of(&self, grains: usize) -> bool {
+        let count = self.partner.len();
+        let rows = self.start.len() == grains + 1 || self.start == [0];
+        let in_order = self.start.first() == Some(&0) && self.start.is_sorted();
+        rows && in_order
+            && self.start.last().is_some_and(|&last| last as usize == count)
+            && self.history.len() == count
+            && self.partner.iter().all(|&partner| (partner as usize) < grains)
+    }
+
     fn find(&self, row: u32, partner: u32) -> Option<H> {
         let row = row as usize;
         let range = *self.start.get(row)? as usize..*self.start.get(row + 1)? as usize;
@@ -64,6 +75,13 @@ pub(crate) struct Neighbours<S: Space, H> {
 }
 
 impl<S: Space, H: Copy + Default> Neighbours<S, H> {
+    /// Whether this is a list of so many grains.
+    pub(crate) fn is_of(&self, grains: usize) -> bool {
+        let Self { near, across, shift, reference, .. } = self;
+        let known = reference.len() == grains || reference.is_empty();
+        known && near.is_of(grains) && across.is_of(grains) && shift.len() == across.partner.len()
+    }
+
     pub(crate) fn new(skin: f64) -> Self {
         Self { near: Pairs::empty(), across: Pairs::empty(), shift: Vec::new(), reference: Vec::new(), skin, builds: 0 }
     }
@@ -293,5 +311,16 @@ mod tests {
         agrees_with_all_pairs::<Solid>([false; 3]);
         agrees_with_all_pairs::<Solid>([false, true, false]);
         agrees_with_all_pairs::<Solid>([true; 3]);
+    }
+
+    /// What a checkpoint may hold that some other program wrote.
+    #[test]
+    fn lists_of_other_grains_are_told() {
+        let pairs = Pairs { start: vec![0, 1, 1], partner: vec![1], history: vec![()] };
+        assert!(pairs.is_of(2) && Pairs::<()>::empty().is_of(2) && !pairs.is_of(1) && !pairs.is_of(3));
+        assert!(!Pairs { partner: vec![2], ..pairs.clone() }.is_of(2));
+        assert!(!Pairs { start: vec![0, 2, 1], ..pairs.clone() }.is_of(2));
+        assert!(!Pairs { start: vec![0, 1, 2], ..pairs.clone() }.is_of(2));
+        assert!(!Pairs { history: Vec::new(), ..pairs }.is_of(2));
     }
 }

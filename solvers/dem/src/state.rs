@@ -54,8 +54,13 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         checkpoint: &Checkpoint,
     ) -> Result<Recorder, CheckpointError> {
         let state: State<S, T, R> = checkpoint.state(identity)?;
-        if state.grains.len() != self.grains.len() || state.walls.len() != self.walls.len() {
-            return Err(CheckpointError::Damaged("it has another number of grains or walls".to_owned()));
+        let count = self.grains.len();
+        let same = state.grains.is_like(&self.grains)
+            && state.neighbours.is_of(count)
+            && state.walls.len() == self.walls.len()
+            && state.walls.iter().all(|wall| wall.is_of(count));
+        if !same {
+            return Err(CheckpointError::Damaged("it has other grains, pairs or walls".to_owned()));
         }
         self.grains = state.grains;
         self.neighbours = state.neighbours;

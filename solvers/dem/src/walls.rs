@@ -38,6 +38,13 @@ pub(crate) struct WallMemory<S: Space, H> {
     force: S::Vector,
 }
 
+impl<S: Space, H> WallMemory<S, H> {
+    /// Whether it remembers none but so many grains.
+    pub(crate) fn is_of(&self, grains: usize) -> bool {
+        self.near.iter().all(|&(slot, _)| (slot as usize) < grains)
+    }
+}
+
 /// What a grain sees of a wall.
 pub(crate) struct Facing<S: Space> {
     /// Unit vector from the grain to the wall.

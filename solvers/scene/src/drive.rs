@@ -79,8 +79,16 @@ impl Course<'_> {
         if begins {
             stepper.begin()?;
         }
-        let mut recorder = resumed.unwrap_or_else(|| Recorder::new(scene, time_step, steps));
+        let begun = Recorder::new(scene, time_step, steps);
         let first = stepper.step();
+        let mut recorder = match resumed {
+            None => begun,
+            Some(resumed) if resumed.is_of(&begun) && first <= steps => resumed,
+            Some(_) => {
+                let reason = "its steps or samples are not those of the run that it says it is of";
+                return Err(CheckpointError::Damaged(reason.to_owned()).into());
+            }
+        };
         // No checkpoint is wanted of where the run begins.
         let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
         loop {

@@ -37,6 +37,21 @@ impl Recorder {
         Self { interval: interval.max(1), snapshot_steps, steps, series, snapshots: Vec::new() }
     }
 
+    /// Whether this is a record of the run that another one begins: it asks for the same at the same steps, and holds a
+    /// value of each column for each sample.
+    #[must_use]
+    pub fn is_of(&self, begun: &Self) -> bool {
+        let Series { step, time, columns, values } = &self.series;
+        let asks = |of: &Self| (of.interval, of.steps);
+        let each = |column: &Vec<f64>| column.len() == time.len();
+        asks(self) == asks(begun)
+            && self.snapshot_steps == begun.snapshot_steps
+            && *columns == begun.series.columns
+            && values.len() == columns.len()
+            && step.len() == time.len()
+            && values.iter().all(each)
+    }
+
     /// Steps between samples.
     #[must_use]
     pub const fn interval(&self) -> u64 {
@@ -99,5 +114,30 @@ impl Recorder {
     #[must_use]
     pub fn finish(self) -> (Series, Vec<Snapshot>) {
         (self.series, self.snapshots)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_is_continued_by_the_run_that_began_it_alone() {
+        let begun = Recorder {
+            interval: 2,
+            snapshot_steps: vec![0, 10],
+            steps: 10,
+            series: Series::default(),
+            snapshots: Vec::new(),
+        };
+        assert!(begun.is_of(&begun));
+        let others = [
+            Recorder { interval: 0, ..begun.clone() },
+            Recorder { steps: 11, ..begun.clone() },
+            Recorder { snapshot_steps: vec![0], ..begun.clone() },
+            Recorder { series: Series { values: vec![Vec::new()], ..Series::default() }, ..begun.clone() },
+            Recorder { series: Series { time: vec![0.0], ..Series::default() }, ..begun.clone() },
+        ];
+        assert!(others.iter().all(|other| !other.is_of(&begun)));
     }
 }
