@@ -47,11 +47,16 @@ pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>) -> Opt
 
 /// Sorts along x and compares only grains whose extents meet there.
 fn grain_pairs(grains: &[Grain], domain: Option<&Domain>) -> Option<Deepest> {
+    let periodic = domain.filter(|domain| domain.periodic[0]);
+    // Grains may start lengths away from a periodic domain; where they are in it is where others are near.
+    let x = |at: usize| {
+        let x = grains[at].position.x;
+        let outside = periodic.filter(|domain| !(domain.low.x..=domain.high.x).contains(&x));
+        outside.map_or(x, |domain| domain.low.x + (x - domain.low.x).rem_euclid(domain.high.x - domain.low.x))
+    };
+    let left = |at: usize| x(at) - grains[at].radius;
     let mut order: Vec<usize> = (0..grains.len()).collect();
-    order.sort_by(|&a, &b| {
-        let left = |g: &Grain| g.position.x - g.radius;
-        left(&grains[a]).total_cmp(&left(&grains[b]))
-    });
+    order.sort_by(|&a, &b| left(a).total_cmp(&left(b)));
     let mut worst: Option<Deepest> = None;
     let mut consider = |a: usize, b: usize| {
         let between = nearest_image(grains[b].position - grains[a].position, domain);
@@ -61,23 +66,15 @@ fn grain_pairs(grains: &[Grain], domain: Option<&Domain>) -> Option<Deepest> {
             worst = Some(Deepest::Grains(a.min(b), a.max(b), ratio));
         }
     };
-    let wrap = domain.filter(|domain| domain.periodic[0]).map(|domain| domain.high.x - domain.low.x);
+    let wrap = periodic.map(|domain| domain.high.x - domain.low.x);
     let largest = grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
     for (at, &a) in order.iter().enumerate() {
-        let right = grains[a].position.x + grains[a].radius;
-        order[at + 1..]
-            .iter()
-            .take_while(|&&b| grains[b].position.x - grains[b].radius < right)
-            .for_each(|&b| consider(a, b));
+        let right = x(a) + grains[a].radius;
+        order[at + 1..].iter().take_while(|&&b| left(b) < right).for_each(|&b| consider(a, b));
         // Across a periodic face: the first grains of the order come again one length to the right.
-        if let Some(length) =
-            wrap.filter(|length| right + largest > grains[order[0]].position.x + length - 2.0 * largest)
-        {
-            order
-                .iter()
-                .take_while(|&&b| grains[b].position.x - grains[b].radius + length < right)
-                .filter(|&&b| b != a)
-                .for_each(|&b| consider(a, b));
+        if let Some(length) = wrap.filter(|length| right + largest > x(order[0]) + length - 2.0 * largest) {
+            let again = order.iter().take_while(|&&b| left(b) + length < right);
+            again.filter(|&&b| b != a).for_each(|&b| consider(a, b));
         }
     }
     worst
@@ -118,4 +115,26 @@ pub fn nearest_on_rectangle(point: Vector3<f64>, corner: &Vector3<f64>, edges: &
     edges
         .iter()
         .fold(*corner, |at, edge| at + edge * ((point - corner).dot(edge) / edge.norm_squared()).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two grains whose places in the domain are .15 m apart, though one starts a thousand lengths away.
+    #[test]
+    fn grains_far_from_a_periodic_domain_meet_those_within() {
+        let grain = |x: f64| Grain {
+            material: 0,
+            radius: 0.1,
+            mass: 1.0,
+            inertia: 1.0,
+            position: Vector3::new(x, 0.5, 0.0),
+            velocity: Vector3::zeros(),
+            spin: Vector3::zeros(),
+        };
+        let domain = Domain { low: Vector3::zeros(), high: Vector3::repeat(4.0), periodic: [true, false, false] };
+        let found = deepest(&[grain(4001.0), grain(2.5), grain(1.15)], &[], Some(&domain)).unwrap();
+        assert!(matches!(found, Deepest::Grains(0, 2, _)) && (found.ratio() - 0.5).abs() < 1e-9, "{found:?}");
+    }
 }
