@@ -91,6 +91,16 @@ fn more_steps_than_any_solver_takes_are_refused_by_each() {
     assert!(code == 2 && said.contains("expected fewer than 1e15 steps"), "{said}");
 }
 
+#[test]
+fn bodies_that_would_settle_for_ever_are_refused() {
+    let (code, said) = simulated(
+        &format!("settle = {{ duration = 1e200, damping = 1.0, gravity = [0.0, 0.0] }}\n{ELASTIC}"),
+        "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\n",
+        &["mpm"],
+    );
+    assert!(code == 2 && said.contains("expected fewer than 1e15 steps"), "{said}");
+}
+
 /// A record of bodies alone had no bounds, and could not be read back.
 #[test]
 fn a_record_of_bodies_alone_is_read_back() {

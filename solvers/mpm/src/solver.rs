@@ -124,7 +124,8 @@ impl Mpm {
         if damped >= 2.0 {
             return Err(self.resolution_error(format!("expected damping times step below 2, found {damped}")));
         }
-        if let Some(refusal) = beyond_steps(steps) {
+        let settling = scene.start.settle.map_or(0.0, |settle| settle.duration / (time / steps));
+        if let Some(refusal) = beyond_steps(steps).or_else(|| beyond_steps(settling)) {
             return Err(self.resolution_error(refusal));
         }
         Ok(Plan { lattice, points, time_step: time / steps, steps: steps as u64, critical })
