@@ -91,6 +91,18 @@ fn more_steps_than_any_solver_takes_are_refused_by_each() {
     assert!(code == 2 && said.contains("expected fewer than 1e15 steps"), "{said}");
 }
 
+/// Cells are as long as the period there, whatever was asked for: such a body ended the program for want of memory.
+#[test]
+fn a_body_longer_than_the_period_is_refused() {
+    let (code, said) = simulated(
+        &format!("reference_length = 1e308\n{ELASTIC}"),
+        "[domain]\nlow = [0.0, 0.0]\nhigh = [1.0, 1.0]\nperiodic = [true, true]\n\
+         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1e12, 1.0] }\n",
+        &["mpm"],
+    );
+    assert!(code == 2 && said.contains("body `b` is longer along x than the period there"), "{said}");
+}
+
 #[test]
 fn bodies_that_would_settle_for_ever_are_refused() {
     let (code, said) = simulated(

@@ -1,5 +1,6 @@
 //! What the method cannot express, each with its reason.
 
+use grainbench_scene::body::Block;
 use grainbench_scene::file::GrainShape;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::overlap;
@@ -20,6 +21,9 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
              `shear_modulus`), and grains deform here",
             scene.materials[usize::from(material)]
         ));
+    }
+    if let Some((name, axis)) = longer_than_period(scene) {
+        return Some(format!("body `{name}` is longer along {axis} than the period there: it would overlap itself"));
     }
     if let Some(wall) = scene.walls.iter().find(|wall| !matches!(wall.shape, WallShape::Plane { .. })) {
         return Some(format!("wall `{}` is no plane", wall.name));
@@ -49,4 +53,18 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
         return Some("a wall starts or stops at a calculation cycle of another method; seconds can be run".to_owned());
     }
     None
+}
+
+/// A body that is longer than the period along some axis, with that axis.
+fn longer_than_period(scene: &Scene) -> Option<(&str, &'static str)> {
+    let domain = scene.domain?;
+    let names = ["x", "y", "z"];
+    let longer = |body: &Block, axis: usize| {
+        let (low, high) = body.shape.corners();
+        let period = domain.high[axis] - domain.low[axis];
+        // The slack is for sums that are rounded.
+        domain.periodic[axis] && high[axis] - low[axis] > period * (1.0 + 1e-9)
+    };
+    let first = |body: &Block| (0..scene.dimension.count()).find(|&axis| longer(body, axis));
+    scene.bodies.iter().find_map(|body| Some((body.name.as_str(), names[first(body)?])))
 }

@@ -74,15 +74,15 @@ impl Mpm {
             return Err(self.resolution_error(format!("expected positive numbers, found {resolution}")));
         }
         let cell = scene.reference_length / cells;
-        if let Some(found) = beyond_memory(scene, cell, points) {
-            return Err(self.resolution_error(format!("expected points and nodes that fit into memory, found {found}")));
-        }
         let cells_of = |axis: usize| scene.domain.map_or(0.0, |domain| (domain.high[axis] - domain.low[axis]) / cell);
         if let Some(axis) = (0..scene.dimension.count()).find(|&axis| cells_of(axis) >= f64::from(i32::MAX)) {
             let found = format!("expected a domain of fewer than 2^31 cells along an axis, found {:e}", cells_of(axis));
             return Err(self.resolution_error(found));
         }
         let lattice = lattice(scene, &self.setting, cell);
+        if let Some(found) = beyond_memory(scene, lattice.cell, points) {
+            return Err(self.resolution_error(format!("expected points and nodes that fit into memory, found {found}")));
+        }
         let cell = lattice.shortest(scene.dimension.count());
         let smallest = scene.grains.iter().enumerate().min_by(|(_, a), (_, b)| a.radius.total_cmp(&b.radius));
         if let Some((at, grain)) = smallest.filter(|(_, grain)| grain.radius < SMALLEST * cell) {
@@ -186,11 +186,11 @@ const BYTES_OF_A_POINT: f64 = 600.0;
 /// What a node takes in each body that reaches it (B).
 const BYTES_OF_A_NODE: f64 = 150.0;
 
-/// What is wrong with the points and nodes that a scene needs with cells of a length (m): more than there is memory for.
-fn beyond_memory(scene: &Scene, cell: f64, points: u32) -> Option<String> {
+/// What is wrong with the points and nodes that a scene needs with cells of some lengths (m): more than there is memory for.
+fn beyond_memory(scene: &Scene, cell: [f64; 3], points: u32) -> Option<String> {
     let dimensions = scene.dimension.count();
-    let in_cells = |volume: f64| volume / cell.powi(dimensions as i32);
-    let boxed = |length: f64| (length / cell + 4.0).powi(dimensions as i32);
+    let in_cells = |volume: f64| cell[..dimensions].iter().fold(volume, |count, cell| count / cell);
+    let boxed = |length: f64| cell[..dimensions].iter().map(|cell| length / cell + 4.0).product::<f64>();
     let of_bodies = scene.bodies.iter().map(|body| {
         let nodes = match body.shape {
             BlockShape::Box { .. } => in_cells(body.shape.volume(dimensions)),
