@@ -19,8 +19,11 @@ const LOCK: &str = ".grainbench-lock";
 const PATIENCE: Duration = Duration::from_secs(24 * 3600);
 
 /// A hidden directory on the same file system, so that a rename out of it is atomic. Files are made inside it rather
-/// than by `NamedTempFile` so that they get the permissions of any other new file.
+/// than by `NamedTempFile` so that they get the permissions of any other new file. What others left there who are no more
+/// goes at this occasion.
 pub(crate) fn temporary_in(parent: &Path) -> io::Result<TempDir> {
+    // What cannot be taken away is no reason to write nothing.
+    let _ = sweep(parent);
     let made = Builder::new().prefix(PREFIX).tempdir_in(parent).map_err(without_its_path)?;
     fs::write(made.path().join(OWNER), owner())?;
     Ok(made)
@@ -35,14 +38,20 @@ pub fn sweep(folder: &Path) -> io::Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
-        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PREFIX));
-        if hidden && path.is_dir() && is_left(&path.join(OWNER)) {
-            // Another may be sweeping too.
-            match fs::remove_dir_all(&path) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if !name.starts_with(PREFIX) {
+            continue;
         }
+        let swept = if path.is_dir() && (is_left(&path.join(OWNER)) || is_barren(&path)) {
+            fs::remove_dir_all(&path)
+        } else if path.is_file() && name != LOCK && is_left(&path) {
+            // On its way to being a lock.
+            fs::remove_file(&path)
+        } else {
+            continue;
+        };
+        // Another may be sweeping too.
+        swept.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
     }
     Ok(())
 }
@@ -57,11 +66,11 @@ impl Lock {
         const TRIES: u32 = 200;
         let path = directory.join(LOCK);
         for _ in 0..TRIES {
-            match fs::OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(mut file) => {
-                    io::Write::write_all(&mut file, owner().as_bytes())?;
-                    return Ok(Self(path));
-                }
+            // With its owner in it from the first moment: an empty one would be nobody's for ever.
+            let mut file = Builder::new().prefix(PREFIX).tempfile_in(directory).map_err(without_its_path)?;
+            io::Write::write_all(&mut file, owner().as_bytes())?;
+            match file.persist_noclobber(&path).map_err(|error| error.error) {
+                Ok(_) => return Ok(Self(path)),
                 Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
                 Err(_) if is_left(&path) => {
                     let _ = fs::remove_file(&path);
@@ -99,9 +108,20 @@ fn is_left(path: &Path) -> bool {
     if host == machine() && Path::new("/proc/self").exists() {
         return number.parse::<u32>().is_ok_and(|number| !Path::new(&format!("/proc/{number}")).exists());
     }
-    let age =
-        fs::metadata(path).and_then(|of| of.modified()).ok().and_then(|at| SystemTime::now().duration_since(at).ok());
-    age.is_some_and(|age| age > PATIENCE)
+    age_of(path).is_some_and(|age| age > PATIENCE)
+}
+
+/// Whether a hidden directory is as its maker had it for a moment only, and long ago: empty, and nobody's yet.
+fn is_barren(path: &Path) -> bool {
+    let is_old = age_of(path).is_some_and(|age| age > PATIENCE);
+    let entries = |path: &Path| Some(fs::read_dir(path).ok()?.flatten().map(|entry| entry.path()).collect::<Vec<_>>());
+    let is_empty = |path: &Path| fs::metadata(path).is_ok_and(|of| of.len() == 0);
+    is_old && entries(path).is_some_and(|all| all.iter().all(|path| path.ends_with(OWNER) && is_empty(path)))
+}
+
+/// How long ago something was changed.
+fn age_of(path: &Path) -> Option<Duration> {
+    SystemTime::now().duration_since(fs::metadata(path).ok()?.modified().ok()?).ok()
 }
 
 /// What the system said, without the temporary name that nobody asked for.

@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use tempfile::TempDir;
 
 use crate::manifest::{MANIFEST, Manifest};
-use crate::scratch::{Lock, temporary_in};
+use crate::scratch::{Lock, sweep, temporary_in};
 use crate::write::{WriteError, parent_of};
 
 /// Files on their way into a directory. They gather in a hidden sibling and move into place at
@@ -53,6 +53,8 @@ impl StagedDir {
             fs::create_dir(&path)?;
             self.made.push(path);
         }
+        // A process that was ended when the directory was new has left something beside it.
+        let _ = sweep(parent_of(&self.target));
         let holder = temporary_in(parent)?;
         fs::create_dir(holder.path().join("new"))?;
         self.holder = Some(holder);
@@ -115,7 +117,7 @@ impl StagedDir {
     /// # Errors
     /// When a file cannot be put in place; all files are then as they were.
     pub fn commit(self) -> Result<(), WriteError> {
-        self.put_in_place(false)
+        self.put_in_place(false, &mut || {})
     }
 
     /// The same, but that files that an earlier run left stay: what is added belongs to them.
@@ -123,10 +125,12 @@ impl StagedDir {
     /// # Errors
     /// As of [`StagedDir::commit`].
     pub fn commit_beside(self) -> Result<(), WriteError> {
-        self.put_in_place(true)
+        self.put_in_place(true, &mut || {})
     }
 
-    fn put_in_place(mut self, keep: bool) -> Result<(), WriteError> {
+    /// Puts all files in place; `after` is called after each thing that is done to the disk, for tests that end the
+    /// process there.
+    fn put_in_place(mut self, keep: bool, after: &mut dyn FnMut()) -> Result<(), WriteError> {
         let holder = self.staging().map_err(|source| WriteError::new(&self.target, source))?.to_path_buf();
         let at_target = |source| WriteError::new(&self.target, source);
         let mut manifest = Manifest { whole: true, files: self.files.clone() };
@@ -138,14 +142,16 @@ impl StagedDir {
                 // Another may have been quicker.
                 Err(_) if self.target.is_dir() => {}
                 done => {
+                    after();
                     self.made.clear();
                     return done.map_err(at_target);
                 }
             }
         }
         let _lock = Lock::of(&self.target).map_err(at_target)?;
+        after();
         if !self.manifest {
-            self.replace_files(&holder)?;
+            self.replace_files(&holder, after)?;
             self.made.clear();
             return Ok(());
         }
@@ -153,7 +159,8 @@ impl StagedDir {
         let stood = before.as_ref().map(|of| of.files.clone()).unwrap_or_default();
         let both = stood.iter().chain(&self.files).cloned().collect();
         Manifest { whole: false, files: both }.write(&self.target).map_err(at_target)?;
-        if let Err(error) = self.replace_files(&holder) {
+        after();
+        if let Err(error) = self.replace_files(&holder, after) {
             let _ = match before {
                 Some(before) => before.write(&self.target),
                 None => fs::remove_file(self.target.join(MANIFEST)),
@@ -165,9 +172,11 @@ impl StagedDir {
                 manifest.files.push(left.clone());
             } else {
                 remove_within(&self.target, left);
+                after();
             }
         }
         manifest.write(&self.target).map_err(at_target)?;
+        after();
         self.made.clear();
         Ok(())
     }
@@ -176,12 +185,12 @@ impl StagedDir {
         self.holder.as_ref().map(TempDir::path).ok_or_else(|| io::Error::other("the output directory was not prepared"))
     }
 
-    fn replace_files(&self, holder: &Path) -> Result<(), WriteError> {
+    fn replace_files(&self, holder: &Path, after: &mut dyn FnMut()) -> Result<(), WriteError> {
         // (place, where the file that stood there waits)
         let mut done: Vec<(PathBuf, Option<PathBuf>)> = Vec::new();
         for name in &self.files {
             let place = self.target.join(name);
-            match replace(&holder.join("new").join(name), &place, &holder.join("old").join(name)) {
+            match replace(&holder.join("new").join(name), &place, &holder.join("old").join(name), after) {
                 Ok(old) => done.push((place, old)),
                 Err(source) => {
                     for (place, old) in done.into_iter().rev() {
@@ -212,16 +221,19 @@ fn remove_within(directory: &Path, name: &Path) {
 }
 
 /// Puts `new` at `place`; returns where the file that stood there waits, if one did.
-fn replace(new: &Path, place: &Path, old: &Path) -> io::Result<Option<PathBuf>> {
+fn replace(new: &Path, place: &Path, old: &Path, after: &mut dyn FnMut()) -> io::Result<Option<PathBuf>> {
     fs::create_dir_all(parent_of(place))?;
+    after();
     let kept = place.is_file();
     if kept {
         fs::create_dir_all(parent_of(old))?;
         if fs::hard_link(place, old).is_err() {
             fs::copy(place, old)?;
         }
+        after();
     }
     fs::rename(new, place)?;
+    after();
     Ok(kept.then(|| old.to_path_buf()))
 }
 
@@ -318,5 +330,106 @@ mod tests {
         fs::write(dir.path().join("file"), "x").unwrap();
         let message = StagedDir::new(dir.path().join("file")).unwrap_err().to_string();
         assert!(message.contains("a file of this name is in the way"), "{message}");
+    }
+
+    /// The files of a run, and what they say.
+    fn run_of(word: &str) -> Vec<(String, String)> {
+        let names: &[&str] = match word {
+            "old" => &["a.txt", "figures/1.svg", "figures/2.svg", "frames/1.vtk"],
+            _ => &["a.txt", "b.txt", "figures/1.svg"],
+        };
+        names.iter().map(|name| ((*name).to_owned(), word.to_owned())).collect()
+    }
+
+    fn staged(target: &Path, word: &str) -> StagedDir {
+        let mut staged = StagedDir::new(target).unwrap();
+        run_of(word).iter().for_each(|(name, text)| staged.write(name, text).unwrap());
+        staged
+    }
+
+    /// The files of ours in a directory, and what they say: not the manifest, and nothing hidden.
+    fn found_in(folder: &Path) -> Vec<(String, String)> {
+        let (mut found, mut open) = (Vec::new(), vec![folder.to_path_buf()]);
+        while let Some(path) = open.pop() {
+            let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+            if name.starts_with('.') || [MANIFEST, "mine.txt"].contains(&&*name) {
+                continue;
+            }
+            if path.is_dir() {
+                open.extend(fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
+            } else {
+                found.push((name, fs::read_to_string(&path).unwrap()));
+            }
+        }
+        found.sort();
+        found
+    }
+
+    /// Where a process of the test below puts its files, and after how many operations it ends without a word.
+    const PLACE: &str = "GRAINBENCH_TEST_STAGED_PLACE";
+    const OPERATIONS: &str = "GRAINBENCH_TEST_STAGED_OPERATIONS";
+
+    /// A process that is ended after each thing that a commit does to the disk: its directory is as it was, whole and
+    /// new, or says that it is mixed; and the next run leaves it whole, with nothing beside it.
+    #[test]
+    fn wherever_a_commit_is_cut_off_no_mixed_directory_is_taken_for_whole() {
+        if let (Ok(place), Ok(last)) = (std::env::var(PLACE), std::env::var(OPERATIONS)) {
+            let (last, mut done) = (last.parse::<u32>().unwrap(), 0);
+            let staged = staged(Path::new(&place), "new");
+            // Nothing is dropped at such an end, so that nothing is cleared up.
+            let done = staged.put_in_place(false, &mut || {
+                done += 1;
+                if done == last {
+                    std::process::exit(9);
+                }
+            });
+            return done.unwrap();
+        }
+        let mut told = [0; 3];
+        for before in ["nothing", "old", "old without a manifest"] {
+            for operations in 1.. {
+                let folder = tempfile::tempdir().unwrap();
+                let target = folder.path().join("out");
+                if before != "nothing" {
+                    staged(&target, "old").commit().unwrap();
+                    fs::write(target.join("mine.txt"), "mine").unwrap();
+                }
+                if before == "old without a manifest" {
+                    fs::remove_file(target.join(MANIFEST)).unwrap();
+                }
+                let was = if before == "nothing" { Vec::new() } else { run_of("old") };
+                let test = "staged::tests::wherever_a_commit_is_cut_off_no_mixed_directory_is_taken_for_whole";
+                let ended = std::process::Command::new(std::env::current_exe().unwrap())
+                    .args([test, "--exact"])
+                    .env(PLACE, &target)
+                    .env(OPERATIONS, operations.to_string())
+                    .output()
+                    .unwrap();
+                let found = if target.exists() { found_in(&target) } else { Vec::new() };
+                let is_mixed = crate::refuse_mixed(&target).is_err();
+                // What stood there without a manifest is nobody's to take away.
+                let foreign = before == "old without a manifest";
+                let is_new = |found: &[(String, String)]| {
+                    found == run_of("new") || (foreign && run_of("new").iter().all(|file| found.contains(file)))
+                };
+                let standing = [found == was, is_new(&found), is_mixed];
+                assert!(standing.contains(&true), "{before}, {operations}: {found:?}");
+                (0..3).filter(|&which| standing[which]).for_each(|which| told[which] += 1);
+                if ended.status.success() {
+                    assert!(operations > 1 && !is_mixed, "{before}: nothing was cut off");
+                    break;
+                }
+                assert_eq!(ended.status.code(), Some(9), "{before}, {operations}");
+                staged(&target, "new").commit().unwrap();
+                assert!(is_new(&found_in(&target)), "{before}, {operations}");
+                assert!(crate::refuse_mixed(&target).is_ok());
+                let hidden = |path: &Path| {
+                    let entries = fs::read_dir(path).unwrap().map(|entry| entry.unwrap().file_name());
+                    entries.filter(|name| name.to_string_lossy().starts_with('.')).count()
+                };
+                assert_eq!((hidden(folder.path()), hidden(&target)), (0, 0), "{before}, {operations}: swept");
+            }
+        }
+        assert!(told.iter().all(|&times| times > 2), "{told:?}");
     }
 }
