@@ -183,6 +183,26 @@ def results(folder):
     return left["verdicts"], [{**control, "seconds": 0} for control in left["controls"]]
 
 
+def none_chosen(program, work):
+    """Rows and controls with no defect chosen, and the time of the main job: they must be those of the plain build."""
+    kept, out, judged = work / "plain.json", work / "out", {}
+    if kept.exists():
+        return json.loads(kept.read_text())
+    command(["cargo", "build", "--release"], ROOT)
+    for name, which in (("plain", ROOT / "target" / "release" / "grainbench"), ("none chosen", program)):
+        code, said, took = attempt([str(which), "run", "--out", str(out)], work, 0, 1800)
+        judged[name] = results(out)
+        subprocess.run(["rm", "-rf", str(out)], check=False)
+        if code != 0 or judged[name] is None:
+            sys.exit(f"{name}: ended with {code}\n{said[-2000:]}")
+        print(f"{name}: {len(judged[name][0])} rows in {took:.0f} s", flush=True)
+    if judged["plain"] != judged["none chosen"]:
+        sys.exit("with no defect chosen rows are others than those of the plain build")
+    print("with no defect chosen all rows and controls equal those of the plain build, in every bit", flush=True)
+    kept.write_text(json.dumps([judged["plain"], took]))
+    return judged["plain"], took
+
+
 def row_name(row):
     return " · ".join(row[key] for key in ("case", "variant", "solver", "quantity"))
 
@@ -268,20 +288,7 @@ def main():
     rows = planting.draw()
     program, tests = planting.build()
 
-    command(["cargo", "build", "--release"], ROOT)
-    out = planting.work / "out"
-    judged = {}
-    for name, which in (("plain", ROOT / "target" / "release" / "grainbench"), ("none chosen", program)):
-        code, said, took = attempt([str(which), "run", "--out", str(out)], planting.work, 0, 1800)
-        judged[name] = results(out)
-        subprocess.run(["rm", "-rf", str(out)], check=False)
-        if code != 0 or judged[name] is None:
-            sys.exit(f"{name}: ended with {code}\n{said[-2000:]}")
-        print(f"{name}: {len(judged[name][0])} rows in {took:.0f} s", flush=True)
-    if judged["plain"] != judged["none chosen"]:
-        sys.exit("with no defect chosen rows are others than those of the plain build")
-    print("with no defect chosen all rows and controls equal those of the plain build, in every bit", flush=True)
-
+    plain, took = none_chosen(program, planting.work)
     kept = planting.work / "results.jsonl"
     known = {}
     if kept.exists():
@@ -296,7 +303,7 @@ def main():
 
     for row in rows:
         if row["number"] not in known:
-            note(row, judge(program, planting.work, row["number"], 5 * took + 60, judged["plain"]), False)
+            note(row, judge(program, planting.work, row["number"], 5 * took + 60, plain), False)
     if not asked.only_run:
         tests = measured(tests, planting.work / "tests.json", asked.longest)
         for row in rows:

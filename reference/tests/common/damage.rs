@@ -1,0 +1,155 @@
+//! Damage to files, and what a reader owes to whatever it gets.
+
+// Each test uses its part of this.
+#![allow(dead_code, unreachable_pub)]
+
+use grainbench_reference::{DumpReader, DumpSnapshot, ReadError};
+use proptest::prelude::*;
+
+/// A data file as LAMMPS leaves it.
+pub(crate) const DATA: &str = "\
+LAMMPS data file via write_data, version 29 Sep 2021, timestep = 30000
+
+3 atoms
+1 atom types
+
+0 95.7939389085 xlo xhi
+-0.01 94.4431739862 ylo yhi
+-0.5 0.5 zlo zhi
+
+Atoms # sphere
+
+1303 1 1.13539406656 1.682111412550541 0.27079758352385713 0.5531865960784434 0 0 0 0
+3340 1 1.1697765125 1.6326702551251169 1.414023013762274 0.5452540128895765 0 0 0 0
+9746 1 0.847738383721 2.2528876287513953 2.407577985774929 0.41452861000282043 0 0 -1 0
+
+Velocities
+
+1303 0.0010817518590437827 3.7714923266640344e-05 0 0 0 0
+9746 0.001075180042523461 -3.95411785492108e-05 0 0 0 0
+3340 0.0010298775089176225 6.716749444959259e-05 0 0 0 0.5
+";
+
+/// Pieces that mean something to a reader, or to the functions it calls.
+pub(crate) const PIECES: [&str; 32] = [
+    "ITEM: ",
+    "ITEM: TIMESTEP\n",
+    "ITEM: NUMBER OF ENTRIES\n99999999\n",
+    "ITEM: BOX BOUNDS xy xz yz\n",
+    "Step Time\n",
+    "Loop time of 1 on 1 procs for 1 steps with 1 atoms\n",
+    "\t",
+    "\"",
+    "\n",
+    "\n\n",
+    " ",
+    "#",
+    "\r",
+    ",",
+    "-",
+    "nan",
+    "inf",
+    "-inf",
+    "1e999",
+    "99999999999 atoms\n",
+    "0 0 0 xy xz yz\n",
+    "Atoms\n\n",
+    "Velocities\n\n",
+    "Masses\n\n",
+    "Bonds\n\n",
+    "é",
+    "\u{2028}",
+    "\u{feff}",
+    "18446744073709551616",
+    "\0",
+    "xlo xhi",
+    "-1 ",
+];
+
+/// One damage: a place, as a part of the length, and what happens there.
+#[derive(Debug, Clone)]
+pub(crate) enum Damage {
+    Cut,
+    Remove(usize),
+    Insert(&'static str),
+    Byte(u8),
+    Repeat(usize),
+}
+
+/// Some damages by lot, each with its place.
+pub(crate) fn damages() -> impl Strategy<Value = Vec<(f64, Damage)>> {
+    let one = prop_oneof![
+        1 => Just(Damage::Cut),
+        3 => (1_usize..40).prop_map(Damage::Remove),
+        6 => prop::sample::select(&PIECES[..]).prop_map(Damage::Insert),
+        4 => any::<u8>().prop_map(Damage::Byte),
+        2 => (1_usize..120).prop_map(Damage::Repeat),
+    ];
+    prop::collection::vec((0.0..1.0, one), 1..5)
+}
+
+/// A text with damages.
+pub(crate) fn apply(text: &[u8], damages: &[(f64, Damage)]) -> Vec<u8> {
+    let mut bytes = text.to_vec();
+    for (part, damage) in damages {
+        let place = (part * bytes.len() as f64) as usize;
+        match damage {
+            Damage::Cut => bytes.truncate(place),
+            Damage::Remove(length) => {
+                let end = (place + length).min(bytes.len());
+                bytes.drain(place..end);
+            }
+            Damage::Insert(piece) => {
+                bytes.splice(place..place, piece.bytes());
+            }
+            Damage::Byte(value) => {
+                if let Some(byte) = bytes.get_mut(place) {
+                    *byte = *value;
+                }
+            }
+            Damage::Repeat(length) => {
+                let end = (place + length).min(bytes.len());
+                let piece = bytes.get(place..end).unwrap_or_default().to_vec();
+                bytes.splice(place..place, piece);
+            }
+        }
+    }
+    bytes
+}
+
+/// That a refusal names its place, what was expected and what was found, on one line.
+pub(crate) fn well_said(error: &ReadError) -> Result<(), TestCaseError> {
+    let shown = error.to_string();
+    prop_assert!(!shown.contains(|character: char| character.is_control()), "{shown:?}");
+    prop_assert!(error.line().is_some_and(|line| shown.starts_with(&format!("{}:{line}:", error.file()))), "{shown}");
+    prop_assert!(shown.contains(": expected ") && shown.contains(", found "), "{shown}");
+    Ok(())
+}
+
+/// Dumps that the programs wrote.
+pub(crate) const DUMPS: [&str; 5] = [
+    include_str!("../data/lammps-nine.dump"),
+    include_str!("../data/lammps-nine.local"),
+    include_str!("../data/lammps-scaled-six-digits.dump"),
+    include_str!("../data/liggghts-nine.dump"),
+    include_str!("../data/liggghts-nine.local"),
+];
+/// Logs that they wrote.
+pub(crate) const LOGS: [&str; 2] = [include_str!("../data/lammps-two-runs.log"), include_str!("../data/liggghts.log")];
+/// A table that was stored.
+pub(crate) const TABLE: &str = include_str!("../data/series.csv");
+
+/// Reads a dump to its end; the numbers it has shown are finite, and each row is whole.
+pub(crate) fn read_dump(bytes: &[u8]) -> Result<bool, ReadError> {
+    let mut reader = DumpReader::new(bytes, "f")?;
+    let mut snapshot = DumpSnapshot::default();
+    let mut sound = true;
+    while reader.read(&mut snapshot)? {
+        for row in 0..snapshot.rows() {
+            let row = snapshot.row(row);
+            let mut numbers = row.iter().zip(&snapshot.columns).filter(|(_, column)| !column.is_text);
+            sound &= row.len() == snapshot.columns.len() && numbers.all(|(value, _)| value.is_finite());
+        }
+    }
+    Ok(sound)
+}

@@ -1,0 +1,219 @@
+//! Goes through items by number in processes of their own, so that what ends one, or never ends, is found and told.
+
+use std::env;
+use std::fs;
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+/// What to go through: `scenes:SEED:FROM:COUNT`, or `files:…`.
+const ASKED: &str = "GRAINBENCH_FUZZ";
+/// Where the process that tries items writes how far it is and what it found.
+const NOTES: &str = "GRAINBENCH_FUZZ_NOTES";
+/// Items that one process tries.
+const CHUNK: u64 = 2500;
+/// Memory that such a process may take (kB): what is refused for want of memory must be refused before it is gone.
+const MEMORY: u64 = 4 << 20;
+/// After which time with one item a process is taken to hang.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// After so many findings no more are looked for.
+const ENOUGH: usize = 40;
+
+/// A kind of items.
+pub(crate) struct Kind {
+    /// Its name, which is that of the test too.
+    pub(crate) name: &'static str,
+    /// How many are tried by default.
+    pub(crate) few: u64,
+    /// How many are tried with `GRAINBENCH_LONG`.
+    pub(crate) many: u64,
+    /// Tries the item that is made from a lot; says what is wrong.
+    pub(crate) try_out: fn(&mut Lot) -> Result<(), String>,
+}
+
+/// Whatever is drawn for one item, and what it is in words.
+pub(crate) struct Lot {
+    runner: TestRunner,
+    /// The item in words, for whoever wants to see it.
+    shown: String,
+    /// Where the words stand too, should the item end the process.
+    beside: Option<PathBuf>,
+}
+
+impl Lot {
+    /// The same for the same seed and number, whatever was drawn before.
+    fn new(seed: u64, number: u64, beside: Option<PathBuf>) -> Self {
+        let mut bytes = [0; 32];
+        bytes[..8].copy_from_slice(&seed.to_le_bytes());
+        bytes[8..16].copy_from_slice(&number.to_le_bytes());
+        let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+        Self { runner: TestRunner::new_with_rng(Config::default(), rng), shown: String::new(), beside }
+    }
+
+    /// Puts more words in front of what the item is.
+    pub(crate) fn show(&mut self, words: &str) {
+        self.shown.insert_str(0, &format!("{words}\n"));
+        if let Some(beside) = &self.beside {
+            fs::write(beside, &self.shown).expect("notes");
+        }
+    }
+
+    /// Draws.
+    pub(crate) fn draw<S: Strategy>(&mut self, strategy: S) -> S::Value {
+        strategy.new_tree(&mut self.runner).expect("nothing is filtered").current()
+    }
+
+    /// Draws one of some.
+    pub(crate) fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
+        &of[self.draw(0..of.len())]
+    }
+}
+
+/// Which items.
+#[derive(Clone, Copy)]
+struct Range {
+    seed: u64,
+    from: u64,
+    count: u64,
+}
+
+impl Range {
+    /// Those asked for, or some by default; none when others are asked for.
+    fn of(kind: &Kind) -> Option<Self> {
+        let Ok(asked) = env::var(ASKED) else {
+            let count = if env::var_os("GRAINBENCH_LONG").is_some() { kind.many } else { kind.few };
+            return Some(Self { seed: 1, from: 0, count });
+        };
+        let mut words = asked.split(':');
+        let name = words.next().unwrap_or_default();
+        let numbers: Vec<u64> = words.map_while(|word| word.parse().ok()).collect();
+        let [seed, from, count] = numbers[..] else { panic!("{ASKED}: expected KIND:SEED:FROM:COUNT, found {asked}") };
+        (name == kind.name).then_some(Self { seed, from, count })
+    }
+}
+
+/// Tries the items of a kind that are asked for.
+pub(crate) fn go(kind: &Kind) {
+    let Some(range) = Range::of(kind) else { return };
+    match env::var_os(NOTES) {
+        Some(notes) => work(kind, range, Path::new(&notes)),
+        None => watch(kind, range),
+    }
+}
+
+/// What a process notes: the item it is at, and what it found.
+struct Notes {
+    at: PathBuf,
+    found: PathBuf,
+    /// The item in words.
+    shown: PathBuf,
+}
+
+impl Notes {
+    fn of(folder: &Path) -> Self {
+        Self { at: folder.join("at"), found: folder.join("found"), shown: folder.join("shown") }
+    }
+}
+
+/// Tries items one after the other, in this process.
+fn work(kind: &Kind, range: Range, folder: &Path) {
+    static PANIC: Mutex<String> = Mutex::new(String::new());
+    set_hook(Box::new(|panic| {
+        if let Ok(mut last) = PANIC.lock() {
+            *last = panic.to_string();
+        }
+    }));
+    let notes = Notes::of(folder);
+    let mut at = fs::File::create(&notes.at).expect("notes");
+    let mut found = fs::File::create(&notes.found).expect("notes");
+    for number in range.from..range.from + range.count {
+        // In one place, so that the last one written is the one that counts.
+        std::io::Seek::rewind(&mut at).expect("notes");
+        write!(at, "{number:020}").expect("notes");
+        let mut lot = Lot::new(range.seed, number, (range.count == 1).then(|| notes.shown.clone()));
+        let tried = catch_unwind(AssertUnwindSafe(|| (kind.try_out)(&mut lot)));
+        let wrong = match tried {
+            Ok(Ok(())) if range.count > 1 => continue,
+            Ok(Ok(())) => "nothing is wrong".to_owned(),
+            Ok(Err(wrong)) => wrong,
+            Err(_) => PANIC.lock().map(|last| last.clone()).unwrap_or_default(),
+        };
+        let Range { seed, .. } = range;
+        writeln!(found, "{}:{seed}:{number}:1: {wrong}\n{}\n\u{1e}", kind.name, lot.shown).expect("notes");
+    }
+}
+
+/// Has items tried by processes of their own, a chunk each, and tells what they found.
+fn watch(kind: &Kind, range: Range) {
+    let Range { seed, from, count } = range;
+    let end = from + count;
+    let begun = Instant::now();
+    let (mut next, mut findings) = (from, Vec::new());
+    while next < end && findings.len() < ENOUGH {
+        let chunk = Range { seed, from: next, count: CHUNK.min(end - next) };
+        let (found, after) = in_a_process(kind, chunk);
+        for finding in &found {
+            eprintln!("{finding}");
+        }
+        findings.extend(found);
+        next = after;
+        let (done, seconds) = (next - from, begun.elapsed().as_secs());
+        eprintln!("{} of seed {seed}: {done} of {count}, {seconds} s, {} found", kind.name, findings.len());
+    }
+    let wrong: Vec<&String> = findings.iter().filter(|finding| !finding.contains(": nothing is wrong\n")).collect();
+    assert!(wrong.is_empty(), "{} of {count} {}:\n{}", wrong.len(), kind.name, findings.join("\n"));
+}
+
+/// What a process finds in a chunk, and the item to go on with: past the one that ended it.
+fn in_a_process(kind: &Kind, range: Range) -> (Vec<String>, u64) {
+    let Range { seed, from, count } = range;
+    let folder = tempfile::tempdir().expect("a place for notes");
+    let notes = Notes::of(folder.path());
+    let said = folder.path().join("said");
+    let mut child = Command::new("sh")
+        // A system without such a limit goes without.
+        .args(["-c", &format!("ulimit -v {MEMORY} 2>/dev/null; exec \"$@\""), "sh"])
+        .arg(env::current_exe().expect("this program"))
+        .args([kind.name, "--exact", "--nocapture", "--test-threads=1"])
+        .env(ASKED, format!("{}:{seed}:{from}:{count}", kind.name))
+        .env(NOTES, folder.path())
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(fs::File::create(&said).expect("notes"))
+        .spawn()
+        .expect("this program starts");
+    let at = || fs::read_to_string(&notes.at).ok().and_then(|text| text.parse::<u64>().ok());
+    let (mut last, mut since) = (None, Instant::now());
+    let ended = loop {
+        if let Some(status) = child.try_wait().expect("it is ours") {
+            break (!status.success()).then(|| format!("ended the process: {status}"));
+        }
+        let now = at();
+        if now != last {
+            (last, since) = (now, Instant::now());
+        }
+        if since.elapsed() > PATIENCE {
+            child.kill().expect("it is ours");
+            child.wait().expect("it is ours");
+            break Some(format!("not done after {} s", PATIENCE.as_secs()));
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    let found = fs::read_to_string(&notes.found).unwrap_or_default();
+    let mut found: Vec<String> =
+        found.split('\u{1e}').map(str::trim_start).filter(|text| !text.is_empty()).map(str::to_owned).collect();
+    let Some(ended) = ended else { return (found, from + count) };
+    let number = at().unwrap_or(from);
+    let words = fs::read_to_string(&said).unwrap_or_default();
+    let tail: Vec<&str> = words.lines().rev().take(4).collect();
+    let tail: Vec<&str> = tail.into_iter().rev().collect();
+    let shown = fs::read_to_string(&notes.shown).unwrap_or_default();
+    found.push(format!("{}:{seed}:{number}:1: {ended}: {}\n{shown}", kind.name, tail.join(" | ")));
+    (found, number + 1)
+}

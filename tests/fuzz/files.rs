@@ -1,0 +1,391 @@
+//! A damaged file, and whatever reads it: what it holds, or a refusal that names its place.
+
+use crate::damage::{self, DATA, DUMPS, LOGS, TABLE, apply, damages, read_dump};
+use crate::driver::Lot;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use grainbench::cases::registry;
+use grainbench::dem::convention::Convention;
+use grainbench::dem::solver::Dem;
+use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench::harness::study::point::{Counts, Point, Standing, Timing};
+use grainbench::reference::comparison::{Options, compare};
+use grainbench::reference::observer::Names;
+use grainbench::reference::outputs::{OutputError, Outputs, Sources};
+use grainbench::reference::stored::StoredRun;
+use grainbench::reference::{ReadError, parse_data, parse_log, parse_table};
+use grainbench::reports::export::record_json;
+use grainbench::reports::junit::junit_xml;
+use grainbench::reports::results::results_json;
+use grainbench::reports::study::points_of;
+use grainbench::reports::{Provenance, Report, Section, page, plot, record_figures, refuse_mixed};
+use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::{Sampling, Scene};
+use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+use proptest::prelude::*;
+use ruzstd::encoding::{CompressionLevel, compress_to_vec};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use tempfile::TempDir;
+
+/// Rows that a snapshot of the case below can have.
+const MOST_ROWS: u64 = 1000;
+
+type Answer = Result<(), String>;
+
+/// What reads a file, each in its own way, and how often: those that draw, simulate or read many files less often.
+const READERS: [(&str, usize, fn(&mut Lot) -> Answer); 12] = [
+    ("dump", 4, of_dump),
+    ("log", 4, of_log),
+    ("table", 4, of_table),
+    ("data file", 4, of_data),
+    ("packed dump", 4, of_packed_dump),
+    ("bytes", 4, of_bytes),
+    ("checkpoint", 2, of_checkpoint),
+    ("record.json", 2, of_record),
+    ("results.json, manifest.json", 2, of_results),
+    ("report.json", 1, of_report),
+    ("two outputs", 1, of_two),
+    ("stored run", 1, of_stored),
+];
+
+/// Damages a file and has it read.
+pub(crate) fn try_out(lot: &mut Lot) -> Answer {
+    let mut drawn = lot.draw(0..READERS.iter().map(|(_, weight, _)| weight).sum());
+    for (name, weight, reader) in READERS {
+        if drawn < weight {
+            lot.show(name);
+            return reader(lot);
+        }
+        drawn -= weight;
+    }
+    Ok(())
+}
+
+/// A folder for those that read by name, for as long as the process lives.
+fn folder() -> &'static Path {
+    static FOLDER: OnceLock<TempDir> = OnceLock::new();
+    FOLDER.get_or_init(|| tempfile::tempdir().unwrap()).path()
+}
+
+/// Leaves a file in the folder.
+fn left(name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder().join(name);
+    fs::write(&path, bytes).unwrap();
+    path
+}
+
+/// Damages by lot, noted in words.
+fn damaged(lot: &mut Lot, bytes: &[u8]) -> Vec<u8> {
+    let damages = lot.draw(damages());
+    let bytes = apply(bytes, &damages);
+    lot.show(&format!("{damages:?}\n{}", String::from_utf8_lossy(&bytes[..bytes.len().min(6000)])));
+    bytes
+}
+
+fn refused(error: &ReadError) -> Answer {
+    damage::well_said(error).map_err(|error| error.to_string())
+}
+
+/// What an error of another kind owes: one line that begins with the file.
+fn one_line_of(path: &Path, error: &dyn ToString) -> Answer {
+    let message = error.to_string();
+    let names = message.contains(&*path.to_string_lossy());
+    if names && !message.chars().any(char::is_control) { Ok(()) } else { Err(format!("badly said: {message:?}")) }
+}
+
+fn expect(holds: bool, what: &str) -> Answer {
+    if holds { Ok(()) } else { Err(what.to_owned()) }
+}
+
+fn of_dump(lot: &mut Lot) -> Answer {
+    let text = lot.one(&DUMPS).as_bytes();
+    match read_dump(&damaged(lot, text)) {
+        Ok(sound) => expect(sound, "a number of a dump is none"),
+        Err(error) => refused(&error),
+    }
+}
+
+fn of_log(lot: &mut Lot) -> Answer {
+    let text = lot.one(&LOGS).as_bytes();
+    parse_log(&damaged(lot, text)[..], "f").map_or_else(|error| refused(&error), |_| Ok(()))
+}
+
+fn of_table(lot: &mut Lot) -> Answer {
+    match parse_table(&damaged(lot, TABLE.as_bytes())[..], "f") {
+        Ok(table) => expect(table.rows() > 0, "a table without rows"),
+        Err(error) => refused(&error),
+    }
+}
+
+fn of_data(lot: &mut Lot) -> Answer {
+    match parse_data(&damaged(lot, DATA.as_bytes())[..], "f") {
+        Ok(data) => expect(
+            data.atoms.iter().all(|grain| {
+                let numbers = grain.position.iter().chain(&grain.velocity).all(|value| value.is_finite());
+                numbers && grain.mass() > 0.0 && grain.mass().is_finite()
+            }),
+            "a number of a grain is none",
+        ),
+        Err(error) => refused(&error),
+    }
+}
+
+fn packed(bytes: &[u8], zstd: bool) -> Vec<u8> {
+    if zstd {
+        return compress_to_vec(bytes, CompressionLevel::Fastest);
+    }
+    let mut out = GzEncoder::new(Vec::new(), Compression::fast());
+    out.write_all(bytes).unwrap();
+    out.finish().unwrap()
+}
+
+/// Damaged before it is packed, or after.
+fn of_packed_dump(lot: &mut Lot) -> Answer {
+    let text = lot.one(&DUMPS).as_bytes();
+    let (zstd, before) = lot.draw(any::<(bool, bool)>());
+    let bytes = if before { packed(&damaged(lot, text), zstd) } else { damaged(lot, &packed(text, zstd)) };
+    match read_dump(&bytes) {
+        Ok(sound) => expect(sound, "a number of a dump is none"),
+        Err(error) => refused(&error),
+    }
+}
+
+fn of_bytes(lot: &mut Lot) -> Answer {
+    let head = *lot.one(&[&b""[..], &[0x1f, 0x8b, 8, 0], &[0x28, 0xb5, 0x2f, 0xfd]]);
+    let bytes = [head, &lot.draw(prop::collection::vec(any::<u8>(), 0..200))].concat();
+    lot.show(&format!("{bytes:?}"));
+    parse_data(&bytes[..], "f").map_or_else(|error| refused(&error), |_| Ok(()))?;
+    parse_log(&bytes[..], "f").map_or_else(|error| refused(&error), |_| Ok(()))?;
+    read_dump(&bytes).map_or_else(|error| refused(&error), |_| Ok(()))
+}
+
+/// The scene of a case, for a moment.
+fn scene() -> Scene {
+    let mut scene = registry::by_name("nine-discs").unwrap().variant("plain").unwrap();
+    scene.duration = grainbench::scene::scene::Duration::Cycles(40);
+    scene.sampling = Sampling::Cycles(10);
+    scene.snapshots = 2;
+    scene
+}
+
+/// Keeps the last checkpoint.
+struct Keeper(Option<Checkpoint>);
+
+impl Watch for Keeper {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(25)
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.0 = Some(checkpoint);
+        Ok(())
+    }
+}
+
+const SOLVER: Convention = Convention::LAMMPS;
+const RESOLUTION: Resolution = Resolution::CriticalFraction(0.1);
+
+/// A record, and a checkpoint on the way to it.
+fn run() -> &'static (Record, Vec<u8>) {
+    static RUN: OnceLock<(Record, Vec<u8>)> = OnceLock::new();
+    RUN.get_or_init(|| {
+        let mut keeper = Keeper(None);
+        let record = Dem::new(SOLVER).run(&scene(), &RESOLUTION, &mut keeper).unwrap();
+        (record, keeper.0.unwrap().to_bytes().unwrap())
+    })
+}
+
+/// As it is found, or with a length and a hash that are those of the damaged bytes.
+fn of_checkpoint(lot: &mut Lot) -> Answer {
+    let whole = &run().1;
+    let line = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+    let bytes = if lot.draw(any::<bool>()) {
+        let body = damaged(lot, &whole[line + 40..]);
+        let length = (body.len() as u64).to_le_bytes();
+        [&whole[..line], &length, blake3::hash(&body).as_bytes(), &body].concat()
+    } else {
+        damaged(lot, whole)
+    };
+    let words = |error: CheckpointError| one_line_of(Path::new("checkpoint"), &error);
+    match Checkpoint::from_bytes(&bytes) {
+        Err(error) => words(error),
+        Ok(checkpoint) => match Dem::new(SOLVER).restart(&scene(), &RESOLUTION, &checkpoint, &mut ()) {
+            Ok(_) | Err(RunError::Broken(_) | RunError::NotFinite { .. }) => Ok(()),
+            Err(RunError::Checkpoint(error)) => words(error),
+            Err(error) => Err(error.to_string()),
+        },
+    }
+}
+
+fn of_record(lot: &mut Lot) -> Answer {
+    let text = serde_json::to_vec(&run().0).unwrap();
+    let path = left("record.json", &damaged(lot, &text));
+    match record_json::load(folder()) {
+        Err(error) => one_line_of(&path, &error),
+        Ok(record) => {
+            let named = [record_figures::Named { name: String::new(), record: &record }];
+            draw(&record_figures::figures(&named, None))
+        }
+    }
+}
+
+/// Figures drawn, or refused.
+fn draw(figures: &[Figure]) -> Answer {
+    for figure in figures {
+        if let Err(error) = plot::draw(figure) {
+            let message = error.to_string();
+            expect(!message.chars().any(char::is_control), &format!("badly said: {message:?}"))?;
+        }
+    }
+    Ok(())
+}
+
+/// A report with rows, controls and figures.
+fn report() -> &'static Vec<u8> {
+    static REPORT: OnceLock<Vec<u8>> = OnceLock::new();
+    REPORT.get_or_init(|| {
+        let case = registry::by_name("incline-disc").unwrap();
+        let runner = registry::runner(case);
+        let claims: Vec<_> = runner.claims().into_iter().take(2).collect();
+        let axes = || [Axis::linear("time t (s)"), Axis { label: "error (1)".to_owned(), logarithmic: true }];
+        let points = || vec![(0.0, 1e-3), (0.1, 2e-3), (0.2, 1e-5)];
+        let curves = vec![Curve::new("ours", Stroke::Line, points()), Curve::new("theirs", Stroke::Markers, points())];
+        let section = Section {
+            name: case.name.to_owned(),
+            title: case.title.to_owned(),
+            claim: case.claim.to_owned(),
+            derivation: "A *disc* on an incline.\n\n```text\na = g sin θ\n```\n".to_owned(),
+            weak: case.weakness.to_owned(),
+            figures: vec![Figure::graph("error", "Error", "Of the displacement.", axes(), curves)],
+            verdicts: claims.iter().map(|claim| runner.judge(claim)).collect(),
+            controls: claims.iter().map(|claim| runner.control(claim)).collect(),
+            runs: Vec::new(),
+        };
+        let provenance = Provenance {
+            version: "0.1.0".to_owned(),
+            commit: "none".to_owned(),
+            date: "2026-01-01".to_owned(),
+            machine: "any".to_owned(),
+            rustc: "any".to_owned(),
+            options: vec!["run".to_owned()],
+            wall_seconds: 1.0,
+        };
+        serde_json::to_vec_pretty(&Report { provenance, sections: vec![section] }).unwrap()
+    })
+}
+
+/// Read and told again, as `grainbench report` does.
+fn of_report(lot: &mut Lot) -> Answer {
+    let path = left("report.json", &damaged(lot, report()));
+    let report = match Report::load(folder()) {
+        Err(error) => return one_line_of(&path, &error),
+        Ok(report) => report,
+    };
+    let told = [
+        page::render(&report).err().map(|error| error.to_string()),
+        results_json(&report).err().map(|error| error.to_string()),
+        junit_xml(&report).err().map(|error| error.to_string()),
+    ];
+    for message in told.into_iter().flatten() {
+        expect(!message.chars().any(char::is_control), &format!("badly said: {message:?}"))?;
+    }
+    Ok(())
+}
+
+fn of_results(lot: &mut Lot) -> Answer {
+    if lot.draw(any::<bool>()) {
+        let text = b"{\n  \"whole\": false,\n  \"files\": [\n    \"results.json\",\n    \"figures/a.svg\"\n  ]\n}\n";
+        left("manifest.json", &damaged(lot, text));
+        return refuse_mixed(folder()).or_else(|error| one_line_of(&folder().join("manifest.json"), &error));
+    }
+    let point = Point {
+        case: "backspin".to_owned(),
+        variant: "disc".to_owned(),
+        solver: "dem".to_owned(),
+        resolution: "dt=.1".to_owned(),
+        knobs: String::new(),
+        quantity: "displacement".to_owned(),
+        unit: "m".to_owned(),
+        standing: Standing::Measured,
+        value: Some(1.0),
+        expected: Some(1.1),
+        error: Some(0.1),
+        floor: None,
+        wall_seconds: Some(0.1),
+        wall_spread: Some(0.01),
+        cpu_seconds: Some(0.1),
+        start_up_seconds: Some(0.01),
+        repetitions: vec![Timing { wall: 0.1, cpu: 0.1, start_up: 0.01, reference: 0.02 }],
+        counts: Counts::default(),
+        detail: None,
+    };
+    let text = serde_json::to_vec_pretty(&serde_json::json!({ "points": [point.clone(), point] })).unwrap();
+    let path = left("results.json", &damaged(lot, &text));
+    points_of(&path).map_or_else(|error| one_line_of(&path, &error), |_| Ok(()))
+}
+
+/// Compared with each other, or observed as what is left of a scene.
+fn of_two(lot: &mut Lot) -> Answer {
+    let text = *lot.one(&[DUMPS[0], DUMPS[1], DUMPS[3], TABLE]);
+    let first = left("first", &damaged(lot, text.as_bytes()));
+    if lot.draw(any::<bool>()) {
+        let second = left("second", text.as_bytes());
+        return compare(&first, &second, &Options::default()).map_or_else(|error| refused(&error), |_| Ok(()));
+    }
+    let sources = Sources {
+        files: vec![first.clone()],
+        log: None,
+        names: Names::default(),
+        time_step: Some(1e-5),
+        most_rows: Some(MOST_ROWS),
+    };
+    static SCENE: OnceLock<Scene> = OnceLock::new();
+    let observed = Outputs::survey(sources).and_then(|outputs| outputs.observe(SCENE.get_or_init(scene)));
+    match observed {
+        Ok(observed) => {
+            let numbers = observed.series.time.iter().chain(observed.series.values.iter().flatten());
+            expect(numbers.into_iter().all(|value| value.is_finite()), "a number of what was observed is none")
+        }
+        Err(OutputError::Read(error)) => refused(&error),
+        Err(error) => one_line_of(&first, &error),
+    }
+}
+
+/// One file of a stored run is damaged; its hash is still that of the whole one, or there is none.
+fn of_stored(lot: &mut Lot) -> Answer {
+    static RUN: OnceLock<(PathBuf, Vec<(String, Vec<u8>)>)> = OnceLock::new();
+    let (folder, files) = RUN.get_or_init(|| {
+        let name = "backspin-disc-overlap-r-1e-3-damping-ratio-0";
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/lammps").join(name);
+        let to = folder().join("stored");
+        fs::create_dir(&to).unwrap();
+        let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(from)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read(&path).unwrap()))
+            .collect();
+        files.sort();
+        for (name, bytes) in &files {
+            fs::write(to.join(name), bytes).unwrap();
+        }
+        (to, files)
+    });
+    let (name, bytes) = lot.one(files);
+    // The provenance more often than the others, which their hashes betray.
+    let (name, bytes) = if lot.draw(any::<bool>()) {
+        files.iter().find(|(name, _)| name == "provenance.toml").map_or((name, bytes), |(name, bytes)| (name, bytes))
+    } else {
+        (name, bytes)
+    };
+    fs::write(folder.join(name), damaged(lot, bytes)).unwrap();
+    let loaded = StoredRun::load(folder);
+    fs::write(folder.join(name), bytes).unwrap();
+    match loaded {
+        Err(error) => one_line_of(folder, &error),
+        Ok(_) => Ok(()),
+    }
+}

@@ -1,0 +1,62 @@
+//! Scenes and files with random mistakes: an error that says where, or numbers; never a panic, an end of the program, a
+//! hang, or more memory than a bound. A few by default; `GRAINBENCH_LONG=1` tries a hundred thousand scenes and a million
+//! files, and `GRAINBENCH_FUZZ=scenes:SEED:FROM:COUNT` (or `files:…`) any range, with `--nocapture` to see how far it is.
+//! An item depends on the seed and its number alone, so that a finding is found again by the words that it begins with;
+//! a range of one is shown in any case.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test fails by panicking")]
+
+#[path = "../../reference/tests/common/damage.rs"]
+mod damage;
+mod driver;
+mod files;
+#[path = "../mistakes/mod.rs"]
+mod mistakes;
+mod scenes;
+
+use driver::{Kind, go};
+use grainbench::dem::convention::Convention;
+use grainbench::dem::solver::Dem;
+use grainbench::scene::scene::Duration;
+use grainbench::scene::solver::{Resolution, Solver};
+use grainbench::scene::source::SceneSource;
+use mistakes::{Mistake, PLANE, SPACE, STRANGE, make, two_grains};
+use std::path::Path;
+
+#[test]
+fn scenes() {
+    go(&Kind { name: "scenes", few: 600, many: 100_000, try_out: scenes::try_out });
+}
+
+#[test]
+fn files() {
+    go(&Kind { name: "files", few: 5_000, many: 1_000_000, try_out: files::try_out });
+}
+
+#[test]
+fn the_scenes_themselves_are_fine() {
+    for (text, variant) in [(PLANE, None), (PLANE, Some("steep")), (SPACE, None)] {
+        let source = SceneSource::from_text("scene.toml", Path::new(""), text);
+        let source = variant.map_or(source.clone(), |name| source.variant(name));
+        let scene = source.scene(&two_grains).unwrap();
+        let resolution = Resolution::CriticalFraction(0.1);
+        Dem::new(Convention::LAMMPS).run(&scene, &resolution, &mut ()).unwrap();
+    }
+}
+
+#[test]
+fn every_strange_value_in_every_place() {
+    for (text, place) in [PLANE, SPACE].into_iter().flat_map(|text| (0..60).map(move |place| (text, place))) {
+        for value in 0..STRANGE.len() {
+            let text = make(text, &Mistake::StrangeValue(place, value));
+            match SceneSource::from_text("scene.toml", Path::new(""), &text).scene(&two_grains) {
+                Err(error) => scenes::well_said(&error.to_string()).unwrap(),
+                Ok(mut scene) => {
+                    scene.duration = Duration::Cycles(4);
+                    // The answer may be any; that there is one is the point.
+                    let _ = Dem::new(Convention::LAMMPS).run(&scene, &Resolution::CriticalFraction(0.1), &mut ());
+                }
+            }
+        }
+    }
+}

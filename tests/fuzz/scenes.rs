@@ -1,0 +1,172 @@
+//! A scene with mistakes in it, and any solver: an error that names its place, or a record that holds numbers.
+
+use crate::driver::Lot;
+use crate::mistakes::{PLANE, SPACE, make, mistake, two_grains};
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use grainbench::reports::export::record_json;
+use grainbench::scene::body::BlockShape;
+use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::{Duration, Scene};
+use grainbench::scene::solver::{Method, Resolution, RunError, Solver, Watch};
+use grainbench::scene::source::SceneSource;
+use nalgebra::Vector3;
+use proptest::prelude::*;
+use std::path::Path;
+
+/// Steps that a scene is given.
+const STEPS: u64 = 12;
+/// Grains, or material points and nodes, from which on a scene is too big to be stepped here, ...
+const BIG: f64 = 1.5e3;
+const MANY: f64 = 1e4;
+/// ... and from which on no machine has room for it: the solver itself is to refuse it.
+const ABSURD: f64 = 1e12;
+/// Cells a reference length, and points a cell and axis.
+const CELLS: f64 = 2.0;
+const POINTS: u32 = 2;
+
+/// Ends a run after some steps, by refusing its checkpoint.
+struct Brief;
+
+impl Watch for Brief {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(STEPS)
+    }
+    fn checkpoint(&mut self, _checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        Err(CheckpointError::NotStored("enough".to_owned()))
+    }
+}
+
+/// Makes a scene and tries it.
+pub(crate) fn try_out(lot: &mut Lot) -> Result<(), String> {
+    let which = lot.draw(0..2 * CASES.len());
+    let mistakes = lot.draw(prop::collection::vec(mistake(), 1..4));
+    let start = [PLANE, SPACE].get(which % 4).copied().filter(|_| which >= CASES.len());
+    let start = start.unwrap_or(CASES[which % CASES.len()].scene);
+    let text = mistakes.iter().fold(start.to_owned(), |text, mistake| make(&text, mistake));
+    let solvers = solvers::all();
+    let solver = lot.one(&solvers);
+    lot.show(&text);
+    lot.show(&format!("# {}", solver.name()));
+    let source = SceneSource::from_text("scene.toml", Path::new(""), &text);
+    let mut variants = vec![None];
+    match source.variants() {
+        Ok(names) => variants.extend(names.into_iter().map(Some)),
+        Err(error) => return well_said(&error.to_string()),
+    }
+    let variant = lot.one(&variants).clone();
+    let source = variant.map_or(source.clone(), |name| source.variant(&name));
+    let brief = lot.draw(any::<bool>());
+    match source.scene(&two_grains) {
+        Err(error) => well_said(&error.to_string()),
+        Ok(scene) => run(lot, scene, solver.as_ref(), brief),
+    }
+}
+
+/// An error about a scene.
+pub(crate) fn well_said(message: &str) -> Result<(), String> {
+    let one_line = !message.chars().any(char::is_control);
+    let named = message.starts_with("scene.toml") && message.contains("expected ") && message.contains("found ");
+    if one_line && named { Ok(()) } else { Err(format!("badly said: {message:?}")) }
+}
+
+/// Takes a few steps of a scene: those of its own run, or of one that is as short.
+fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Result<(), String> {
+    if scene.grains.iter().any(|grain| !(grain.mass > 0.0 && grain.inertia > 0.0)) {
+        return Err("a grain has no mass".to_owned());
+    }
+    let method = Method::of(&solver.name());
+    let odd = lot.draw(prop_oneof![15 => Just(None), 1 => any::<f64>().prop_map(Some)]);
+    let resolution = match method {
+        Some(Method::Grid) => Resolution::grid(odd.unwrap_or(CELLS), POINTS),
+        Some(Method::Rigid) => Resolution::substeps(2),
+        _ => odd.map_or(Resolution::CriticalFraction(0.1), Resolution::TimeStep),
+    };
+    if is_big(&scene, &resolution) {
+        return Ok(());
+    }
+    let steps = STEPS as f64;
+    match method {
+        Some(Method::Grid) if brief => {
+            let step = Resolution::COURANT * scene.reference_length / CELLS / scene.fastest_wave();
+            scene.duration = Duration::Seconds(steps * step);
+        }
+        // It leaves no checkpoints, so that nothing can end it sooner.
+        Some(Method::Rigid) => scene.duration = Duration::Seconds(steps / 2.0 * Resolution::RIGID_STEP),
+        _ if brief => scene.duration = Duration::Cycles(STEPS),
+        _ => {}
+    }
+    shorten_settling(&mut scene);
+    lot.show(&format!("# {resolution}, {:?}", scene.duration));
+    match solver.run(&scene, &resolution, &mut Brief) {
+        Ok(record) => sound(&record),
+        Err(RunError::Checkpoint(CheckpointError::NotStored(why))) if why == "enough" => Ok(()),
+        Err(error) => {
+            let message = error.to_string();
+            let one_line = !message.chars().any(char::is_control);
+            let says_who = message.starts_with(&solver.name()) || message.starts_with("the simulation broke at t = ");
+            if one_line && says_who { Ok(()) } else { Err(format!("badly said: {message:?}")) }
+        }
+    }
+}
+
+/// Bodies settle for a few steps only, unless for so many that the solver itself is to refuse them.
+fn shorten_settling(scene: &mut Scene) {
+    const REFUSED: f64 = 4e15;
+    let courant = Resolution::COURANT * scene.reference_length / CELLS / scene.fastest_wave();
+    let Duration::Seconds(time) = scene.duration else { return };
+    let step = courant.min(time);
+    if let Some(settle) = scene.start.settle.as_mut().filter(|settle| settle.duration / step < REFUSED) {
+        settle.duration = settle.duration.min(STEPS as f64 * step);
+    }
+}
+
+/// Whether a scene is too big to be stepped in a moment, though a machine may have room for it.
+fn is_big(scene: &Scene, resolution: &Resolution) -> bool {
+    let between = |count: f64, low: f64| count > low && count < ABSURD;
+    if between(scene.grains.len() as f64, BIG) {
+        return true;
+    }
+    let Resolution::Grid { cells, .. } = *resolution else { return false };
+    let (dimensions, cell) = (scene.dimension.count(), scene.reference_length / cells);
+    let boxed = |length: f64| (length / cell + 4.0).powi(dimensions as i32);
+    let of_bodies = scene.bodies.iter().map(|body| match body.shape {
+        BlockShape::Box { low, high } => (0..dimensions).map(|axis| (high[axis] - low[axis]) / cell + 4.0).product(),
+        BlockShape::Annulus { outer, .. } => boxed(2.0 * outer),
+    });
+    let nodes: f64 = of_bodies.chain(scene.grains.iter().map(|grain| boxed(2.0 * grain.radius))).sum();
+    between(nodes * f64::from(POINTS).powi(dimensions as i32), MANY)
+}
+
+/// That a record holds numbers only, and reads back as it was written.
+fn sound(record: &Record) -> Result<(), String> {
+    let finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
+    let series = &record.series;
+    if !series.time.iter().chain(series.values.iter().flatten()).all(|value| value.is_finite()) {
+        return Err("no number in the series of a run that is told to be fine".to_owned());
+    }
+    for snapshot in &record.snapshots {
+        let grains = snapshot.grains.iter().all(|grain| {
+            [&grain.position, &grain.velocity, &grain.spin, &grain.force, &grain.torque].into_iter().all(finite)
+        });
+        let contacts = snapshot.contacts.iter().all(|contact| {
+            finite(&contact.shear_force) && contact.overlap.is_finite() && contact.normal_force.is_finite()
+        });
+        let points = snapshot.points.iter().all(|point| {
+            finite(&point.position) && finite(&point.velocity) && point.stress.iter().all(|value| value.is_finite())
+        });
+        let walls = snapshot.walls.iter().all(|wall| finite(&wall.force));
+        if !(grains && contacts && points && walls) {
+            return Err(format!("no number in snapshot {} of a run that is told to be fine", snapshot.step));
+        }
+    }
+    let mut text = Vec::new();
+    record_json::write(record, &mut text).map_err(|error| error.to_string())?;
+    match serde_json::from_slice::<Record>(&text) {
+        Ok(read) if read == *record => Ok(()),
+        Ok(_) => Err("the record reads back as another".to_owned()),
+        Err(error) => Err(format!("the record does not read back: {error}")),
+    }
+}
