@@ -3,33 +3,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod support;
+
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_scene::record::Record;
 use grainbench_scene::solver::{Resolution, Solver};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
-
-const MATERIAL: &str = r#"
-title = "test"
-materials.m.density = 1000.0
-contacts.m = { between = ["m", "m"], normal_stiffness = 1.0e6 }
-output.every_cycles = 1
-"#;
-
-fn run(text: &str) -> Record {
-    run_as(text, Convention::CUNDALL_STRACK)
-}
-
-fn run_as(text: &str, convention: Convention) -> Record {
-    let source = SceneSource::from_text("test", Path::new(""), &format!("{MATERIAL}{text}"));
-    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
-    Dem::new(convention).run(&scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap()
-}
-
-fn last(record: &Record, column: &str) -> f64 {
-    *record.series.column(column).unwrap().last().unwrap()
-}
+use support::{MATERIAL, last, run, run_as};
 
 /// A disc dropped on the face of a segment does as on a plane.
 #[test]

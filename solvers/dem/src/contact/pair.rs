@@ -71,3 +71,55 @@ fn harmonic([first, second]: [f64; 2]) -> f64 {
     let inverse = first + second;
     if inverse > 0.0 { 1.0 / inverse } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::normal::Spring;
+    use crate::contact::rolling::FreeRolling;
+    use crate::contact::tangential::{CapOnSpring, Coulomb, Turned};
+    use crate::convention::Convention;
+    use grainbench_scene::space::Solid;
+    use nalgebra::Vector3;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// Two spheres that are stuck together, their spring stretched, swing by a quarter turn about z as one body: F_s keeps
+    /// its length, but for 1 − cos^N(π/2N) < π²/(8N) of it that N steps take off as the normal part, and F_s·e = 0.
+    ///
+    /// Rigid motion slips by nothing where the torque arms meet, at R − δ/2: (v₁ − v₂) + ω (a₁ + a₂) × e = 0 with v₁ − v₂ =
+    /// −ω × e (2R − δ).
+    #[test]
+    fn stuck_spheres_carry_their_spring_when_they_swing() {
+        type Stretched = Coulomb<CapOnSpring, Turned>;
+        let law = Constants { springs: [1e6, 5e5], friction: 1e3, ..Constants::default() };
+        let options = Options::of(&Convention::LIGGGHTS);
+        let (steps, overlap, slip) = (1000, 0.01, 1e-4);
+        let spin = Vector3::z() * FRAC_PI_2;
+        let mut history = Memory::<Solid, Stretched, FreeRolling>::default();
+        let mut swung = |turned: f64, extra: Vector3<f64>, elapsed: f64| {
+            let (sine, cosine) = (FRAC_PI_2 * turned).sin_cos();
+            let between = Vector3::new(cosine, sine, 0.0) * (1.0 - overlap);
+            let pair = Pair::<Solid> {
+                law: &law,
+                between,
+                squared: between.norm_squared(),
+                radii: [0.4, 0.6],
+                velocity: extra - spin.cross(&between),
+                inverse_masses: [1.0; 2],
+                spins: [Some(spin); 2],
+                inertia: [0.0; 2],
+            };
+            let answer = pair.respond::<Spring, Stretched, FreeRolling, false>(&options, elapsed, &mut history);
+            (answer.shear, answer.normal)
+        };
+        // Stretched along +y in a first step; the spring pulls the first sphere back.
+        let (start, _) = swung(0.0, Vector3::y() * slip, 1.0);
+        let force = 5e5 * slip;
+        assert!((start + Vector3::y() * force).norm() < 1e-9 * force, "{start:?}");
+        let ends = (1..=steps).map(|step| swung(f64::from(step) / f64::from(steps), Vector3::zeros(), 1e-3));
+        let (shear, normal) = ends.last().unwrap_or_default();
+        assert!((normal - Vector3::y()).norm() < 1e-12 && shear.dot(&normal).abs() < 1e-12 * force, "{shear:?}");
+        let kept = shear.x / force;
+        assert!(kept < 1.0 + 1e-9 && 1.0 - kept < PI * PI / (8.0 * f64::from(steps)), "{kept}");
+    }
+}

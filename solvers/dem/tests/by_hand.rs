@@ -1,0 +1,216 @@
+//! Forces, moments and energies worked out by hand. Most are of grains so heavy that nothing moves them: what a contact
+//! answers to a prescribed motion is then exact to rounding, of the time step too.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_dem::convention::Convention;
+use grainbench_scene::record::{Record, Snapshot};
+use grainbench_scene::solver::Resolution;
+use nalgebra::Vector3;
+use std::f64::consts::{FRAC_PI_2, PI};
+use support::{last, run, run_at};
+
+/// Ten significant digits: sums of some thousand steps lose no more than three of sixteen, differences of lengths with
+/// an overlap of a tenth one.
+const ROUNDING: f64 = 1e-10;
+
+/// A grain of a material that is 1e17 times as heavy as water, on stiff springs (N/m) with a dashpot (s), that hold
+/// whatever shear there is.
+const HEAVY: &str = "materials.h.density = 1.0e20\n\
+    contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 1.0e3, \
+    stiffness_damping = 0.02 }\n";
+
+fn heavy(text: &str, time_step: f64) -> Record {
+    run_at(&format!("{HEAVY}{text}"), Convention::CUNDALL_STRACK, &Resolution::TimeStep(time_step))
+}
+
+fn end(record: &Record) -> &Snapshot {
+    record.snapshots.last().unwrap()
+}
+
+fn close(found: f64, expected: f64) {
+    assert!((found - expected).abs() <= ROUNDING * expected.abs(), "{found} for {expected}");
+}
+
+fn closely(found: Vector3<f64>, expected: Vector3<f64>) {
+    assert!((found - expected).norm() <= ROUNDING * expected.norm(), "{found:?} for {expected:?}");
+}
+
+/// A stretched spring is swung by a quarter turn with the contact that it belongs to: a wall turns about the centre of a
+/// sphere that turns along with it, so that nothing slips. F_s keeps its length and stays perpendicular to the normal.
+///
+/// The wall is d = .45 m from the centre and the radius R is .5 m: surfaces move alike when the sphere turns at d/R = .9
+/// of the wall's rate. A hundredth of a second of .1 rad/s more stretches the spring by s = .1 · .45 · .01 m. Its normal
+/// part is taken off in every of N steps, which keeps cos^N(π/2N) of it: 1 − π²/(8N), and less for what came later.
+#[test]
+fn a_stretched_spring_swings_with_its_contact() {
+    let steps = 1000;
+    let law = "materials.h.density = 1.0e20\n\
+        contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 1.0e3 }\n";
+    let spin = FRAC_PI_2 - 0.001;
+    let text = format!(
+        "{law}dimension = 3\nduration_cycles = {steps}\n\
+         [grains.g]\nmaterial = 'h'\nradius = 0.5\nposition = [0.0, 0.0, 0.0]\nspin = [0.0, 0.0, {}]\n\
+         [walls.w]\nmaterial = 'h'\nplane = {{ point = [0.3, -0.45, 0.2], normal = [0.0, 1.0, 0.0] }}\n\
+         motion = [{{ spin = [0.0, 0.0, {spin}], centre = [0.0, 0.0, 0.0] }}, \
+         {{ spin = [0.0, 0.0, 0.1], centre = [0.0, 0.0, 0.0], stop_cycle = 10 }}]\n",
+        0.9 * spin
+    );
+    for convention in [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS] {
+        let record = run_at(&text, convention, &Resolution::TimeStep(1e-3));
+        let contact = end(&record).contacts[0];
+        // From the sphere to the wall: −y at the start, +x after the quarter turn. The wall went along +x first and
+        // drags the sphere with it; that has become +y.
+        assert!((contact.normal - Vector3::x()).norm() < ROUNDING, "{convention}: {:?}", contact.normal);
+        let force = 5.0e5 * 0.1 * 0.45 * 0.01;
+        assert!(contact.shear_force.dot(&contact.normal).abs() < ROUNDING * force, "{:?}", contact.shear_force);
+        let kept = contact.shear_force.y / force;
+        assert!(kept <= 1.0 + ROUNDING && 1.0 - kept <= PI * PI / (8.0 * f64::from(steps)), "{convention}: {kept}");
+    }
+}
+
+/// A paddle that turns about its end meets a disc at rest: F_n = k δ + β k v with v = ω l, l the distance along the paddle
+/// from its end to the disc. Turned away from it, it pulls on its dashpot.
+#[test]
+fn a_paddle_feels_its_dashpot_by_its_velocity_where_it_touches() {
+    for spin in [0.5, -0.5] {
+        let text = format!(
+            "dimension = 2\nduration_cycles = 3\n\
+             [grains.g]\nmaterial = 'h'\nradius = 0.1\nposition = [1.0, 0.095]\n\
+             [walls.w]\nmaterial = 'h'\nsegment = [[0.0, 0.0], [2.0, 0.0]]\n\
+             motion = [{{ spin = {spin}, centre = [0.0, 0.0] }}]\n[probes]\nc.contact = ['g', 'w']\nw.wall = 'w'\n"
+        );
+        let record = heavy(&text, 1e-4);
+        let (sine, cosine) = (spin * 3e-4_f64).sin_cos();
+        let (overlap, along) = (0.1 - (0.095 * cosine - sine), cosine + 0.095 * sine);
+        close(last(&record, "c.normal_force"), 1.0e6 * overlap + 0.02 * 1.0e6 * spin * along);
+    }
+}
+
+/// A turntable of .3 rad/s under a sphere at rest, 1 m beside its axis: it moves by ω × r = .3 m/s along y there, drags the
+/// sphere along +y by the dashpot β k_s ω r and the spring k_s ω r n Δt, and feels the same backwards.
+#[test]
+fn a_turntable_drags_by_its_velocity_where_it_touches() {
+    let record = heavy(
+        "dimension = 3\nduration_cycles = 50\n\
+         [grains.g]\nmaterial = 'h'\nradius = 0.1\nposition = [1.0, 0.0, 0.095]\n\
+         [walls.w]\nmaterial = 'h'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
+         motion = [{ spin = [0.0, 0.0, 0.3], centre = [0.0, 0.0, 0.0] }]\n",
+        1e-4,
+    );
+    let expected = Vector3::new(0.0, 5.0e5 * 0.3 * (0.02 + 50.0 * 1e-4), 1.0e6 * 0.005);
+    closely(end(&record).grains[0].force, expected);
+    closely(end(&record).walls[0].force, -expected);
+    // R e × F_s with e = −z, R = .1 m: the sphere is made to turn about +x.
+    closely(end(&record).grains[0].torque, Vector3::new(0.1 * expected.y, 0.0, 0.0));
+}
+
+/// A belt under a disc that does not move stretches the spring by V t: F_s = k_s V (β + t). One that is a hundredth faster
+/// is told from it.
+#[test]
+fn a_belt_stretches_its_spring_by_its_way() {
+    let force = |speed: f64| {
+        let record = heavy(
+            &format!(
+                "dimension = 2\nduration_cycles = 40\n\
+                 [grains.g]\nmaterial = 'h'\nradius = 0.1\nposition = [0.0, 0.095]\n\
+                 [walls.w]\nmaterial = 'h'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n\
+                 motion = [{{ velocity = [{speed}, 0.0] }}]\n"
+            ),
+            1e-4,
+        );
+        end(&record).grains[0].force.x
+    };
+    let expected = 5.0e5 * 0.25 * (0.02 + 40.0 * 1e-4);
+    close(force(0.25), expected);
+    close(force(1.01 * 0.25), 1.01 * expected);
+}
+
+/// Newton's law for a rolling grain, from snapshots alone: between two of them v and ω change by the mean of the forces and
+/// of the moments, m (v' − v) = ½ (F + F') Δt + m g Δt and I (ω' − ω) = ½ (M + M') Δt, exactly so where velocities stand
+/// half a step between positions. At the contact with a plane below, M = R F_x about z.
+#[test]
+fn grains_turn_by_the_moments_that_snapshots_show() {
+    // Discs have ½ m R² and π R² ρ, spheres ⅖ m R² and 4/3 π R³ ρ: R = .1 m, ρ = 1000 kg/m³.
+    let (disc, sphere) = (31.415_926_535_897_93, 4.188_790_204_786_391);
+    let kinds = [
+        (2, "disc", disc, 0.157_079_632_679_489_66),
+        (2, "sphere", sphere, 0.016_755_160_819_145_566),
+        (3, "sphere", sphere, 0.016_755_160_819_145_566),
+    ];
+    for (dimension, shape, mass, inertia) in kinds {
+        let (position, point, normal, pull) = if dimension == 2 {
+            ("0.0, 0.09999", "0.0, 0.0", "0.0, 1.0", "6.0, -8.0")
+        } else {
+            ("0.0, 0.0, 0.09999", "0.0, 0.0, 0.0", "0.0, 0.0, 1.0", "6.0, 0.0, -8.0")
+        };
+        let kind = if dimension == 2 { format!("grain_shape = '{shape}'\n") } else { String::new() };
+        let record = run(&format!(
+            "{kind}dimension = {dimension}\nduration_cycles = 60\noutput.snapshots = 59\ngravity = [{pull}]\n\
+             materials.n.density = 1000.0\n\
+             contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 0.3, \
+             normal_damping = 30.0, tangential_damping = 20.0 }}\n\
+             [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [{position}]\n\
+             [walls.w]\nmaterial = 'n'\nplane = {{ point = [{point}], normal = [{normal}] }}\n"
+        ));
+        let gravity = if dimension == 2 { Vector3::new(6.0, -8.0, 0.0) } else { Vector3::new(6.0, 0.0, -8.0) };
+        assert_eq!(record.snapshots.len(), 61);
+        let step = record.provenance.time_step;
+        let speeds = end(&record).grains[0];
+        for pair in record.snapshots.windows(2) {
+            let [one, two] = [&pair[0].grains[0], &pair[1].grains[0]];
+            let turned = (two.spin - one.spin) * inertia - (one.torque + two.torque) * (0.5 * step);
+            let sped = (two.velocity - one.velocity - gravity * step) * mass - (one.force + two.force) * (0.5 * step);
+            assert!(turned.norm() < ROUNDING * inertia * speeds.spin.norm(), "{shape}: {turned:?}");
+            assert!(sped.norm() < ROUNDING * mass * speeds.velocity.norm(), "{shape}: {sped:?}");
+            let moment = if dimension == 2 { two.torque.z } else { -two.torque.y };
+            assert!((moment - 0.1 * two.force.x).abs() < ROUNDING * two.force.norm(), "{shape}: {two:?}");
+        }
+        assert!(speeds.velocity.x > 0.0 && end(&record).grains[0].force.x < 0.0, "it is held back going down");
+    }
+}
+
+/// ½ I ω² of a grain that spins freely, in the energies of the system and in the budget: of a disc of .1 m and 1000 kg/m³
+/// at 3 rad/s, ½ · .15708 · 9 = .70686 J; of a sphere at (1, −2, 2) rad/s ½ · .0167552 · 9 = .0753982 J.
+#[test]
+fn spinning_grains_have_their_energy() {
+    for (dimension, position, spin, energy) in [
+        (2, "[0.0, 0.0]", "3.0", 0.706_858_347_057_703_5),
+        (3, "[0.0, 0.0, 0.0]", "[1.0, -2.0, 2.0]", 0.075_398_223_686_155_05),
+    ] {
+        for friction in ["", ", tangential_stiffness = 5.0e5, friction = 0.5"] {
+            let record = run(&format!(
+                "dimension = {dimension}\nduration_cycles = 5\nmaterials.n.density = 1000.0\n\
+                 contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e6{friction} }}\n\
+                 [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = {position}\nspin = {spin}\n\
+                 [probes]\nall.system = true\nbudget.budget = true\n"
+            ));
+            close(last(&record, "all.rotational_energy"), energy);
+            close(last(&record, "all.total_energy"), energy);
+            close(last(&record, "budget.kinetic"), energy);
+        }
+    }
+}
+
+/// At an end of a segment, and at the edges and corners of a rectangle, a grain is pushed along the line from the nearest
+/// point to its centre: (3, 4)/5 of k δ, and (2, 3, 6)/7 of it; δ = .01 m.
+#[test]
+fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
+    let force = |dimension: u8, wall: &str, position: &str, radius: f64| {
+        let record = run(&format!(
+            "dimension = {dimension}\nduration_cycles = 1\n\
+             [grains.g]\nmaterial = 'm'\nradius = {radius}\nposition = {position}\n[walls.w]\nmaterial = 'm'\n{wall}\n"
+        ));
+        record.snapshots[0].grains[0].force
+    };
+    let segment = "segment = [[0.0, 0.0], [1.0, 0.0]]";
+    closely(force(2, segment, "[-0.3, 0.4]", 0.51), Vector3::new(-6e3, 8e3, 0.0));
+    closely(force(2, segment, "[1.3, -0.4]", 0.51), Vector3::new(6e3, -8e3, 0.0));
+    let rectangle = "rectangle = { corner = [0.0, 0.0, 0.0], edges = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0]] }";
+    closely(force(3, rectangle, "[-0.2, -0.3, 0.6]", 0.71), Vector3::new(-2.0, -3.0, 6.0) * (1e4 / 7.0));
+    closely(force(3, rectangle, "[1.2, 2.3, -0.6]", 0.71), Vector3::new(2.0, 3.0, -6.0) * (1e4 / 7.0));
+    closely(force(3, rectangle, "[1.3, 0.7, 0.4]", 0.51), Vector3::new(6e3, 0.0, 8e3));
+    closely(force(3, rectangle, "[0.4, 2.3, -0.4]", 0.51), Vector3::new(0.0, 6e3, -8e3));
+}

@@ -1,0 +1,38 @@
+//! Scenes of the tests.
+#![allow(dead_code, unreachable_pub, reason = "each test file takes what it needs")]
+
+use grainbench_dem::convention::Convention;
+use grainbench_dem::solver::Dem;
+use grainbench_scene::record::Record;
+use grainbench_scene::solver::{Resolution, Solver};
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+
+pub const MATERIAL: &str = r#"
+title = "test"
+materials.m.density = 1000.0
+contacts.m = { between = ["m", "m"], normal_stiffness = 1.0e6 }
+output.every_cycles = 1
+"#;
+
+pub fn run(text: &str) -> Record {
+    run_as(text, Convention::CUNDALL_STRACK)
+}
+
+pub fn run_as(text: &str, convention: Convention) -> Record {
+    run_at(text, convention, &Resolution::CriticalFraction(0.02))
+}
+
+pub fn run_at(text: &str, convention: Convention, resolution: &Resolution) -> Record {
+    let source = SceneSource::from_text("test", Path::new(""), &format!("{MATERIAL}{text}"));
+    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
+    Dem::new(convention).run(&scene, resolution, &mut ()).unwrap()
+}
+
+pub fn column<'a>(record: &'a Record, name: &str) -> &'a [f64] {
+    record.series.column(name).unwrap()
+}
+
+pub fn last(record: &Record, name: &str) -> f64 {
+    *column(record, name).last().unwrap()
+}
