@@ -169,8 +169,13 @@ impl Measured {
 }
 
 /// How bad an error is: what is not a number is worse than anything else.
-fn weight(error: f64) -> f64 {
+pub(crate) fn weight(error: f64) -> f64 {
     if error.is_nan() { f64::INFINITY } else { error.abs() }
+}
+
+/// The larger of two errors: `f64::max` would swallow what is not a number.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
 }
 
 #[cfg(test)]
@@ -196,6 +201,15 @@ mod tests {
         let worst = Measured::worst_among([of(1.0), of(f64::NAN), of(3.0)]);
         assert!(worst.is_some_and(|worst| worst.value.is_nan()));
         assert!(Measured::worst_of(&[0.0, 1.0], &[f64::NAN, 9.0], &[0.0, 0.0], 1.0).value.is_nan());
+        // The sign of what is not a number is that of chance.
+        for nothing in [f64::NAN, -f64::NAN] {
+            let worst = Measured::worst_of(&[0.0, 1.0, 2.0], &[1.0, nothing, 9.0], &[0.0; 3], 1.0);
+            assert!(worst.value.is_nan() && worst.first_outside(10.0).is_some_and(|words| words.contains("NaN")));
+            for order in [[1.0, nothing, 3.0], [nothing, 1.0, 3.0], [1.0, 3.0, nothing]] {
+                assert!(Measured::worst_among(order.map(of)).is_some_and(|worst| worst.value.is_nan()));
+                assert!(order.into_iter().fold(0.0, larger).is_nan());
+            }
+        }
     }
 
     #[test]

@@ -12,7 +12,8 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
     above / below
 }
 
-/// The strongest frequency of a signal (rad/s), by the peak of its windowed spectrum between two bounds.
+/// The strongest frequency of a signal (rad/s), by the peak of its windowed spectrum between two bounds; none of a signal
+/// that is not a number somewhere.
 #[must_use]
 pub fn dominant_frequency(time: &[f64], values: &[f64], low: f64, high: f64) -> f64 {
     const SAMPLES: usize = 4000;
@@ -30,7 +31,7 @@ pub fn dominant_frequency(time: &[f64], values: &[f64], low: f64, high: f64) -> 
     };
     let omega = |at: usize| low + (high - low) * at as f64 / SAMPLES as f64;
     let best = (0..=SAMPLES).map(omega).map(|omega| (power(omega), omega)).max_by(|a, b| a.0.total_cmp(&b.0));
-    best.map_or(f64::NAN, |(_, omega)| omega)
+    best.filter(|(power, _)| power.is_finite()).map_or(f64::NAN, |(_, omega)| omega)
 }
 
 #[cfg(test)]
@@ -44,5 +45,9 @@ mod tests {
         let time: Vec<f64> = (0..2000).map(|step| 0.01 * f64::from(step)).collect();
         let values: Vec<f64> = time.iter().map(|t| 5.0 + (7.3 * t).sin() + 0.3 * (11.0 * t).cos()).collect();
         assert!((dominant_frequency(&time, &values, 2.0, 20.0) - 7.3).abs() < 0.01);
+        let mut broken = values;
+        broken[7] = f64::NAN;
+        assert!(dominant_frequency(&time, &broken, 2.0, 20.0).is_nan(), "it has no frequency");
+        assert!(slope(&[(0.1, 1.0), (0.05, f64::NAN)]).is_nan());
     }
 }

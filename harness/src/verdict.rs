@@ -138,12 +138,12 @@ impl Verdict {
         Self { outcome, detail: Some(reason.into()), ..self }
     }
 
-    /// The row of what was found: green within what is allowed and nowhere else.
+    /// The row of what was found: green within what is allowed and nowhere else, and never for what is not finite.
     #[must_use]
     pub fn judged(self, found: &Measured) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         let error = found.error();
-        let passes = error.abs() <= self.allowed;
+        let passes = error.is_finite() && error.abs() <= self.allowed;
         Self {
             value: finite(found.value),
             expected: Some(found.expected).filter(|expected| expected.is_finite()),
@@ -228,5 +228,23 @@ impl Control {
             detail: if turned_red { None } else { row.detail },
             seconds,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However much is allowed: a run that came to nothing may have been what told how much.
+    #[test]
+    fn what_is_not_finite_is_never_green() {
+        for allowed in [0.0, 1.0, f64::INFINITY, f64::NAN] {
+            for value in [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let row = Verdict { allowed, ..Verdict::open("case", "quantity", "1") };
+                assert_eq!(row.judged(&Measured::new(value, 0.0, 1.0)).outcome, Outcome::Fail, "{value} of {allowed}");
+            }
+        }
+        let row = Verdict { allowed: f64::NAN, ..Verdict::open("case", "quantity", "1") };
+        assert_eq!(row.judged(&Measured::new(0.0, 0.0, 1.0)).outcome, Outcome::Fail);
     }
 }

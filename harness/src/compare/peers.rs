@@ -2,7 +2,7 @@
 //! these runs differ by and what half their time step changes.
 
 use super::pointwise::largest;
-use crate::expect::Measured;
+use crate::expect::{Measured, larger, weight};
 use grainbench_scene::record::Series;
 
 /// One of the runs.
@@ -61,7 +61,7 @@ pub fn against<'a>(
         });
         parts.sum()
     };
-    let nearest = peers.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let nearest = peers.iter().min_by(|a, b| weight(distance(a)).total_cmp(&weight(distance(b))))?;
     // Of runs that are alike, one with half the step stands for all.
     let with_half = [nearest].into_iter().chain(peers).find_map(|peer| Some((peer, peer.half_step.as_ref()?)));
     let compared = columns.iter().filter_map(|&(at, column)| {
@@ -77,7 +77,7 @@ pub fn against<'a>(
             unit: &column.unit,
             samples: times.len(),
             measured: Measured::worst_of(&times, &found, &expected, scale),
-            between: between.map(|(_, a, b)| apart(&a, &b)).fold(0.0, f64::max) / scale,
+            between: between.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale,
             halved: halved / scale,
             open: largest(&uncertainty[at]) / scale,
         })
@@ -112,5 +112,40 @@ fn extent(values: &[f64], unit: &str) -> f64 {
 
 /// The largest difference.
 fn apart(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, larger)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_scene::record::Column;
+
+    /// A column of a length.
+    fn series(values: [f64; 3]) -> Series {
+        let column = Column { name: "a.x".to_owned(), unit: "m".to_owned() };
+        Series { step: vec![0, 1, 2], time: vec![0.0, 1.0, 2.0], columns: vec![column], values: vec![values.to_vec()] }
+    }
+
+    fn peer(name: &str, values: [f64; 3], half_step: Option<[f64; 3]>) -> Peer {
+        Peer { name: name.to_owned(), series: series(values), half_step: half_step.map(series) }
+    }
+
+    /// A run that is not a number somewhere is no nearer than any other, and is not taken for one that agrees.
+    #[test]
+    fn what_is_not_a_number_is_far_from_everything() {
+        let observed = series([0.0, 1.0, 2.0]);
+        let against_all = |peers: &[Peer]| {
+            let scale = |largest: &dyn Fn(&str) -> f64, unit: &str| largest(unit);
+            let (nearest, compared) = against(&observed, &[vec![0.0; 3]], peers, |_| true, scale)?;
+            let column = compared.first()?;
+            Some((nearest.to_owned(), column.measured.error(), column.between, column.halved))
+        };
+        let peers =
+            [peer("lost", [0.0, f64::NAN, 2.0], None), peer("sound", [0.0, 1.5, 2.0], Some([0.0, f64::NAN, 2.0]))];
+        let found = against_all(&peers);
+        assert!(found.is_some_and(|(nearest, error, between, halved)| {
+            nearest == "sound" && (error + 0.25).abs() < 1e-15 && between.is_nan() && halved.is_nan()
+        }));
+        assert!(against_all(&peers[..1]).is_some_and(|(_, error, ..)| error.is_nan()));
+    }
 }

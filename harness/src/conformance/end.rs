@@ -1,5 +1,6 @@
 //! How a run ended, and how far two ends are apart.
 
+use crate::expect::larger;
 use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError, Solver};
@@ -52,7 +53,6 @@ impl End {
         let worst = pairs.map(|(a, b)| {
             let spin = (a.spin - b.spin).norm() * a.radius;
             let place = (a.position - b.position).norm() / self.time;
-            // f64::max would swallow what is not a number.
             [(a.velocity - b.velocity).norm(), spin, place].into_iter().fold(0.0, larger)
         });
         worst.fold((self.time - other.time).abs() / self.time, larger)
@@ -66,10 +66,6 @@ impl End {
     }
 }
 
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
-
 /// What rounding may add up to in a speed (m/s) between two runs of collisions: every step rounds positions of size L
 /// by εL, which is worth ω²εLΔt of velocity with the stiffest contact's ω = 2/Δt_crit, and velocities U by εU.
 pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
@@ -79,4 +75,33 @@ pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
         f64::EPSILON * (far * rate * rate * end.time + fast * end.steps)
     };
     of(ends[0]).max(of(ends[1]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    /// Two ends of two grains are as far apart as the worst of them; what is not a number is the worst.
+    #[test]
+    fn ends_that_are_not_numbers_are_apart() {
+        let grain = |speed: f64| GrainState {
+            id: 1,
+            material: 0,
+            radius: 1.0,
+            mass: 1.0,
+            position: Vector3::zeros(),
+            velocity: Vector3::x() * speed,
+            spin: Vector3::zeros(),
+            angle: 0.0,
+            force: Vector3::zeros(),
+            torque: Vector3::zeros(),
+            plastic_strain: 0.0,
+        };
+        let end = |speeds: [f64; 2]| End { time: 1.0, grains: speeds.map(grain).to_vec(), time_step: 0.1, steps: 10.0 };
+        assert_eq!(end([0.0, 0.0]).apart(&end([1.0, -3.0])), 3.0);
+        for lost in [[f64::NAN, 5.0], [5.0, f64::NAN], [-f64::NAN, 0.0]] {
+            assert!(end([0.0, 0.0]).apart(&end(lost)).is_nan() && end(lost).reach().1.is_nan(), "{lost:?}");
+        }
+    }
 }
