@@ -1,0 +1,151 @@
+//! Forces that other programs write down, by hand: whose they are, which way they point, across which face they act.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+
+use grainbench_reference::observer::{Names, Observed};
+use grainbench_reference::outputs::{Outputs, Sources};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::source::SceneSource;
+use nalgebra::Vector3;
+
+fn scene(text: &str) -> Scene {
+    let text = format!(
+        "title = 'forces'\nduration = 1.0\nmaterials.m.density = 1.0\n\
+         contacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0e3, tangential_stiffness = 1.0e3, friction = 0.5 }}\n{text}"
+    );
+    SceneSource::from_text("test", Path::new(""), &text).scene(&|_| Err("no files".to_owned())).unwrap()
+}
+
+/// What files of these texts tell of a scene; `names` are pairs of our names of columns and theirs.
+fn observed(scene: &Scene, texts: &[String], names: &[(&str, &str)]) -> Observed {
+    let directory = tempfile::tempdir().unwrap();
+    let file = |(number, text): (usize, &String)| -> PathBuf {
+        let path = directory.path().join(format!("{number}.csv"));
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let names = Names(names.iter().map(|&(ours, theirs)| (ours.to_owned(), theirs.to_owned())).collect());
+    let files = texts.iter().enumerate().map(file).collect();
+    let sources = Sources { files, names, time_step: Some(0.5), ..Sources::default() };
+    Outputs::survey(sources).unwrap().observe(scene).unwrap()
+}
+
+/// A snapshot of a dump of `what` (`ATOMS`, `ENTRIES`).
+fn dump(what: &str, columns: &str, rows: &[&str]) -> String {
+    format!(
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF {what}\n{}\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n-0.5 0.5\n\
+         ITEM: {what} {columns}\n{}\n",
+        rows.len(),
+        rows.join("\n")
+    )
+}
+
+/// The only sample of a column.
+fn value(observed: &Observed, name: &str) -> f64 {
+    observed.series.column(name).unwrap()[0]
+}
+
+fn close(found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} for {expected}");
+}
+
+/// Two discs of radius .51 m that meet across the corner of two periodic axes: from a at (.1, .2) to the image of b at
+/// (−.5, −.6) it is 1 m along e = (−.6, −.8), so that they overlap by .02 m. A push of 100 N on a is −100 e = (60, 80) N; 7 N
+/// along t = (e_y, −e_x) = (−.8, .6), clockwise from e, are (−5.6, 4.2) N: together (54.4, 84.2) N on a and the opposite
+/// on b. In the plane the sign of the shear is the same from either side.
+#[test]
+fn pair_forces_act_on_the_first_along_the_nearest_image() {
+    let scene = scene(
+        "dimension = 2\ndomain = { low = [0.0, 0.0], high = [10.0, 10.0], periodic = [true, true] }\n\
+         [grains.a]\nmaterial = 'm'\nradius = 0.51\nposition = [0.1, 0.2]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 0.51\nposition = [9.5, 9.4]\n\
+         [probes]\nab.contact = ['a', 'b']\nba.contact = ['b', 'a']\n",
+    );
+    let grains = dump("ATOMS", "id x y", &["2 9.5 9.4", "1 0.1 0.2"]);
+    let names = [("id1", "i"), ("id2", "j"), ("force_x", "fx"), ("force_y", "fy")];
+    let parts = [names.as_slice(), &[("tangential_x", "tx"), ("tangential_y", "ty")]].concat();
+    for (columns, row, names) in [
+        ("i j fx fy", "1 2 54.4 84.2", &names[..]),
+        ("i j fx fy", "2 1 -54.4 -84.2", &names),
+        ("fy j fx i", "84.2 2 54.4 1", &names),
+        ("i j fx fy tx ty", "1 2 60 80 -5.6 4.2", &parts),
+        ("i j tx ty fx fy", "2 1 5.6 -4.2 -60 -80", &parts),
+    ] {
+        let observed = observed(&scene, &[dump("ENTRIES", columns, &[row]), grains.clone()], names);
+        for contact in ["ab", "ba"] {
+            close(value(&observed, &format!("{contact}.overlap")), 0.02);
+            close(value(&observed, &format!("{contact}.normal_force")), 100.0);
+            close(value(&observed, &format!("{contact}.shear_force")), 7.0);
+        }
+        let contact = &observed.snapshots[0].contacts[0];
+        assert!((contact.normal - Vector3::new(-0.6, -0.8, 0.0)).norm() < 1e-12, "{row}: {contact:?}");
+        assert!((contact.shear_force - Vector3::new(-5.6, 4.2, 0.0)).norm() < 1e-12, "{row}: {contact:?}");
+    }
+    // What pulls is negative, as it is written.
+    let pulled = observed(&scene, &[dump("ENTRIES", "i j fx fy", &["1 2 -6 -8"]), grains], &names);
+    close(value(&pulled, "ab.normal_force"), -10.0);
+}
+
+/// A disc of radius .5 m that is .01 m deep in a plane with the normal (.6, .8): e = (−.6, −.8) points from the disc to it. A
+/// push of 50 N on the disc is (30, 40) N; 3 N along t = (−.8, .6) are (−2.4, 1.8) N. The plane feels the opposite, and of
+/// all discs together.
+#[test]
+fn wall_forces_act_on_the_grain_and_the_wall_feels_the_opposite() {
+    let scene = scene(
+        "dimension = 2\n[grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.294, 0.392]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [-1.306, 1.592]\n\
+         [walls.slope]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.6, 0.8] }\n\
+         [probes]\nc.contact = ['a', 'slope']\nslope.wall = 'slope'\n",
+    );
+    let columns = [("slope.force_x", "f_w[1]"), ("slope.force_y", "f_w[2]")];
+    let grains = dump("ATOMS", "id x y f_w[1] f_w[2]", &["1 0.294 0.392 27.6 41.8", "2 -1.306 1.592 6 8"]);
+    let observed = observed(&scene, &[grains], &columns);
+    close(value(&observed, "c.overlap"), 0.01);
+    close(value(&observed, "c.normal_force"), 50.0);
+    close(value(&observed, "c.shear_force"), 3.0);
+    close(value(&observed, "slope.force_x"), -33.6);
+    close(value(&observed, "slope.force_y"), -49.8);
+}
+
+/// Two spheres in space, 1 m apart along (2, 3, 6)/7 with radii of .51 m: 70 N of push on the first are −(20, 30, 60) N. Of
+/// 5 N along (−6, 0, 2)/√40 the size is told, for in space there is no sign.
+#[test]
+fn pair_forces_in_space_have_a_push_and_a_size() {
+    let (x, y, z) = (2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0);
+    let scene = scene(&format!(
+        "dimension = 3\n[grains.a]\nmaterial = 'm'\nradius = 0.51\nposition = [0.0, 0.0, 0.0]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 0.51\nposition = [{x}, {y}, {z}]\n[probes]\nc.contact = ['a', 'b']\n"
+    ));
+    let along = 5.0 / 40.0_f64.sqrt();
+    let grains = dump("ATOMS", "id x y z", &["1 0 0 0", &format!("2 {x} {y} {z}")]);
+    let row = format!("2 1 {} 30 {}", 20.0 + 6.0 * along, 60.0 - 2.0 * along);
+    let names = [("id1", "i"), ("id2", "j"), ("force_x", "fx"), ("force_y", "fy"), ("force_z", "fz")];
+    let observed = observed(&scene, &[dump("ENTRIES", "i j fx fy fz", &[&row]), grains], &names);
+    close(value(&observed, "c.overlap"), 0.02);
+    close(value(&observed, "c.normal_force"), 70.0);
+    close(value(&observed, "c.shear_force"), 5.0);
+    let shear = observed.snapshots[0].contacts[0].shear_force;
+    assert!((shear - Vector3::new(-6.0, 0.0, 2.0) * along).norm() < 1e-12, "{shear:?}");
+}
+
+/// A table has forces as our series have them, and they are taken as they stand, by whatever name.
+#[test]
+fn tables_have_forces_as_series_have_them() {
+    let scene = scene(
+        "dimension = 2\n[grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.49]\n\
+         [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+         [probes]\nc.contact = ['a', 'w']\nw.wall = 'w'\n",
+    );
+    let text = "time,push,c.shear_force,w.force_x,force_y\n0.0,12.5,-3.25,3.25,-12.5\n0.5,1.5,0.5,-0.5,-1.5\n";
+    let observed = observed(&scene, &[text.to_owned()], &[("c.normal_force", "push")]);
+    for (name, values) in [
+        ("c.normal_force", [12.5, 1.5]),
+        ("c.shear_force", [-3.25, 0.5]),
+        ("w.force_x", [3.25, -0.5]),
+        ("w.force_y", [-12.5, -1.5]),
+    ] {
+        assert_eq!(observed.series.column(name).unwrap(), values, "{name}");
+    }
+}
