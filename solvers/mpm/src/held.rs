@@ -142,3 +142,45 @@ impl Side {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::options::{Basis, Setting, Transfer};
+    use crate::trial::prepared;
+    use grainbench_scene::space::Plane;
+    use nalgebra::Vector2;
+
+    /// A box of 2 kg/m² on cells of 1 m whose side stands on nodes, moving at (3, 5) m/s before it is held. With points at
+    /// quarters of cells the quadratic function of a node weighs what is N(¼) = 11/16, N(¾) = 9/32 and N(1¼) = 1/32 away,
+    /// so that an inner node has the 2 kg of its cell. The node beside the side lacks ½ · 1/32 of it, which the node
+    /// beyond has: folded back it has all, with the momentum of the mirror image: (1 − 1/32) of 2 · 3 kg m/s along x, and
+    /// along y all of 2 · 5 where the side slides, (1 − 1/32) where it is fixed.
+    #[test]
+    fn a_held_side_gives_nodes_the_mass_of_the_mirror_image() {
+        let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
+        for (kind, along) in [("sliding", 5.0), ("fixed", 5.0 * (1.0 - 1.0 / 32.0))] {
+            let text = format!(
+                "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\
+                 materials.m = {{ density = 2.0, young_modulus = 1.0, poisson_ratio = 0.0 }}\n\
+                 [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [6.0, 8.0] }}\n{kind} = ['x-low']\n\
+                 velocity = [3.0, 5.0]\n"
+            );
+            let (mut simulation, _) = prepared::<Plane>(setting, &text, 1.0, 2);
+            simulation.begin().expect("it starts");
+            simulation.cycle(false).expect("it holds together");
+            let (lattice, window) = (simulation.grid.lattice, simulation.state.bodies[0].part.window);
+            assert!(lattice.cell[0] == 1.0 && lattice.origin == [0.0; 3], "{lattice:?}");
+            let node = |x: i32| simulation.grid.nodes[window.slot([x, 4, 0])];
+            let on_side = if kind == "sliding" { Vector2::new(0.0, 5.0) } else { Vector2::zeros() };
+            let beside = Vector2::new(3.0 * (1.0 - 1.0 / 32.0), along);
+            let mirrored = if kind == "sliding" { Vector2::new(-beside.x, beside.y) } else { -beside };
+            for (x, mass, velocity) in
+                [(-1, 2.0, mirrored), (0, 1.0, on_side), (1, 2.0, beside), (2, 2.0, Vector2::new(3.0, 5.0))]
+            {
+                let found = node(x);
+                assert!((found.mass - mass).abs() < 1e-13, "{kind}, node {x}: {} kg for {mass}", found.mass);
+                assert!((found.velocity - velocity).norm() < 1e-13, "{kind}, node {x}: {:?}", found.velocity);
+            }
+        }
+    }
+}

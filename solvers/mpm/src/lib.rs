@@ -54,4 +54,6 @@ mod stress;
 mod surface;
 mod terms;
 mod transfer;
+#[cfg(test)]
+mod trial;
 mod walls;

@@ -395,3 +395,48 @@ fn transported<S: Space>(area: S::Vector, gradient: S::Matrix, elapsed: f64) -> 
     let (gradient, area) = (S::embed_gradient(gradient), S::embed(area));
     S::restrict(area + (area * gradient.trace() - gradient.transpose() * area) * elapsed)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_scene::space::Plane;
+    use nalgebra::Vector2;
+    use std::f64::consts::TAU;
+
+    /// The gap of a position inside a circle of radius R that tracers trace with chords of length L.
+    ///
+    /// The cubic over a chord misses the circle by L⁴/(128 R³) at most, in its middle: with half the angle of the chord a =
+    /// L/2R and the place q L along it, −½ < q < ½, the gap on the circle comes out as R a⁴ (−⅛ + q² − 2q⁴). At a depth d
+    /// the normal is not that of the foot on the circle, at the angle φ ≤ a R/(R − d), but at φ (R − d)/R, which is worth
+    /// φ² d² (R − d)/2R² ≤ L² d²/(8R² (R − d)). Further terms are smaller by (L/R)².
+    #[test]
+    fn the_gap_in_a_circle_is_of_fourth_order() {
+        let (centre, radius) = (Vector3::new(0.3, -0.2, 0.0), 1.5);
+        let mut worst = Vec::new();
+        for count in [24_u32, 48, 96] {
+            let chord = TAU * radius / f64::from(count);
+            let mut tracers = Tracers::<Plane>::new();
+            tracers.add(&seed::circle(centre, radius, 1.000_001 * chord, 1.0));
+            assert_eq!(tracers.len(), count as usize);
+            let chunks = tracers.cut(0..tracers.len());
+            tracers.find_boxes();
+            let mut most = 0.0_f64;
+            for depth in [0.05 * chord, 0.1 * chord, 0.3 * chord] {
+                let on_surface = chord.powi(4) / (128.0 * radius.powi(3));
+                let below = (chord * depth / radius).powi(2) / (8.0 * (radius - depth));
+                let allowed = (on_surface + below) * (1.0 + (chord / radius).powi(2));
+                for at in 0..500 {
+                    let (sine, cosine) = (TAU * (f64::from(at) + 0.37) / 500.0).sin_cos();
+                    let outward = Vector2::new(cosine, sine);
+                    let position = centre.xy() + outward * (radius - depth);
+                    let near = tracers.gone_through(chunks.clone(), position, -outward, 2.0 * chord);
+                    let off = near.map_or(f64::NAN, |near| near.gap + depth);
+                    assert!(off.abs() < allowed, "{off:e} at a depth of {depth} in {count}, allowed {allowed:e}");
+                    most = most.max(off.abs());
+                }
+            }
+            worst.push(most);
+        }
+        assert!(worst.windows(2).all(|pair| (15.0..17.0).contains(&(pair[0] / pair[1]))), "{worst:?}");
+    }
+}

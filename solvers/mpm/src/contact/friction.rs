@@ -204,3 +204,53 @@ impl<S: Space> Friction<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_scene::space::Plane;
+    use nalgebra::Vector2;
+
+    /// What a tracer with springs of 200 N/m that is .01 m deep feels along x, after it has slipped by `slip` (m).
+    fn force(friction: &mut Friction<Plane>, slip: f64, coefficient: f64) -> f64 {
+        let Friction::Present(springs) = friction else { return f64::NAN };
+        let (normal, slip) = (Vector2::y(), Vector2::new(slip, 0.0));
+        let overlap = Overlap { depth: 0.01, normal, stiffness: 200.0, slip, friction: coefficient };
+        Tangential::respond(&mut &mut *springs, 0, Other::Wall(0), &overlap).force.x
+    }
+
+    /// A spring is stretched for as long as its tracer touches, and no longer: after a hop it begins at nothing again.
+    #[test]
+    fn a_hop_leaves_no_stretch() {
+        let mut friction = Friction::<Plane>::new(true, 1);
+        for (touches, slip, expected) in [
+            (true, 1e-3, -0.2),
+            (true, 1e-3, -0.4),
+            (true, 0.0, -0.4),
+            // One evaluation without a touch, and the first one after it.
+            (false, 0.0, f64::NAN),
+            (true, 0.0, 0.0),
+            (true, -1e-3, 0.2),
+        ] {
+            friction.begin();
+            if touches {
+                let found = force(&mut friction, slip, 1.0);
+                assert!((found - expected).abs() < 1e-15, "{found} for {expected}");
+            }
+        }
+    }
+
+    /// A slipping tracer feels μ k g, whatever the stretch: μ 200 · .01 N. Two thousandths more of μ are two thousandths
+    /// more of it, and springs half as stiff half of it.
+    #[test]
+    fn what_slips_feels_the_coefficient_of_friction() {
+        for coefficient in [0.3, 0.3 * 1.002] {
+            let mut friction = Friction::<Plane>::new(true, 1);
+            for _ in 0..3 {
+                friction.begin();
+                let found = force(&mut friction, 0.1, coefficient);
+                assert!((found / (-2.0 * coefficient) - 1.0).abs() < 1e-14, "{found} of {coefficient}");
+            }
+        }
+    }
+}

@@ -258,3 +258,84 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
 
 /// Sweeps over the pairs of a node at most.
 const SWEEPS: usize = 12;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::shared::{Face, Meeting, Stepped};
+    use crate::grid::Node;
+    use crate::off::Off;
+    use crate::options::Setting;
+    use crate::trial::prepared;
+    use grainbench_scene::space::Plane;
+    use nalgebra::Vector2;
+
+    /// Velocities of three bodies of 1, 2 and 3 kg at a node, of which the first meets the second and the second the third
+    /// along x, after contact.
+    fn after(friction: f64, velocities: [Vector2<f64>; 3]) -> [Vector2<f64>; 3] {
+        let discs = ["a", "b", "c"].map(|name| format!("grains.{name} = {{ material = 'm', radius = 1.0, position = "));
+        let text = format!(
+            "dimension = 2\nduration = 1.0\nmaterials.m = {{ density = 1.0, young_modulus = 1.0, poisson_ratio = 0.0 }}\n\
+             contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = {friction} }}\n\
+             {}[0.0, 0.0] }}\n{}[3.0, 0.0] }}\n{}[6.0, 0.0] }}\n",
+            discs[0], discs[1], discs[2]
+        );
+        let (simulation, _) = prepared::<Plane>(Setting::classic(Contact::Gap), &text, 2.0, 2);
+        let mut shared = Shared::<Plane>::new();
+        shared.faces = vec![Face { normal: Vector2::zeros(), stress: nalgebra::Matrix2::zeros() }; 3];
+        let masses = [1.0, 2.0, 3.0];
+        shared.meetings = [0_usize, 1]
+            .map(|one| Meeting {
+                key: 7,
+                body: one as u32,
+                other: Other::Body(one as u32 + 1),
+                position: Vector2::zeros(),
+                slots: [one, one + 1],
+                masses: [masses[one], masses[one + 1]],
+                normal: Vector2::x(),
+                impulse: Vector2::zeros(),
+            })
+            .to_vec();
+        let mut nodes: Vec<Node<Plane>> =
+            (0..3).map(|at| Node { mass: masses[at], velocity: velocities[at], change: velocities[at] }).collect();
+        let friction = FrictionTable::of(&simulation.scene);
+        let lattice = &simulation.grid.lattice;
+        let rules = Rules { lattice, friction: &friction, contact: Contact::Gap, time_step: 1.0 };
+        let mut felt = Felt { walls: &mut [], driven: &mut [], ledger: Off };
+        meet(&rules, &simulation.state.bodies, &mut shared, &mut felt, &mut Stepped(&mut nodes));
+        [0, 1, 2].map(|at| nodes[at].velocity)
+    }
+
+    /// Three bodies at a node. The error of the second pair's impulse falls by (1/m₂)²/((1/m₁ + 1/m₂)(1/m₂ + 1/m₃)) = 1/5
+    /// in a sweep, and there are twelve. The first pair is solved with that of the sweep before: it leaves 5⁻¹¹ p₂/3 of the
+    /// first velocity, with p₂ = 5 N s where bodies come from both sides, and less elsewhere.
+    #[test]
+    fn three_bodies_at_a_node_end_with_one_velocity() {
+        let vector = Vector2::new;
+        let near = |found: [Vector2<f64>; 3], expected: [Vector2<f64>; 3]| {
+            let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).norm()).fold(0.0, f64::max);
+            assert!(off < 3.5e-8, "{found:?}");
+        };
+        // The first pushes both others: 1 · 1/(1 + 2 + 3) m/s for all. Without friction they pass each other.
+        let [pushed, still] = [vector(1.0, 0.3), Vector2::zeros()];
+        let sixth = 1.0 / 6.0;
+        near(after(0.0, [pushed, still, still]), [vector(sixth, 0.3), vector(sixth, 0.0), vector(sixth, 0.0)]);
+        // Friction that holds whatever comes: they move as one.
+        near(after(1e6, [pushed, still, still]), [vector(sixth, 0.05); 3]);
+        // The last one leaves, and nothing holds it: (1 + 0)/(1 + 2) m/s for the other two.
+        let third = 1.0 / 3.0;
+        near(after(0.0, [pushed, still, vector(5.0, 0.0)]), [vector(third, 0.3), vector(third, 0.0), vector(5.0, 0.0)]);
+        // From both sides: (1 · 4 − 3 · 2)/6 m/s.
+        let together = vector(-2.0 * sixth, 0.0);
+        near(after(0.0, [vector(4.0, 0.0), still, vector(-2.0, 0.0)]), [together; 3]);
+    }
+
+    /// Friction of .1 takes .1 of what pushes along: where two bodies of 1 and 2 kg meet at (6, 3) and 0 m/s, the impulse
+    /// along is 6/(1 + ½) = 4 N s, and .4 N s across.
+    #[test]
+    fn friction_at_a_node_is_a_part_of_the_push() {
+        let found = after(0.1, [Vector2::new(6.0, 3.0), Vector2::zeros(), Vector2::new(50.0, 0.2)]);
+        let expected = [Vector2::new(2.0, 2.6), Vector2::new(2.0, 0.2), Vector2::new(50.0, 0.2)];
+        assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).norm() < 1e-14), "{found:?}");
+    }
+}

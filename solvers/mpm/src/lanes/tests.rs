@@ -1,11 +1,7 @@
 use super::*;
 use crate::options::{Basis, Setting, Transfer};
-use crate::simulation::Simulation;
-use crate::solver::{Mpm, Plan};
-use grainbench_scene::solver::Resolution;
-use grainbench_scene::source::SceneSource;
+use crate::trial::prepared;
 use grainbench_scene::space::{Plane, Solid, Space};
-use std::path::Path;
 
 /// Every operation on awkward numbers, as bits.
 struct Trial<'a>(&'a mut Vec<u64>);
@@ -42,7 +38,7 @@ fn state<S: Space>(processor: Processor, basis: Basis, transfer: Transfer) -> St
     let (dimension, axes, spin) = if S::DIMENSION == 2 { (2, 2, "0.3") } else { (3, 3, "[0.3, 0.1, -0.2]") };
     let vector = |value: &str| format!("[{}]", vec![value; axes].join(", "));
     let text = format!(
-        "title = 'test'\ndimension = {dimension}\nduration = 0.4\n\
+        "dimension = {dimension}\nduration = 0.4\n\
          domain = {{ low = {}, high = {}, periodic = [{}] }}\n\
          materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
          grains.g = {{ material = 'm', radius = 1.0, position = {}, velocity = {}, spin = {spin} }}\n",
@@ -52,16 +48,11 @@ fn state<S: Space>(processor: Processor, basis: Basis, transfer: Transfer) -> St
         vector("0.1"),
         vector("0.7"),
     );
-    let source = SceneSource::from_text("test", Path::new(""), &text);
-    let scene = source.scene(&|_| Err("no files".to_owned())).expect("the scene is right");
     let setting = Setting { basis, transfer, ..Setting::BEST };
-    let solver = Mpm { setting, ..Mpm::BEST };
-    let plan = solver.plan(&scene, &Resolution::grid(3.0, 2)).expect("the resolution is right");
-    let Plan { lattice, points, time_step, critical, .. } = plan;
-    let mut simulation = Simulation::<S>::new(&scene, setting, lattice, points, time_step, critical);
+    let (mut simulation, steps) = prepared::<S>(setting, &text, 3.0, 2);
     simulation.scheme.processor = processor;
     simulation.begin().expect("it starts");
-    simulation.advance(plan.steps).expect("it holds together");
+    simulation.advance(steps).expect("it holds together");
     format!("{:?}", simulation.state.points)
 }
 

@@ -1,0 +1,20 @@
+//! Simulations of the tests within this crate.
+
+use crate::options::Setting;
+use crate::simulation::Simulation;
+use crate::solver::{Mpm, Plan};
+use grainbench_scene::solver::Resolution;
+use grainbench_scene::source::SceneSource;
+use grainbench_scene::space::Space;
+use std::path::Path;
+
+/// A simulation of the scene in a text that has not begun yet, and how many steps it is to take.
+pub(crate) fn prepared<S: Space>(setting: Setting, text: &str, cells: f64, points: u32) -> (Simulation<S>, u64) {
+    let text = format!("title = 'test'\n{text}");
+    let source = SceneSource::from_text("test", Path::new(""), &text);
+    let scene = source.scene(&|_| Err("no files".to_owned())).expect("the scene is right");
+    let solver = Mpm { setting, ..Mpm::BEST };
+    let plan = solver.plan(&scene, &Resolution::grid(cells, points)).expect("the resolution is right");
+    let Plan { lattice, points, time_step, critical, steps } = plan;
+    (Simulation::new(&scene, setting, lattice, points, time_step, critical), steps)
+}

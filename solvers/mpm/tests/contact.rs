@@ -1,0 +1,125 @@
+//! What contact springs push and rub with, by hand: at a wall, between bodies, on a belt, in a moving frame.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_mpm::options::Setting;
+use grainbench_scene::record::Record;
+use grainbench_scene::solver::Resolution;
+use support::{column, incline, last, run, try_run};
+
+/// E' = E/(1 − ν²) of E = 100 Pa, ν = .3: 100/.91 Pa.
+const PLANE_MODULUS: f64 = 109.890_109_890_109_89;
+
+/// The first step of a block 2 m wide whose lower face is .01 m deep in a plane that moves at 10 m/s along x.
+fn pressed_block(friction: f64, change: impl FnOnce(&mut Setting)) -> Record {
+    let text = format!(
+        "dimension = 2\nduration = 1.0e-3\nreference_length = 1.0\noutput.every_cycles = 1\n\
+         materials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }}\n\
+         contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = {friction} }}\n\
+         [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, -0.01], high = [2.0, 1.5] }}\n\
+         [walls.w]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n\
+         motion = [{{ velocity = [10.0, 0.0] }}]\n[probes]\nw.wall = 'w'\n"
+    );
+    try_run("mpm", change, &text, Resolution::grid(4.0, 2)).unwrap()
+}
+
+/// Springs of κ = 2.6 E'/h per area, h = .25 m, push a face of 2 m that is g = .01 m deep by κ · 2 g. So does the tracer at the
+/// corner where the next side begins, one of the 37 on 1.51 m, with all of its area. They are stretched by
+/// 10 m/s Δt, more than μ g, so that the plane rubs with μ times that, and feels all of it backwards. Springs half as stiff
+/// and two thousandths more of friction are felt as what they are.
+#[test]
+fn a_plane_pushes_and_rubs_with_its_springs() {
+    let push = 2.6 * PLANE_MODULUS / 0.25 * (2.0 + 1.51 / 37.0) * 0.01;
+    for (friction, penalty) in [(0.3, 2.6), (0.3, 1.3), (0.3 * 1.002, 2.6)] {
+        let record = pressed_block(friction, |setting| setting.penalty = penalty);
+        assert!(
+            10.0 * record.provenance.time_step > 2.0 * 0.01 * friction,
+            "it slips: {}",
+            record.provenance.time_step
+        );
+        let push = push * penalty / 2.6;
+        for (name, expected) in [("w.force_y", -push), ("w.force_x", -friction * push)] {
+            let found = column(&record, name)[1];
+            assert!((found / expected - 1.0).abs() < 1e-12, "{name}: {found} for {expected}");
+        }
+    }
+}
+
+/// Two discs of radius R = 1 m that overlap by δ = .02 m, in the first step. Each has tracers on springs of ½κ per area, κ =
+/// 2.6 E'/h, with the depth g = δ − s²/R at the arc s from the line of centres: together κ ∫ g ds = κ (4/3) δ √(δR).
+///
+/// Tracers a sixth of a cell ℓ apart sum a parabola that ends in kinks to ¼ ℓ²/(δR); what is not a parabola is worth δ/R.
+/// E' is the harmonic mean of both bodies: 3/2 of one's where the other is three times as stiff.
+#[test]
+fn discs_push_with_the_springs_of_both() {
+    let force = |second: f64, penalty: f64| {
+        let text = format!(
+            "dimension = 2\nduration = 1.0e-3\noutput.every_cycles = 1\n\
+             materials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }}\n\
+             materials.n = {{ density = 1.0, young_modulus = {}, poisson_ratio = 0.3 }}\n\
+             contacts.m = {{ between = ['m', 'n'], law = 'coulomb' }}\n\
+             [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-0.99, 0.0]\n\
+             [grains.b]\nmaterial = 'n'\nradius = 1.0\nposition = [0.99, 0.0]\n[probes]\nc.contact = ['a', 'b']\n",
+            100.0 * second
+        );
+        let at = Resolution::grid(8.0, 2);
+        let record = try_run("mpm", |setting| setting.penalty = penalty, &text, at).unwrap();
+        column(&record, "c.normal_force")[1]
+    };
+    let (overlap, cell) = (0.02_f64, 0.125);
+    let expected = 2.6 * PLANE_MODULUS / cell * 4.0 / 3.0 * overlap * overlap.sqrt();
+    let allowed = 0.25 * (cell / 6.0_f64).powi(2) / overlap + overlap;
+    let alike = force(1.0, 2.6);
+    assert!((alike / expected - 1.0).abs() < allowed, "{alike} for {expected}, within {allowed}");
+    assert!((force(1.0, 1.3) / alike - 0.5).abs() < 1e-12);
+    assert!((force(3.0, 2.6) / alike - 1.5).abs() < 1e-12);
+}
+
+/// A disc at rest on a belt that has begun to run at V = 6 m/s: springs are stretched beyond Coulomb's limit in every step, μ δ
+/// at a depth δ, so that the disc feels μ times what presses it, and gains v_x = μ (g t + v_y). Velocities at the start are
+/// taken for those half a step earlier, when nothing rubbed yet: t is half a step longer. Sums of some hundred steps are
+/// exact to 1e-10. The belt turns the disc counter-clockwise.
+#[test]
+fn a_belt_drags_a_disc_by_what_presses_it() {
+    let (speed, time) = (6.0, 0.15);
+    for friction in [0.3, 0.3 * 1.002] {
+        let plane = "normal = [0.0, 1.0] }";
+        let text = incline(0.0, friction, time, true)
+            .replace(plane, &format!("{plane}\nmotion = [{{ velocity = [{speed}, 0.0] }}]"));
+        let record = run("mpm", &format!("{text}c.contact = ['g', 'w']\n"), 4.0, 3);
+        let depth = column(&record, "c.overlap").iter().copied().fold(0.0, f64::max);
+        let step = record.provenance.time_step;
+        assert!(2.0 * friction * depth < speed * step, "all of it slips: {depth} deep, {} in a step", speed * step);
+        let expected = friction * (9.8 * (time + 0.5 * step) + last(&record, "g.vy"));
+        let found = last(&record, "g.vx");
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} for {expected} at a friction of {friction}");
+        assert!(last(&record, "g.omega") > 0.0);
+    }
+}
+
+/// The incline seen by one who goes by: plane and disc move along at V, and after t they are V t farther. What is left is
+/// that nodes are passed, within what the disc is off by at this resolution (.7 % of the rigid displacement). A plane that
+/// moved a hundredth faster would drag the rolling disc a third of .01 V t farther, 4.7 % of it.
+#[test]
+fn an_incline_in_a_moving_frame_is_an_incline() {
+    let (speed, time) = (4.0, 0.1);
+    let at_rest = incline(60.0, 0.9, time, true);
+    let rigid = 9.8 * 60_f64.to_radians().sin() / 3.0 * time * time;
+    let moving = |belt: f64| {
+        at_rest.replace("position = [0.0, 0.5]", &format!("position = [0.0, 0.5]\nvelocity = [{speed}, 0.0]")).replace(
+            "normal = [0.0, 1.0] }",
+            &format!("normal = [0.0, 1.0] }}\nmotion = [{{ velocity = [{belt}, 0.0] }}]"),
+        )
+    };
+    let way = |text: &str| {
+        let record = run("mpm", text, 8.0, 3);
+        (last(&record, "g.x") - column(&record, "g.x")[0], record.series.time[record.series.time.len() - 1])
+    };
+    let (way_at_rest, _) = way(&at_rest);
+    let (way_moving, end) = way(&moving(speed));
+    let off = (way_moving - speed * end - way_at_rest) / rigid;
+    assert!(off.abs() < 7e-3, "{off}");
+    let (way_faster, _) = way(&moving(1.01 * speed));
+    assert!((way_faster - speed * end - way_at_rest).abs() / rigid > 0.03, "{}", (way_faster - way_moving) / rigid);
+}
