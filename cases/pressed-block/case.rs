@@ -1,0 +1,137 @@
+//! A block that yields is pressed between smooth sides.
+
+use grainbench_harness::prelude::*;
+use grainbench_scene::body::{Constitutive, Deformable};
+
+const LEVELS: &[Level] = &[cells("L/8", 8.0, 2)];
+
+/// Bulk and shear modulus, yield stress, hardening modulus (Pa), density (kg/m³) and speed of the ram (m/s),
+/// worked with as the scene has them: what is read from a scene would change with it where a control changes it.
+const BULK: f64 = 80.0;
+const SHEAR: f64 = 40.0;
+const YIELD: f64 = 0.4;
+const HARDENING: f64 = 8.0;
+const DENSITY: f64 = 1.0;
+const SPEED: f64 = 0.001;
+
+pub(crate) static CASE: Case = Case {
+    name: "pressed-block",
+    title: "A block that yields is pressed between smooth sides",
+    claim: "A block that is pressed flows as von Mises's law with hardening has it, and keeps what volume elasticity \
+            leaves it.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "One direction of flow and no turn: rates that turn with the material are not seen.",
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims,
+    figures: no_more,
+    home: &crate::registry::HOME,
+};
+
+/// What the middle half of the block has in the end, mean over its points, which are all of one mass.
+#[derive(Default)]
+struct Middle {
+    /// True strain e = −ln(V/V₀).
+    strain: f64,
+    /// Equivalent plastic strain.
+    plastic: f64,
+    /// Stresses along x, y and z (Pa).
+    stress: [f64; 3],
+}
+
+impl Middle {
+    fn of(done: &Done) -> Result<Self, Missing> {
+        let missing = || Missing("points in the middle of the block in the end".to_owned());
+        let snapshot = done.record.snapshots.last().ok_or_else(missing)?;
+        // Two points along each side of a cell of an eighth of a metre, whose volumes are those at the start.
+        let start = 0.0625_f64 * 0.0625;
+        let is_inner = |x: f64| (x - 0.5).abs() < 0.25;
+        let inner = snapshot.points.iter().filter(|point| is_inner(point.position.x) && is_inner(point.position.y));
+        let (mut sum, mut count) = (Self::default(), 0.0);
+        for point in inner {
+            count += 1.0;
+            sum.strain -= (point.volume / start).ln();
+            sum.plastic += point.plastic_strain;
+            (0..3).for_each(|axis| sum.stress[axis] += point.stress[axis]);
+        }
+        if count == 0.0 {
+            return Err(missing());
+        }
+        Ok(Self { strain: sum.strain / count, plastic: sum.plastic / count, stress: sum.stress.map(|sum| sum / count) })
+    }
+
+    /// ε_p = (2G e − Y)/(3G + H).
+    fn flowed(&self) -> f64 {
+        (2.0 * SHEAR * self.strain - YIELD) / (3.0 * SHEAR + HARDENING)
+    }
+
+    /// Y + H ε_p, of the plastic strain that it has (Pa).
+    fn yielded(&self) -> f64 {
+        YIELD + HARDENING * self.plastic
+    }
+}
+
+/// Changes the material of the block.
+fn material(change: impl Fn(&mut Deformable) + Send + Sync + 'static) -> impl Fn(&mut Scene) + Send + Sync + 'static {
+    move |scene| scene.deformable.iter_mut().flatten().for_each(&change)
+}
+
+/// Another yield stress and hardening modulus (Pa).
+fn metal(yield_stress: f64, hardening_modulus: f64) -> impl Fn(&mut Scene) + Send + Sync + 'static {
+    material(move |of| of.constitutive = Constitutive::VonMises { yield_stress, hardening_modulus })
+}
+
+fn claims() -> Vec<Claim> {
+    let sound = ((BULK + 4.0 / 3.0 * SHEAR) / DENSITY).sqrt();
+    let front = SPEED / sound;
+    let run = || Run::new(PLAIN, "mpm", LEVELS[0].resolution);
+    vec![
+        claim("equivalent plastic strain of the middle", "1")
+            .of(run())
+            .equals(Source::Derived("ε_p = (2G e − Y)/(3G + H) (derivation)"), |done| {
+                let middle = Middle::of(&done[0])?;
+                Ok(Measured::new(middle.plastic, middle.flowed(), middle.flowed()))
+            })
+            .within(computed(
+                front * 2.0 * SHEAR / (3.0 * SHEAR + HARDENING) / 0.009,
+                "a front of the strain V/c beside that at which it flowed, V/c · 2G/(3G + H) of .009",
+            ))
+            .refuses(Control::scene("a yield stress a twentieth higher", metal(1.05 * YIELD, HARDENING))),
+        claim("yield stress of the middle", "Pa")
+            .of(run())
+            .equals(Source::Derived("σ_xx − σ_yy = Y + H ε_p (derivation)"), |done| {
+                let middle = Middle::of(&done[0])?;
+                let [across, along, _] = middle.stress;
+                Ok(Measured::new(across - along, middle.yielded(), middle.yielded()))
+            })
+            .within(computed(
+                2.0 * SHEAR * front / 0.47,
+                "a front of the strain V/c beside that at which it flowed, 2G V/c of .47 Pa",
+            ))
+            .refuses(Control::scene("no hardening", metal(YIELD, 0.0))),
+        claim("pressure of the middle", "Pa")
+            .of(run())
+            .equals(Source::Derived("(σ_xx + σ_yy + σ_zz)/3 = −K e: flow keeps the volume (derivation)"), |done| {
+                let middle = Middle::of(&done[0])?;
+                let expected = BULK * middle.strain;
+                Ok(Measured::new(-middle.stress.iter().sum::<f64>() / 3.0, expected, expected))
+            })
+            .within(computed(
+                1e-5,
+                "volumes are multiplied and strains added: e/2N in N steps, 2e-6 of .0194 in 4600; five times that for \
+                 what the mean over points does to a logarithm",
+            ))
+            .refuses(Control::scene("a thousandth stiffer in volume", material(|of| of.bulk_modulus *= 1.001))),
+        claim("force on the ram", "N")
+            .of(run())
+            .equals(Source::Derived("F = K e + ⅔ (Y + H ε_p), ε_p = (2G e − Y)/(3G + H) (derivation)"), |done| {
+                let middle = Middle::of(&done[0])?;
+                let yielded = YIELD + HARDENING * middle.flowed();
+                let expected = BULK * middle.strain + 2.0 / 3.0 * yielded;
+                Ok(Measured::new(done[0].last("ram.force_y")?, expected, expected))
+            })
+            .within(computed(DENSITY * sound * SPEED / 1.866, "a front of ρcV; of 1.866 Pa on 1 m"))
+            .refuses(Control::scene("two per cent stiffer in volume", material(|of| of.bulk_modulus *= 1.02))),
+    ]
+}
