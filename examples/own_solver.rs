@@ -45,9 +45,10 @@ impl Solver for Rigid {
         let mut recorder = Recorder::new(scene, time_step, steps);
         for step in 0..=steps {
             if recorder.is_due(step) {
-                let state = GrainState { position, velocity, spin, angle, ..GrainState::start(1, grain) };
+                let state = GrainState { position, velocity, spin, angle: Some(angle), ..GrainState::start(1, grain) };
                 let snapshot = Snapshot::of_grains(scene, step, step as f64 * time_step, vec![state]);
-                recorder.take(scene, Look::of_rigid(snapshot, 0.0));
+                let due = recorder.take(scene, Look::of_rigid(snapshot, 0.0));
+                due.into_iter().for_each(|snapshot| recorder.keep(snapshot));
             }
             let before = (velocity, spin);
             velocity += along * time_step;
@@ -69,7 +70,7 @@ impl Solver for Rigid {
             effects: vec!["friction and rotation".to_owned(), "gravity".to_owned()],
             options: Vec::new(),
         };
-        Ok(Record { provenance, series, snapshots, cost: Cost { steps, ..Cost::default() } })
+        Ok(Record { provenance, series, snapshots, cost: Cost::of_program(steps, 1, f64::NAN) })
     }
 }
 

@@ -67,7 +67,7 @@ fn counted_loop() {
     }
     let mut simulation = Dem::new(Convention::DEFAULT).start(&scene, step).unwrap();
     simulation.advance(steps).unwrap();
-    assert_eq!(simulation.cost().neighbour_builds, 1);
+    assert_eq!(simulation.counts().neighbour_builds, 1);
 }
 
 /// Instructions of so many steps.

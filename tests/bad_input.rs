@@ -252,7 +252,10 @@ fn a_run_that_blows_up_says_when_where_why_and_what_would_have_been_stable() {
     let long = ["--set", "duration=100", "--set", "grains.upper.position=[0.0, 0.295]"];
     let answer = grainbench(directory.path(), &[&arguments[..], &long].concat());
     assert_eq!((answer.code, answer.out.as_str()), (Some(1), ""));
-    assert_eq!(files(directory.path()), ["scene.toml"]);
+    // What there is of the run, and no record of one.
+    let left = files(directory.path());
+    assert!(left.contains(&"out/broken.json".to_owned()) && left.contains(&"out/series.csv".to_owned()), "{left:?}");
+    assert!(!left.contains(&"out/record.json".to_owned()), "{left:?}");
     insta::assert_snapshot!(answer.err);
 }
 

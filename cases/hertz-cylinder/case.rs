@@ -182,7 +182,8 @@ fn claims() -> Vec<Claim> {
             .of(Run::new(PLAIN, SOLVER, LEVELS[1].resolution).slow())
             .holds("equilibrium: the cylinder's weight", |done| {
                 let last = done[0].record.snapshots.last();
-                let force = last.and_then(|snapshot| snapshot.contacts.first()).map(|contact| contact.normal_force);
+                let force =
+                    last.and_then(|snapshot| snapshot.told_contacts().first()).map(|contact| contact.normal_force);
                 let weight = weight(&done[0].scene);
                 Ok(Measured::new(force.ok_or_else(|| Missing("contact".to_owned()))?, weight, weight))
             })

@@ -118,7 +118,8 @@ pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
 /// Largest and mean overlap of contacts at the end, in cells of this slab.
 fn overlaps(done: &Done) -> Result<[f64; 2], Missing> {
     let cell = measures::width(done) / CELLS;
-    let overlaps: Vec<f64> = measures::end(done)?.contacts.iter().map(|contact| contact.overlap / cell).collect();
+    let overlaps: Vec<f64> =
+        measures::end(done)?.told_contacts().iter().map(|contact| contact.overlap / cell).collect();
     if overlaps.is_empty() {
         return Err(Missing("contacts".to_owned()));
     }
@@ -127,7 +128,7 @@ fn overlaps(done: &Done) -> Result<[f64; 2], Missing> {
 
 /// Largest shear over normal force of the contacts between grains that carry more than the mean.
 fn steepest(done: &Done) -> Result<f64, Missing> {
-    let contacts = &measures::end(done)?.contacts;
+    let contacts = measures::end(done)?.told_contacts();
     let between = contacts.iter().filter(|contact| matches!(contact.partner, Partner::Grain(_)));
     let mean = contacts.iter().map(|contact| contact.normal_force).sum::<f64>() / contacts.len() as f64;
     let steep = between.filter(|contact| contact.normal_force > mean);

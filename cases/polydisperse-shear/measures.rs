@@ -100,7 +100,9 @@ pub(crate) fn at_the_moving_side(done: &Done, snapshot: &Snapshot) -> f64 {
 /// Rotation of free grains since the start, root of the mean square (degrees).
 pub(crate) fn rotation_deg(done: &Done, snapshot: &Snapshot) -> f64 {
     let grains = free(done, snapshot);
-    (grains.iter().map(|grain| grain.angle.powi(2)).sum::<f64>() / grains.len() as f64).sqrt().to_degrees()
+    (grains.iter().map(|grain| grain.angle.unwrap_or(f64::NAN).powi(2)).sum::<f64>() / grains.len() as f64)
+        .sqrt()
+        .to_degrees()
 }
 
 /// Cells of the paper's grid across the slab.

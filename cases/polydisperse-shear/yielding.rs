@@ -135,7 +135,7 @@ fn motion() -> Vec<Claim> {
                 ),
                 |done| {
                     let snapshot = at(&done[0], super::CHAINS[0])?;
-                    if snapshot.contacts.is_empty() {
+                    if snapshot.told_contacts().is_empty() {
                         return Err(Missing("contacts that press".to_owned()));
                     }
                     Ok(chains::chains(snapshot).stressed)

@@ -4,6 +4,7 @@ use crate::rows::elastic::{Pressed, stiffen};
 use crate::sources::prototype::squeezed_discs::{LEAST_NODAL_FORCE, MOST_NODAL_FORCE};
 use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
+use grainbench_scene::record::Snapshot;
 use std::collections::BTreeMap;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
@@ -61,7 +62,7 @@ fn spread(done: &Done) -> Result<(usize, f64), Missing> {
     let snapshots = &done.record.snapshots;
     let late = &snapshots[snapshots.len() - snapshots.len() / 4..];
     let mut forces: BTreeMap<(u32, String), f64> = BTreeMap::new();
-    for contact in late.iter().flat_map(|snapshot| &snapshot.contacts) {
+    for contact in late.iter().flat_map(Snapshot::told_contacts) {
         *forces.entry((contact.grain, format!("{:?}", contact.partner))).or_default() += contact.normal_force;
     }
     if forces.is_empty() {

@@ -1,7 +1,7 @@
 //! A packing between walls at one moment: what the walls carry, how deep contacts are, and how near it is to
 //! equilibrium.
 
-use grainbench_scene::record::{ContactState, Partner, Snapshot};
+use grainbench_scene::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::Vector3;
 
 /// Sums over walls and contacts of one snapshot. Walls are planes along the axes.
@@ -25,23 +25,25 @@ impl Stage {
     /// Of a snapshot.
     #[must_use]
     pub fn of(snapshot: &Snapshot) -> Self {
-        let (grains, contacts, walls) = (&snapshot.grains, &snapshot.contacts, &snapshot.walls);
+        let (grains, contacts, walls) = (&snapshot.grains, snapshot.told_contacts(), &snapshot.walls);
+        let unknown = Vector3::repeat(f64::NAN);
+        let on_wall = |wall: &WallState| wall.force.unwrap_or(unknown);
         let largest = |forces: &mut dyn Iterator<Item = f64>| forces.fold(0.0, f64::max);
         // The second corner of a plane is its normal, into the packing.
         let carried = |axis: usize| -> f64 {
-            walls.iter().filter_map(|wall| Some(-0.5 * wall.force[axis] * wall.corners.get(1)?[axis])).sum()
+            walls.iter().filter_map(|wall| Some(-0.5 * on_wall(wall)[axis] * wall.corners.get(1)?[axis])).sum()
         };
         let radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;
         let overlap = contacts.iter().map(|contact| approach(snapshot, contact)).sum::<f64>() / contacts.len() as f64;
         let contact =
             largest(&mut contacts.iter().map(|contact| contact.normal_force.hypot(contact.shear_force.norm())));
-        let sum: Vector3<f64> = walls.iter().map(|wall| wall.force).sum();
+        let sum: Vector3<f64> = walls.iter().map(on_wall).sum();
         Self {
             horizontal: carried(0),
             vertical: carried(1),
             overlap: overlap / radius,
-            unbalanced: largest(&mut grains.iter().map(|grain| grain.force.norm())) / contact,
-            residual: sum.amax() / largest(&mut walls.iter().map(|wall| wall.force.norm())),
+            unbalanced: largest(&mut grains.iter().map(|grain| grain.force.unwrap_or(unknown).norm())) / contact,
+            residual: sum.amax() / largest(&mut walls.iter().map(|wall| on_wall(wall).norm())),
         }
     }
 

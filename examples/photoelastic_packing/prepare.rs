@@ -40,7 +40,7 @@ pub(crate) fn prepare(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
         drive(&mut scene, &[Course { sides: -speed, ends: speed, from: 0.0, to: STRETCH }]);
         let (mut contacts, mut looks) = (0, 0);
         let end = watch(&scene, STRETCH, 1.0, |snapshot| {
-            (contacts, looks) = (contacts + snapshot.contacts.len(), looks + snapshot.grains.len());
+            (contacts, looks) = (contacts + snapshot.told_contacts().len(), looks + snapshot.grains.len());
             true
         })?;
         go_on_from(&mut scene, &end);
@@ -53,7 +53,7 @@ pub(crate) fn prepare(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
     let speed = PRESS * size(&scene)[0];
     drive(&mut scene, &[Course { sides: -speed, ends: speed, from: 0.0, to: f64::MAX }]);
     let pressed = watch(&scene, 1000.0, 0.5, |snapshot| {
-        Stage::of(snapshot).overlap < PRESSED || snapshot.contacts.len() * 4 < snapshot.grains.len() * 7
+        Stage::of(snapshot).overlap < PRESSED || snapshot.told_contacts().len() * 4 < snapshot.grains.len() * 7
     })?;
     go_on_from(&mut scene, &pressed);
     open(scene)
@@ -87,7 +87,7 @@ fn open(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
 }
 
 fn pressing(snapshot: &Snapshot) -> bool {
-    !snapshot.contacts.is_empty()
+    !snapshot.told_contacts().is_empty()
 }
 
 fn energy(scene: &Scene) -> f64 {

@@ -69,7 +69,7 @@ impl LoadedDisc {
     #[must_use]
     pub fn of_snapshot(snapshot: &Snapshot) -> Vec<Self> {
         let mut loads: Vec<Vec<Load>> = vec![Vec::new(); snapshot.grains.len()];
-        for contact in &snapshot.contacts {
+        for contact in snapshot.told_contacts() {
             let normal = contact.normal.xy();
             let force = contact.shear_force.xy() - normal * contact.normal_force;
             let mut push = |id: u32, load: Load| {

@@ -135,7 +135,7 @@ impl Painting {
                             quantity.of_stress(&loaded[place].stress(arm))
                         }
                         Quantity::PlasticStrain => 0.0,
-                        Quantity::Rotation => grain.angle,
+                        Quantity::Rotation => grain.angle.unwrap_or(f64::NAN),
                         Quantity::Speed => {
                             let turning = Vector2::new(-arm.y, arm.x) * grain.spin.z;
                             (grain.velocity.xy() + turning).norm()
@@ -203,9 +203,9 @@ mod tests {
             position: Vector3::new(0.0, 0.5, 0.0),
             velocity: Vector3::zeros(),
             spin: Vector3::new(0.0, 0.0, 2.0),
-            angle: 0.3,
-            force: Vector3::zeros(),
-            torque: Vector3::zeros(),
+            angle: Some(0.3),
+            force: None,
+            torque: None,
             plastic_strain: 0.0,
         };
         Snapshot {
@@ -214,7 +214,7 @@ mod tests {
             bounds: (Vector3::zeros(), Vector3::new(2.0, 1.0, 0.0)),
             periodic: [true, false, false],
             grains: vec![grain],
-            contacts: Vec::new(),
+            contacts: Some(Vec::new()),
             walls: Vec::new(),
             bodies: Vec::new(),
             points,

@@ -94,9 +94,9 @@ mod tests {
                 position: Vector3::new(x, (3.0 + x * time).rem_euclid(4.0), 0.0),
                 velocity: Vector3::new(0.0, x, 0.0),
                 spin: Vector3::zeros(),
-                angle: 0.0,
-                force: Vector3::zeros(),
-                torque: Vector3::zeros(),
+                angle: None,
+                force: None,
+                torque: None,
                 plastic_strain: 0.0,
             }
         };
@@ -106,7 +106,7 @@ mod tests {
             bounds: (Vector3::zeros(), Vector3::new(4.0, 4.0, 0.0)),
             periodic: [false, true, false],
             grains: (1..=4).map(grain).collect(),
-            contacts: Vec::new(),
+            contacts: None,
             walls: Vec::new(),
             bodies: Vec::new(),
             points: Vec::new(),

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
     let flat = |point: Vector3<f64>| [point.x, point.y];
     let bars = snapshot
-        .contacts
+        .told_contacts()
         .iter()
         .filter_map(|contact| {
             let radius = |id: u32| Some(snapshot.grains.get((id as usize).checked_sub(1)?)?.radius);
@@ -48,7 +48,11 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
         })
         .collect();
     ForcePlot {
-        discs: snapshot.grains.iter().map(|grain| (flat(grain.position), grain.radius, grain.angle)).collect(),
+        discs: snapshot
+            .grains
+            .iter()
+            .map(|grain| (flat(grain.position), grain.radius, grain.angle.unwrap_or(f64::NAN)))
+            .collect(),
         walls,
         bars,
     }

@@ -56,6 +56,8 @@ impl From<&RunError> for Outcome {
             | RunError::Program { .. }
             | RunError::Broken(_)
             | RunError::NotFinite { .. }
+            | RunError::NotStored(_)
+            | RunError::Interrupted { .. }
             | RunError::Checkpoint(_) => Self::Broken,
         }
     }

@@ -152,20 +152,19 @@ impl<'s> Observer<'s> {
             };
             let grains = (1..).zip(&self.scene.grains).zip(&order).map(|((id, grain), &row)| {
                 let row = snapshot.row(row);
-                let vector = |columns: &[Option<usize>; 3]| {
-                    Vector3::from(columns.map(|column| {
-                        column.and_then(|column| row.get(column)).copied().unwrap_or(0.0) + value(row, column, 1.0)
-                    }))
+                let told = |column: Option<usize>| Some(*row.get(column?)? + value(row, column, 1.0));
+                // What is not told is no number; along an axis that the scene does not have it is zero.
+                let vector = |columns: &[Option<usize>; 3], axes: [bool; 3]| {
+                    Vector3::from_fn(|axis, _| told(columns[axis]).unwrap_or(if axes[axis] { f64::NAN } else { 0.0 }))
                 };
                 let position = columns.position.map(|coordinate| {
                     coordinate.map_or(0.0, |at| at.of(row) + value(row, Some(at.column), at.scale()))
                 });
                 GrainState {
                     position: Vector3::from(position),
-                    velocity: vector(&columns.velocity),
-                    spin: vector(&columns.spin),
-                    angle: columns.angle.and_then(|column| row.get(column)).copied().unwrap_or(0.0)
-                        + value(row, columns.angle, 1.0),
+                    velocity: vector(&columns.velocity, [true, true, !flat]),
+                    spin: vector(&columns.spin, [!flat, !flat, true]),
+                    angle: told(columns.angle),
                     ..GrainState::start(id, grain)
                 }
             });
@@ -182,11 +181,13 @@ impl<'s> Observer<'s> {
             let of_pair = |a: usize, b: usize| self.pairs.on(snapshot.step, id(a), id(b));
             let forces = Forces { of_pair: &of_pair, of_wall: &of_wall };
             let times = if matches!(shift, Shift::None) { 0.0 } else { 1.0 };
-            seen.contacts = contacts(self.scene, time, snapshot.step, &seen.grains, &forces, times);
+            let told = contacts(self.scene, time, snapshot.step, &seen.grains, &forces, times);
             for (number, wall) in seen.walls.iter_mut().enumerate() {
-                let on_grains = (0..order.len()).filter_map(|grain| of_wall(number, grain));
+                let on_grains = (0..order.len()).map(|grain| of_wall(number, grain));
                 // What the digits leave open adds up along every axis.
-                wall.force = -on_grains.map(|of| of.force.add_scalar(times * of.open)).sum::<Vector3<f64>>();
+                let open = |of: PairForce| of.force.add_scalar(times * of.open);
+                let sum: Option<Vector3<f64>> = on_grains.map(|of| of.map(open)).sum();
+                wall.force = sum.map(|sum| -sum);
             }
             if matches!(shift, Shift::None) {
                 self.last = Some(seen.clone());
@@ -194,6 +195,8 @@ impl<'s> Observer<'s> {
                     self.snapshots.push(seen.clone());
                 }
             }
+            // The contacts that probes ask for are not all that there are: snapshots do not have them.
+            seen.contacts = Some(told);
             recorder.take(&self.sampled, Look::of_rigid(seen, 0.0));
         }
         Ok(())

@@ -8,7 +8,6 @@ use grainbench_reference::observer::{Names, Observed};
 use grainbench_reference::outputs::{Outputs, Sources};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
-use nalgebra::Vector3;
 
 fn scene(text: &str) -> Scene {
     let text = format!(
@@ -79,9 +78,7 @@ fn pair_forces_act_on_the_first_along_the_nearest_image() {
             close(value(&observed, &format!("{contact}.normal_force")), 100.0);
             close(value(&observed, &format!("{contact}.shear_force")), 7.0);
         }
-        let contact = &observed.snapshots[0].contacts[0];
-        assert!((contact.normal - Vector3::new(-0.6, -0.8, 0.0)).norm() < 1e-12, "{row}: {contact:?}");
-        assert!((contact.shear_force - Vector3::new(-5.6, 4.2, 0.0)).norm() < 1e-12, "{row}: {contact:?}");
+        assert!(observed.snapshots[0].contacts.is_none(), "what a probe asks for is not all that there is");
     }
     // What pulls is negative, as it is written.
     let pulled = observed(&scene, &[dump("ENTRIES", "i j fx fy", &["1 2 -6 -8"]), grains], &names);
@@ -126,8 +123,6 @@ fn pair_forces_in_space_have_a_push_and_a_size() {
     close(value(&observed, "c.overlap"), 0.02);
     close(value(&observed, "c.normal_force"), 70.0);
     close(value(&observed, "c.shear_force"), 5.0);
-    let shear = observed.snapshots[0].contacts[0].shear_force;
-    assert!((shear - Vector3::new(-6.0, 0.0, 2.0) * along).norm() < 1e-12, "{shear:?}");
 }
 
 /// A table has forces as our series have them, and they are taken as they stand, by whatever name.

@@ -7,6 +7,7 @@ pub mod line;
 mod manifest;
 pub mod number;
 pub mod page;
+pub mod parts;
 pub mod pictures;
 pub mod plot;
 pub mod record_figures;
@@ -25,6 +26,7 @@ mod sample;
 
 pub use headline::Headline;
 pub use manifest::refuse_mixed;
+pub use parts::SnapshotStore;
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use scratch::sweep;

@@ -104,7 +104,7 @@ fn spread(snapshots: &[Snapshot], count: usize) -> impl Iterator<Item = &Snapsho
 fn quantities(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Quantity> {
     let ends: Vec<&Snapshot> = records.iter().filter_map(|named| named.record.snapshots.last()).collect();
     let mut quantities = Vec::new();
-    let stressed = ends.iter().any(|snapshot| !snapshot.points.is_empty() || !snapshot.contacts.is_empty());
+    let stressed = ends.iter().any(|snapshot| !snapshot.points.is_empty() || !snapshot.told_contacts().is_empty());
     if stressed {
         quantities.push(Quantity::StressDifference);
         let own = fringe_constant(ends.iter().copied(), FRINGES);
@@ -113,7 +113,8 @@ fn quantities(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Quantity> {
     if ends.iter().any(|snapshot| snapshot.points.iter().any(|point| point.plastic_strain > 0.0)) {
         quantities.push(Quantity::PlasticStrain);
     }
-    let turned = |snapshot: &&Snapshot| snapshot.grains.iter().any(|grain| grain.angle.abs() > 1e-6);
+    let turned =
+        |snapshot: &&Snapshot| snapshot.grains.iter().any(|grain| grain.angle.is_some_and(|angle| angle.abs() > 1e-6));
     if ends.iter().any(turned) {
         quantities.push(Quantity::Rotation);
     }
@@ -122,7 +123,7 @@ fn quantities(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Quantity> {
 }
 
 fn forces(named: &Named<'_>, several: bool) -> Option<Figure> {
-    let last = named.record.snapshots.last().filter(|snapshot| !snapshot.contacts.is_empty())?;
+    let last = named.record.snapshots.last().filter(|snapshot| !snapshot.told_contacts().is_empty())?;
     let name = if several { format!("forces-{}", named.name) } else { "forces".to_owned() };
     Some(Figure::forces(
         &name,

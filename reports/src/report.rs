@@ -72,8 +72,8 @@ pub struct RunCost {
     pub steps: u64,
     /// Steps times grains.
     pub particle_steps: u64,
-    /// Contact laws evaluated.
-    pub contact_evaluations: u64,
+    /// Contact laws evaluated; absent of a program, which does not tell.
+    pub contact_evaluations: Option<u64>,
     /// Wall-clock time of the stepping loop (s).
     #[serde(deserialize_with = "stored_figure::number")]
     pub wall_seconds: f64,

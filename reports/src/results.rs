@@ -25,7 +25,7 @@ struct Point<'a> {
     fraction: Option<f64>,
     steps: u64,
     particle_steps: u64,
-    contact_evaluations: u64,
+    contact_evaluations: Option<u64>,
     wall_seconds: f64,
 }
 

@@ -64,7 +64,7 @@ fn run(solver: &str, resolution: &str, time_step: f64, steps: u64) -> RunCost {
         resolution: resolution.into(),
         steps,
         particle_steps: steps,
-        contact_evaluations: steps,
+        contact_evaluations: Some(steps),
         wall_seconds: steps as f64 / 2.5e7,
         time_step,
         fraction_of_critical: Some(time_step / 2e-4),

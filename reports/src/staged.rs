@@ -53,8 +53,10 @@ impl StagedDir {
             fs::create_dir(&path)?;
             self.made.push(path);
         }
-        // A process that was ended when the directory was new has left something beside it.
+        // What a process that was ended has left goes: beside the directory, if it was new then, or in it. What cannot be
+        // looked through is not swept, and is no reason not to write.
         let _ = sweep(parent_of(&self.target));
+        let _ = sweep(parent);
         let holder = temporary_in(parent)?;
         fs::create_dir(holder.path().join("new"))?;
         self.holder = Some(holder);
@@ -108,6 +110,22 @@ impl StagedDir {
             self.files.push(name.to_path_buf());
         }
         Ok(())
+    }
+
+    /// Adds a file that stands elsewhere on the same disk, without a copy where the disk can do that: it must not change any
+    /// more.
+    ///
+    /// # Errors
+    /// As of [`StagedDir::write`].
+    pub fn link(&mut self, name: impl AsRef<Path>, from: &Path) -> Result<(), WriteError> {
+        let name = name.as_ref();
+        self.write(name, "")?;
+        let place = || -> io::Result<()> {
+            let path = self.staging()?.join("new").join(name);
+            fs::remove_file(&path)?;
+            fs::hard_link(from, &path).or_else(|_| fs::copy(from, &path).map(drop))
+        };
+        place().map_err(|source| WriteError::new(self.target.join(name), source))
     }
 
     /// Moves all files into place. Files of the same name are replaced, files that an earlier run left go, and other files

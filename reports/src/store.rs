@@ -48,6 +48,12 @@ pub enum LoadError {
         /// What the system said.
         source: io::Error,
     },
+    /// It is what is left of a run that broke or was ended.
+    #[error("{}: expected the record of a whole run, but the run did not come to its end; the file says how", path.display())]
+    Broken {
+        /// The file that says how it ended.
+        path: PathBuf,
+    },
     /// The file is not a report.
     #[error("{}, line {line}, column {column}, at `{place}`: {reason}", path.display())]
     Damaged {

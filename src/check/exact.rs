@@ -69,6 +69,6 @@ fn record(scene: &Scene, outputs: &Outputs, observed: &Observed, series: Series)
         },
         series,
         snapshots: observed.snapshots.clone(),
-        cost: Cost { steps, ..Cost::default() },
+        cost: Cost::of_program(steps, scene.grains.len(), f64::NAN),
     }
 }

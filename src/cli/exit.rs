@@ -65,6 +65,13 @@ impl Fault {
     }
 }
 
+impl Display for Fault {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (Self::Input(message) | Self::Broken(message)) = self;
+        formatter.write_str(message)
+    }
+}
+
 impl From<SceneError> for Fault {
     fn from(error: SceneError) -> Self {
         Self::input(error)

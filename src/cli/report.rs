@@ -3,6 +3,7 @@
 use super::exit::{Fault, Outcome, print};
 use super::run;
 use super::simulate::positive;
+use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
 use grainbench::reports::record_figures::{self, Named, is_plane};
 use grainbench::reports::report::Report;
@@ -33,7 +34,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         refuse_mixed(dir).map_err(Fault::input)?;
     }
     let holds = |file: &str| arguments.dir.join(file).is_file();
-    if holds(RECORD_FILE) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
+    if (holds(RECORD_FILE) || holds(BROKEN_FILE)) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
         pictures(arguments)?;
         print(&page)?;
         return Ok(ExitCode::SUCCESS);

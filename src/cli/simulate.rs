@@ -2,17 +2,20 @@
 
 use super::checkpoint::{self, Store};
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
+use super::interrupt::Interrupt;
 use super::progress::Progress;
 use grainbench::cases::registry::read_grains;
 use grainbench::cases::solvers;
-use grainbench::reports::{StagedDir, export, number};
+use grainbench::reports::export::{self, Format};
+use grainbench::reports::{SnapshotStore, StagedDir, number};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
-use grainbench::scene::record::{Cost, Provenance, Record, Snapshot};
+use grainbench::scene::record::{Cost, Provenance, Record, Remains, Series, Snapshot};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Method, Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Method, NotStored, Resolution, RunError, Solver, Watch};
 use grainbench::scene::source::SceneSource;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -85,9 +88,33 @@ pub(crate) struct Arguments {
     /// Directory for the record.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
+    /// Formats of the snapshots: of runs of up to 200 000 rows of grains, contacts and points dump and vtk, which are text;
+    /// of larger ones Parquet.
+    #[arg(long, value_name = "FORMAT", value_delimiter = ',')]
+    write: Option<Vec<Written>>,
     /// Print provenance, cost and the end of the run as JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// Formats of snapshots, as they are asked for.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Written {
+    Dump,
+    Vtk,
+    Parquet,
+    None,
+}
+
+impl Written {
+    const fn format(self) -> Option<Format> {
+        match self {
+            Self::Dump => Some(Format::Dump),
+            Self::Vtk => Some(Format::Vtk),
+            Self::Parquet => Some(Format::Parquet),
+            Self::None => None,
+        }
+    }
 }
 
 /// Most keys that are overridden on a command line.
@@ -133,21 +160,66 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     if let Some(store) = &store {
         store.refuse_others()?;
     }
+    let mut snapshots = match &store {
+        Some(store) => SnapshotStore::for_checkpoint(&store.path),
+        None => SnapshotStore::for_output(&arguments.out),
+    };
+    if let (Some(path), Some(checkpoint)) = (&arguments.restart, &from) {
+        snapshots = snapshots.resume(path, checkpoint.output()).map_err(Fault::writing)?;
+    }
     let grains = scene.grains.len();
-    let mut watcher = Watcher { grains, method, critical, header, progress: None, store };
+    let interrupt = Interrupt::listen();
+    let mut watcher =
+        Watcher { grains, method, critical, header, progress: None, store, snapshots, remains: None, interrupt };
     let record = match &from {
         None => solver.run(&scene, &resolution, &mut watcher),
         Some(checkpoint) => solver.restart(&scene, &resolution, checkpoint, &mut watcher),
     };
-    let record = record.map_err(fault)?;
-    drop(watcher);
-    write(&record, arguments)?;
+    let Watcher { mut snapshots, remains, .. } = watcher;
+    let mut record = match record {
+        Ok(record) => record,
+        Err(error) => return Err(left(&error, remains.as_ref(), snapshots, arguments)),
+    };
+    // Of solvers that hand over all at the end.
+    for snapshot in record.snapshots.drain(..) {
+        snapshots.add(snapshot).map_err(Fault::writing)?;
+    }
+    let formats = formats(&snapshots, arguments);
+    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
+    export::write_run(&record, &mut snapshots, &formats, &mut out).map_err(Fault::writing)?;
+    out.commit().map_err(Fault::writing)?;
+    let end = snapshots.last().map_err(Fault::input)?;
     if arguments.json {
-        print_json(&Summary::of(&record, arguments))?;
+        print_json(&Summary::of(&record, &snapshots, end.as_ref(), arguments))?;
     } else {
-        print(&footer(&record, arguments))?;
+        print(&footer(&record, &snapshots, &formats, arguments))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Why there is no record; what there is of a run that broke or was ended is left all the same.
+fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore, arguments: &Arguments) -> Fault {
+    let Some(series) = remains else { return fault(error) };
+    let formats = formats(&snapshots, arguments);
+    let mut write = || -> Result<(), Fault> {
+        let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
+        export::write_remains(&error.to_string(), series, &mut snapshots, &formats, &mut out)
+            .map_err(Fault::writing)?;
+        out.commit().map_err(Fault::writing)
+    };
+    let out = arguments.out.display();
+    Fault::Broken(match write() {
+        Ok(()) => format!("{error}; what there is of the run, its last state too, is in {out}"),
+        Err(fault) => format!("{error}; what there is of the run could not be left in {out}: {fault}"),
+    })
+}
+
+/// The formats that were asked for, or those that are usual.
+fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format> {
+    match &arguments.write {
+        Some(asked) => asked.iter().filter_map(|format| format.format()).collect(),
+        None => Format::usual(snapshots),
+    }
 }
 
 fn solver(name: &str) -> Result<Box<dyn Solver>, Fault> {
@@ -190,22 +262,20 @@ fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault>
     Ok(resolution)
 }
 
-fn fault(error: RunError) -> Fault {
+fn fault(error: &RunError) -> Fault {
     match error {
-        RunError::Broken(broken) => Fault::Broken(broken.to_string()),
-        RunError::Program { .. } | RunError::NotFinite { .. } => Fault::Broken(error.to_string()),
+        RunError::Broken(_)
+        | RunError::Program { .. }
+        | RunError::NotFinite { .. }
+        | RunError::Interrupted { .. }
+        | RunError::NotStored(_)
+        | RunError::Checkpoint(CheckpointError::NotStored(_)) => Fault::Broken(error.to_string()),
         RunError::Unsupported { .. }
         | RunError::Resolution { .. }
         | RunError::NotAvailable { .. }
         | RunError::Stale { .. }
         | RunError::Checkpoint(_) => Fault::input(error),
     }
-}
-
-fn write(record: &Record, arguments: &Arguments) -> Result<(), Fault> {
-    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
-    export::write_record(record, &mut out).map_err(Fault::writing)?;
-    out.commit().map_err(Fault::writing)
 }
 
 /// What is known before the first step.
@@ -220,14 +290,20 @@ fn header(scene: &Scene, solver: &dyn Solver) -> String {
     )
 }
 
-fn footer(record: &Record, arguments: &Arguments) -> String {
+fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>, arguments: &Arguments) -> String {
     let cost = &record.cost;
-    format!(
-        "took       {}, {} contact evaluations\n{}\n",
-        number::seconds(cost.wall_seconds),
-        number::count(cost.contact_evaluations),
-        arguments.out.display()
-    )
+    let evaluations = cost
+        .contact_evaluations
+        .map_or(String::new(), |count| format!(", {} contact evaluations", number::count(count)));
+    // Text is what everybody finds; anything else is told.
+    let bulk = if formats.contains(&Format::Dump) || snapshots.is_empty() {
+        String::new()
+    } else {
+        let (count, rows) = (number::count(snapshots.len()), number::count(snapshots.rows()));
+        let form = if formats.contains(&Format::Parquet) { "as Parquet in snapshots/" } else { "not written" };
+        format!("snapshots  {count} of {rows} rows, {form} (--write dump,vtk for text)\n")
+    };
+    format!("took       {}{evaluations}\n{bulk}{}\n", number::seconds(cost.wall_seconds), arguments.out.display())
 }
 
 /// Tells people what runs, once the solver has taken it up, and how far it is.
@@ -238,6 +314,10 @@ struct Watcher {
     header: Option<String>,
     progress: Option<Progress>,
     store: Option<Store>,
+    snapshots: SnapshotStore,
+    /// The series of a run that broke or was ended.
+    remains: Option<Series>,
+    interrupt: Interrupt,
 }
 
 impl Watcher {
@@ -290,7 +370,25 @@ impl Watch for Watcher {
     }
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
-        self.store.as_ref().map_or(Ok(()), |store| store.put(&checkpoint))
+        let Some(store) = &self.store else { return Ok(()) };
+        let kept = self.snapshots.keep().map_err(|error| CheckpointError::NotStored(error.to_string()))?;
+        store.put(&checkpoint.with_output(kept))?;
+        self.snapshots.forget_others();
+        Ok(())
+    }
+
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
+        self.snapshots.add(snapshot).map(|()| None).map_err(|error| NotStored(error.to_string()))
+    }
+
+    fn is_over(&self) -> bool {
+        self.interrupt.is_asked()
+    }
+
+    fn broke(&mut self, remains: Remains) {
+        // A disk that refuses now is told when what remains is written.
+        let _ = self.snapshots.add(remains.end);
+        self.remains = Some(remains.series);
     }
 }
 
@@ -300,7 +398,7 @@ struct Summary<'a> {
     provenance: &'a Provenance,
     cost: &'a Cost,
     end: Option<End>,
-    snapshots: usize,
+    snapshots: u64,
     out: String,
 }
 
@@ -310,19 +408,19 @@ struct End {
     step: u64,
     time: f64,
     grains: usize,
-    contacts: usize,
-    slipping_contacts: usize,
+    contacts: Option<usize>,
+    slipping_contacts: Option<usize>,
     kinetic_energy: f64,
     fastest: f64,
 }
 
 impl<'a> Summary<'a> {
-    fn of(record: &'a Record, arguments: &Arguments) -> Self {
+    fn of(record: &'a Record, snapshots: &SnapshotStore, end: Option<&Snapshot>, arguments: &Arguments) -> Self {
         Self {
             provenance: &record.provenance,
             cost: &record.cost,
-            end: record.snapshots.last().map(End::of),
-            snapshots: record.snapshots.len(),
+            end: end.map(End::of),
+            snapshots: snapshots.len(),
             out: arguments.out.display().to_string(),
         }
     }
@@ -335,8 +433,11 @@ impl End {
             step: snapshot.step,
             time: snapshot.time,
             grains: grains.len(),
-            contacts: snapshot.contacts.len(),
-            slipping_contacts: snapshot.contacts.iter().filter(|contact| contact.slipping).count(),
+            contacts: snapshot.contacts.as_ref().map(Vec::len),
+            slipping_contacts: snapshot
+                .contacts
+                .as_ref()
+                .map(|contacts| contacts.iter().filter(|contact| contact.slipping).count()),
             kinetic_energy: grains.iter().map(|grain| 0.5 * grain.mass * grain.velocity.norm_squared()).sum(),
             fastest: grains.iter().map(|grain| grain.velocity.norm()).fold(0.0, f64::max),
         }

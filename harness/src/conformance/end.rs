@@ -93,9 +93,9 @@ mod tests {
             position: Vector3::zeros(),
             velocity: Vector3::x() * speed,
             spin: Vector3::zeros(),
-            angle: 0.0,
-            force: Vector3::zeros(),
-            torque: Vector3::zeros(),
+            angle: None,
+            force: None,
+            torque: None,
             plastic_strain: 0.0,
         };
         let end = |speeds: [f64; 2]| End { time: 1.0, grains: speeds.map(grain).to_vec(), time_step: 0.1, steps: 10.0 };

@@ -17,7 +17,7 @@ pub enum Standing {
     NotAvailable,
 }
 
-/// What a run did, whatever the machine: equal from run to run.
+/// What a run did, whatever the machine: equal from run to run. What a program did not count is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Steps taken.
@@ -25,42 +25,38 @@ pub struct Counts {
     /// Steps times grains, or times material points.
     pub particle_steps: u64,
     /// Contact laws evaluated.
-    pub contact_evaluations: u64,
+    pub contact_evaluations: Option<u64>,
     /// Listed pairs tested for touching.
-    pub pair_tests: u64,
+    pub pair_tests: Option<u64>,
     /// Neighbour lists built.
-    pub neighbour_builds: u64,
+    pub neighbour_builds: Option<u64>,
     /// Nodes of a grid that took a step, in all steps.
-    #[serde(default)]
-    pub node_updates: u64,
-    /// Memory that the state takes up at its largest (B), where it is counted.
-    #[serde(default)]
-    pub bytes: u64,
+    pub node_updates: Option<u64>,
+    /// Memory that the state takes up at its largest (B).
+    pub bytes: Option<u64>,
 }
 
 impl From<&Cost> for Counts {
     fn from(cost: &Cost) -> Self {
-        let &Cost {
-            steps,
-            particle_steps,
-            contact_evaluations,
-            pair_tests,
-            neighbour_builds,
-            node_updates,
-            bytes,
-            wall_seconds: _,
-        } = cost;
-        Self { steps, particle_steps, contact_evaluations, pair_tests, neighbour_builds, node_updates, bytes }
+        Self {
+            steps: cost.steps,
+            particle_steps: cost.particle_steps,
+            contact_evaluations: cost.contact_evaluations,
+            pair_tests: cost.pair_tests,
+            neighbour_builds: cost.neighbour_builds,
+            node_updates: cost.node_updates,
+            bytes: cost.bytes,
+        }
     }
 }
 
 impl Counts {
     /// Names and values, in one order.
     #[must_use]
-    pub const fn named(&self) -> [(&'static str, u64); 7] {
+    pub const fn named(&self) -> [(&'static str, Option<u64>); 7] {
         [
-            ("steps", self.steps),
-            ("particle_steps", self.particle_steps),
+            ("steps", Some(self.steps)),
+            ("particle_steps", Some(self.particle_steps)),
             ("contact_evaluations", self.contact_evaluations),
             ("pair_tests", self.pair_tests),
             ("neighbour_builds", self.neighbour_builds),

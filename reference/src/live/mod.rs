@@ -126,12 +126,7 @@ impl Solver for Live {
             },
             series: observed.series,
             snapshots: observed.snapshots,
-            cost: Cost {
-                steps: stepping.steps,
-                particle_steps: stepping.steps * scene.grains.len() as u64,
-                wall_seconds: seconds,
-                ..Cost::default()
-            },
+            cost: Cost::of_program(stepping.steps, scene.grains.len(), seconds),
         })
     }
 }

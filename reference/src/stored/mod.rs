@@ -124,11 +124,7 @@ impl StoredRun {
             },
             series: self.series(scene),
             snapshots: Vec::new(),
-            cost: Cost {
-                steps: stepping.steps,
-                particle_steps: stepping.steps * scene.grains.len() as u64,
-                ..Cost::default()
-            },
+            cost: Cost::of_program(stepping.steps, scene.grains.len(), f64::NAN),
         })
     }
 }

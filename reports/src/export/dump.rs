@@ -6,34 +6,43 @@ use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;
 
 /// The columns of every snapshot, in the words of LAMMPS.
-const COLUMNS: &str = "id type radius mass x y z vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz";
+const COLUMNS: &str = "id type radius mass x y z vx vy vz omegax omegay omegaz";
+/// Those of forces and torques, which not every program tells.
+const FORCES: &str = " fx fy fz tqx tqy tqz";
 
-/// Writes all snapshots. Units are SI; `type` is the place of the material in the scene, from 1.
+/// Writes what a dump begins with. Units are SI.
 ///
 /// # Errors
 /// When `out` refuses.
-pub fn write(snapshots: &[Snapshot], mut out: impl Write) -> io::Result<()> {
-    writeln!(out, "ITEM: UNITS\nsi")?;
-    for snapshot in snapshots {
-        writeln!(out, "ITEM: TIME\n{:?}", snapshot.time)?;
-        writeln!(out, "ITEM: TIMESTEP\n{}", snapshot.step)?;
-        writeln!(out, "ITEM: NUMBER OF ATOMS\n{}", snapshot.grains.len())?;
-        let kinds = snapshot.periodic.map(|periodic| if periodic { "pp" } else { "ff" });
-        writeln!(out, "ITEM: BOX BOUNDS {}", kinds.join(" "))?;
-        for axis in 0..3 {
-            let (low, high) = bounds_along(snapshot, axis);
-            writeln!(out, "{low:?} {high:?}")?;
-        }
-        writeln!(out, "ITEM: ATOMS {COLUMNS}")?;
-        for grain in &snapshot.grains {
-            write!(out, "{} {} {:?} {:?}", grain.id, u32::from(grain.material) + 1, grain.radius, grain.mass)?;
-            for vector in [&grain.position, &grain.velocity, &grain.spin, &grain.force, &grain.torque] {
-                write_vector(&mut out, vector)?;
-            }
-            writeln!(out)?;
-        }
+pub fn begin(out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "ITEM: UNITS\nsi")
+}
+
+/// Writes one snapshot more. `type` is the place of the material in the scene, from 1.
+///
+/// # Errors
+/// When `out` refuses.
+pub fn add(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "ITEM: TIME\n{:?}", snapshot.time)?;
+    writeln!(out, "ITEM: TIMESTEP\n{}", snapshot.step)?;
+    writeln!(out, "ITEM: NUMBER OF ATOMS\n{}", snapshot.grains.len())?;
+    let kinds = snapshot.periodic.map(|periodic| if periodic { "pp" } else { "ff" });
+    writeln!(out, "ITEM: BOX BOUNDS {}", kinds.join(" "))?;
+    for axis in 0..3 {
+        let (low, high) = bounds_along(snapshot, axis);
+        writeln!(out, "{low:?} {high:?}")?;
     }
-    out.flush()
+    let told = snapshot.grains.iter().all(|grain| grain.force.is_some() && grain.torque.is_some());
+    writeln!(out, "ITEM: ATOMS {COLUMNS}{}", if told { FORCES } else { "" })?;
+    for grain in &snapshot.grains {
+        write!(out, "{} {} {:?} {:?}", grain.id, u32::from(grain.material) + 1, grain.radius, grain.mass)?;
+        let forces = [grain.force, grain.torque].into_iter().flatten().filter(|_| told);
+        for vector in [grain.position, grain.velocity, grain.spin].into_iter().chain(forces) {
+            write_vector(out, &vector)?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
 }
 
 fn write_vector(out: &mut impl Write, vector: &Vector3<f64>) -> io::Result<()> {
@@ -67,8 +76,11 @@ mod tests {
         later.step = 20;
         later.time = 0.2;
         later.grains.truncate(1);
-        write(&[sample::snapshot(), later], &mut out).unwrap();
-        let columns = format!("ITEM: ATOMS {COLUMNS}");
+        begin(&mut out).unwrap();
+        for snapshot in [sample::snapshot(), later] {
+            add(&snapshot, &mut out).unwrap();
+        }
+        let columns = format!("ITEM: ATOMS {COLUMNS}{FORCES}");
         assert_eq!(
             String::from_utf8(out).unwrap(),
             [

@@ -8,66 +8,181 @@ pub mod vtk;
 #[cfg(test)]
 pub(crate) mod sample;
 
-use grainbench_scene::record::Record;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 
+use grainbench_scene::record::{Record, Series};
+use serde::Serialize;
+
+use crate::parts::{READABLE, SnapshotStore};
 use crate::staged::StagedDir;
 use crate::write::WriteError;
 
-/// Adds every format to `out`: `series.csv`, `record.json`, `snapshots.dump`, and under `vtk/` one file a snapshot
-/// with `grains.pvd` and `contacts.pvd` to open them by, and `points.pvd` where bodies have material points.
+/// A format of snapshots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Format {
+    /// One LAMMPS text dump of the grains: `snapshots.dump`.
+    Dump,
+    /// Under `vtk/` a file a snapshot of grains, of contacts and of material points, with a collection of each.
+    Vtk,
+    /// Under `snapshots/` parts with a Parquet file a kind of row, see [`crate::parts`].
+    Parquet,
+}
+
+impl Format {
+    /// What is written where nobody says: text of a run that a person can read, Parquet of any larger one.
+    #[must_use]
+    pub fn usual(snapshots: &SnapshotStore) -> BTreeSet<Self> {
+        if snapshots.rows() <= READABLE { [Self::Dump, Self::Vtk].into() } else { [Self::Parquet].into() }
+    }
+}
+
+/// Adds a run to `out`: `series.csv`, `record.json`, and its snapshots.
 ///
 /// # Errors
 /// When the disk refuses.
-pub fn write_record(record: &Record, out: &mut StagedDir) -> Result<(), WriteError> {
-    out.write_with("series.csv", |file| series_csv::write(&record.series, file))?;
-    out.write_with(record_json::RECORD_FILE, |file| record_json::write(record, file))?;
-    out.write_with("snapshots.dump", |file| dump::write(&record.snapshots, file))?;
-    let mut grains = Vec::new();
-    let mut contacts = Vec::new();
-    let mut points = Vec::new();
-    for (index, snapshot) in record.snapshots.iter().enumerate() {
-        let grain_file = format!("grains-{index:06}.vtp");
-        let contact_file = format!("contacts-{index:06}.vtp");
-        out.write_with(format!("vtk/{grain_file}"), |file| vtk::write_grains(snapshot, file))?;
-        out.write_with(format!("vtk/{contact_file}"), |file| vtk::write_contacts(snapshot, file))?;
-        grains.push((snapshot.time, grain_file));
-        contacts.push((snapshot.time, contact_file));
-        if !snapshot.points.is_empty() {
-            let point_file = format!("points-{index:06}.vtp");
-            out.write_with(format!("vtk/{point_file}"), |file| vtk::write_points(snapshot, file))?;
-            points.push((snapshot.time, point_file));
+pub fn write_run(
+    record: &Record,
+    snapshots: &mut SnapshotStore,
+    formats: &BTreeSet<Format>,
+    out: &mut StagedDir,
+) -> Result<(), WriteError> {
+    snapshots.settle()?;
+    out.write_with(record_json::RECORD_FILE, |file| record_json::write(record, snapshots, file))?;
+    write_series(&record.series, out)?;
+    write_snapshots(snapshots, formats, out)
+}
+
+/// Name of the file that says how a run broke.
+pub const BROKEN_FILE: &str = "broken.json";
+
+/// How a run ended that did not come to its end.
+#[derive(Debug, Serialize)]
+struct Broken<'b> {
+    /// What the solver said.
+    error: &'b str,
+    /// Step of the state that broke, the last snapshot.
+    step: u64,
+    /// Its time (s).
+    time: f64,
+}
+
+/// Adds what there is of a run that broke: `broken.json` in the place of a record, the series up to there, and the
+/// snapshots, the state that broke last.
+///
+/// # Errors
+/// When the disk refuses.
+pub fn write_remains(
+    error: &str,
+    series: &Series,
+    snapshots: &mut SnapshotStore,
+    formats: &BTreeSet<Format>,
+    out: &mut StagedDir,
+) -> Result<(), WriteError> {
+    snapshots.settle()?;
+    let at = |source| WriteError::new(out.target().join(BROKEN_FILE), source);
+    let last = snapshots.last().map_err(at)?;
+    let (step, time) = last.map_or((0, 0.0), |last| (last.step, last.time));
+    let text = serde_json::to_string_pretty(&Broken { error, step, time }).map_err(|error| at(error.into()))?;
+    out.write(BROKEN_FILE, text + "\n")?;
+    write_series(series, out)?;
+    write_snapshots(snapshots, formats, out)
+}
+
+fn write_series(series: &Series, out: &mut StagedDir) -> Result<(), WriteError> {
+    out.write_with("series.csv", |file| series_csv::write(series, file))
+}
+
+fn write_snapshots(
+    snapshots: &mut SnapshotStore,
+    formats: &BTreeSet<Format>,
+    out: &mut StagedDir,
+) -> Result<(), WriteError> {
+    if formats.contains(&Format::Dump) {
+        out.write_with("snapshots.dump", |file| {
+            dump::begin(file)?;
+            snapshots.each(std::convert::identity, |snapshot| dump::add(snapshot, file))
+        })?;
+    }
+    if formats.contains(&Format::Vtk) {
+        write_vtk(snapshots, out)?;
+    }
+    if formats.contains(&Format::Parquet) {
+        for (path, name) in snapshots.files()? {
+            out.link(PathBuf::from("snapshots").join(name), &path)?;
         }
     }
-    if !points.is_empty() {
-        out.write("vtk/points.pvd", vtk::collection(&points))?;
+    Ok(())
+}
+
+fn write_vtk(snapshots: &SnapshotStore, out: &mut StagedDir) -> Result<(), WriteError> {
+    let (mut grains, mut contacts, mut points) = (Vec::new(), Vec::new(), Vec::new());
+    let target = out.target().to_path_buf();
+    let mut number = 0;
+    let unreadable = |source| WriteError::new(&target, source);
+    snapshots.each(unreadable, |snapshot| {
+        let name = |kind: &str| format!("{kind}-{number:06}.vtp");
+        let names = [name("grains"), name("contacts"), name("points")];
+        number += 1;
+        let [of_grains, of_contacts, of_points] = names;
+        out.write_with(format!("vtk/{of_grains}"), |file| vtk::write_grains(snapshot, file))?;
+        grains.push((snapshot.time, of_grains));
+        if snapshot.contacts.is_some() {
+            out.write_with(format!("vtk/{of_contacts}"), |file| vtk::write_contacts(snapshot, file))?;
+            contacts.push((snapshot.time, of_contacts));
+        }
+        if !snapshot.points.is_empty() {
+            out.write_with(format!("vtk/{of_points}"), |file| vtk::write_points(snapshot, file))?;
+            points.push((snapshot.time, of_points));
+        }
+        Ok(())
+    })?;
+    for (name, files) in [("grains", grains), ("contacts", contacts), ("points", points)] {
+        if !files.is_empty() {
+            out.write(format!("vtk/{name}.pvd"), vtk::collection(&files))?;
+        }
     }
-    out.write("vtk/grains.pvd", vtk::collection(&grains))?;
-    out.write("vtk/contacts.pvd", vtk::collection(&contacts))
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainbench_scene::record::Snapshot;
+    use std::path::Path;
+
+    fn written(snapshots: &[Snapshot], formats: &[Format], target: &Path) {
+        let mut store = SnapshotStore::for_output(target);
+        snapshots.iter().for_each(|snapshot| store.add(snapshot.clone()).unwrap());
+        let mut out = StagedDir::new(target).unwrap();
+        write_run(&sample::record(), &mut store, &formats.iter().copied().collect(), &mut out).unwrap();
+        out.commit().unwrap();
+    }
 
     #[test]
     fn material_points_have_files_of_their_own() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("out");
-        let mut out = StagedDir::new(&target).unwrap();
-        let record = Record { snapshots: vec![sample::snapshot(), sample::deformable()], ..sample::record() };
-        write_record(&record, &mut out).unwrap();
-        out.commit().unwrap();
+        written(&[sample::snapshot(), sample::deformable()], &[Format::Vtk], &target);
         assert!(target.join("vtk/points-000001.vtp").is_file() && target.join("vtk/points.pvd").is_file());
-        assert!(!target.join("vtk/points-000000.vtp").exists());
+        assert!(!target.join("vtk/points-000000.vtp").exists() && !target.join("snapshots.dump").exists());
+    }
+
+    #[test]
+    fn contacts_that_nobody_told_have_no_file() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("out");
+        let untold = Snapshot { contacts: None, ..sample::snapshot() };
+        written(&[untold, sample::snapshot()], &[Format::Vtk], &target);
+        assert!(!target.join("vtk/contacts-000000.vtp").exists() && target.join("vtk/contacts-000001.vtp").is_file());
     }
 
     #[test]
     fn writes_every_format() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("out");
-        let mut out = StagedDir::new(&target).unwrap();
-        write_record(&sample::record(), &mut out).unwrap();
-        out.commit().unwrap();
+        let all = [Format::Dump, Format::Vtk, Format::Parquet];
+        written(&sample::record().snapshots, &all, &target);
         assert!(!target.join("vtk/points.pvd").exists(), "rigid grains have no points");
         for name in [
             "series.csv",
@@ -80,11 +195,14 @@ mod tests {
         ] {
             assert!(target.join(name).is_file(), "{name}");
         }
+        let parts: Vec<_> = std::fs::read_dir(target.join("snapshots")).unwrap().flatten().collect();
+        assert_eq!(parts.len(), 1);
+        for name in ["snapshots.parquet", "grains.parquet", "contacts.parquet", "walls.parquet"] {
+            assert!(parts[0].path().join(name).is_file(), "{name}");
+        }
         // For a look with the programs that these files are for.
         if let Ok(copy) = std::env::var("GRAINBENCH_EXPORT_DIR") {
-            let mut out = StagedDir::new(copy).unwrap();
-            write_record(&sample::record(), &mut out).unwrap();
-            out.commit().unwrap();
+            written(&sample::record().snapshots, &all, Path::new(&copy));
         }
     }
 }

@@ -4,20 +4,53 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use grainbench_scene::record::Record;
+use grainbench_scene::record::{Cost, Provenance, Record, Series, Snapshot};
+use serde::ser::{Error, SerializeSeq};
+use serde::{Serialize, Serializer};
 
+use crate::export::BROKEN_FILE;
+use crate::parts::{READABLE, SnapshotStore};
 use crate::store::{LoadError, parse};
 
 /// Name of the file.
 pub const RECORD_FILE: &str = "record.json";
 
-/// Writes the record on one line, for it may hold millions of numbers; they read back to the same bits.
+/// Writes the record on one line, for it may hold millions of numbers; they read back to the same bits. Snapshots come
+/// from the store: all of a run that a person can read, else the last, and none where even that is too much.
 ///
 /// # Errors
-/// When `out` refuses.
-pub fn write(record: &Record, mut out: impl Write) -> io::Result<()> {
-    serde_json::to_writer(&mut out, record)?;
+/// When `out` refuses, or a snapshot cannot be read back.
+pub fn write(record: &Record, snapshots: &SnapshotStore, mut out: impl Write) -> io::Result<()> {
+    let Record { provenance, series, cost, .. } = record;
+    serde_json::to_writer(&mut out, &Streamed { provenance, series, snapshots: Stored(snapshots), cost })?;
     out.write_all(b"\n")
+}
+
+/// A record as [`Record`] is written, with snapshots that are not in memory.
+#[derive(Serialize)]
+struct Streamed<'r> {
+    provenance: &'r Provenance,
+    series: &'r Series,
+    snapshots: Stored<'r>,
+    cost: &'r Cost,
+}
+
+struct Stored<'r>(&'r SnapshotStore);
+
+impl Serialize for Stored<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut all = serializer.serialize_seq(None)?;
+        if self.0.rows() <= READABLE {
+            self.0.each(S::Error::custom, |snapshot| all.serialize_element(snapshot))?;
+        } else if let Some(last) = self.0.last().map_err(S::Error::custom)?.filter(is_readable) {
+            all.serialize_element(&last)?;
+        }
+        all.end()
+    }
+}
+
+fn is_readable(snapshot: &Snapshot) -> bool {
+    (snapshot.grains.len() + snapshot.told_contacts().len() + snapshot.points.len()) as u64 <= READABLE
 }
 
 /// Reads the record that a simulation left in `dir`.
@@ -25,7 +58,10 @@ pub fn write(record: &Record, mut out: impl Write) -> io::Result<()> {
 /// # Errors
 /// When the file is missing or damaged; the message names the place.
 pub fn load(dir: &Path) -> Result<Record, LoadError> {
-    let path = dir.join(RECORD_FILE);
+    let (path, broken) = (dir.join(RECORD_FILE), dir.join(BROKEN_FILE));
+    if broken.is_file() {
+        return Err(LoadError::Broken { path: broken });
+    }
     match fs::read_to_string(&path) {
         Ok(text) => parse(&path, &text),
         Err(source) => Err(LoadError::Read { path, source }),
@@ -40,9 +76,27 @@ mod tests {
     #[test]
     fn reads_back_the_same() {
         let record = sample::record();
+        let folder = tempfile::tempdir().unwrap();
+        let mut store = SnapshotStore::for_output(&folder.path().join("out"));
+        record.snapshots.iter().for_each(|snapshot| store.add(snapshot.clone()).unwrap());
         let mut out = Vec::new();
-        write(&record, &mut out).unwrap();
+        write(&record, &store, &mut out).unwrap();
         assert_eq!(serde_json::from_slice::<Record>(&out).unwrap(), record);
         assert_eq!(out.iter().filter(|&&letter| letter == b'\n').count(), 1);
+    }
+
+    #[test]
+    fn a_large_run_keeps_its_last_snapshot() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut store = SnapshotStore::for_output(&folder.path().join("out"));
+        let many = Snapshot { grains: vec![sample::snapshot().grains[0]; 70_000], ..sample::snapshot() };
+        for step in 0..3 {
+            store.add(Snapshot { step, ..many.clone() }).unwrap();
+        }
+        store.settle().unwrap();
+        let mut out = Vec::new();
+        write(&sample::record(), &store, &mut out).unwrap();
+        let read: Record = serde_json::from_slice(&out).unwrap();
+        assert_eq!(read.snapshots.iter().map(|snapshot| snapshot.step).collect::<Vec<_>>(), [2]);
     }
 }

@@ -14,9 +14,9 @@ fn grain(id: u32, x: f64, y: f64) -> GrainState {
         position: Vector3::new(x, y, 0.0),
         velocity: Vector3::new(0.1, -2e-7, 0.0),
         spin: Vector3::new(0.0, 0.0, 3.0),
-        angle: 0.25,
-        force: Vector3::new(1.0, 2.0, 0.0),
-        torque: Vector3::new(0.0, 0.0, -0.125),
+        angle: Some(0.25),
+        force: Some(Vector3::new(1.0, 2.0, 0.0)),
+        torque: Some(Vector3::new(0.0, 0.0, -0.125)),
         plastic_strain: 0.0,
     }
 }
@@ -28,7 +28,7 @@ pub(crate) fn snapshot() -> Snapshot {
         bounds: (Vector3::new(0.0, 0.0, 0.0), Vector3::new(4.0, 3.0, 0.0)),
         periodic: [true, false, false],
         grains: vec![grain(1, 3.75, 0.25), grain(2, 0.5, 0.25)],
-        contacts: vec![
+        contacts: Some(vec![
             ContactState {
                 grain: 1,
                 partner: Partner::Grain(2),
@@ -49,12 +49,12 @@ pub(crate) fn snapshot() -> Snapshot {
                 shear_force: Vector3::zeros(),
                 slipping: false,
             },
-        ],
+        ]),
         walls: vec![WallState {
             name: "floor".into(),
             corners: vec![Vector3::zeros(), Vector3::new(4.0, 0.0, 0.0)],
             infinite: false,
-            force: Vector3::new(0.0, -20.0, 0.0),
+            force: Some(Vector3::new(0.0, -20.0, 0.0)),
         }],
         bodies: Vec::new(),
         points: Vec::new(),
@@ -100,7 +100,7 @@ pub(crate) fn record() -> Record {
             options: Vec::new(),
         },
         series: series(),
-        snapshots: vec![Snapshot { step: 0, time: 0.0, contacts: Vec::new(), ..snapshot() }, snapshot()],
+        snapshots: vec![Snapshot { step: 0, time: 0.0, contacts: Some(Vec::new()), ..snapshot() }, snapshot()],
         cost: Cost::default(),
     }
 }

@@ -20,16 +20,25 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
     whole(&mut out, "Int32", "material", grains.iter().map(|grain| i64::from(grain.material)))?;
     scalars(&mut out, "radius", grains.iter().map(|grain| grain.radius))?;
     scalars(&mut out, "mass", grains.iter().map(|grain| grain.mass))?;
-    scalars(&mut out, "angle", grains.iter().map(|grain| grain.angle))?;
+    told(grains, |grain| grain.angle, |angles| scalars(&mut out, "angle", angles.into_iter()))?;
     vectors(&mut out, "velocity", grains.iter().map(|grain| grain.velocity))?;
     vectors(&mut out, "spin", grains.iter().map(|grain| grain.spin))?;
-    vectors(&mut out, "force", grains.iter().map(|grain| grain.force))?;
-    vectors(&mut out, "torque", grains.iter().map(|grain| grain.torque))?;
+    told(grains, |grain| grain.force, |forces| vectors(&mut out, "force", forces.into_iter()))?;
+    told(grains, |grain| grain.torque, |torques| vectors(&mut out, "torque", torques.into_iter()))?;
     writeln!(out, "</PointData>\n<Points>")?;
     vectors(&mut out, "points", grains.iter().map(|grain| grain.position))?;
     writeln!(out, "</Points>")?;
     cells(&mut out, "Verts", 1, grains.len())?;
     close(&mut out)
+}
+
+/// Writes what is told of every grain; a quantity that is not has no array, rather than one of zeros.
+fn told<T>(
+    grains: &[GrainState],
+    of: impl Fn(&GrainState) -> Option<T>,
+    write: impl FnOnce(Vec<T>) -> io::Result<()>,
+) -> io::Result<()> {
+    grains.iter().map(of).collect::<Option<Vec<T>>>().map_or(Ok(()), write)
 }
 
 /// Writes the material points of deformable bodies: `body` is a grain's id, or −1 − the place of a body that is no
@@ -73,7 +82,7 @@ pub fn write_contacts(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()
     let by_id: HashMap<u32, &GrainState> = snapshot.grains.iter().map(|grain| (grain.id, grain)).collect();
     // A contact of a grain that is not there has nothing to be drawn from.
     let contacts: Vec<(&ContactState, [Vector3<f64>; 2])> =
-        snapshot.contacts.iter().filter_map(|contact| Some((contact, ends(contact, &by_id)?))).collect();
+        snapshot.told_contacts().iter().filter_map(|contact| Some((contact, ends(contact, &by_id)?))).collect();
     let all = || contacts.iter().map(|(contact, _)| *contact);
     open(&mut out, snapshot.time, 2 * contacts.len(), 0, contacts.len())?;
     writeln!(out, "<CellData Scalars=\"normal_force\" Vectors=\"shear_force\">")?;

@@ -214,7 +214,7 @@ fn cost_table(runs: &[RunCost]) -> Markup {
                         }
                         td.n { (number::count(run.steps)) }
                         td.n { (number::count(run.particle_steps)) }
-                        td.n { (number::count(run.contact_evaluations)) }
+                        td.n { (run.contact_evaluations.map_or("—".to_owned(), number::count)) }
                         td.n { (number::seconds(run.wall_seconds)) }
                     }
                 }

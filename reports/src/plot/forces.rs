@@ -106,14 +106,14 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
     .into_string()
 }
 
-/// An outline with a radius that turns with the disc.
+/// An outline with a radius that turns with the disc, where the angle is known.
 fn disc(view: &View, centre: [f64; 2], radius: f64, angle: f64) -> Markup {
     let (x, y) = view.at(centre);
     let radius = radius * view.scale;
     let rim = (x + radius * angle.cos(), y - radius * angle.sin());
     html! {
         circle cx=(px(x)) cy=(px(y)) r=(px(radius)) {}
-        line x1=(px(x)) y1=(px(y)) x2=(px(rim.0)) y2=(px(rim.1)) {}
+        @if angle.is_finite() { line x1=(px(x)) y1=(px(y)) x2=(px(rim.0)) y2=(px(rim.1)) {} }
     }
 }
 

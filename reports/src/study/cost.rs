@@ -259,7 +259,7 @@ pub fn points_csv(study: &Study) -> Result<Vec<u8>, csv::Error> {
         row.push(word(point.standing).to_owned());
         let times = [point.error, point.wall_seconds, point.wall_spread, point.cpu_seconds, point.start_up_seconds];
         row.extend(times.map(number));
-        row.extend(point.counts.named().map(|(_, count)| count.to_string()));
+        row.extend(point.counts.named().map(|(_, count)| count.map_or(String::new(), |count| count.to_string())));
         table.write_record(row)?;
     }
     table.into_inner().map_err(|error| error.into_error().into())

@@ -5,7 +5,7 @@ use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
 use crate::simulation::Kernel;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
-use grainbench_scene::record::{Cost, Look};
+use grainbench_scene::record::{Counts, Look};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::solver::Broken;
 use grainbench_scene::space::Space;
@@ -32,7 +32,7 @@ pub trait Simulation: Send {
     /// The kernel in words: the space and the stages that it was compiled for.
     fn layout(&self) -> &'static str;
     /// Steps, pairs and contacts counted so far; no times.
-    fn cost(&self) -> Cost;
+    fn counts(&self) -> Counts;
     /// Cycles taken.
     fn step(&self) -> u64;
     /// The state at this step: grains, contacts, walls and energies.
@@ -60,7 +60,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Simulation for Kernel
         std::any::type_name::<Self>()
     }
 
-    fn cost(&self) -> Cost {
+    fn counts(&self) -> Counts {
         self.cost
     }
 

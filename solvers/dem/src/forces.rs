@@ -17,7 +17,7 @@ use crate::laws::Laws;
 use crate::neighbours::Neighbours;
 use crate::rotation::Rotation;
 use crate::walls::MovingWall;
-use grainbench_scene::record::{Cost, Partner};
+use grainbench_scene::record::{Counts, Partner};
 use grainbench_scene::space::Space;
 
 /// What every contact of an evaluation is computed with.
@@ -38,7 +38,7 @@ pub(crate) fn pairs<S, N, T, R, const RECORD: bool, const ACROSS: bool>(
     grains: &mut Grains<S, T::Rotation>,
     neighbours: &mut Neighbours<S, Memory<S, T, R>>,
     seen: &mut Vec<Seen<S>>,
-    cost: &mut Cost,
+    cost: &mut Counts,
 ) where
     S: Space,
     N: Normal,
@@ -117,7 +117,7 @@ pub(crate) fn wall_contacts<S, N, T, R, const RECORD: bool>(
     grains: &mut Grains<S, T::Rotation>,
     walls: &mut [MovingWall<S, Memory<S, T, R>>],
     seen: &mut Vec<Seen<S>>,
-    cost: &mut Cost,
+    cost: &mut Counts,
 ) where
     S: Space,
     N: Normal,

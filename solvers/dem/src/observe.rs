@@ -43,7 +43,7 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
         .iter()
         .map(|wall| {
             let (corners, infinite) = wall.shape.corners();
-            WallState { name: wall.name().to_owned(), corners, infinite, force: S::embed(wall.force) }
+            WallState { name: wall.name().to_owned(), corners, infinite, force: Some(S::embed(wall.force)) }
         })
         .collect();
     let snapshot = Snapshot {
@@ -52,7 +52,7 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
         bounds: record::bounds(scene, &grains),
         periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
         grains,
-        contacts,
+        contacts: Some(contacts),
         walls,
         bodies: Vec::new(),
         points: Vec::new(),
@@ -85,15 +85,15 @@ fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     let angle = if rotation.spin().is_some() {
         rotation.angle()
     } else {
-        start.spin.z * kernel.step as f64 * kernel.motion.time_step * f64::from(u8::from(S::DIMENSION == 2))
+        start.spin.z * kernel.step as f64 * kernel.motion.time_step
     };
     GrainState {
         position: S::embed(domain.map_or(position, |domain| wrapped::<S>(position, &domain))),
         velocity: (S::embed(movement.velocity) + acceleration * half) * drag,
         spin,
-        angle,
-        force: S::embed(grains.force[slot]),
-        torque: S::embed_spin(T::Rotation::torque(grains.torque[slot])),
+        angle: (S::DIMENSION == 2).then_some(angle),
+        force: Some(S::embed(grains.force[slot])),
+        torque: Some(S::embed_spin(T::Rotation::torque(grains.torque[slot]))),
         ..GrainState::start(id as u32 + 1, start)
     }
 }

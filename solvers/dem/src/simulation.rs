@@ -18,7 +18,7 @@ use crate::neighbours::Neighbours;
 use crate::rotation::Rotation;
 use crate::stability::stable_fraction;
 use crate::walls::{MovingWall, NearWall};
-use grainbench_scene::record::Cost;
+use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Broken, Cause, Subject};
 use grainbench_scene::space::Space;
@@ -51,7 +51,7 @@ pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
     list_holds: bool,
     /// Bound on the distance from any wall's centre of rotation to any grain (m).
     pub(crate) extent: f64,
-    pub(crate) cost: Cost,
+    pub(crate) cost: Counts,
     /// Whether the energy budget is asked for.
     pub(crate) accounting: bool,
     pub(crate) accounts: Accounts,
@@ -78,7 +78,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             step: 0,
             list_holds: true,
             extent: 0.0,
-            cost: Cost::default(),
+            cost: Counts::default(),
             accounting: scene.asks_for_budget(),
             accounts: Accounts::default(),
             free_mass: {

@@ -11,7 +11,7 @@ use crate::stability::damped_step;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
-use grainbench_scene::record::{Cost, Look, Provenance, Record};
+use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Scene};
 use grainbench_scene::solver::{Broken, Defect, Resolution, RunError, Solver, Watch};
@@ -235,8 +235,8 @@ impl Stepper for Running {
         self.simulation.look()
     }
 
-    fn cost(&self) -> Cost {
-        self.simulation.cost()
+    fn counts(&self) -> Counts {
+        self.simulation.counts()
     }
 
     fn keep(&self, recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {

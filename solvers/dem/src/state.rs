@@ -12,7 +12,7 @@ use crate::neighbours::Neighbours;
 use crate::simulation::Kernel;
 use crate::walls::WallMemory;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
-use grainbench_scene::record::Cost;
+use grainbench_scene::record::Counts;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,7 @@ struct State<S: Space, T: Tangential<S>, R: Rolling<S>> {
     walls: Vec<WallMemory<S, Memory<S, T, R>>>,
     step: u64,
     extent: f64,
-    cost: Cost,
+    cost: Counts,
     accounts: Accounts,
     recorder: Recorder,
 }

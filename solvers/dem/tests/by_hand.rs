@@ -60,7 +60,7 @@ fn a_stretched_spring_swings_with_its_contact() {
     );
     for convention in [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS] {
         let record = run_at(&text, convention, &Resolution::TimeStep(1e-3));
-        let contact = end(&record).contacts[0];
+        let contact = end(&record).told_contacts()[0];
         // From the sphere to the wall: −y at the start, +x after the quarter turn. The wall went along +x first and
         // drags the sphere with it; that has become +y.
         assert!((contact.normal - Vector3::x()).norm() < ROUNDING, "{convention}: {:?}", contact.normal);
@@ -101,10 +101,10 @@ fn a_turntable_drags_by_its_velocity_where_it_touches() {
         1e-4,
     );
     let expected = Vector3::new(0.0, 5.0e5 * 0.3 * (0.02 + 50.0 * 1e-4), 1.0e6 * 0.005);
-    closely(end(&record).grains[0].force, expected);
-    closely(end(&record).walls[0].force, -expected);
+    closely(end(&record).grains[0].force.unwrap(), expected);
+    closely(end(&record).walls[0].force.unwrap(), -expected);
     // R e × F_s with e = −z, R = .1 m: the sphere is made to turn about +x.
-    closely(end(&record).grains[0].torque, Vector3::new(0.1 * expected.y, 0.0, 0.0));
+    closely(end(&record).grains[0].torque.unwrap(), Vector3::new(0.1 * expected.y, 0.0, 0.0));
 }
 
 /// A belt under a disc that does not move stretches the spring by V t: F_s = k_s V (β + t). One that is a hundredth faster
@@ -121,7 +121,7 @@ fn a_belt_stretches_its_spring_by_its_way() {
             ),
             1e-4,
         );
-        end(&record).grains[0].force.x
+        end(&record).grains[0].force.unwrap().x
     };
     let expected = 5.0e5 * 0.25 * (0.02 + 40.0 * 1e-4);
     close(force(0.25), expected);
@@ -161,14 +161,18 @@ fn grains_turn_by_the_moments_that_snapshots_show() {
         let speeds = end(&record).grains[0];
         for pair in record.snapshots.windows(2) {
             let [one, two] = [&pair[0].grains[0], &pair[1].grains[0]];
-            let turned = (two.spin - one.spin) * inertia - (one.torque + two.torque) * (0.5 * step);
-            let sped = (two.velocity - one.velocity - gravity * step) * mass - (one.force + two.force) * (0.5 * step);
+            let turned = (two.spin - one.spin) * inertia - (one.torque.unwrap() + two.torque.unwrap()) * (0.5 * step);
+            let sped = (two.velocity - one.velocity - gravity * step) * mass
+                - (one.force.unwrap() + two.force.unwrap()) * (0.5 * step);
             assert!(turned.norm() < ROUNDING * inertia * speeds.spin.norm(), "{shape}: {turned:?}");
             assert!(sped.norm() < ROUNDING * mass * speeds.velocity.norm(), "{shape}: {sped:?}");
-            let moment = if dimension == 2 { two.torque.z } else { -two.torque.y };
-            assert!((moment - 0.1 * two.force.x).abs() < ROUNDING * two.force.norm(), "{shape}: {two:?}");
+            let moment = if dimension == 2 { two.torque.unwrap().z } else { -two.torque.unwrap().y };
+            assert!(
+                (moment - 0.1 * two.force.unwrap().x).abs() < ROUNDING * two.force.unwrap().norm(),
+                "{shape}: {two:?}"
+            );
         }
-        assert!(speeds.velocity.x > 0.0 && end(&record).grains[0].force.x < 0.0, "it is held back going down");
+        assert!(speeds.velocity.x > 0.0 && end(&record).grains[0].force.unwrap().x < 0.0, "it is held back going down");
     }
 }
 
@@ -203,7 +207,7 @@ fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
             "dimension = {dimension}\nduration_cycles = 1\n\
              [grains.g]\nmaterial = 'm'\nradius = {radius}\nposition = {position}\n[walls.w]\nmaterial = 'm'\n{wall}\n"
         ));
-        record.snapshots[0].grains[0].force
+        record.snapshots[0].grains[0].force.unwrap()
     };
     let segment = "segment = [[0.0, 0.0], [1.0, 0.0]]";
     closely(force(2, segment, "[-0.3, 0.4]", 0.51), Vector3::new(-6e3, 8e3, 0.0));

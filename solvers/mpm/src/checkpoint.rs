@@ -9,7 +9,7 @@ use crate::ledger::Tally;
 use crate::points::Points;
 use crate::simulation::Simulation;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
-use grainbench_scene::record::Cost;
+use grainbench_scene::record::Counts;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ struct Kept<S: Space> {
     /// How many runs the points of every body made when they were last put in order.
     runs_in_order: Vec<usize>,
     step: u64,
-    cost: Cost,
+    cost: Counts,
     /// The energy budget, where it is asked for, and what contacts told of the last step.
     accounts: Option<(Sums, Tally)>,
     recorder: Recorder,

@@ -16,7 +16,7 @@ use crate::options::{Contact, StressUpdate};
 use crate::scheme::Scheme;
 use crate::state::State;
 use crate::surface::{Carry, Tracers};
-use grainbench_scene::record::Cost;
+use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
@@ -85,7 +85,7 @@ impl<S: Space> Contacts<S> {
         state: &State<S>,
         grid: &Grid<S>,
         boundary: &Boundary<S>,
-        cost: &mut Cost,
+        cost: &mut Counts,
     ) {
         let setting = &scheme.setting;
         if !Self::is_nodal(setting.contact, state, boundary) {
@@ -130,7 +130,7 @@ impl<S: Space> Contacts<S> {
         grid: &mut Grid<S>,
         boundary: &mut Boundary<S>,
         Asked { accounts, touches: record }: Asked<'_, S>,
-        cost: &mut Cost,
+        cost: &mut Counts,
     ) {
         let Scheme { setting, time_step, processor } = *scheme;
         if setting.contact != Contact::Penalty || !Self::can_touch(state, boundary) {

@@ -34,7 +34,8 @@ impl<S: Space> Simulation<S> {
         let mut elastic_energy = 0.0;
         let mut inner_kinetic_energy = 0.0;
         let (mut grains, mut bodies) = (Vec::new(), Vec::new());
-        for (body, whole) in self.state.bodies.iter().zip(&wholes) {
+        let forces = self.forces(&wholes);
+        for (body_at, (body, whole)) in self.state.bodies.iter().zip(&wholes).enumerate() {
             elastic_energy += self.elastic_energy(body);
             let mut inertia = whole.inertia;
             match body.owner {
@@ -45,7 +46,9 @@ impl<S: Space> Simulation<S> {
                         position: self.inside(whole.position),
                         velocity: whole.velocity,
                         spin: whole.spin,
-                        angle: whole.angle,
+                        angle: (S::DIMENSION == 2).then_some(whole.angle),
+                        force: Some(forces[body_at].0),
+                        torque: Some(forces[body_at].1),
                         plastic_strain: whole.plastic_strain,
                         ..GrainState::start(id, grain)
                     });
@@ -58,27 +61,11 @@ impl<S: Space> Simulation<S> {
                     velocity: whole.velocity,
                     spin: whole.spin,
                     angle: whole.angle,
-                    force: Vector3::zeros(),
+                    force: forces[body_at].0,
                 }),
             }
             let rigid = whole.mass * whole.velocity.norm_squared() + inertia * whole.spin.norm_squared();
             inner_kinetic_energy += whole.kinetic - 0.5 * rigid;
-        }
-        for touch in &self.contacts.touches {
-            let force = S::embed(touch.push + touch.shear);
-            let mut push = |body: u32, force: Vector3<f64>| match self.state.bodies[body as usize].owner {
-                Owner::Grain(id) => {
-                    let arm = S::embed(touch.point) - wholes[body as usize].position;
-                    let grain: &mut GrainState = &mut grains[id as usize - 1];
-                    grain.force += force;
-                    grain.torque += arm.cross(&force);
-                }
-                Owner::Body(at) => bodies[at as usize].force += force,
-            };
-            push(touch.body, force);
-            if let Other::Body(other) = touch.other {
-                push(other, -force);
-            }
         }
         let points = if with_points {
             self.state.bodies.iter().flat_map(|body| body.part.points.clone().map(|at| self.point(body, at))).collect()
@@ -96,13 +83,32 @@ impl<S: Space> Simulation<S> {
                 time: self.step as f64 * self.scheme.time_step,
                 bounds: record::bounds(&self.scene, &grains),
                 periodic: self.scene.domain.map_or([false; 3], |domain| domain.periodic),
-                contacts: self.contacts(),
+                contacts: Some(self.contacts()),
                 walls: self.wall_states(),
                 grains,
                 bodies,
                 points,
             },
         }
+    }
+
+    /// Sums of the forces (N) and torques (N m) of contacts on each body.
+    fn forces(&self, wholes: &[Whole]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+        let mut sums = vec![(Vector3::zeros(), Vector3::zeros()); wholes.len()];
+        for touch in &self.contacts.touches {
+            let mut push = |body: u32, force: Vector3<f64>| {
+                let arm = S::embed(touch.point) - wholes[body as usize].position;
+                let (forces, torques) = &mut sums[body as usize];
+                *forces += force;
+                *torques += arm.cross(&force);
+            };
+            let force = S::embed(touch.push + touch.shear);
+            push(touch.body, force);
+            if let Other::Body(other) = touch.other {
+                push(other, -force);
+            }
+        }
+        sums
     }
 
     /// The energy budget, with the elastic energy of the material (J), where it is asked for.
@@ -238,7 +244,7 @@ impl<S: Space> Simulation<S> {
             .map(|(wall, plane)| {
                 let shape = WallShape::Plane { point: S::embed(plane.point), normal: S::embed(plane.normal) };
                 let (corners, infinite) = shape.corners();
-                WallState { name: wall.name.clone(), corners, infinite, force: S::embed(plane.force) }
+                WallState { name: wall.name.clone(), corners, infinite, force: Some(S::embed(plane.force)) }
             })
             .collect()
     }

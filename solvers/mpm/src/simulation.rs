@@ -21,7 +21,7 @@ use crate::scatter::scatter;
 use crate::scheme::{Scheme, Surroundings};
 use crate::state::State;
 use crate::{stress, transfer};
-use grainbench_scene::record::Cost;
+use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Broken;
 use grainbench_scene::space::Space;
@@ -43,7 +43,7 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) settling: bool,
     /// Step of the last look.
     pub(crate) looked: u64,
-    pub(crate) cost: Cost,
+    pub(crate) cost: Counts,
 }
 
 impl<S: Space> Simulation<S> {
@@ -70,7 +70,7 @@ impl<S: Space> Simulation<S> {
             step: 0,
             settling: false,
             looked: 0,
-            cost: Cost::default(),
+            cost: Counts::default(),
         }
     }
 

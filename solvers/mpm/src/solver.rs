@@ -9,7 +9,7 @@ use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::memory;
-use grainbench_scene::record::{Cost, Look, Provenance, Record};
+use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps};
@@ -241,7 +241,7 @@ impl<S: Space> Stepper for Running<S> {
         self.simulation.look(snapshot)
     }
 
-    fn cost(&self) -> Cost {
+    fn counts(&self) -> Counts {
         self.simulation.cost
     }
 

@@ -36,7 +36,7 @@ fn bits(record: &Record) -> String {
 }
 
 fn bytes_of(solver: Mpm, scene: &Scene) -> u64 {
-    ran(solver, scene).cost.bytes
+    ran(solver, scene).cost.bytes.unwrap()
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn what_is_off_takes_no_memory() {
     let elastic = discs(0.0, ELASTIC);
     let points = |cost: Cost| cost.particle_steps / cost.steps;
     let cost = ran(Mpm::BEST, &elastic).cost;
-    let plain = cost.bytes;
+    let plain = cost.bytes.unwrap();
     // Two circles of 6 tracers a cell, 4 cells a radius: 2π·24 of each, rounded up to a multiple of four.
     assert_eq!(bytes_of(Mpm::BEST, &discs(0.5, ELASTIC)) - plain, 2 * 152 * 4 * 32);
     assert_eq!(bytes_of(Mpm::BEST, &discs(0.0, YIELDING)) - plain, points(cost) * 8);

@@ -29,10 +29,10 @@ fn cost_grows_with_the_number_of_grains_and_no_faster() {
     let exponent = |of: fn(&Cost) -> u64| (of(&many) as f64 / of(&few) as f64).log10() / 2.0;
     // Ten discs have 13 contacts, a thousand have 1935: what is counted by contact grows as 148.8 = 100^1.086.
     let contacts = (1935.0_f64 / 13.0).log10() / 2.0;
-    let nodes = exponent(|cost| cost.node_updates);
-    let memory = exponent(|cost| cost.bytes);
-    let springs = exponent(|cost| cost.contact_evaluations) / contacts;
-    let pairs = exponent(|cost| cost.pair_tests) / contacts;
+    let nodes = exponent(|cost| cost.node_updates.unwrap());
+    let memory = exponent(|cost| cost.bytes.unwrap());
+    let springs = exponent(|cost| cost.contact_evaluations.unwrap()) / contacts;
+    let pairs = exponent(|cost| cost.pair_tests.unwrap()) / contacts;
     for (what, exponent) in [("nodes", nodes), ("memory", memory), ("springs", springs), ("pairs", pairs)] {
         assert!((0.95..=1.05).contains(&exponent), "{what}: {exponent}");
     }
@@ -47,12 +47,12 @@ fn a_body_by_itself_pays_nothing_for_contact() {
     );
     let costs = ["mpm:penalty", "mpm:gap", "mpm:2000", "mpm:2001", "mpm:no-slip"].map(|solver| {
         let cost = run(solver, &text, 8.0, 2).cost;
-        assert_eq!((cost.contact_evaluations, cost.pair_tests), (0, 0), "{solver}");
+        assert_eq!((cost.contact_evaluations, cost.pair_tests), (Some(0), Some(0)), "{solver}");
         (cost.bytes, cost.node_updates)
     });
     assert!(costs.iter().all(|cost| *cost == costs[0]), "{costs:?}");
     // With a wall that it never meets it has a surface, and that is what it costs.
     let wall = "[walls.w]\nmaterial = 'm'\nplane = { point = [0.0, -9.0], normal = [0.0, 1.0] }\n";
     let with_wall = run("mpm:penalty", &(text + wall), 8.0, 2).cost;
-    assert!(with_wall.bytes > costs[0].0 && with_wall.contact_evaluations == 0, "{with_wall:?}");
+    assert!(with_wall.bytes > costs[0].0 && with_wall.contact_evaluations == Some(0), "{with_wall:?}");
 }

@@ -50,7 +50,7 @@ fn points_turn_with_their_body() {
         assert!((time - wanted).abs() < record.provenance.time_step, "{times:?}");
     }
     for snapshot in &record.snapshots {
-        let angle = snapshot.grains[0].angle;
+        let angle = snapshot.grains[0].angle.unwrap();
         assert!((angle - 8.0 * snapshot.time).abs() < 0.05 * (1.0 + snapshot.time), "{angle} at {} s", snapshot.time);
         assert!(snapshot.points.iter().all(|point| (point.rotation - angle).abs() < 0.02), "{angle}");
     }

@@ -3,7 +3,7 @@
 use crate::engine::{Engine, Moving, Placement, Stepping, Touch};
 use crate::pairs::{Pairs, Side};
 use grainbench_scene::overlap::distance;
-use grainbench_scene::record::{ContactState, Cost, GrainState, Look, Partner, Snapshot, WallState};
+use grainbench_scene::record::{ContactState, Counts, GrainState, Look, Partner, Snapshot, WallState};
 use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
 use grainbench_scene::solver::{Broken, Cause, Subject};
 use nalgebra::Vector3;
@@ -29,7 +29,7 @@ pub(crate) struct Simulation<'a> {
     angles: Vec<f64>,
     step: u64,
     /// What it has cost so far, wall-clock time aside.
-    pub(crate) cost: Cost,
+    pub(crate) cost: Counts,
 }
 
 impl<'a> Simulation<'a> {
@@ -48,7 +48,7 @@ impl<'a> Simulation<'a> {
             angles: vec![0.0; state.len()],
             state,
             step: 0,
-            cost: Cost::default(),
+            cost: Counts::default(),
         }
     }
 
@@ -134,18 +134,26 @@ impl<'a> Simulation<'a> {
             Partner::Wall(at) => (contact.grain, 2, u32::from(at)),
         };
         contacts.sort_by_key(order);
-        let mut grains: Vec<GrainState> = (0..self.state.len()).map(|at| self.grain(at)).collect();
-        let mut walls: Vec<WallState> =
-            self.scene.walls.iter().zip(&displaced).map(|(wall, shape)| wall_state(wall, shape)).collect();
+        let mut on_grains = vec![(Vector3::zeros(), Vector3::zeros()); self.state.len()];
+        let mut on_walls = vec![Vector3::zeros(); displaced.len()];
         for contact in &contacts {
             let force = contact.shear_force - contact.normal * contact.normal_force;
-            push(&mut grains[contact.grain as usize - 1], force, contact.point);
+            let mut push = |id: u32, force: Vector3<f64>| {
+                let at = id as usize - 1;
+                let (forces, torques): &mut (Vector3<f64>, Vector3<f64>) = &mut on_grains[at];
+                *forces += force;
+                *torques += (contact.point - self.state[at].position).cross(&force);
+            };
+            push(contact.grain, force);
             match contact.partner {
-                Partner::Grain(id) => push(&mut grains[id as usize - 1], -force, contact.point),
-                Partner::Wall(at) => walls[usize::from(at)].force -= force,
+                Partner::Grain(id) => push(id, -force),
+                Partner::Wall(at) => on_walls[usize::from(at)] -= force,
                 Partner::Body(_) => {}
             }
         }
+        let grains: Vec<GrainState> = (0..).zip(on_grains).map(|(at, acting)| self.grain(at, acting)).collect();
+        let shapes = self.scene.walls.iter().zip(&displaced);
+        let walls = shapes.zip(on_walls).map(|((wall, shape), force)| wall_state(wall, shape, force)).collect();
         let bounds = bounds(self.scene, &grains);
         Look::of_rigid(
             Snapshot {
@@ -154,7 +162,7 @@ impl<'a> Simulation<'a> {
                 bounds,
                 periodic: [false; 3],
                 grains,
-                contacts,
+                contacts: Some(contacts),
                 walls,
                 bodies: Vec::new(),
                 points: Vec::new(),
@@ -177,13 +185,16 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    fn grain(&self, at: usize) -> GrainState {
+    /// A grain with the sums of the forces (N) and torques (N m) that act on it.
+    fn grain(&self, at: usize, (force, torque): (Vector3<f64>, Vector3<f64>)) -> GrainState {
         let (start, now) = (&self.scene.grains[at], &self.state[at]);
         GrainState {
             position: now.position,
             velocity: now.velocity,
             spin: now.spin,
-            angle: self.angles[at],
+            force: Some(force),
+            torque: Some(torque),
+            angle: (self.scene.dimension == Dimension::Two).then_some(self.angles[at]),
             ..GrainState::start(at as u32 + 1, start)
         }
     }
@@ -225,18 +236,13 @@ fn unwrapped(wrapped: f64, expected: f64) -> f64 {
     wrapped + ((expected - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 
-fn push(grain: &mut GrainState, force: Vector3<f64>, point: Vector3<f64>) {
-    grain.force += force;
-    grain.torque += (point - grain.position).cross(&force);
-}
-
-fn wall_state(wall: &Wall, shape: &WallShape) -> WallState {
+fn wall_state(wall: &Wall, shape: &WallShape, force: Vector3<f64>) -> WallState {
     let (corners, infinite) = match *shape {
         WallShape::Plane { point, normal } => (vec![point, normal], true),
         WallShape::Segment { ends } => (ends.to_vec(), false),
         WallShape::Rectangle { corner, edges: [u, v] } => (vec![corner, corner + u, corner + u + v, corner + v], false),
     };
-    WallState { name: wall.name.clone(), corners, infinite, force: Vector3::zeros() }
+    WallState { name: wall.name.clone(), corners, infinite, force: Some(force) }
 }
 
 fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {

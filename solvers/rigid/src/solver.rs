@@ -6,7 +6,7 @@ use crate::settings::Settings;
 use crate::simulation::Simulation;
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
-use grainbench_scene::record::{Cost, Look, Provenance, Record};
+use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps};
 use grainbench_scene::terms::{Less, Terms};
@@ -180,7 +180,7 @@ impl Stepper for Running<'_> {
         self.simulation.look()
     }
 
-    fn cost(&self) -> Cost {
+    fn counts(&self) -> Counts {
         self.simulation.cost
     }
 }

@@ -188,15 +188,15 @@ fn rolls_and_slides() {
 fn contact_forces_are_those_of_the_slope() {
     let record = run(&slope(30.0, 0.5), 16);
     let snapshot = record.snapshots.last().unwrap();
-    let contact = snapshot.contacts[0];
+    let contact = snapshot.told_contacts()[0];
     let weight = snapshot.grains[0].mass * 9.8;
     assert_eq!((contact.grain, contact.partner, contact.slipping), (1, Partner::Wall(0), false));
     assert!((contact.normal_force / (weight * 30_f64.to_radians().cos()) - 1.0).abs() < 1e-9);
     // Up the slope, F = m g_t/3.
     assert!((contact.shear_force.x / (-weight * 30_f64.to_radians().sin() / 3.0) - 1.0).abs() < 1e-3);
     assert!((contact.normal - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-12);
-    assert!((snapshot.walls[0].force + snapshot.grains[0].force).norm() < 1e-9);
-    assert!(run(&slope(60.0, 0.3), 16).snapshots.last().unwrap().contacts[0].slipping);
+    assert!((snapshot.walls[0].force.unwrap() + snapshot.grains[0].force.unwrap()).norm() < 1e-9);
+    assert!(run(&slope(60.0, 0.3), 16).snapshots.last().unwrap().told_contacts()[0].slipping);
 }
 
 /// The overlap at rest is that of a spring of the wall's frequency, whatever the step, and shifts the arm of friction.
@@ -307,7 +307,7 @@ fn a_sphere_has_the_forces_of_the_slope_too() {
     scene.gravity = Vector3::new(3.0, 2.0, -9.0);
     let record = run(&scene, 16);
     let snapshot = record.snapshots.last().unwrap();
-    let (mass, contact) = (snapshot.grains[0].mass, snapshot.contacts[0]);
+    let (mass, contact) = (snapshot.grains[0].mass, snapshot.told_contacts()[0]);
     let expected = Vector3::new(3.0, 2.0, 0.0) * (-mass * 2.0 / 7.0);
     assert!((contact.shear_force - expected).norm() < 1e-3 * expected.norm(), "{:?} {expected:?}", contact.shear_force);
     assert!((contact.normal_force / (9.0 * mass) - 1.0).abs() < 1e-9);

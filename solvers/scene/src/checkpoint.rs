@@ -13,7 +13,7 @@ use thiserror::Error;
 /// What a checkpoint begins with, before the number of its format.
 const MAGIC: &[u8] = b"grainbench checkpoint ";
 /// The format that this program writes: to be raised whenever anything that is stored changes its meaning or its place.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Length of the longest first line that a format of ours could have.
 const LONGEST_LINE: usize = MAGIC.len() + 11;
 
@@ -23,6 +23,15 @@ pub enum CheckpointError {
     /// Some other file.
     #[error("expected a checkpoint, which begins with `grainbench checkpoint`; found another kind of file")]
     Foreign,
+    /// Written by an earlier version.
+    #[error(
+        "expected a checkpoint of format {FORMAT}, found format {found}: an older version of the program wrote it, and it \
+         continues only there"
+    )]
+    Older {
+        /// Its format.
+        found: u32,
+    },
     /// Written by a later version.
     #[error(
         "expected a checkpoint of format {FORMAT} or earlier, found format {found}: a newer version of the program wrote it"
@@ -115,6 +124,8 @@ pub struct Checkpoint {
     identity: RunIdentity,
     step: u64,
     state: Vec<u8>,
+    /// Of whoever stores it: what it needs to go on with the output of the run.
+    output: Vec<u8>,
 }
 
 impl Checkpoint {
@@ -123,7 +134,19 @@ impl Checkpoint {
     /// # Errors
     /// When the state has a part that cannot be written down.
     pub fn keep(identity: &RunIdentity, step: u64, state: &impl Serialize) -> Result<Self, CheckpointError> {
-        Ok(Self { identity: identity.clone(), step, state: written(state)? })
+        Ok(Self { identity: identity.clone(), step, state: written(state)?, output: Vec::new() })
+    }
+
+    /// The same, with what whoever stores it needs to go on with the output of the run.
+    #[must_use]
+    pub fn with_output(self, output: Vec<u8>) -> Self {
+        Self { output, ..self }
+    }
+
+    /// What was kept of the output of the run; nothing where nobody kept anything.
+    #[must_use]
+    pub fn output(&self) -> &[u8] {
+        &self.output
     }
 
     /// Steps that were taken.
@@ -178,6 +201,7 @@ impl Checkpoint {
         match format {
             Some(FORMAT) => {}
             Some(found) if found > FORMAT => return Err(CheckpointError::Newer { found }),
+            Some(found @ 1..) => return Err(CheckpointError::Older { found }),
             _ => return Err(CheckpointError::Foreign),
         }
         let whole = |expected: u64| CheckpointError::Length { expected, found: after_line.len() as u64 };
@@ -246,8 +270,10 @@ mod tests {
     fn other_files_and_newer_formats_are_told_apart() {
         assert_eq!(Checkpoint::from_bytes(b"ITEM: TIMESTEP\n0\n"), Err(CheckpointError::Foreign));
         assert_eq!(Checkpoint::from_bytes(&[0; 100]), Err(CheckpointError::Foreign));
-        let newer = [b"grainbench checkpoint 2\n".as_slice(), &bytes()[24..]].concat();
-        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found: 2 }));
+        let older = [b"grainbench checkpoint 1\n".as_slice(), &bytes()[24..]].concat();
+        assert_eq!(Checkpoint::from_bytes(&older), Err(CheckpointError::Older { found: 1 }));
+        let newer = [b"grainbench checkpoint 3\n".as_slice(), &bytes()[24..]].concat();
+        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found: 3 }));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! checkpoints are left. And the one clock: it runs from the first step of any kind, settling included, to the last.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::record::{Cost, Look, Series, Snapshot};
+use crate::record::{Cost, Counts, Look, Remains, Series, Snapshot};
 use crate::recorder::Recorder;
 use crate::scene::Scene;
 use crate::solver::{RunError, Watch};
@@ -31,7 +31,7 @@ pub trait Stepper {
     fn look(&mut self, snapshot: bool) -> Look;
 
     /// Counts so far; no times.
-    fn cost(&self) -> Cost;
+    fn counts(&self) -> Counts;
 
     /// The state with the record so far; none of a solver that leaves no checkpoints.
     ///
@@ -70,54 +70,92 @@ impl Course<'_> {
     /// Drives a state from where it is to the end.
     ///
     /// # Errors
-    /// When the simulation breaks, or a checkpoint cannot be left.
-    pub fn drive(self, stepper: &mut dyn Stepper, watch: &mut dyn Watch) -> Result<Driven, RunError> {
-        let Self { scene, time_step, steps, resumed, between_progress } = self;
-        watch.begin(time_step, steps);
+    /// When the simulation breaks, or a snapshot or a checkpoint cannot be left. Who watches hears of what there is of a
+    /// simulation that broke.
+    pub fn drive(mut self, stepper: &mut dyn Stepper, watch: &mut dyn Watch) -> Result<Driven, RunError> {
+        watch.begin(self.time_step, self.steps);
         let clock = Instant::now();
+        let resumed = self.resumed.take();
         let begins = resumed.is_none();
-        if begins {
-            stepper.begin()?;
-        }
-        let begun = Recorder::new(scene, time_step, steps);
-        let first = stepper.step();
+        let begun = Recorder::new(self.scene, self.time_step, self.steps);
         let mut recorder = match resumed {
             None => begun,
-            Some(resumed) if resumed.is_of(&begun) && first <= steps => resumed,
+            Some(resumed) if resumed.is_of(&begun) && stepper.step() <= self.steps => resumed,
             Some(_) => {
                 let reason = "its steps or samples are not those of the run that it says it is of";
                 return Err(CheckpointError::Damaged(reason.to_owned()).into());
             }
         };
+        if let Err(error) = self.steps(begins, &mut recorder, stepper, watch) {
+            let end = match error {
+                RunError::Interrupted { .. } => Some(stepper.look(true).snapshot),
+                // The contacts of the last look are of an earlier step.
+                RunError::Broken(_) | RunError::NotFinite { .. } => {
+                    Some(Snapshot { contacts: None, ..stepper.look(true).snapshot })
+                }
+                _ => None,
+            };
+            if let Some(end) = end {
+                let (series, snapshots) = recorder.finish();
+                watch.broke(Remains { series, snapshots, end });
+            }
+            return Err(error);
+        }
+        let cost = Cost::of(stepper.counts(), clock.elapsed().as_secs_f64());
+        let (series, snapshots) = recorder.finish();
+        Ok(Driven { series, snapshots, cost })
+    }
+
+    fn steps(
+        &self,
+        begins: bool,
+        recorder: &mut Recorder,
+        stepper: &mut dyn Stepper,
+        watch: &mut dyn Watch,
+    ) -> Result<(), RunError> {
+        if begins {
+            stepper.begin()?;
+        }
+        let first = stepper.step();
         // No checkpoint is wanted of where the run begins.
         let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
         loop {
             let now = stepper.step();
             if (begins || now > first) && recorder.is_due(now) {
-                let look = stepper.look(recorder.is_snapshot(now));
-                recorder.take(scene, look);
-                if let Some((column, value)) = recorder.not_finite() {
-                    let (column, time) = (column.to_owned(), now as f64 * time_step);
-                    return Err(RunError::NotFinite { time, step: now, column, value });
-                }
+                self.take_down(stepper.look(recorder.is_snapshot(now)), recorder, watch)?;
             }
-            watch.progress(now, steps);
-            if now == steps {
-                break;
+            watch.progress(now, self.steps);
+            if now == self.steps {
+                return Ok(());
+            }
+            if watch.is_over() {
+                return Err(RunError::Interrupted { time: now as f64 * self.time_step, step: now });
             }
             if now > first
                 && now.is_multiple_of(between_checkpoints)
-                && let Some(checkpoint) = stepper.keep(&recorder)?
+                && let Some(checkpoint) = stepper.keep(recorder)?
             {
                 watch.checkpoint(checkpoint)?;
             }
             let checkpoint = (now / between_checkpoints + 1).saturating_mul(between_checkpoints);
-            let stop = recorder.next(now).min(checkpoint).min(now + between_progress);
+            let stop = recorder.next(now).min(checkpoint).min(now + self.between_progress);
             stepper.advance(stop - now)?;
         }
-        let mut cost = stepper.cost();
-        cost.wall_seconds = clock.elapsed().as_secs_f64();
-        let (series, snapshots) = recorder.finish();
-        Ok(Driven { series, snapshots, cost })
+    }
+
+    /// Takes down what is due. A sample that is no number ends the run before its snapshot is taken for a good one.
+    fn take_down(&self, look: Look, recorder: &mut Recorder, watch: &mut dyn Watch) -> Result<(), RunError> {
+        let step = look.snapshot.step;
+        let snapshot = recorder.take(self.scene, look);
+        if let Some((column, value)) = recorder.not_finite() {
+            let (column, time) = (column.to_owned(), step as f64 * self.time_step);
+            return Err(RunError::NotFinite { time, step, column, value });
+        }
+        if let Some(snapshot) = snapshot
+            && let Some(kept) = watch.snapshot(snapshot)?
+        {
+            recorder.keep(kept);
+        }
+        Ok(())
     }
 }

@@ -79,7 +79,7 @@ fn mean_stress(snapshot: &Snapshot, dimension: Dimension) -> Vec<f64> {
     let volume: f64 = (high - low).iter().take(dimension.count()).product();
     let mut stress = Matrix3::zeros();
     let mut contacts = 0_u32;
-    for contact in &snapshot.contacts {
+    for contact in snapshot.contacts.iter().flatten() {
         let Partner::Grain(other) = contact.partner else { continue };
         let radius = |id: u32| snapshot.grains[id as usize - 1].radius;
         let line = contact.normal * (radius(contact.grain) + radius(other) - contact.overlap);
@@ -169,7 +169,7 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
             all.extend(vector(&grain.velocity));
             all.extend(spin(&grain.spin));
             if flat {
-                all.push(grain.angle);
+                all.push(grain.angle.unwrap_or(f64::NAN));
             }
             all
         }
@@ -193,7 +193,7 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
         }
         ProbeTarget::Pair(a, b) => contact_values(look, a, Partner::Grain(b as u32 + 1), flat),
         ProbeTarget::GrainWall(grain, wall) => contact_values(look, grain, Partner::Wall(wall as u16), flat),
-        ProbeTarget::Wall(wall) => vector(&snapshot.walls[wall].force),
+        ProbeTarget::Wall(wall) => vector(&snapshot.walls[wall].force.unwrap_or(UNKNOWN)),
         ProbeTarget::Driven(group) => vector(look.driven.get(group).unwrap_or(&UNKNOWN)),
         ProbeTarget::Budget => {
             let Some(budget) = &look.budget else { return vec![f64::NAN; ENERGIES.len() + 2 * count] };
@@ -229,19 +229,24 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
             let mut all = vec![kinetic, rotational, look.elastic_energy, gravitational, total];
             all.extend(vector(&momentum));
             all.extend(spin(&angular));
-            let slipping = snapshot.contacts.iter().filter(|contact| contact.slipping).count();
+            let count = |of: &dyn Fn(&ContactState) -> bool| match &snapshot.contacts {
+                Some(contacts) => contacts.iter().filter(|contact| of(contact)).count() as f64,
+                None => f64::NAN,
+            };
             let fastest = snapshot.grains.iter().map(|grain| grain.spin.norm()).fold(0.0, f64::max);
-            all.extend([snapshot.contacts.len() as f64, slipping as f64, fastest]);
+            all.extend([count(&|_| true), count(&|contact| contact.slipping), fastest]);
             all
         }
     }
 }
 
-/// Overlap, normal force, shear force and slipping of one contact; zeros while it does not touch. In the plane the
+/// Overlap, normal force, shear force and slipping of one contact; zeros while it does not touch, no
+/// numbers where contacts are not known. In the plane the
 /// shear force on the first grain is positive along `t = (e₂, −e₁)`, clockwise from the normal `e` to the partner.
 fn contact_values(look: &Look, grain: usize, partner: Partner, flat: bool) -> Vec<f64> {
     let id = grain as u32 + 1;
-    let found = look.snapshot.contacts.iter().find(|contact| {
+    let Some(contacts) = &look.snapshot.contacts else { return vec![f64::NAN; 4] };
+    let found = contacts.iter().find(|contact| {
         let straight = contact.grain == id && contact.partner == partner;
         let exchanged = partner == Partner::Grain(contact.grain) && contact.partner == Partner::Grain(id);
         straight || exchanged

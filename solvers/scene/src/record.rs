@@ -53,19 +53,19 @@ pub struct GrainState {
     pub velocity: Vector3<f64>,
     /// Angular velocity (rad/s).
     pub spin: Vector3<f64>,
-    /// Rotation since the start (rad), about z; zero in three dimensions.
-    pub angle: f64,
-    /// Sum of all forces, gravity excluded (N; N/m for discs).
-    pub force: Vector3<f64>,
-    /// Sum of all torques (N m; N for discs).
-    pub torque: Vector3<f64>,
+    /// Rotation since the start (rad), about z; absent in three dimensions, and where a program did not tell it.
+    pub angle: Option<f64>,
+    /// Sum of all forces, gravity excluded (N; N/m for discs); absent where a program did not tell it.
+    pub force: Option<Vector3<f64>>,
+    /// Sum of all torques (N m; N for discs); absent where a program did not tell it.
+    pub torque: Option<Vector3<f64>>,
     /// Equivalent plastic strain, its mean over the mass; zero for a grain that does not yield.
     #[serde(default)]
     pub plastic_strain: f64,
 }
 
 impl GrainState {
-    /// A grain as it starts, before any force was evaluated. Ids count from 1.
+    /// A grain of which nobody has told more than where it started: neither angle nor forces. Ids count from 1.
     #[must_use]
     pub fn start(id: u32, grain: &Grain) -> Self {
         Self {
@@ -76,9 +76,9 @@ impl GrainState {
             position: grain.position,
             velocity: grain.velocity,
             spin: grain.spin,
-            angle: 0.0,
-            force: Vector3::zeros(),
-            torque: Vector3::zeros(),
+            angle: None,
+            force: None,
+            torque: None,
             plastic_strain: 0.0,
         }
     }
@@ -178,8 +178,8 @@ pub struct WallState {
     pub corners: Vec<Vector3<f64>>,
     /// True when `corners` is a point and the unit normal of an infinite plane.
     pub infinite: bool,
-    /// Force of the grains on the wall (N; N/m for discs).
-    pub force: Vector3<f64>,
+    /// Force of the grains on the wall (N; N/m for discs); absent where a program did not tell it.
+    pub force: Option<Vector3<f64>>,
 }
 
 /// Everything at one time.
@@ -195,8 +195,8 @@ pub struct Snapshot {
     pub periodic: [bool; 3],
     /// Grains in order of id.
     pub grains: Vec<GrainState>,
-    /// Contacts, in order of grain id.
-    pub contacts: Vec<ContactState>,
+    /// All contacts, in order of grain id; absent where a program did not tell them, which is not the same as none.
+    pub contacts: Option<Vec<ContactState>>,
     /// Walls in the order of the scene.
     pub walls: Vec<WallState>,
     /// Bodies that are no grains, in the order of the scene.
@@ -208,6 +208,13 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
+    /// The contacts that are told: none where nobody has told any, so that pictures show nothing where nothing is known.
+    /// What is judged asks for `contacts` itself.
+    #[must_use]
+    pub fn told_contacts(&self) -> &[ContactState] {
+        self.contacts.as_deref().unwrap_or_default()
+    }
+
     /// What a solver shows that knows of grains alone: no contacts, and walls as far as they have moved, without
     /// forces.
     #[must_use]
@@ -216,7 +223,7 @@ impl Snapshot {
         let walls = scene.walls.iter().map(|wall| {
             let displacement = wall.motion.displacement(time, time_step);
             let (corners, infinite) = wall.shape.moved(&wall.motion, &displacement).corners();
-            WallState { name: wall.name.clone(), corners, infinite, force: Vector3::zeros() }
+            WallState { name: wall.name.clone(), corners, infinite, force: None }
         });
         Self {
             step,
@@ -224,7 +231,7 @@ impl Snapshot {
             bounds: bounds(scene, &grains),
             periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
             walls: walls.collect(),
-            contacts: Vec::new(),
+            contacts: None,
             grains,
             bodies: Vec::new(),
             points: Vec::new(),
@@ -291,9 +298,9 @@ impl Look {
     }
 }
 
-/// What a run cost: times depend on the machine, counts do not.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Cost {
+/// What a solver of ours has done so far, whatever the machine: equal from run to run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
     /// Steps taken.
     pub steps: u64,
     /// Steps times grains, or times material points.
@@ -305,13 +312,59 @@ pub struct Cost {
     /// Neighbour lists built.
     pub neighbour_builds: u64,
     /// Nodes of a grid that took a step, in all steps.
-    #[serde(default)]
     pub node_updates: u64,
     /// Memory that the state of the simulation takes up at its largest (B), where it is counted.
-    #[serde(default)]
     pub bytes: u64,
-    /// Wall-clock time of the stepping loop (s).
+}
+
+/// What a run cost: times depend on the machine, counts do not. What a program did not count is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps times grains, or times material points.
+    pub particle_steps: u64,
+    /// Contact laws evaluated.
+    pub contact_evaluations: Option<u64>,
+    /// Listed pairs tested for touching.
+    pub pair_tests: Option<u64>,
+    /// Neighbour lists built.
+    pub neighbour_builds: Option<u64>,
+    /// Nodes of a grid that took a step, in all steps.
+    pub node_updates: Option<u64>,
+    /// Memory that the state of the simulation takes up at its largest (B).
+    pub bytes: Option<u64>,
+    /// Wall-clock time of the stepping loop (s); not a number where nobody took it.
     pub wall_seconds: f64,
+}
+
+impl Cost {
+    /// Of a solver of ours.
+    #[must_use]
+    pub const fn of(counts: Counts, wall_seconds: f64) -> Self {
+        Self {
+            steps: counts.steps,
+            particle_steps: counts.particle_steps,
+            contact_evaluations: Some(counts.contact_evaluations),
+            pair_tests: Some(counts.pair_tests),
+            neighbour_builds: Some(counts.neighbour_builds),
+            node_updates: Some(counts.node_updates),
+            bytes: Some(counts.bytes),
+            wall_seconds,
+        }
+    }
+
+    /// Particle-steps and contact evaluations together.
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.particle_steps + self.contact_evaluations.unwrap_or_default()
+    }
+
+    /// Of a program, which counts nothing for us: `grains` grains that took `steps` steps.
+    #[must_use]
+    pub fn of_program(steps: u64, grains: usize, wall_seconds: f64) -> Self {
+        Self { steps, particle_steps: steps * grains as u64, wall_seconds, ..Self::default() }
+    }
 }
 
 /// Where a record comes from.
@@ -331,6 +384,17 @@ pub struct Provenance {
     pub effects: Vec<String>,
     /// Solver options in words.
     pub options: Vec<String>,
+}
+
+/// What there is of a run that broke or was ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remains {
+    /// Time series up to the last sample before.
+    pub series: Series,
+    /// Snapshots before, without those that the watcher took.
+    pub snapshots: Vec<Snapshot>,
+    /// The state that it broke in or was ended at. Of one that broke the contacts are not told.
+    pub end: Snapshot,
 }
 
 /// What a run leaves behind.

@@ -90,15 +90,18 @@ impl Recorder {
         sample.min(snapshot).min(self.steps)
     }
 
-    /// Takes down what is due at the step of `look`.
-    pub fn take(&mut self, scene: &Scene, look: Look) {
+    /// Takes down the sample that is due at the step of `look`; hands on the snapshot where one is due.
+    pub fn take(&mut self, scene: &Scene, look: Look) -> Option<Snapshot> {
         let step = look.snapshot.step;
         if self.is_sample(step) {
             probe::sample(&mut self.series, scene, &look);
         }
-        if self.is_snapshot(step) {
-            self.snapshots.push(look.snapshot);
-        }
+        self.is_snapshot(step).then_some(look.snapshot)
+    }
+
+    /// Keeps a snapshot in the record.
+    pub fn keep(&mut self, snapshot: Snapshot) {
+        self.snapshots.push(snapshot);
     }
 
     /// The column whose last sample is no finite number, with that.

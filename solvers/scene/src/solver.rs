@@ -1,7 +1,7 @@
 //! What a solver is: something that takes a scene and a resolution and leaves a record.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::record::Record;
+use crate::record::{Record, Remains, Snapshot};
 use crate::scene::{Duration, Scene};
 use nalgebra::Vector3;
 use std::fmt;
@@ -277,8 +277,8 @@ impl fmt::Display for Subject {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "the simulation broke at t = {time:.6e} s (step {step}): {subject} at ({:.4e}, {:.4e}, {:.4e}) m: {cause}; the time step \
-     was {time_step:.4e} s, {:.3} of the critical {critical:.4e} s; {advice}",
-    position.x, position.y, position.z, time_step / critical
+     was {time_step:.4e} s{}; {advice}",
+    position.x, position.y, position.z, of_critical(*time_step, *critical)
 )]
 pub struct Broken {
     /// Time (s).
@@ -297,6 +297,15 @@ pub struct Broken {
     pub critical: f64,
     /// What would have been stable.
     pub advice: String,
+}
+
+/// A time step (s) beside the critical one (s), where there is one.
+fn of_critical(time_step: f64, critical: f64) -> String {
+    if critical.is_finite() {
+        format!(", {:.3} of the critical {critical:.4e} s", time_step / critical)
+    } else {
+        String::new()
+    }
 }
 
 /// Why a solver left no record.
@@ -359,10 +368,26 @@ pub enum RunError {
     /// The simulation broke.
     #[error(transparent)]
     Broken(#[from] Box<Broken>),
+    /// Who watches wanted it to end.
+    #[error("the simulation was interrupted at t = {time:.6e} s (step {step})")]
+    Interrupted {
+        /// Time (s).
+        time: f64,
+        /// Step.
+        step: u64,
+    },
+    /// A snapshot could not be stored.
+    #[error(transparent)]
+    NotStored(#[from] NotStored),
     /// It cannot be continued from this checkpoint, or its own checkpoint cannot be left.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
 }
+
+/// What a watcher could not store, and why.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct NotStored(pub String);
 
 /// How another program failed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -396,6 +421,20 @@ pub trait Watch {
     fn checkpoint_interval(&self) -> Option<u64> {
         None
     }
+    /// Called with every snapshot, in order of time. What is handed back stays in the record of the run and in its
+    /// checkpoints; what the watcher takes is in neither, and memory then holds one snapshot at a time.
+    ///
+    /// # Errors
+    /// When it cannot be stored: the run ends with this error.
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
+        Ok(Some(snapshot))
+    }
+    /// Whether the run is to end early; asked whenever progress is told.
+    fn is_over(&self) -> bool {
+        false
+    }
+    /// Called when the simulation broke or was ended, with what there is of it.
+    fn broke(&mut self, _remains: Remains) {}
     /// Called with every checkpoint.
     ///
     /// # Errors

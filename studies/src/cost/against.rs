@@ -54,7 +54,10 @@ fn counts(old: &Point, new: &Point) -> Option<Change> {
         how.push(format!("was {:?}, is {:?}", old.standing, new.standing).to_lowercase());
     }
     let both = old.counts.named().into_iter().zip(new.counts.named());
-    how.extend(both.filter(|(a, b)| a.1 != b.1).map(|((name, was), (_, is))| format!("{name} {was} → {is}")));
+    let count = |count: Option<u64>| count.map_or("not told".to_owned(), |count| count.to_string());
+    how.extend(
+        both.filter(|(a, b)| a.1 != b.1).map(|((name, was), (_, is))| format!("{name} {} → {}", count(was), count(is))),
+    );
     if old.error != new.error {
         let word = |error: Option<f64>| error.map_or("none".to_owned(), |error| format!("{error:e}"));
         how.push(format!("error {} → {}", word(old.error), word(new.error)));

@@ -71,7 +71,7 @@ pub fn try_idly(
     }
     ratios.sort_by(f64::total_cmp);
     let [Some(without), Some(with)] = records else { return Ok(None) };
-    let work = |record: &Record| (record.cost.particle_steps + record.cost.contact_evaluations) as f64;
+    let work = |record: &Record| record.cost.work() as f64;
     Ok(Some(Idle {
         same: same(&without, &with),
         counts: work(&with) / work(&without).max(1.0),
@@ -84,7 +84,7 @@ pub fn try_idly(
 fn same(a: &Record, b: &Record) -> bool {
     let (Some(a), Some(b)) = (a.snapshots.last(), b.snapshots.last()) else { return false };
     a.grains.len() == b.grains.len()
-        && a.contacts.len() == b.contacts.len()
+        && a.told_contacts().len() == b.told_contacts().len()
         && a.grains
             .iter()
             .zip(&b.grains)

@@ -151,7 +151,7 @@ impl Ledger {
         if let Some(run) = claims.iter().flat_map(|claim| &claim.runs).find(|run| self.is_judged(run)) {
             let with = self.runner.run(run);
             if let (Ok(with), Ok(without)) = (with, self.run_without(run, piece.effect)) {
-                let work = |record: &Record| (record.cost.particle_steps + record.cost.contact_evaluations) as f64;
+                let work = |record: &Record| record.cost.work() as f64;
                 let time = |record: &Record| record.cost.wall_seconds;
                 entry.counts = Some(work(&with.record) / work(&without.record).max(1.0));
                 entry.time = Some(time(&with.record) / time(&without.record).max(f64::MIN_POSITIVE));

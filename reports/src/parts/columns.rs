@@ -1,0 +1,185 @@
+//! Rows as columns and back. A row names each of its columns once, in one place, for writing and for reading.
+
+use nalgebra::Vector3;
+
+/// Goes through the columns of a row, in one order: gathers their values, or puts them into the row.
+pub(super) trait Columns {
+    /// A whole number.
+    fn whole(&mut self, name: &'static str, value: &mut i64);
+    /// A number; not a number is one too.
+    fn number(&mut self, name: &'static str, value: &mut f64);
+    /// A number that may be absent.
+    fn told(&mut self, name: &'static str, value: &mut Option<f64>);
+    /// Yes or no.
+    fn flag(&mut self, name: &'static str, value: &mut bool);
+    /// A word.
+    fn word(&mut self, name: &'static str, value: &mut String);
+
+    /// The components of a vector.
+    fn vector(&mut self, names: [&'static str; 3], value: &mut Vector3<f64>) {
+        for (name, value) in names.into_iter().zip(value.iter_mut()) {
+            self.number(name, value);
+        }
+    }
+
+    /// The components of a vector that may be absent as a whole.
+    fn told_vector(&mut self, names: [&'static str; 3], value: &mut Option<Vector3<f64>>) {
+        let mut components = value.map_or([None; 3], |vector| [vector.x, vector.y, vector.z].map(Some));
+        for (name, component) in names.into_iter().zip(&mut components) {
+            self.told(name, component);
+        }
+        *value = match components {
+            [Some(x), Some(y), Some(z)] => Some(Vector3::new(x, y, z)),
+            _ => None,
+        };
+    }
+}
+
+/// What a table holds a row of.
+pub(super) trait Row: Sized {
+    /// Name of the file, without its ending.
+    const TABLE: &'static str;
+
+    /// A row to be filled.
+    fn blank() -> Self;
+
+    /// Goes through the columns.
+    fn visit(&mut self, columns: &mut impl Columns);
+}
+
+/// The values of one column.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Values {
+    Whole(Vec<i64>),
+    Number(Vec<f64>),
+    Told(Vec<Option<f64>>),
+    Flag(Vec<bool>),
+    Word(Vec<String>),
+}
+
+/// Columns gathered row by row.
+#[derive(Debug, Default)]
+pub(super) struct Gathered {
+    pub(super) columns: Vec<(&'static str, Values)>,
+    at: usize,
+}
+
+impl Gathered {
+    /// The columns of these rows; of no rows, empty columns.
+    pub(super) fn of<R: Row>(rows: &mut [R]) -> Self {
+        let mut gathered = Self::default();
+        R::blank().visit(&mut gathered);
+        for (_, values) in &mut gathered.columns {
+            match values {
+                Values::Whole(values) => values.clear(),
+                Values::Number(values) => values.clear(),
+                Values::Told(values) => values.clear(),
+                Values::Flag(values) => values.clear(),
+                Values::Word(values) => values.clear(),
+            }
+        }
+        for row in rows {
+            gathered.at = 0;
+            row.visit(&mut gathered);
+        }
+        gathered
+    }
+
+    fn column(&mut self, name: &'static str, empty: Values) -> &mut Values {
+        if self.at == self.columns.len() {
+            self.columns.push((name, empty));
+        }
+        self.at += 1;
+        &mut self.columns[self.at - 1].1
+    }
+}
+
+impl Columns for Gathered {
+    fn whole(&mut self, name: &'static str, value: &mut i64) {
+        if let Values::Whole(values) = self.column(name, Values::Whole(Vec::new())) {
+            values.push(*value);
+        }
+    }
+
+    fn number(&mut self, name: &'static str, value: &mut f64) {
+        if let Values::Number(values) = self.column(name, Values::Number(Vec::new())) {
+            values.push(*value);
+        }
+    }
+
+    fn told(&mut self, name: &'static str, value: &mut Option<f64>) {
+        if let Values::Told(values) = self.column(name, Values::Told(Vec::new())) {
+            values.push(*value);
+        }
+    }
+
+    fn flag(&mut self, name: &'static str, value: &mut bool) {
+        if let Values::Flag(values) = self.column(name, Values::Flag(Vec::new())) {
+            values.push(*value);
+        }
+    }
+
+    fn word(&mut self, name: &'static str, value: &mut String) {
+        if let Values::Word(values) = self.column(name, Values::Word(Vec::new())) {
+            values.push(value.clone());
+        }
+    }
+}
+
+/// Puts columns into rows. A value that is not there leaves what the row has.
+pub(super) struct Scattered<'v> {
+    columns: &'v [Values],
+    row: usize,
+    at: usize,
+}
+
+impl<'v> Scattered<'v> {
+    /// The rows of these columns, `count` of them.
+    pub(super) fn rows<R: Row>(columns: &'v [Values], count: usize) -> Vec<R> {
+        let row = |row: usize| {
+            let mut filled = R::blank();
+            filled.visit(&mut Self { columns, row, at: 0 });
+            filled
+        };
+        (0..count).map(row).collect()
+    }
+
+    fn next(&mut self) -> Option<&'v Values> {
+        self.at += 1;
+        self.columns.get(self.at - 1)
+    }
+}
+
+impl Columns for Scattered<'_> {
+    fn whole(&mut self, _name: &'static str, value: &mut i64) {
+        if let Some(Values::Whole(values)) = self.next() {
+            *value = values.get(self.row).copied().unwrap_or(*value);
+        }
+    }
+
+    fn number(&mut self, _name: &'static str, value: &mut f64) {
+        if let Some(Values::Number(values)) = self.next() {
+            *value = values.get(self.row).copied().unwrap_or(*value);
+        }
+    }
+
+    fn told(&mut self, _name: &'static str, value: &mut Option<f64>) {
+        if let Some(Values::Told(values)) = self.next() {
+            *value = values.get(self.row).copied().flatten();
+        }
+    }
+
+    fn flag(&mut self, _name: &'static str, value: &mut bool) {
+        if let Some(Values::Flag(values)) = self.next() {
+            *value = values.get(self.row).copied().unwrap_or(*value);
+        }
+    }
+
+    fn word(&mut self, _name: &'static str, value: &mut String) {
+        if let Some(Values::Word(values)) = self.next()
+            && let Some(word) = values.get(self.row)
+        {
+            value.clone_from(word);
+        }
+    }
+}

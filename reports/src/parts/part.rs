@@ -1,0 +1,220 @@
+//! A part: some snapshots in a row, each kind of row in a Parquet file of its own. Once it is closed nobody touches it
+//! again.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use grainbench_scene::record::{BodyState, ContactState, GrainState, PointState, Snapshot, WallState};
+use serde::{Deserialize, Serialize};
+use tempfile::TempDir;
+
+use super::columns::Row;
+use super::rows::{Frame, Stepped};
+use super::table::{TableReader, TableWriter, file_name};
+use crate::scratch::temporary_in;
+
+/// Every table of a part, in one order.
+const TABLES: [&str; 6] =
+    [Frame::TABLE, GrainState::TABLE, ContactState::TABLE, WallState::TABLE, BodyState::TABLE, PointState::TABLE];
+
+/// A closed part: what it is called, and what is in it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Seal {
+    /// Its folder.
+    pub(super) name: String,
+    /// Of its files.
+    hash: [u8; 32],
+    /// Rows of grains, contacts and points.
+    pub(super) rows: u64,
+}
+
+impl Seal {
+    /// Whether the part in a folder is the one that was closed.
+    pub(super) fn fits(&self, folder: &Path) -> bool {
+        let hash = |table: &str| -> io::Result<Option<blake3::Hash>> {
+            match fs::File::open(folder.join(file_name(table))) {
+                Ok(file) => {
+                    let mut hasher = blake3::Hasher::new();
+                    hasher.update_reader(file)?;
+                    Ok(Some(hasher.finalize()))
+                }
+                Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+                Err(error) => Err(error),
+            }
+        };
+        let hashes: io::Result<Vec<_>> = TABLES.into_iter().map(hash).collect();
+        hashes.is_ok_and(|hashes| *together(&hashes).as_bytes() == self.hash)
+    }
+}
+
+fn together(hashes: &[Option<blake3::Hash>]) -> blake3::Hash {
+    let mut all = blake3::Hasher::new();
+    for (table, hash) in TABLES.iter().zip(hashes) {
+        if let Some(hash) = hash {
+            all.update(table.as_bytes());
+            all.update(hash.as_bytes());
+        }
+    }
+    all.finalize()
+}
+
+/// The files of a part that are there, with the names they have in it.
+pub(super) fn files(folder: &Path) -> Vec<(String, PathBuf)> {
+    let named = TABLES.map(|table| (file_name(table), folder.join(file_name(table))));
+    named.into_iter().filter(|(_, path)| path.is_file()).collect()
+}
+
+/// A table that has a file as soon as it has a row.
+struct Lazy<R> {
+    writer: Option<TableWriter<Stepped<R>>>,
+}
+
+impl<R: Row> Lazy<R> {
+    fn add(&mut self, directory: &Path, rows: impl Iterator<Item = Stepped<R>>) -> io::Result<()> {
+        let mut rows = rows.peekable();
+        if rows.peek().is_none() {
+            return Ok(());
+        }
+        let writer = match &mut self.writer {
+            Some(writer) => writer,
+            none => none.insert(TableWriter::new(directory)?),
+        };
+        writer.add(rows)
+    }
+
+    fn bytes(&self) -> usize {
+        self.writer.as_ref().map_or(0, TableWriter::bytes)
+    }
+
+    fn close(self) -> io::Result<Option<blake3::Hash>> {
+        self.writer.map(TableWriter::close).transpose()
+    }
+}
+
+/// A part in the making, in a hidden folder.
+pub(super) struct OpenPart {
+    directory: TempDir,
+    frames: Lazy<Frame>,
+    grains: Lazy<GrainState>,
+    contacts: Lazy<ContactState>,
+    walls: Lazy<WallState>,
+    bodies: Lazy<BodyState>,
+    points: Lazy<PointState>,
+    rows: u64,
+}
+
+impl OpenPart {
+    /// Begins a part that is to stand in a folder.
+    pub(super) fn begin(folder: &Path) -> io::Result<Self> {
+        let directory = temporary_in(folder)?;
+        fs::create_dir(directory.path().join("part"))?;
+        Ok(Self {
+            directory,
+            frames: Lazy { writer: None },
+            grains: Lazy { writer: None },
+            contacts: Lazy { writer: None },
+            walls: Lazy { writer: None },
+            bodies: Lazy { writer: None },
+            points: Lazy { writer: None },
+            rows: 0,
+        })
+    }
+
+    /// Adds snapshots, the first of which is the `first` of the run.
+    pub(super) fn add(&mut self, first: u64, snapshots: &[Snapshot]) -> io::Result<()> {
+        fn rows<'s, R: 's>(
+            first: u64,
+            snapshots: &'s [Snapshot],
+            of: impl Fn(&'s Snapshot) -> Vec<R> + 's,
+        ) -> impl Iterator<Item = Stepped<R>> + 's {
+            (first..).zip(snapshots).flat_map(move |(number, snapshot)| {
+                let (step, time) = (snapshot.step, snapshot.time);
+                of(snapshot).into_iter().map(move |row| Stepped { snapshot: number, step, time, row })
+            })
+        }
+        let directory = self.directory.path().join("part");
+        self.frames.add(&directory, rows(first, snapshots, |of| vec![Frame::of(of)]))?;
+        self.grains.add(&directory, rows(first, snapshots, |of| of.grains.clone()))?;
+        self.contacts.add(&directory, rows(first, snapshots, |of| of.told_contacts().to_vec()))?;
+        self.walls.add(&directory, rows(first, snapshots, |of| of.walls.clone()))?;
+        self.bodies.add(&directory, rows(first, snapshots, |of| of.bodies.clone()))?;
+        self.points.add(&directory, rows(first, snapshots, |of| of.points.clone()))?;
+        self.rows += snapshots.iter().map(count).sum::<u64>();
+        Ok(())
+    }
+
+    /// Bytes written so far.
+    pub(super) fn bytes(&self) -> usize {
+        self.frames.bytes() + self.grains.bytes() + self.contacts.bytes() + self.walls.bytes() + self.points.bytes()
+    }
+
+    /// Ends the part and puts it into the folder, as the `number`th.
+    pub(super) fn close(self, folder: &Path, number: usize) -> io::Result<Seal> {
+        let Self { directory, frames, grains, contacts, walls, bodies, points, rows } = self;
+        let hashes =
+            [frames.close()?, grains.close()?, contacts.close()?, walls.close()?, bodies.close()?, points.close()?];
+        let hash = together(&hashes);
+        // With part of the hash in its name a part never takes the place of another one.
+        let name = format!("{number:06}-{}", &hash.to_hex()[..8]);
+        let place = folder.join(&name);
+        if place.exists() {
+            fs::remove_dir_all(&place)?;
+        }
+        fs::rename(directory.path().join("part"), place)?;
+        Ok(Seal { name, hash: *hash.as_bytes(), rows })
+    }
+}
+
+/// Rows of grains, contacts and points.
+pub(super) fn count(snapshot: &Snapshot) -> u64 {
+    (snapshot.grains.len() + snapshot.told_contacts().len() + snapshot.points.len()) as u64
+}
+
+/// Reads a closed part, one snapshot after another.
+pub(super) struct PartReader {
+    frames: TableReader<Stepped<Frame>>,
+    grains: TableReader<Stepped<GrainState>>,
+    contacts: TableReader<Stepped<ContactState>>,
+    walls: TableReader<Stepped<WallState>>,
+    bodies: TableReader<Stepped<BodyState>>,
+    points: TableReader<Stepped<PointState>>,
+}
+
+impl PartReader {
+    pub(super) fn open(folder: &Path) -> io::Result<Self> {
+        Ok(Self {
+            frames: TableReader::open(folder)?,
+            grains: TableReader::open(folder)?,
+            contacts: TableReader::open(folder)?,
+            walls: TableReader::open(folder)?,
+            bodies: TableReader::open(folder)?,
+            points: TableReader::open(folder)?,
+        })
+    }
+
+    /// The next snapshot; none after the last.
+    pub(super) fn next(&mut self) -> io::Result<Option<Snapshot>> {
+        fn all<R: Row>(table: &mut TableReader<Stepped<R>>, number: u64) -> io::Result<Vec<R>> {
+            let mut rows = Vec::new();
+            while let Some(stepped) = table.next_if(|row| row.snapshot == number)? {
+                rows.push(stepped.row);
+            }
+            Ok(rows)
+        }
+        let Some(Stepped { snapshot: number, step, time, row: Frame(frame) }) = self.frames.next_if(|_| true)? else {
+            return Ok(None);
+        };
+        let contacts = all(&mut self.contacts, number)?;
+        Ok(Some(Snapshot {
+            step,
+            time,
+            grains: all(&mut self.grains, number)?,
+            contacts: frame.contacts.map(|_| contacts),
+            walls: all(&mut self.walls, number)?,
+            bodies: all(&mut self.bodies, number)?,
+            points: all(&mut self.points, number)?,
+            ..frame
+        }))
+    }
+}

@@ -1,0 +1,257 @@
+//! What the tables of a part hold: one row a snapshot, a grain, a contact, a wall, a body, a material point. Units are
+//! SI, as those of [`grainbench_scene::record`].
+
+use super::columns::{Columns, Row};
+use grainbench_scene::record::{BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, WallState};
+use nalgebra::Vector3;
+
+const PLACE: [&str; 3] = ["x", "y", "z"];
+const VELOCITY: [&str; 3] = ["vx", "vy", "vz"];
+const SPIN: [&str; 3] = ["omegax", "omegay", "omegaz"];
+const FORCE: [&str; 3] = ["fx", "fy", "fz"];
+const TORQUE: [&str; 3] = ["tqx", "tqy", "tqz"];
+
+/// A snapshot without what the other tables hold.
+pub(super) struct Frame(pub(super) Snapshot);
+
+impl Frame {
+    pub(super) fn of(snapshot: &Snapshot) -> Self {
+        Self(Snapshot {
+            grains: Vec::new(),
+            // Empty or absent: that is what the frame tells.
+            contacts: snapshot.contacts.as_ref().map(|_| Vec::new()),
+            walls: Vec::new(),
+            bodies: Vec::new(),
+            points: Vec::new(),
+            ..*snapshot
+        })
+    }
+}
+
+impl Row for Frame {
+    const TABLE: &'static str = "snapshots";
+
+    fn blank() -> Self {
+        Self(Snapshot {
+            step: 0,
+            time: 0.0,
+            bounds: (Vector3::zeros(), Vector3::zeros()),
+            periodic: [false; 3],
+            grains: Vec::new(),
+            contacts: None,
+            walls: Vec::new(),
+            bodies: Vec::new(),
+            points: Vec::new(),
+        })
+    }
+
+    fn visit(&mut self, columns: &mut impl Columns) {
+        let snapshot = &mut self.0;
+        columns.vector(["low_x", "low_y", "low_z"], &mut snapshot.bounds.0);
+        columns.vector(["high_x", "high_y", "high_z"], &mut snapshot.bounds.1);
+        for (name, periodic) in ["periodic_x", "periodic_y", "periodic_z"].into_iter().zip(&mut snapshot.periodic) {
+            columns.flag(name, periodic);
+        }
+        let mut told = snapshot.contacts.is_some();
+        columns.flag("contacts_told", &mut told);
+        snapshot.contacts = told.then(Vec::new);
+    }
+}
+
+impl Row for GrainState {
+    const TABLE: &'static str = "grains";
+
+    fn blank() -> Self {
+        Self {
+            id: 0,
+            material: 0,
+            radius: 0.0,
+            mass: 0.0,
+            position: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            spin: Vector3::zeros(),
+            angle: None,
+            force: None,
+            torque: None,
+            plastic_strain: 0.0,
+        }
+    }
+
+    fn visit(&mut self, columns: &mut impl Columns) {
+        whole(columns, "id", &mut self.id);
+        whole(columns, "material", &mut self.material);
+        columns.number("radius", &mut self.radius);
+        columns.number("mass", &mut self.mass);
+        columns.vector(PLACE, &mut self.position);
+        columns.vector(VELOCITY, &mut self.velocity);
+        columns.vector(SPIN, &mut self.spin);
+        columns.told("angle", &mut self.angle);
+        columns.told_vector(FORCE, &mut self.force);
+        columns.told_vector(TORQUE, &mut self.torque);
+        columns.number("plastic_strain", &mut self.plastic_strain);
+    }
+}
+
+impl Row for ContactState {
+    const TABLE: &'static str = "contacts";
+
+    fn blank() -> Self {
+        Self {
+            grain: 0,
+            partner: Partner::Wall(0),
+            point: Vector3::zeros(),
+            normal: Vector3::zeros(),
+            overlap: 0.0,
+            normal_force: 0.0,
+            shear_force: Vector3::zeros(),
+            slipping: false,
+        }
+    }
+
+    fn visit(&mut self, columns: &mut impl Columns) {
+        whole(columns, "grain", &mut self.grain);
+        let (word, mut number) = match self.partner {
+            Partner::Grain(id) => ("grain", i64::from(id)),
+            Partner::Body(place) => ("body", i64::from(place)),
+            Partner::Wall(place) => ("wall", i64::from(place)),
+        };
+        let mut kind = word.to_owned();
+        columns.word("partner", &mut kind);
+        columns.whole("partner_number", &mut number);
+        self.partner = match kind.as_str() {
+            "grain" => Partner::Grain(number as u32),
+            "body" => Partner::Body(number as u32),
+            _ => Partner::Wall(number as u16),
+        };
+        columns.vector(PLACE, &mut self.point);
+        columns.vector(["normal_x", "normal_y", "normal_z"], &mut self.normal);
+        columns.number("overlap", &mut self.overlap);
+        columns.number("normal_force", &mut self.normal_force);
+        columns.vector(["shear_x", "shear_y", "shear_z"], &mut self.shear_force);
+        columns.flag("slipping", &mut self.slipping);
+    }
+}
+
+/// Columns of the corners of a wall: two of a segment, four of a rectangle, point and normal of a plane.
+const CORNERS: [[&str; 3]; 4] = [
+    ["corner1_x", "corner1_y", "corner1_z"],
+    ["corner2_x", "corner2_y", "corner2_z"],
+    ["corner3_x", "corner3_y", "corner3_z"],
+    ["corner4_x", "corner4_y", "corner4_z"],
+];
+
+impl Row for WallState {
+    const TABLE: &'static str = "walls";
+
+    fn blank() -> Self {
+        Self { name: String::new(), corners: Vec::new(), infinite: false, force: None }
+    }
+
+    fn visit(&mut self, columns: &mut impl Columns) {
+        columns.word("name", &mut self.name);
+        columns.flag("infinite", &mut self.infinite);
+        let mut corners = [0, 1, 2, 3].map(|at| self.corners.get(at).copied());
+        for (names, corner) in CORNERS.into_iter().zip(&mut corners) {
+            columns.told_vector(names, corner);
+        }
+        self.corners = corners.into_iter().flatten().collect();
+        columns.told_vector(FORCE, &mut self.force);
+    }
+}
+
+impl Row for BodyState {
+    const TABLE: &'static str = "bodies";
+
+    fn blank() -> Self {
+        Self {
+            name: String::new(),
+            mass: 0.0,
+            inertia: 0.0,
+            position: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            spin: Vector3::zeros(),
+            angle: 0.0,
+            force: Vector3::zeros(),
+        }
+    }
+
+    fn visit(&mut self, columns: &mut impl Columns) {
+        columns.word("name", &mut self.name);
+        columns.number("mass", &mut self.mass);
+        columns.number("inertia", &mut self.inertia);
+        columns.vector(PLACE, &mut self.position);
+        columns.vector(VELOCITY, &mut self.velocity);
+        columns.vector(SPIN, &mut self.spin);
+        columns.number("angle", &mut self.angle);
+        columns.vector(FORCE, &mut self.force);
+    }
+}
+
+impl Row for PointState {
+    const TABLE: &'static str = "points";
+
+    fn blank() -> Self {
+        Self {
+            owner: Owner::Body(0),
+            position: Vector3::zeros(),
+            displacement: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            stress: [0.0; 6],
+            plastic_strain: 0.0,
+            rotation: 0.0,
+            volume: 0.0,
+        }
+    }
+
+    fn visit(&mut self, columns: &mut impl Columns) {
+        let (word, mut number) = match self.owner {
+            Owner::Grain(id) => ("grain", i64::from(id)),
+            Owner::Body(place) => ("body", i64::from(place)),
+        };
+        let mut kind = word.to_owned();
+        columns.word("owner", &mut kind);
+        columns.whole("owner_number", &mut number);
+        self.owner = if kind == "grain" { Owner::Grain(number as u32) } else { Owner::Body(number as u32) };
+        columns.vector(PLACE, &mut self.position);
+        columns.vector(["ux", "uy", "uz"], &mut self.displacement);
+        columns.vector(VELOCITY, &mut self.velocity);
+        for (name, stress) in ["sxx", "syy", "szz", "sxy", "syz", "szx"].into_iter().zip(&mut self.stress) {
+            columns.number(name, stress);
+        }
+        columns.number("plastic_strain", &mut self.plastic_strain);
+        columns.number("rotation", &mut self.rotation);
+        columns.number("volume", &mut self.volume);
+    }
+}
+
+/// A row with the number, the step and the time of its snapshot. Two snapshots may be of one step: the last good one and
+/// the one that broke.
+pub(super) struct Stepped<R> {
+    /// Place among the snapshots of the run, from 0.
+    pub(super) snapshot: u64,
+    pub(super) step: u64,
+    pub(super) time: f64,
+    pub(super) row: R,
+}
+
+impl<R: Row> Row for Stepped<R> {
+    const TABLE: &'static str = R::TABLE;
+
+    fn blank() -> Self {
+        Self { snapshot: 0, step: 0, time: 0.0, row: R::blank() }
+    }
+
+    fn visit(&mut self, columns: &mut impl Columns) {
+        whole(columns, "snapshot", &mut self.snapshot);
+        whole(columns, "step", &mut self.step);
+        columns.number("time", &mut self.time);
+        self.row.visit(columns);
+    }
+}
+
+/// A whole number of any size. The files are our own: what does not fit was never written.
+fn whole<T: Copy + TryFrom<i64> + TryInto<i64>>(columns: &mut impl Columns, name: &'static str, value: &mut T) {
+    let mut number = (*value).try_into().unwrap_or(i64::MAX);
+    columns.whole(name, &mut number);
+    *value = T::try_from(number).unwrap_or(*value);
+}

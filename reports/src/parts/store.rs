@@ -1,0 +1,454 @@
+//! The snapshots of a run as they come: a few in memory, all that are more in closed parts on disk.
+
+use std::collections::BTreeSet;
+use std::ffi::OsString;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use grainbench_scene::record::Snapshot;
+use serde::{Deserialize, Serialize};
+use tempfile::TempDir;
+use thiserror::Error;
+
+use super::part::{OpenPart, PartReader, Seal, count, files};
+use crate::scratch::{sweep, temporary_in};
+use crate::write::{WriteError, parent_of};
+
+/// Rows of grains, contacts and points up to which a run is small: its snapshots are then written as text that a person
+/// can read.
+pub const READABLE: u64 = 200_000;
+
+/// Memory that waiting snapshots may take (B) before they go to disk.
+const WAITING: usize = 8 << 20;
+/// Size at which a part is closed (B).
+const PART: usize = 64 << 20;
+
+/// Why snapshots cannot be stored, or those of a checkpoint not be had again.
+#[derive(Debug, Error)]
+pub enum StoreError {
+    /// The disk refused.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A part that the checkpoint was left with is not there any more.
+    #[error("the checkpoint needs its snapshots in {}: {found}", path.display())]
+    Lost {
+        /// The part.
+        path: PathBuf,
+        /// What stands there.
+        found: &'static str,
+    },
+    /// What the checkpoint says of snapshots cannot be read.
+    #[error("the checkpoint is damaged: {0}")]
+    Damaged(String),
+}
+
+/// Where parts stand.
+enum Place {
+    /// In a hidden folder that goes with the store, made as soon as it is needed.
+    Scratch { beside: PathBuf, made: Option<TempDir> },
+    /// In a folder that outlives the process.
+    Folder(PathBuf),
+}
+
+/// The snapshots of a run, in order of time.
+pub struct SnapshotStore {
+    place: Place,
+    waiting: Vec<Snapshot>,
+    waiting_bytes: usize,
+    open: Option<OpenPart>,
+    closed: Vec<Seal>,
+    /// Snapshots, those on disk too.
+    snapshots: u64,
+    /// Rows of grains, contacts and points, those on disk too.
+    rows: u64,
+}
+
+/// What a checkpoint keeps of the snapshots before it: those that waited, and where the others are.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    waiting: Vec<Snapshot>,
+    closed: Vec<Seal>,
+    snapshots: u64,
+}
+
+impl SnapshotStore {
+    /// Of a run whose output goes to `out`: parts gather on the same disk and go with the store.
+    #[must_use]
+    pub fn for_output(out: &Path) -> Self {
+        let beside = if out.is_dir() { out } else { parent_of(out) };
+        Self::at(Place::Scratch { beside: beside.to_path_buf(), made: None })
+    }
+
+    /// Of a run that leaves checkpoints: parts stand in `<checkpoint>.parts`, for whoever continues from it.
+    #[must_use]
+    pub fn for_checkpoint(checkpoint: &Path) -> Self {
+        Self::at(Place::Folder(parts_of(checkpoint)))
+    }
+
+    fn at(place: Place) -> Self {
+        Self { place, waiting: Vec::new(), waiting_bytes: 0, open: None, closed: Vec::new(), snapshots: 0, rows: 0 }
+    }
+
+    /// Takes up what a checkpoint kept (see [`SnapshotStore::keep`]): its parts are linked or copied from where they stand.
+    ///
+    /// # Errors
+    /// When a part is gone or changed, or cannot be brought here.
+    pub fn resume(mut self, checkpoint: &Path, kept: &[u8]) -> Result<Self, StoreError> {
+        let kept: Kept = postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
+        let source = parts_of(checkpoint);
+        for seal in &kept.closed {
+            let from = source.join(&seal.name);
+            let lost = |found| StoreError::Lost { path: from.clone(), found };
+            if !from.is_dir() {
+                return Err(lost("found nothing"));
+            }
+            if !seal.fits(&from) {
+                return Err(lost("found other files than were written"));
+            }
+            let refused = |source| WriteError::new(&from, source);
+            let to = self.folder().map_err(refused)?.join(&seal.name);
+            if !same_place(&to, &from) {
+                fs::create_dir_all(&to).map_err(refused)?;
+                for (name, path) in files(&from) {
+                    link_or_copy(&path, &to.join(name)).map_err(refused)?;
+                }
+            }
+        }
+        self.waiting_bytes = kept.waiting.iter().map(bytes).sum();
+        self.rows = kept.closed.iter().map(|seal| seal.rows).chain(kept.waiting.iter().map(count)).sum();
+        (self.waiting, self.closed, self.snapshots) = (kept.waiting, kept.closed, kept.snapshots);
+        Ok(self)
+    }
+
+    /// Adds a snapshot.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn add(&mut self, snapshot: Snapshot) -> Result<(), WriteError> {
+        self.rows += count(&snapshot);
+        self.snapshots += 1;
+        self.waiting_bytes += bytes(&snapshot);
+        self.waiting.push(snapshot);
+        if self.waiting_bytes < WAITING {
+            return Ok(());
+        }
+        self.spill().map_err(|source| WriteError::new(self.shown(), source))
+    }
+
+    /// What a checkpoint keeps of the snapshots so far. Those on disk are closed off, and it names them.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn keep(&mut self) -> Result<Vec<u8>, WriteError> {
+        self.settle()?;
+        let Self { waiting, closed, snapshots, .. } = self;
+        let kept = Kept { waiting: waiting.clone(), closed: closed.clone(), snapshots: *snapshots };
+        postcard::to_allocvec(&kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
+    }
+
+    /// Takes away parts that nothing names any more, once a checkpoint stands that names all that there are.
+    pub fn forget_others(&self) {
+        let Place::Folder(folder) = &self.place else { return };
+        let _ = sweep(folder);
+        let known: BTreeSet<OsString> = self.closed.iter().map(|seal| OsString::from(&seal.name)).collect();
+        let Ok(entries) = fs::read_dir(folder) else { return };
+        for entry in entries.flatten().filter(|entry| !known.contains(&entry.file_name())) {
+            remove_part(&entry.path());
+        }
+        if known.is_empty() {
+            // Goes only when it is empty.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+
+    /// Closes off what is being written, so that all can be read.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn settle(&mut self) -> Result<(), WriteError> {
+        let settle = |store: &mut Self| -> io::Result<()> {
+            if store.open.is_some() {
+                store.spill()?;
+            }
+            store.close()
+        };
+        settle(self).map_err(|source| WriteError::new(self.shown(), source))
+    }
+
+    /// Snapshots so far.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        self.snapshots
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.snapshots == 0
+    }
+
+    /// Rows of grains, contacts and points so far.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// Shows every snapshot that is settled, from the first on, one at a time.
+    ///
+    /// # Errors
+    /// When a part cannot be read, as `unreadable` tells it, or who looks refuses.
+    pub fn each<E>(
+        &self,
+        unreadable: impl Fn(io::Error) -> E,
+        mut look: impl FnMut(&Snapshot) -> Result<(), E>,
+    ) -> Result<(), E> {
+        for seal in &self.closed {
+            let mut reader = PartReader::open(&self.place_of(seal)).map_err(&unreadable)?;
+            while let Some(snapshot) = reader.next().map_err(&unreadable)? {
+                look(&snapshot)?;
+            }
+        }
+        self.waiting.iter().try_for_each(look)
+    }
+
+    /// The last snapshot that is settled.
+    ///
+    /// # Errors
+    /// When its part cannot be read.
+    pub fn last(&self) -> io::Result<Option<Snapshot>> {
+        let mut last = self.waiting.last().cloned();
+        if let (None, Some(seal)) = (&last, self.closed.last()) {
+            let mut reader = PartReader::open(&self.place_of(seal))?;
+            while let Some(snapshot) = reader.next()? {
+                last = Some(snapshot);
+            }
+        }
+        Ok(last)
+    }
+
+    /// Puts all that waits on disk too, and names the files of every part: where each stands, and what it is called below
+    /// the folder of parts.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn files(&mut self) -> Result<Vec<(PathBuf, PathBuf)>, WriteError> {
+        let spill = |store: &mut Self| -> io::Result<()> {
+            if !store.waiting.is_empty() {
+                store.spill()?;
+            }
+            store.close()
+        };
+        spill(self).map_err(|source| WriteError::new(self.shown(), source))?;
+        let of_part = |seal: &Seal| {
+            let name = PathBuf::from(&seal.name);
+            files(&self.place_of(seal)).into_iter().map(move |(file, path)| (path, name.join(file)))
+        };
+        Ok(self.closed.iter().flat_map(of_part).collect())
+    }
+
+    /// Writes what waits to the open part.
+    fn spill(&mut self) -> io::Result<()> {
+        let folder = self.folder()?;
+        let waiting = std::mem::take(&mut self.waiting);
+        self.waiting_bytes = 0;
+        let open = match &mut self.open {
+            Some(open) => open,
+            none => none.insert(OpenPart::begin(&folder)?),
+        };
+        open.add(self.snapshots - waiting.len() as u64, &waiting)?;
+        if open.bytes() >= PART { self.close() } else { Ok(()) }
+    }
+
+    fn close(&mut self) -> io::Result<()> {
+        if let Some(open) = self.open.take() {
+            let folder = self.folder()?;
+            self.closed.push(open.close(&folder, self.closed.len())?);
+        }
+        Ok(())
+    }
+
+    /// The folder of the parts, made where it is missing.
+    fn folder(&mut self) -> io::Result<PathBuf> {
+        match &mut self.place {
+            Place::Folder(folder) => {
+                fs::create_dir_all(&folder)?;
+                Ok(folder.clone())
+            }
+            Place::Scratch { beside, made } => {
+                if made.is_none() {
+                    fs::create_dir_all(&beside)?;
+                    *made = Some(temporary_in(beside)?);
+                }
+                Ok(made.as_ref().map_or_else(|| beside.clone(), |made| made.path().to_path_buf()))
+            }
+        }
+    }
+
+    fn place_of(&self, seal: &Seal) -> PathBuf {
+        match &self.place {
+            Place::Folder(folder) => folder.join(&seal.name),
+            Place::Scratch { beside, made } => made.as_ref().map_or(beside.as_path(), TempDir::path).join(&seal.name),
+        }
+    }
+
+    /// What an error names.
+    fn shown(&self) -> PathBuf {
+        match &self.place {
+            Place::Folder(folder) => folder.clone(),
+            Place::Scratch { beside, .. } => beside.clone(),
+        }
+    }
+}
+
+/// The folder of the parts that belong to a checkpoint.
+fn parts_of(checkpoint: &Path) -> PathBuf {
+    let mut name = checkpoint.as_os_str().to_owned();
+    name.push(".parts");
+    PathBuf::from(name)
+}
+
+fn same_place(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}
+
+fn link_or_copy(from: &Path, to: &Path) -> io::Result<()> {
+    match fs::remove_file(to) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    fs::hard_link(from, to).or_else(|_| fs::copy(from, to).map(drop))
+}
+
+/// Takes away a folder that holds the files of a part and nothing else; any other stays.
+fn remove_part(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    if entries.flatten().count() == files(folder).len() {
+        let _ = fs::remove_dir_all(folder);
+    }
+}
+
+/// What a snapshot takes in memory (B), nearly.
+fn bytes(snapshot: &Snapshot) -> usize {
+    size_of_val(snapshot)
+        + size_of_val(snapshot.grains.as_slice())
+        + size_of_val(snapshot.told_contacts())
+        + size_of_val(snapshot.points.as_slice())
+        + size_of_val(snapshot.walls.as_slice())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::sample;
+
+    /// Snapshots with every table and every absence, and numbers that text would lose.
+    fn snapshots(count: u64) -> Vec<Snapshot> {
+        let make = |step: u64| {
+            let mut snapshot = if step.is_multiple_of(2) { sample::snapshot() } else { sample::deformable() };
+            (snapshot.step, snapshot.time) = (step, 0.1 * step as f64);
+            snapshot.grains[0].position.x = f64::from_bits(0x3fb9_9999_9999_999a + step);
+            snapshot.grains[1].velocity.y = -0.0;
+            if step.is_multiple_of(3) {
+                snapshot.contacts = None;
+                snapshot.grains[1].force = None;
+                snapshot.grains[1].angle = None;
+                snapshot.walls[0].force = None;
+            }
+            snapshot
+        };
+        (0..count).map(make).collect()
+    }
+
+    fn all(store: &SnapshotStore) -> Vec<Snapshot> {
+        let mut all = Vec::new();
+        let read = store.each(std::convert::identity, |snapshot| {
+            all.push(snapshot.clone());
+            Ok(())
+        });
+        read.unwrap();
+        all
+    }
+
+    #[test]
+    fn what_was_added_comes_back_in_every_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut store = SnapshotStore::for_output(&folder.path().join("out"));
+        let snapshots = snapshots(40);
+        for (at, snapshot) in snapshots.iter().enumerate() {
+            store.add(snapshot.clone()).unwrap();
+            if at % 7 == 3 {
+                store.spill().unwrap();
+            }
+            if at % 14 == 3 {
+                store.close().unwrap();
+            }
+        }
+        store.settle().unwrap();
+        assert!(store.closed.len() > 2 && store.len() == 40, "{:?}", store.closed);
+        assert_eq!(format!("{:?}", all(&store)), format!("{snapshots:?}"));
+        assert_eq!(store.last().unwrap().as_ref(), snapshots.last());
+        drop(store);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "scratch goes with the store");
+    }
+
+    #[test]
+    fn a_checkpoint_names_its_parts_and_continues_from_no_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoint = folder.path().join("run.checkpoint");
+        let snapshots = snapshots(20);
+        let mut store = SnapshotStore::for_checkpoint(&checkpoint);
+        for snapshot in &snapshots[..10] {
+            store.add(snapshot.clone()).unwrap();
+        }
+        store.spill().unwrap();
+        let kept = store.keep().unwrap();
+        // It is killed after more were written.
+        store.add(snapshots[10].clone()).unwrap();
+        store.spill().unwrap();
+        store.close().unwrap();
+        let parts = parts_of(&checkpoint);
+        assert_eq!(fs::read_dir(&parts).unwrap().count(), 2);
+
+        let mut resumed = SnapshotStore::for_checkpoint(&checkpoint).resume(&checkpoint, &kept).unwrap();
+        assert_eq!(all(&resumed), snapshots[..10]);
+        for snapshot in &snapshots[10..] {
+            resumed.add(snapshot.clone()).unwrap();
+        }
+        assert_eq!(all(&resumed), snapshots);
+        resumed.keep().unwrap();
+        resumed.forget_others();
+        assert_eq!(fs::read_dir(&parts).unwrap().count(), 1, "what nothing names goes");
+
+        // Elsewhere the parts are brought along.
+        let elsewhere = SnapshotStore::for_output(&folder.path().join("out")).resume(&checkpoint, &kept).unwrap();
+        assert_eq!(all(&elsewhere), snapshots[..10]);
+
+        let part = fs::read_dir(&parts).unwrap().next().unwrap().unwrap().path();
+        let grains = part.join("grains.parquet");
+        let mut bytes = fs::read(&grains).unwrap();
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        fs::write(&grains, bytes).unwrap();
+        let again = || SnapshotStore::for_checkpoint(&checkpoint).resume(&checkpoint, &kept);
+        assert!(matches!(again(), Err(StoreError::Lost { .. })), "changed");
+        fs::remove_dir_all(&part).unwrap();
+        assert!(matches!(again(), Err(StoreError::Lost { .. })), "gone");
+    }
+
+    #[test]
+    fn memory_holds_a_few_snapshots_and_disk_the_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut store = SnapshotStore::for_output(&folder.path().join("out"));
+        let many = Snapshot { grains: vec![sample::snapshot().grains[0]; 10_000], ..sample::snapshot() };
+        for _ in 0..20 {
+            store.add(many.clone()).unwrap();
+            assert!(store.waiting_bytes < WAITING);
+        }
+        store.settle().unwrap();
+        assert!(store.waiting.is_empty() && all(&store).len() == 20);
+    }
+}

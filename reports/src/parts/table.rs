@@ -1,0 +1,229 @@
+//! One table as a Parquet file, written a group of rows at a time and read in the same groups.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::marker::PhantomData;
+use std::path::Path;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::column::reader::get_typed_column_reader;
+use parquet::column::writer::ColumnWriterImpl;
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::types::{ColumnPath, Type};
+
+use super::columns::{Gathered, Row, Scattered, Values};
+
+/// Rows that are turned into columns together: they are in memory twice while they are written.
+const GROUP: usize = 1 << 15;
+
+/// Columns with few different values, which a dictionary makes small.
+const REPEATED: [&str; 8] = ["snapshot", "step", "time", "material", "radius", "mass", "partner", "owner"];
+
+/// A table in the making.
+pub(super) struct TableWriter<R> {
+    file: SerializedFileWriter<Hashed>,
+    row: PhantomData<R>,
+}
+
+impl<R: Row> TableWriter<R> {
+    /// Begins a file.
+    pub(super) fn new(directory: &Path) -> io::Result<Self> {
+        let file = Hashed { file: File::create(directory.join(file_name(R::TABLE)))?, hash: blake3::Hasher::new() };
+        let mut properties =
+            WriterProperties::builder().set_compression(Compression::SNAPPY).set_dictionary_enabled(false);
+        for name in REPEATED {
+            properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
+        }
+        let columns = Gathered::of::<R>(&mut []).columns;
+        let fields =
+            columns.iter().map(|(name, values)| field(name, values)).collect::<Result<_, _>>().map_err(told)?;
+        let schema = Type::group_type_builder(R::TABLE).with_fields(fields).build().map_err(told)?;
+        let file = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties.build())).map_err(told)?;
+        Ok(Self { file, row: PhantomData })
+    }
+
+    /// Adds rows.
+    pub(super) fn add(&mut self, mut rows: impl Iterator<Item = R>) -> io::Result<()> {
+        loop {
+            let mut group: Vec<R> = rows.by_ref().take(GROUP).collect();
+            if group.is_empty() {
+                return Ok(());
+            }
+            let gathered = Gathered::of(&mut group);
+            drop(group);
+            let mut writer = self.file.next_row_group().map_err(told)?;
+            for (_, values) in &gathered.columns {
+                write(&mut writer, values).map_err(told)?;
+            }
+            writer.close().map_err(told)?;
+        }
+    }
+
+    /// Bytes written so far.
+    pub(super) fn bytes(&self) -> usize {
+        self.file.bytes_written()
+    }
+
+    /// Ends the file; the hash is of all its bytes.
+    pub(super) fn close(self) -> io::Result<blake3::Hash> {
+        let mut hashed = self.file.into_inner().map_err(told)?;
+        hashed.flush()?;
+        hashed.file.sync_all()?;
+        Ok(hashed.hash.finalize())
+    }
+}
+
+/// Reads a table group by group.
+pub(super) struct TableReader<R> {
+    /// None where there is no such file: no row was written.
+    file: Option<SerializedFileReader<File>>,
+    group: usize,
+    /// Rows of the present group that were not taken yet, last ones first.
+    waiting: Vec<R>,
+}
+
+impl<R: Row> TableReader<R> {
+    pub(super) fn open(directory: &Path) -> io::Result<Self> {
+        let file = match File::open(directory.join(file_name(R::TABLE))) {
+            Ok(file) => Some(SerializedFileReader::new(file).map_err(told)?),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => return Err(error),
+        };
+        Ok(Self { file, group: 0, waiting: Vec::new() })
+    }
+
+    /// The next row, if `wanted` says that it is wanted.
+    pub(super) fn next_if(&mut self, wanted: impl Fn(&R) -> bool) -> io::Result<Option<R>> {
+        if self.waiting.is_empty() {
+            self.waiting = self.read_group()?;
+            self.waiting.reverse();
+        }
+        Ok(if self.waiting.last().is_some_and(wanted) { self.waiting.pop() } else { None })
+    }
+
+    fn read_group(&mut self) -> io::Result<Vec<R>> {
+        let Some(file) = self.file.as_ref().filter(|file| self.group < file.num_row_groups()) else {
+            return Ok(Vec::new());
+        };
+        let group = file.get_row_group(self.group).map_err(told)?;
+        self.group += 1;
+        let count = group.metadata().num_rows() as usize;
+        let shapes = Gathered::of::<R>(&mut []).columns;
+        let column = |(at, (_, shape)): (usize, &(&str, Values))| -> Result<Values, ParquetError> {
+            let reader = group.get_column_reader(at)?;
+            let nothing = |value: &ByteArray| String::from_utf8_lossy(value.data()).into_owned();
+            Ok(match shape {
+                Values::Whole(_) => Values::Whole(read::<Int64Type>(reader, count)?.0),
+                Values::Number(_) => Values::Number(read::<DoubleType>(reader, count)?.0),
+                Values::Flag(_) => Values::Flag(read::<BoolType>(reader, count)?.0),
+                Values::Word(_) => Values::Word(read::<ByteArrayType>(reader, count)?.0.iter().map(nothing).collect()),
+                Values::Told(_) => {
+                    let (values, levels) = read::<DoubleType>(reader, count)?;
+                    let mut values = values.into_iter();
+                    Values::Told(levels.iter().map(|&level| if level > 0 { values.next() } else { None }).collect())
+                }
+            })
+        };
+        let columns = shapes.iter().enumerate().map(column).collect::<Result<Vec<Values>, _>>().map_err(told)?;
+        Ok(Scattered::rows(&columns, count))
+    }
+}
+
+/// Name of the file of a table.
+pub(super) fn file_name(table: &str) -> String {
+    format!("{table}.parquet")
+}
+
+fn field(name: &str, values: &Values) -> Result<Arc<Type>, ParquetError> {
+    let (physical, repetition) = match values {
+        Values::Whole(_) => (Physical::INT64, Repetition::REQUIRED),
+        Values::Number(_) => (Physical::DOUBLE, Repetition::REQUIRED),
+        Values::Told(_) => (Physical::DOUBLE, Repetition::OPTIONAL),
+        Values::Flag(_) => (Physical::BOOLEAN, Repetition::REQUIRED),
+        Values::Word(_) => (Physical::BYTE_ARRAY, Repetition::REQUIRED),
+    };
+    let logical = matches!(values, Values::Word(_)).then_some(LogicalType::String);
+    let field = Type::primitive_type_builder(name, physical).with_repetition(repetition).with_logical_type(logical);
+    field.build().map(Arc::new)
+}
+
+fn write<W: Write + Send>(group: &mut SerializedRowGroupWriter<'_, W>, values: &Values) -> Result<(), ParquetError> {
+    let Some(mut column) = group.next_column()? else {
+        return Err(ParquetError::General("more columns than the schema has".to_owned()));
+    };
+    match values {
+        Values::Whole(values) => batch(column.typed::<Int64Type>(), values, None)?,
+        Values::Number(values) => batch(column.typed::<DoubleType>(), values, None)?,
+        Values::Flag(values) => batch(column.typed::<BoolType>(), values, None)?,
+        Values::Word(values) => {
+            let words: Vec<ByteArray> = values.iter().map(|word| ByteArray::from(word.as_str())).collect();
+            batch(column.typed::<ByteArrayType>(), &words, None)?;
+        }
+        Values::Told(values) => {
+            let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+            let known: Vec<f64> = values.iter().copied().flatten().collect();
+            batch(column.typed::<DoubleType>(), &known, Some(&levels))?;
+        }
+    }
+    column.close()
+}
+
+fn batch<T: DataType>(
+    column: &mut ColumnWriterImpl<'_, T>,
+    values: &[T::T],
+    levels: Option<&[i16]>,
+) -> Result<(), ParquetError> {
+    column.write_batch(values, levels, None).map(drop)
+}
+
+/// The values of a column, and of each row whether it has one (1) or not (0).
+fn read<T: DataType>(
+    reader: parquet::column::reader::ColumnReader,
+    count: usize,
+) -> Result<(Vec<T::T>, Vec<i16>), ParquetError> {
+    let mut reader = get_typed_column_reader::<T>(reader);
+    let (mut values, mut levels) = (Vec::with_capacity(count), Vec::new());
+    let mut read = 0;
+    while read < count {
+        let (records, _, _) = reader.read_records(count - read, Some(&mut levels), None, &mut values)?;
+        if records == 0 {
+            break;
+        }
+        read += records;
+    }
+    Ok((values, levels))
+}
+
+/// A full disk stays a full disk.
+fn told(error: ParquetError) -> io::Error {
+    match error {
+        ParquetError::External(inner) => match inner.downcast::<io::Error>() {
+            Ok(error) => *error,
+            Err(other) => io::Error::other(other),
+        },
+        other => io::Error::other(other),
+    }
+}
+
+/// A file and the hash of what went into it.
+struct Hashed {
+    file: File,
+    hash: blake3::Hasher,
+}
+
+impl Write for Hashed {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.hash.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
