@@ -166,3 +166,22 @@ fn thousands_of_overrides_are_refused() {
     let answer = grainbench(directory.path(), &[&["simulate", "s.toml", "--solver", "dem"][..], &many].concat());
     assert!(answer.code == Some(2) && answer.err.contains("at most 1000 keys, found 1001"), "{}", answer.err);
 }
+
+/// A library of materials costs nothing; a table of pairs of all that things are made of is bounded.
+#[test]
+fn thousands_of_materials_that_nothing_is_made_of_cost_nothing() {
+    let library: String = (0..3000).map(|number| format!("[materials.m{number}]\ndensity = 1.0\n")).collect();
+    let (code, said) = simulated(RIGID, &library, &["dem"]);
+    assert_eq!(code, 0, "{said}");
+    let walls: String = (0..3000)
+        .map(|number| {
+            let y = -1.0 - f64::from(number);
+            format!(
+                "[walls.w{number}]\nmaterial = 'm{number}'\nplane = {{ point = [0.0, {y}], normal = [0.0, 1.0] }}\n"
+            )
+        })
+        .collect();
+    let (code, said) = simulated(RIGID, &(library + &walls), &["dem"]);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("at most 1000 materials that something is made of"), "{said}");
+}

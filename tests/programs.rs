@@ -47,6 +47,51 @@ fn a_time_limit_that_is_no_time_is_refused() {
     assert_eq!(said, format!("error: lammps is not available: {reason}\n"));
 }
 
+/// However we end, the program ends with us, and the folder that it worked in goes.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_program_and_its_folder_go_when_we_are_killed() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let (temporary, program) = (path.join("tmp"), path.join("program"));
+    std::fs::create_dir(&temporary).unwrap();
+    std::fs::write(&program, "#!/bin/sh\necho $$ > pid\nexec sleep 600\n").unwrap();
+    std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    std::fs::write(path.join("s.toml"), SCENE).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+        .args(["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"])
+        .current_dir(path)
+        .env("GRAINBENCH_LAMMPS", &program)
+        .env("TMPDIR", &temporary)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let running = || -> Option<String> {
+        let folder = std::fs::read_dir(&temporary).unwrap().flatten().next()?.path();
+        std::fs::read_to_string(folder.join("pid")).ok().filter(|pid| pid.ends_with('\n'))
+    };
+    let wait = || std::thread::sleep(std::time::Duration::from_millis(5));
+    let pid = loop {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        match running() {
+            Some(pid) => break pid.trim().to_owned(),
+            None => wait(),
+        }
+    };
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let left = || {
+        let folder = std::fs::read_dir(&temporary).unwrap().next().is_some();
+        folder || std::path::Path::new("/proc").join(&pid).exists()
+    };
+    (0..4000).for_each(|_| {
+        if left() {
+            wait();
+        }
+    });
+    assert!(!left(), "the program {pid} or its folder is left");
+}
+
 const SCENE: &str = r#"title = "A disc in flight"
 dimension = 2
 duration = 0.01

@@ -4,8 +4,8 @@ use crate::disc::LoadedDisc;
 use crate::points::PointCloud;
 use crate::quantity::Quantity;
 use grainbench_harness::raster::{RIM, Raster, VOID, level};
-use grainbench_scene::record::{Owner, Snapshot};
-use nalgebra::Vector2;
+use grainbench_scene::record::{GrainState, Owner, Snapshot};
+use nalgebra::{Vector2, Vector3};
 
 /// The part of the plane that is seen, in square pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +21,15 @@ pub struct View {
 }
 
 impl View {
+    /// How many grains of a snapshot have their centre outside.
+    #[must_use]
+    pub fn outside(&self, snapshot: &Snapshot) -> usize {
+        let high = self.high();
+        let inside =
+            |grain: &&GrainState| (0..2).all(|axis| (self.low[axis]..=high[axis]).contains(&grain.position[axis]));
+        snapshot.grains.len() - snapshot.grains.iter().filter(inside).count()
+    }
+
     /// From corner to corner, `longest` pixels along the longer side.
     #[must_use]
     pub fn new(low: [f64; 2], high: [f64; 2], longest: u32) -> Self {
@@ -30,17 +39,18 @@ impl View {
         Self { low, pixel, width, height }
     }
 
-    /// All of a snapshot: its domain along periodic axes, else the box around its grains and material points.
+    /// A snapshot: its domain along periodic axes, else the box around its grains and material points but for a few that
+    /// have strayed far from all others.
     #[must_use]
     pub fn of(snapshot: &Snapshot, longest: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));
         let points = snapshot.points.iter().map(|point| (point.position, 0.5 * point.volume.sqrt()));
-        for (place, reach) in grains.chain(points).filter(|(place, _)| place.iter().all(|part| part.is_finite())) {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(place[axis] - reach);
-                high[axis] = high[axis].max(place[axis] + reach);
-            }
+        let all: Vec<(Vector3<f64>, f64)> =
+            grains.chain(points).filter(|(place, _)| place.iter().all(|part| part.is_finite())).collect();
+        for axis in 0..2 {
+            (low[axis], high[axis]) =
+                window(all.iter().map(|(place, reach)| (place[axis] - reach, place[axis] + reach)));
         }
         for axis in 0..2 {
             if snapshot.periodic[axis] || low[axis] > high[axis] {
@@ -187,12 +197,41 @@ impl Painting {
     }
 }
 
+/// From where to where (m) to look along an axis at what reaches from here to there: at all, but not farther from what
+/// all but a hundredth on either side spans than half as much again.
+fn window(spans: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    let (mut lows, mut highs): (Vec<f64>, Vec<f64>) = spans.unzip();
+    lows.sort_by(f64::total_cmp);
+    highs.sort_by(f64::total_cmp);
+    let (Some(&low), Some(&high)) = (lows.first(), highs.last()) else { return (f64::INFINITY, f64::NEG_INFINITY) };
+    let few = lows.len() / 100;
+    let (from, to) = (lows[few], highs[highs.len() - 1 - few]);
+    let room = 0.5 * (to - from);
+    (low.max(from - room), high.min(to + room))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use grainbench_harness::raster::{HIGH, LOW};
-    use grainbench_scene::record::{GrainState, PointState};
-    use nalgebra::Vector3;
+    use grainbench_scene::record::PointState;
+
+    #[test]
+    fn a_disc_that_rolled_away_does_not_shrink_the_others() {
+        let mut many = snapshot(Vec::new());
+        many.periodic = [false; 3];
+        let grain = GrainState { radius: 0.05, ..many.grains[0] };
+        let place = |at: u32| Vector3::new(0.1 * f64::from(at % 20), 0.1 * f64::from(at / 20), 0.0);
+        many.grains = (0..200).map(|at| GrainState { position: place(at), ..grain }).collect();
+        let all = View::of(&many, 200);
+        assert_eq!(all.outside(&many), 0);
+        many.grains[7].position.x = 100.0;
+        let view = View::of(&many, 200);
+        assert!(view.high()[0] < 3.5 && view.outside(&many) == 1, "{view:?}");
+        // What has only begun to spread is seen whole.
+        many.grains[7].position.x = 2.5;
+        assert_eq!(View::of(&many, 200).outside(&many), 0);
+    }
 
     fn snapshot(points: Vec<PointState>) -> Snapshot {
         let grain = GrainState {

@@ -45,7 +45,7 @@ pub fn film(
         .collect();
     let range = range.unwrap_or_else(|| own_range(quantity, paintings.iter().flatten()));
     let panels = shots.iter().zip(&paintings).map(|(shot, paintings)| Panel {
-        title: shot.title.clone(),
+        title: title(shot, view),
         frames: paintings.iter().map(|painting| of_few_levels(painting.raster(range), times.len())).collect(),
     });
     let (label, unit) = quantity.label();
@@ -73,6 +73,15 @@ pub fn fringe_constant<'a>(snapshots: impl IntoIterator<Item = &'a Snapshot>, fr
     let quantity = Quantity::StressDifference;
     let high = |snapshot| Painting::new(snapshot, quantity, View::of(snapshot, 200)).quantile(0.98);
     snapshots.into_iter().map(high).fold(0.0, f64::max) / (fringes * std::f64::consts::TAU)
+}
+
+/// The title of a shot, with the grains of its last frame that are not to be seen.
+fn title(shot: &Shot<'_>, view: View) -> String {
+    match shot.frames.last().map_or(0, |last| view.outside(last)) {
+        0 => shot.title.clone(),
+        1 => format!("{}, 1 grain outside", shot.title),
+        some => format!("{}, {some} grains outside", shot.title),
+    }
 }
 
 /// The frames of a film have a quarter of the levels: nobody sees the difference, and a page can hold it.

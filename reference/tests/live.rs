@@ -109,6 +109,11 @@ fn a_program_that_does_its_run() {
     assert!(record.series.column("disc.angle").is_none(), "no dump tells it");
     assert_eq!((record.cost.steps, record.cost.wall_seconds), (2, 0.25));
     assert_eq!(record.provenance.options, ["LAMMPS (1 Jan 2030)"]);
+    // What it did not tell is absent, and not zero.
+    assert_eq!((record.cost.contact_evaluations, record.cost.pair_tests, record.cost.bytes), (None, None, None));
+    let last = record.snapshots.last().unwrap();
+    assert!(last.contacts.is_none() && last.walls.iter().all(|wall| wall.force.is_none()));
+    assert!(last.grains[0].angle.is_none() && last.grains[0].force.is_none() && last.grains[0].torque.is_none());
     assert_eq!(record.snapshots.iter().map(|snapshot| snapshot.step).collect::<Vec<_>>(), [0, 2]);
 }
 

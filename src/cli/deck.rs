@@ -65,7 +65,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         out.write(name, text).map_err(Fault::writing)?;
     }
     out.commit().map_err(Fault::writing)?;
-    let (stepping, out) = (&deck.stepping, arguments.out.display());
+    let (stepping, out) = (&deck.stepping, shell_word(&arguments.out.to_string_lossy()));
     print(&format!(
         "scene      {}\nprogram    {program}\ntime step  {:.6e} s\nsteps      {}\nfiles      {}\nrun        cd {out} && {}\n",
         scene.title,
@@ -75,4 +75,26 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         program.command(),
     ))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// A word as a shell takes it for one, whatever it is made of.
+fn shell_word(word: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+=:@,".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shell_word;
+
+    #[test]
+    fn a_folder_is_one_word_to_a_shell() {
+        assert_eq!(shell_word("out/deck-1"), "out/deck-1");
+        assert_eq!(shell_word("my deck; rm -r x"), "'my deck; rm -r x'");
+        assert_eq!(shell_word("it's"), r"'it'\''s'");
+    }
 }

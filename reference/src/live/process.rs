@@ -1,9 +1,9 @@
 //! Running a program in a scratch folder, with a limit of time.
 
 use std::fs::{self, File};
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -40,11 +40,14 @@ pub(crate) struct Limits {
 }
 
 /// Runs a program, and ends it with all that it has started when its own standard input closes: when we close it, and
-/// when we end, however that comes about. Its process group is that of the shell, which keeps its number in use.
+/// when we end, however that comes about. Where nothing was said before it closed we are no more, and the folder goes too.
+/// Its process group is that of the shell, which keeps its number in use.
 const GUARD: &str = "exec 3<&0 </dev/null
 \"$0\" \"$@\" 3<&- & program=$!
-(cat <&3 >/dev/null; kill -9 -$$) &
+(read -r _ <&3 || rm -rf \"$PWD\"; kill -9 -$$) &
 wait $program";
+/// What the guard is told before its standard input closes and we go on.
+const WE_ARE_ALIVE: &[u8] = b"alive\n";
 
 /// Runs the program to its end and gives the last lines that it printed.
 pub(crate) fn run(
@@ -93,10 +96,11 @@ pub(crate) fn run(
             }
         };
         // The guard ends the program; it may have ended by itself in the meantime.
-        drop(child.stdin.take());
+        close(&mut child);
         let _ = child.wait();
         return Err((failure, last_lines(folder)));
     };
+    close(&mut child);
     let last_lines = last_lines(folder);
     match status.code() {
         Some(0) if size(folder) > limits.bytes => {
@@ -109,6 +113,13 @@ pub(crate) fn run(
         // And of one that a signal ended.
         Some(code @ 129..=192) => Err((Failure::Crash(format!("signal {}", code - 128)), last_lines)),
         _ => Err((Failure::Crash(status.to_string()), last_lines)),
+    }
+}
+
+/// Closes the standard input of the guard, which is told that the folder is still looked at. It may have ended.
+fn close(child: &mut Child) {
+    if let Some(mut input) = child.stdin.take() {
+        let _ = input.write_all(WE_ARE_ALIVE);
     }
 }
 

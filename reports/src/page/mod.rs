@@ -12,7 +12,7 @@ use grainbench_harness::verdict::Outcome;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::headline::Headline;
-use crate::plot::DrawError;
+use crate::plot::{DrawError, markup};
 use crate::report::Report;
 
 /// Renders the whole page.
@@ -51,7 +51,7 @@ pub(crate) fn shell(title: &str, body: &Markup) -> String {
             body { (body) }
         }
     };
-    page.into_string()
+    markup(&page.into_string())
 }
 
 /// A name reduced to lower-case letters, digits and `-`, for anchors and file names.

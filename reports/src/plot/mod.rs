@@ -7,6 +7,7 @@ pub mod palette;
 pub mod scale;
 
 use grainbench_harness::figure::{Drawing, Figure};
+use grainbench_scene::text::tamed;
 use thiserror::Error;
 
 /// Width of every figure in its own units, which a page scales.
@@ -31,13 +32,19 @@ pub struct DrawError {
 /// # Errors
 /// When the drawing library refuses.
 pub fn draw(figure: &Figure) -> Result<String, DrawError> {
-    match &figure.drawing {
+    let svg = match &figure.drawing {
         Drawing::Graph(graph) => graph::draw(&figure.title, graph)
-            .map_err(|source| DrawError { figure: figure.name.clone(), reason: source.to_string() }),
-        Drawing::Forces(plot) => Ok(forces::draw(&figure.title, plot)),
+            .map_err(|source| DrawError { figure: figure.name.clone(), reason: source.to_string() })?,
+        Drawing::Forces(plot) => forces::draw(&figure.title, plot),
         Drawing::Field(field) => field::draw(&figure.title, field)
-            .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() }),
-    }
+            .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() })?,
+    };
+    Ok(markup(&svg))
+}
+
+/// A document without the characters that XML has no place for, whoever wrote the words in it.
+pub(crate) fn markup(document: &str) -> String {
+    tamed(document, |character| matches!(character, '\n' | '\t'))
 }
 
 /// The film of a figure by itself, as an animated PNG; none where nothing moves.

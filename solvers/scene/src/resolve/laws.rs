@@ -4,29 +4,35 @@ use super::Resolver;
 use crate::contact_law::{ContactLaw, Surroundings};
 use crate::error::SceneError;
 use crate::scene::{Block, Grain, Wall};
+use std::collections::BTreeSet;
 
 impl Resolver<'_> {
+    /// For each pair of `materials`, places in the file. Laws between others are checked too, and have no place.
     pub(super) fn laws(
         &self,
+        materials: &[usize],
         grains: &[Grain],
         bodies: &[Block],
         walls: &[Wall],
     ) -> Result<Vec<Option<ContactLaw>>, SceneError> {
-        let count = self.file.materials.len();
+        let count = materials.len();
         let mut table = vec![None; count * count];
+        let mut stated = BTreeSet::new();
         let grain_shape = self.grain_shape()?;
         let around = Surroundings { check: &self.check, materials: &self.file.materials, grain_shape };
         for (name, spec) in &self.file.contacts {
             let key = format!("contacts.{name}.between");
             let a = usize::from(self.material(&key, &spec.between[0])?);
             let b = usize::from(self.material(&key, &spec.between[1])?);
-            if table[a * count + b].is_some() {
+            if !stated.insert((a.min(b), a.max(b))) {
                 let pair = format!("a second one for {} and {}", spec.between[0], spec.between[1]);
                 return Err(self.check.error(&key, "one law for each pair of materials", &pair));
             }
-            let law = Some(spec.law(name, &around)?);
-            table[a * count + b] = law;
-            table[b * count + a] = law;
+            let law = spec.law(name, &around)?;
+            if let (Ok(a), Ok(b)) = (materials.binary_search(&a), materials.binary_search(&b)) {
+                table[a * count + b] = Some(law);
+                table[b * count + a] = Some(law);
+            }
         }
         let all = table.iter().flatten().count();
         let hertz = table.iter().flatten().filter(|law| ContactLaw::is_hertz(law)).count();
@@ -34,29 +40,30 @@ impl Resolver<'_> {
         if (hertz > 0 && hertz < springs) || (springs > 0 && springs < all) {
             return Err(self.check.error("contacts", "laws of one kind, all `linear` or all `hertz`", "both"));
         }
-        self.require_laws(&table, grains, bodies, walls)?;
+        self.require_laws(materials, &table, grains, bodies, walls)?;
         Ok(table)
     }
 
     /// Every pair of materials that can meet must have a law: silence would let grains pass through each other.
     fn require_laws(
         &self,
+        materials: &[usize],
         table: &[Option<ContactLaw>],
         grains: &[Grain],
         bodies: &[Block],
         walls: &[Wall],
     ) -> Result<(), SceneError> {
-        let count = self.file.materials.len();
+        let count = materials.len();
         let mut grains_of = vec![0_usize; count];
         grains.iter().for_each(|grain| grains_of[usize::from(grain.material)] += 1);
         bodies.iter().for_each(|body| grains_of[usize::from(body.material)] += 1);
-        let has_wall = |m: usize| walls.iter().any(|wall| usize::from(wall.material) == m);
+        let walls: BTreeSet<usize> = walls.iter().map(|wall| usize::from(wall.material)).collect();
         for a in 0..count {
             for b in 0..count {
                 let among_grains = if a == b { grains_of[a] > 1 } else { grains_of[a] > 0 && grains_of[b] > 0 };
-                let at_wall = grains_of[a] > 0 && has_wall(b);
+                let at_wall = grains_of[a] > 0 && walls.contains(&b);
                 if (among_grains || at_wall) && table[a * count + b].is_none() {
-                    let name = |m: usize| self.file.materials.get_index(m).map_or("", |(name, _)| name.as_str());
+                    let name = |place: usize| self.material_name(materials[place]);
                     let pair = format!("a law between {} and {}, which can meet", name(a), name(b));
                     return Err(self.check.error("contacts", &pair, "none"));
                 }

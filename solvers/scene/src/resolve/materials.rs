@@ -1,11 +1,48 @@
-//! Deformable materials.
+//! Materials: those that something is made of, and what deforms.
 
 use super::Resolver;
 use crate::body::{Constitutive, Deformable};
 use crate::error::SceneError;
 use crate::file::{ConstitutiveKind, MaterialSpec};
+use crate::scene::{Block, Grain, Wall};
+
+/// Most materials that things are made of: each pair of them has a place in a table.
+const MOST_MATERIALS: usize = 1000;
 
 impl Resolver<'_> {
+    /// The materials that something is made of, by place in the file. Grains, bodies and walls name them by place among
+    /// these from now on: a library of materials in the file costs nothing.
+    pub(super) fn used_materials(
+        &self,
+        grains: &mut [Grain],
+        bodies: &mut [Block],
+        walls: &mut [Wall],
+    ) -> Result<Vec<usize>, SceneError> {
+        let mut used = vec![false; self.file.materials.len()];
+        let named = || {
+            let grains = grains.iter().map(|grain| grain.material);
+            grains.chain(bodies.iter().map(|body| body.material)).chain(walls.iter().map(|wall| wall.material))
+        };
+        named().for_each(|material| used[usize::from(material)] = true);
+        let kept: Vec<usize> = (0..used.len()).filter(|&place| used[place]).collect();
+        if kept.len() > MOST_MATERIALS {
+            let expected = format!("at most {MOST_MATERIALS} materials that something is made of");
+            return Err(self.check.error("materials", &expected, &kept.len().to_string()));
+        }
+        let mut now = vec![0_u16; used.len()];
+        (0..).zip(&kept).for_each(|(place, &before)| now[before] = place);
+        let renamed = |material: &mut u16| *material = now[usize::from(*material)];
+        grains.iter_mut().for_each(|grain| renamed(&mut grain.material));
+        bodies.iter_mut().for_each(|body| renamed(&mut body.material));
+        walls.iter_mut().for_each(|wall| renamed(&mut wall.material));
+        Ok(kept)
+    }
+
+    /// Name of a material, by place in the file.
+    pub(super) fn material_name(&self, place: usize) -> &str {
+        self.file.materials.get_index(place).map_or("", |(name, _)| name.as_str())
+    }
+
     /// What each material is made of, where the file says so.
     pub(super) fn deformable(&self) -> Result<Vec<Option<Deformable>>, SceneError> {
         self.file.materials.iter().map(|(name, material)| self.moduli(name, material)).collect()

@@ -82,13 +82,17 @@ impl Resolver<'_> {
             self.refuse_outside(domain, &grains, &groups)?;
         }
         let driven = self.driven(&mut grains, &groups, domain.as_ref())?;
-        let deformable = self.deformable()?;
-        let bodies = self.bodies()?;
+        let mut deformable = self.deformable()?;
+        let mut bodies = self.bodies()?;
         if grains.is_empty() && bodies.is_empty() {
             return Err(check.error("grains", "at least one grain or body", "none"));
         }
-        let walls: Vec<Wall> = file.walls.iter().map(|(name, wall)| self.wall(name, wall)).collect::<Result<_, _>>()?;
-        let laws = self.laws(&grains, &bodies, &walls)?;
+        let mut walls: Vec<Wall> =
+            file.walls.iter().map(|(name, wall)| self.wall(name, wall)).collect::<Result<_, _>>()?;
+        let materials = self.used_materials(&mut grains, &mut bodies, &mut walls)?;
+        let laws = self.laws(&materials, &grains, &bodies, &walls)?;
+        let mut place = 0..;
+        deformable.retain(|_| place.next().is_some_and(|place| materials.contains(&place)));
         self.refuse_deep_overlap(&grains, &walls, domain.as_ref(), &groups)?;
         let names = Names { groups: &groups, bodies: &bodies, walls: &walls, driven: &driven };
         let mut spots = Vec::new();
@@ -106,7 +110,7 @@ impl Resolver<'_> {
             domain,
             global_damping: check.not_negative("global_damping", file.global_damping, "damping (1/s)")?,
             duration: self.duration()?,
-            materials: file.materials.keys().cloned().collect(),
+            materials: materials.iter().map(|&place| self.material_name(place).to_owned()).collect(),
             laws,
             sampling: self.sampling()?,
             snapshots: file.output.snapshots,
