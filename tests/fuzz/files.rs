@@ -36,8 +36,14 @@ const MOST_ROWS: u64 = 1000;
 
 type Answer = Result<(), String>;
 
+/// What reads a file: its name, its share of the lot, and what it says of a file.
+type Reader = (&'static str, usize, fn(&mut Lot) -> Answer);
+
+/// Files by name.
+type Files = Vec<(String, Vec<u8>)>;
+
 /// What reads a file, each in its own way, and how often: those that draw, simulate or read many files less often.
-const READERS: [(&str, usize, fn(&mut Lot) -> Answer); 12] = [
+const READERS: [Reader; 12] = [
     ("dump", 4, of_dump),
     ("log", 4, of_log),
     ("table", 4, of_table),
@@ -357,13 +363,13 @@ fn of_two(lot: &mut Lot) -> Answer {
 
 /// One file of a stored run is damaged; its hash is still that of the whole one, or there is none.
 fn of_stored(lot: &mut Lot) -> Answer {
-    static RUN: OnceLock<(PathBuf, Vec<(String, Vec<u8>)>)> = OnceLock::new();
+    static RUN: OnceLock<(PathBuf, Files)> = OnceLock::new();
     let (folder, files) = RUN.get_or_init(|| {
         let name = "backspin-disc-overlap-r-1e-3-damping-ratio-0";
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/lammps").join(name);
         let to = folder().join("stored");
         fs::create_dir(&to).unwrap();
-        let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(from)
+        let mut files: Files = fs::read_dir(from)
             .unwrap()
             .map(|entry| entry.unwrap().path())
             .map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read(&path).unwrap()))
