@@ -1,0 +1,184 @@
+//! Ten thousand inelastic discs cool: Haff's law, at the rate of hard discs.
+
+use crate::rows::programs::{PAIRS, row};
+use crate::sources::prototype::event_driven_gas::{COOLING_RATE, SPREAD};
+use grainbench_harness::course::samples;
+use grainbench_harness::prelude::*;
+use std::f64::consts::PI;
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
+
+pub(crate) static CASE: Case = Case {
+    name: "cooling-gas",
+    title: "A gas that cools",
+    claim: "Ten thousand smooth discs with e = .9 lose their energy by Haff's law, as fast as hard discs do; LAMMPS and \
+            LIGGGHTS cool the same gas at the same rate.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "A mean over the gas: what is wrong with one collision in a hundred is not seen. It is a gas of fifteen collisions \
+               a disc; clusters, which come later, are not looked at.",
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+const ENERGY: &str = "all.kinetic_energy";
+/// Where the first speeds, all alike, have become a Maxwellian.
+const FROM: f64 = 2.0;
+/// How long two programs go the same way in every digit that counts (s).
+const FORETOLD: f64 = 2.01;
+/// Coefficient of restitution.
+const RESTITUTION: f64 = 0.9;
+
+fn run(variant: &'static str, solver: &'static str) -> Run {
+    Run::new(variant, solver, LEVELS[0].resolution)
+}
+
+/// 1/√T at each sample, with T = E/N.
+fn course(done: &Done) -> Result<Vec<(f64, f64)>, Missing> {
+    let count = done.scene.grains.len() as f64;
+    let samples = done.series().time.iter().zip(done.column(ENERGY)?);
+    Ok(samples.map(|(&time, energy)| (time, (energy / count).powf(-0.5))).collect())
+}
+
+/// Slope of 1/√T against t by least squares, from [`FROM`] on.
+fn cooling_rate(done: &Done) -> Result<f64, Missing> {
+    let course: Vec<(f64, f64)> = course(done)?.into_iter().filter(|(time, _)| *time >= FROM).collect();
+    let count = course.len() as f64;
+    let (time, value) = course.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at.0 / count, sum.1 + at.1 / count));
+    let (cross, square) = course
+        .iter()
+        .fold((0.0, 0.0), |sum, at| (sum.0 + (at.0 - time) * (at.1 - value), sum.1 + (at.0 - time).powi(2)));
+    Ok(cross / square)
+}
+
+/// Number density n, pair correlation χ at contact, diameter d and mass m.
+fn gas(scene: &Scene) -> (f64, f64, f64, f64) {
+    let (radius, mass) = (scene.grains[0].radius, scene.grains[0].mass);
+    let size = scene.domain.map_or(f64::NAN, |domain| (domain.high - domain.low).xy().product());
+    let number = scene.grains.len() as f64 / size;
+    let packing_fraction = number * PI * radius * radius;
+    (number, (1.0 - 7.0 / 16.0 * packing_fraction) / (1.0 - packing_fraction).powi(2), 2.0 * radius, mass)
+}
+
+/// Enskog's cooling rate, see the derivation.
+fn enskog(scene: &Scene) -> f64 {
+    const A2: f64 = -0.027;
+    let (number, correlation, diameter, mass) = gas(scene);
+    (1.0 - RESTITUTION.powi(2)) * PI.sqrt() / 2.0 * correlation * number * diameter / mass.sqrt()
+        * (1.0 + 3.0 / 16.0 * A2)
+}
+
+/// Collisions of a disc in the duration of a contact, ω t_c, for a stiffness k (N/m) at the mean temperature of the course,
+/// T = 1/(1 + .058 t)² from t = 2 to 12.
+fn in_contact(stiffness: f64) -> f64 {
+    // As the scene has it: φ = .2, d = m = 1; the mean of √T over the course is .73.
+    let (packing_fraction, mean_root) = (0.2_f64, 0.73);
+    let correlation = (1.0 - 7.0 / 16.0 * packing_fraction) / (1.0 - packing_fraction).powi(2);
+    2.0 * PI.sqrt() * correlation * 4.0 * packing_fraction / PI * mean_root * PI * (0.5 / stiffness).sqrt()
+}
+
+/// Student's t of 23 degrees of freedom at 99 %.
+const STUDENT: f64 = 2.807;
+
+/// The 99 % interval of one run against the mean of the 24 of the prototype.
+fn interval() -> f64 {
+    STUDENT * SPREAD.value / COOLING_RATE.value * (1.0 + 1.0 / 24.0_f64).sqrt()
+}
+
+/// As fast as hard discs, for a stiffness k (N/m).
+fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
+    claim(format!("cooling rate d(1/√T)/dt, k = {stiffness:e}"), "1/(s √J)")
+        .of(run)
+        .equals(COOLING_RATE.source(), |done| {
+            Ok(Measured::new(cooling_rate(&done[0])?, COOLING_RATE.value, COOLING_RATE.value))
+        })
+        .within(computed(
+            interval() + in_contact(stiffness),
+            "t s √(1 + 1/24) with Student's t = 2.81 and s of 24 seeds, and ω t_c for the duration of contacts",
+        ))
+        .refuses(Control::scene(LIVELIER, livelier))
+}
+
+/// What the gas must not be.
+const LIVELIER: &str = "dashpots of e = .92 for .9";
+
+fn livelier(scene: &mut Scene) {
+    damp(scene, 0.92);
+}
+
+/// Dashpots of another coefficient of restitution.
+fn damp(scene: &mut Scene, restitution: f64) {
+    // ζ = −ln e/√(π² + ln² e).
+    let ratio = -restitution.ln() / PI.hypot(restitution.ln());
+    scene.change_laws(|law| law.damping_ratio = ratio);
+}
+
+fn claims() -> Vec<Claim> {
+    let mut claims = vec![
+        as_hard_discs(run(PLAIN, "dem"), 2e4),
+        as_hard_discs(run("stiff", "dem").slow(), 2e5),
+        claim("cooling rate over that of Enskog's theory", "1")
+            .of(run(PLAIN, "dem"))
+            .at_most(
+                1.0,
+                Source::Derived(
+                    "collisions make neighbours alike, and what is alike meets more slowly than the theory has it",
+                ),
+                |done| Ok(cooling_rate(&done[0])? / enskog(&done[0].scene)),
+            )
+            .within(computed(interval(), "the interval of one run"))
+            .refuses(Control::scene("dashpots of e = .86 for .9", |scene| damp(scene, 0.86))),
+    ];
+    for pair in PAIRS {
+        let allowed = computed(
+            STUDENT * SPREAD.value / COOLING_RATE.value * 2.0_f64.sqrt(),
+            "the 99 % interval of the difference of two runs, t s √2 with s of 24 seeds",
+        );
+        let runs = pair.map(|solver| run(PLAIN, solver));
+        claims.push(row("cooling rate", "1/(s √J)", allowed, runs, Control::ours(LIVELIER, livelier), |done| {
+            let theirs = cooling_rate(&done[1])?;
+            Ok(Measured::new(cooling_rate(&done[0])?, theirs, theirs))
+        }));
+        let allowed =
+            judged(1e-12, "the same cycle: rounding, which two collisions a disc have spread; of the first energy");
+        let control = Control::ours("dashpots × 1.001 in ours", |scene| {
+            scene.change_laws(|law| law.damping_ratio *= 1.001);
+        });
+        let runs = pair.map(|solver| run(PLAIN, solver));
+        let quantity = format!("kinetic energy over the first {FORETOLD} s, worst");
+        claims.push(row(&quantity, "J", allowed, runs, control, |done| {
+            let theirs = samples(&done[1], ENERGY)?;
+            let known = theirs.iter().take_while(|(time, _)| *time <= FORETOLD).count();
+            let values = |done: &Done| Ok(done.column(ENERGY)?.iter().take(known).copied().collect::<Vec<f64>>());
+            let (ours, theirs) = (values(&done[0])?, values(&done[1])?);
+            Ok(Measured::worst_of(&done[1].series().time[..known], &ours, &theirs, theirs[0]))
+        }));
+    }
+    claims
+}
+
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let ours = runner.run(&run(PLAIN, "dem"))?;
+    let mut curves = vec![];
+    for (label, stroke, done) in std::iter::once(("dem", Stroke::Line, ours.clone())).chain(
+        // Without a program and without its stored run there is nothing to draw.
+        PAIRS.iter().filter_map(|pair| Some((pair[1], Stroke::Markers, runner.run(&run(PLAIN, pair[1])).ok()?))),
+    ) {
+        curves.push(Curve::new(label, stroke, course(&done).unwrap_or_default()));
+    }
+    let start = course(&ours).unwrap_or_default().into_iter().find(|(time, _)| *time >= FROM).unwrap_or((FROM, 1.0));
+    let line = |rate: f64| vec![start, (12.0, start.1 + rate * (12.0 - start.0))];
+    curves.push(Curve::new("Enskog's theory", Stroke::Dashed, line(enskog(&ours.scene))));
+    curves.push(Curve::new("hard discs, event by event", Stroke::Dashed, line(COOLING_RATE.value)));
+    Ok(vec![Figure::graph(
+        "cooling",
+        "Haff's law",
+        "1/√T rises on a straight line, T being the energy a disc. The lines begin where the first speeds, all alike, have \
+         become a Maxwellian.",
+        [Axis::linear("time t (s)"), Axis::linear("1/√T (1/√J)")],
+        curves,
+    )])
+}
