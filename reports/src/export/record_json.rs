@@ -4,12 +4,12 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use grainbench_scene::record::{Cost, Provenance, Record, Series, Snapshot};
+use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use serde::ser::{Error, SerializeSeq};
 use serde::{Serialize, Serializer};
 
 use crate::export::BROKEN_FILE;
-use crate::parts::{READABLE, SnapshotStore};
+use crate::parts::{READABLE, SnapshotStore, rows_of};
 use crate::store::{LoadError, parse};
 
 /// Name of the file.
@@ -42,15 +42,11 @@ impl Serialize for Stored<'_> {
         let mut all = serializer.serialize_seq(None)?;
         if self.0.rows() <= READABLE {
             self.0.each(S::Error::custom, |snapshot| all.serialize_element(snapshot))?;
-        } else if let Some(last) = self.0.last().map_err(S::Error::custom)?.filter(is_readable) {
+        } else if let Some(last) = self.0.last().map_err(S::Error::custom)?.filter(|last| rows_of(last) <= READABLE) {
             all.serialize_element(&last)?;
         }
         all.end()
     }
-}
-
-fn is_readable(snapshot: &Snapshot) -> bool {
-    (snapshot.grains.len() + snapshot.told_contacts().len() + snapshot.points.len()) as u64 <= READABLE
 }
 
 /// Reads the record that a simulation left in `dir`.
@@ -72,6 +68,7 @@ pub fn load(dir: &Path) -> Result<Record, LoadError> {
 mod tests {
     use super::*;
     use crate::export::sample;
+    use grainbench_scene::record::Snapshot;
 
     #[test]
     fn reads_back_the_same() {

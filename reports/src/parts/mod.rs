@@ -9,4 +9,5 @@ mod rows;
 mod store;
 mod table;
 
+pub(crate) use part::rows_of;
 pub use store::{READABLE, SnapshotStore, StoreError};

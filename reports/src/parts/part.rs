@@ -140,7 +140,7 @@ impl OpenPart {
         self.walls.add(&directory, rows(first, snapshots, |of| of.walls.clone()))?;
         self.bodies.add(&directory, rows(first, snapshots, |of| of.bodies.clone()))?;
         self.points.add(&directory, rows(first, snapshots, |of| of.points.clone()))?;
-        self.rows += snapshots.iter().map(count).sum::<u64>();
+        self.rows += snapshots.iter().map(rows_of).sum::<u64>();
         Ok(())
     }
 
@@ -167,7 +167,7 @@ impl OpenPart {
 }
 
 /// Rows of grains, contacts and points.
-pub(super) fn count(snapshot: &Snapshot) -> u64 {
+pub(crate) fn rows_of(snapshot: &Snapshot) -> u64 {
     (snapshot.grains.len() + snapshot.told_contacts().len() + snapshot.points.len()) as u64
 }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 use thiserror::Error;
 
-use super::part::{OpenPart, PartReader, Seal, count, files};
+use super::part::{OpenPart, PartReader, Seal, files, rows_of};
 use crate::scratch::{sweep, temporary_in};
 use crate::write::{WriteError, parent_of};
 
@@ -116,7 +116,7 @@ impl SnapshotStore {
             }
         }
         self.waiting_bytes = kept.waiting.iter().map(bytes).sum();
-        self.rows = kept.closed.iter().map(|seal| seal.rows).chain(kept.waiting.iter().map(count)).sum();
+        self.rows = kept.closed.iter().map(|seal| seal.rows).chain(kept.waiting.iter().map(rows_of)).sum();
         (self.waiting, self.closed, self.snapshots) = (kept.waiting, kept.closed, kept.snapshots);
         Ok(self)
     }
@@ -126,7 +126,7 @@ impl SnapshotStore {
     /// # Errors
     /// When the disk refuses.
     pub fn add(&mut self, snapshot: Snapshot) -> Result<(), WriteError> {
-        self.rows += count(&snapshot);
+        self.rows += rows_of(&snapshot);
         self.snapshots += 1;
         self.waiting_bytes += bytes(&snapshot);
         self.waiting.push(snapshot);
