@@ -106,6 +106,22 @@ fn wall_forces_act_on_the_grain_and_the_wall_feels_the_opposite() {
     close(value(&observed, "slope.force_y"), -49.8);
 }
 
+/// A disc of radius .5 m beside the end of a segment: from its centre at (.294, .392) it is .49 m to the end at the origin,
+/// so that they overlap by .01 m along (−.6, −.8). A push of 50 N on the disc is (30, 40) N.
+#[test]
+fn the_end_of_a_segment_is_the_nearest_point() {
+    let scene = scene(
+        "dimension = 2\n[grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.294, 0.392]\n\
+         [walls.w]\nmaterial = 'm'\nsegment = [[-1.0, 0.0], [0.0, 0.0]]\n[probes]\nc.contact = ['a', 'w']\n",
+    );
+    let columns = [("w.force_x", "f_w[1]"), ("w.force_y", "f_w[2]")];
+    let grains = dump("ATOMS", "id x y f_w[1] f_w[2]", &["1 0.294 0.392 30 40"]);
+    let observed = observed(&scene, &[grains], &columns);
+    close(value(&observed, "c.overlap"), 0.01);
+    close(value(&observed, "c.normal_force"), 50.0);
+    close(value(&observed, "c.shear_force"), 0.0);
+}
+
 /// Two spheres in space, 1 m apart along (2, 3, 6)/7 with radii of .51 m: 70 N of push on the first are −(20, 30, 60) N. Of
 /// 5 N along (−6, 0, 2)/√40 the size is told, for in space there is no sign.
 #[test]
