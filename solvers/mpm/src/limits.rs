@@ -28,7 +28,7 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if let Some(wall) = scene.walls.iter().find(|wall| !matches!(wall.shape, WallShape::Plane { .. })) {
         return Some(format!("wall `{}` is no plane", wall.name));
     }
-    let overlap = overlap::deepest(&scene.grains, &scene.walls, scene.domain.as_ref());
+    let overlap = overlap::deepest(&scene.grains, &scene.walls, scene.domain.as_ref(), 1.0);
     if let Some(deepest) = overlap.filter(|deepest| deepest.ratio() >= 1.0) {
         let found = deepest.words(&scene.walls);
         return Some(format!(

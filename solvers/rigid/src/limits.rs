@@ -16,7 +16,7 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if !scene.driven.is_empty() {
         return Some("grains that are moved as walls are were not written for rapier".to_owned());
     }
-    let overlap = overlap::deepest(&scene.grains, &scene.walls, scene.domain.as_ref());
+    let overlap = overlap::deepest(&scene.grains, &scene.walls, scene.domain.as_ref(), 1.0);
     if let Some(deepest) = overlap.filter(|deepest| deepest.ratio() > DEEPEST) {
         let found = deepest.words(&scene.walls);
         return Some(format!(

@@ -261,9 +261,9 @@ impl Resolver<'_> {
     ) -> Result<(), SceneError> {
         let bound = self.file.largest_initial_overlap;
         self.check.not_negative("largest_initial_overlap", bound, "ratio")?;
-        let Some(deepest) = overlap::deepest(grains, walls, domain).filter(|deepest| deepest.ratio() > bound) else {
-            return Ok(());
-        };
+        // Where the centre of one lies within another it is of no use to know which pair is worse still.
+        let found = overlap::deepest(grains, walls, domain, bound.max(1.0));
+        let Some(deepest) = found.filter(|deepest| deepest.ratio() > bound) else { return Ok(()) };
         let group_of =
             |grain: usize| groups.iter().find(|(_, range)| range.contains(&grain)).map_or("", |(name, _)| name);
         let (Deepest::Grains(grain, ..) | Deepest::GrainWall(grain, ..)) = deepest;
