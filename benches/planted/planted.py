@@ -19,7 +19,6 @@ import re
 import resource
 import subprocess
 import sys
-import time
 from collections import Counter
 from pathlib import Path
 
@@ -52,24 +51,35 @@ def command(words, where, **more):
     return done.stdout
 
 
-def bounded():
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+def bounded(seconds):
+    """Processor time and memory that a program may take: a machine that is busy with other things is no defect."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return limit
 
 
 def attempt(words, where, number, seconds, more=None):
-    """Exit code, output and time of a program in which a defect acts; a code of None where it was stopped."""
+    """Exit code, output and processor time of a program in which a defect acts; a code of None where it was stopped."""
     environment = {**os.environ, "PLANTED": str(number), "INSTA_UPDATE": "no", "CI": "true", **(more or {})}
-    begun = time.monotonic()
+    begun, seconds = spent(), int(seconds) + 1
     with subprocess.Popen(words, cwd=where, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          stdin=subprocess.DEVNULL, preexec_fn=bounded, start_new_session=True) as child:
+                          stdin=subprocess.DEVNULL, preexec_fn=bounded(seconds), start_new_session=True) as child:
         try:
-            said, code = child.communicate(timeout=seconds)[0], child.returncode
+            said, code = child.communicate(timeout=20 * seconds + 600)[0], child.returncode
         except subprocess.TimeoutExpired:
             # With all that it started: they are a group of their own.
             os.killpg(child.pid, 9)
             said, code = child.communicate()[0], None
-    return code, said.decode(errors="replace"), time.monotonic() - begun
+    took = spent() - begun
+    return None if took >= seconds else code, said.decode(errors="replace"), took
+
+
+def spent():
+    """Processor time of all programs that have ended (s)."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 class Planting:
@@ -215,7 +225,7 @@ def judge(program, work, number, seconds, plain):
     subprocess.run(["rm", "-rf", str(out)], check=False)
     answer = {"seconds": round(took, 1), "caught": None, "red": 0, "moved": None}
     if code is None:
-        answer["caught"] = f"run: not ended after {seconds:.0f} s"
+        answer["caught"] = f"run: not ended after {seconds:.0f} s of processor time"
     elif left is None:
         last = [line for line in said.splitlines() if line.strip() and not line.startswith("note:")][-3:]
         answer["caught"] = f"run: ended with {code}: {' | '.join(last)[:150]}"
