@@ -44,6 +44,10 @@ fn claims() -> Vec<Claim> {
         let run = |solver| Run::new(variant, solver, STEP.resolution);
         claims.extend(forces(run, &["contact.normal_force"], 1e-13, |scene, _| hertz(scene).1));
     }
+    claims.push(force_that_moves());
+    // At a wall both programs keep the force that moved the grain.
+    let damped = |solver| Run::new(DAMPED[0], solver, STEP.resolution);
+    claims.extend(forces(damped, &["contact.normal_force"], 1e-13, |scene, _| hertz(scene).1));
     claims
 }
 
@@ -163,6 +167,36 @@ fn restitution() -> Vec<Claim> {
             .refuses(control)
     };
     DAMPED.into_iter().flat_map(|variant| RESTITUTIONS.map(|restitution| of(variant, restitution))).collect()
+}
+
+/// Force (N) on the sphere of aluminium oxide that meets the plane with e = .5, by hand: k δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇.
+fn damped_force(overlap: f64, rate: f64) -> f64 {
+    let (radius, density, modulus) = (0.0025_f64, 4000.0, 380.0e9 / (1.0 - 0.23 * 0.23));
+    let stiffness = 4.0 / 3.0 * modulus * radius.sqrt();
+    let mass = density * 4.0 / 3.0 * PI * radius.powi(3);
+    let damping = 5.0_f64.sqrt() * damping_ratio(0.5) * (stiffness * mass).sqrt();
+    if overlap > 0.0 { stiffness * overlap.powf(1.5) + damping * overlap.powf(0.25) * rate } else { 0.0 }
+}
+
+/// The contact force that `dem` records is the one that moves the grain: its dashpot takes the velocity half a step back,
+/// by which the sphere came from its last position to this one.
+fn force_that_moves() -> Claim {
+    claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
+        .of(Run::new(DAMPED[0], "dem", STEP.resolution))
+        .equals(
+            Source::Derived("k δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇, in numbers by hand (derivation)"),
+            |done| {
+                let (height, time) = (done[0].column("a.z")?, &done[0].series().time);
+                let before = |at: usize| at.checked_sub(1);
+                let rate = |at| before(at).map_or(3.9, |was| (height[was] - height[at]) / (time[at] - time[was]));
+                let expected: Vec<f64> =
+                    (0..height.len()).map(|at| damped_force(0.0025 - height[at], rate(at))).collect();
+                let force = done[0].column("contact.normal_force")?;
+                Ok(Measured::worst_of(time, force, &expected, hertz(&done[0].scene).1))
+            },
+        )
+        .within(judged(1e-10, "rounding of positions, ε R of a way of v Δt = 1e-5 R a step, and of times"))
+        .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.damping_ratio *= 1.001)))
 }
 
 fn at_angle(variant: &'static str, degrees: f64) -> Run {

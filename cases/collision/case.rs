@@ -2,6 +2,7 @@
 
 use crate::rows::programs;
 use crate::rows::rigid;
+use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
@@ -39,6 +40,8 @@ fn claims() -> Vec<Claim> {
     claims.extend(AXES.map(|axis| rigid::momentum("oblique", along(axis), move |done| worst_momentum(done, axis))));
     claims.push(rigid::angular_momentum("oblique", worst_angular_momentum));
     claims.extend(programs::restitution(&DAMPED, LEVELS[1].resolution));
+    claims.push(force_that_moves());
+    claims.extend(programs::PAIRS.map(force_that_is_printed));
     claims
 }
 
@@ -91,6 +94,50 @@ fn measured_restitution(done: &Done) -> Result<Measured, Missing> {
     let pulls = !done.record.provenance.solver.ends_with("no-tension");
     let (_, _, zeta) = pair(&done.scene);
     Ok(Measured::new(after / before, exact_restitution(zeta, pulls), 1.0))
+}
+
+/// Whose contact force is looked at: ζ = .2 by β.
+const FELT: &str = DAMPED[3];
+/// Its largest spring force without damping, v√(k m*) (N), closing at v = 2 m/s.
+const LARGEST: f64 = 2.0 * 70.710_678_118_654_76;
+
+/// Force (N) of the pair with ζ = .2, by hand: k = 1e4 N/m, c = 2ζ√(k m*) = 28.284271 N s/m.
+fn damped_force(overlap: f64, rate: f64) -> f64 {
+    if overlap > 0.0 { 1.0e4 * overlap + 28.284_271_247_461_902 * rate } else { 0.0 }
+}
+
+/// The contact force that `dem` records is the one that moves the grains: its dashpot takes the velocity of half a step
+/// before, by which the overlap came from its last value to this one.
+fn force_that_moves() -> Claim {
+    claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
+        .of(Run::new(FELT, "dem", LEVELS[1].resolution))
+        .equals(Source::Derived("kδ + c (δ(n) − δ(n−1))/Δt, in numbers by hand (derivation)"), |done| {
+            let (a, b, time) = (done[0].column("a.x")?, done[0].column("b.x")?, &done[0].series().time);
+            let overlap = |at: usize| 2.0 - (b[at] - a[at]);
+            let of = |at: usize| damped_force(overlap(at), (overlap(at) - overlap(at - 1)) / (time[at] - time[at - 1]));
+            // They start apart.
+            let expected: Vec<f64> = std::iter::once(0.0).chain((1..time.len()).map(of)).collect();
+            Ok(Measured::worst_of(time, done[0].column("contact.normal_force")?, &expected, LARGEST))
+        })
+        .within(judged(1e-11, "rounding of positions, 2ε of a way of v Δt = 2e-4 a step, and of times"))
+        .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.stiffness_damping *= 1.001)))
+}
+
+/// Both programs evaluate the contact anew when they print it, and the dashpot takes the velocity of the sample: half a
+/// step later than what moved the grains.
+fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
+    let control = Control::ours("discs 1e-6 nearer to each other in ours", |scene| scene.grains[0].position.x += 1e-6);
+    let because = "the same cycle: rounding; in units of the largest force without damping";
+    let runs = pair.map(|solver| Run::new(FELT, solver, LEVELS[1].resolution));
+    let quantity = "force of a damped contact with the velocity of the sample, worst";
+    programs::row(quantity, "N", judged(1e-12, because), runs, control, |done| {
+        let of = |column| together(&done[0], &done[1], column).map(|(ours, _)| ours);
+        let (x, v) = ([of("a.x")?, of("b.x")?], [of("a.vx")?, of("b.vx")?]);
+        let force = |at: usize| damped_force(2.0 - (x[1][at] - x[0][at]), v[0][at] - v[1][at]);
+        let ours: Vec<f64> = (0..x[0].len()).map(force).collect();
+        let theirs = done[1].column("contact.normal_force")?;
+        Ok(Measured::worst_of(&done[1].series().time, &ours, theirs, LARGEST))
+    })
 }
 
 /// The other release convention.

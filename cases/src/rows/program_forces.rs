@@ -1,8 +1,8 @@
 //! Rows of the programs `lammps` and `liggghts`: the forces at contacts are ours, as their dumps of contacts and of
 //! walls have them.
 //!
-//! Both programs evaluate them anew when they are written, with the velocities of the full step: what dashpots add
-//! differs from what moved the grains, and all rows here are undamped.
+//! Between grains both programs evaluate them anew when they are written, with the velocities of the full step: what
+//! dashpots add differs from what moved the grains, and rows of pairs are undamped. At walls they keep what moved them.
 
 use crate::rows::programs::{PAIRS, layer_of_spheres, row};
 use grainbench_harness::compare::pointwise::worst;

@@ -22,8 +22,8 @@ pub struct ProbeSpec {
     pub point: Option<PointSpec>,
     /// A contact between a grain and a grain or wall. Columns overlap, normal_force, shear_force (signed in two
     /// dimensions), slipping (0 or 1). Of `dem` the forces are those that moved the grains, whose dashpots feel the
-    /// velocities of half a step before, kδ − γ v(n−½); LAMMPS and LIGGGHTS evaluate a contact anew when they print it, with
-    /// the velocities at the step, kδ − γ v(n), which differs by γ a Δt/2.
+    /// velocities of half a step before, kδ − γ v(n−½); LAMMPS and LIGGGHTS do so at walls, but evaluate a contact between
+    /// grains anew when they print it, with the velocities at the step, kδ − γ v(n), which differs by γ a Δt/2.
     #[serde(default)]
     pub contact: Option<[String; 2]>,
     /// A wall: columns force_x, … of the grains on it.
