@@ -53,8 +53,12 @@ fn script(folder: &Path, text: &str) -> PathBuf {
 }
 
 fn run(text: &str) -> Result<Record, RunError> {
+    run_within(60, text)
+}
+
+fn run_within(seconds: u64, text: &str) -> Result<Record, RunError> {
     let folder = tempfile::tempdir().unwrap();
-    let live = Live::at(Program::LAMMPS, &script(folder.path(), text)).with_time_limit(Duration::from_secs(1));
+    let live = Live::at(Program::LAMMPS, &script(folder.path(), text)).with_time_limit(Duration::from_secs(seconds));
     live.run(&scene(), &Resolution::TimeStep(0.01), &mut ())
 }
 
@@ -75,8 +79,8 @@ fn a_program_that_fails_says_its_last_lines() {
 
 #[test]
 fn a_program_that_hangs_is_ended() {
-    let error = run("echo working; exec sleep 60").unwrap_err();
-    assert_eq!(error.to_string(), "lammps was ended after 1 s; it said last: working");
+    let error = run_within(1, "echo working; exec sleep 60").unwrap_err();
+    assert_eq!(error.to_string(), "lammps was not done after 1 s; it said last: working");
 }
 
 #[test]
@@ -130,6 +134,12 @@ fn a_program_that_leaves_less_than_its_run() {
 }
 
 #[test]
+fn a_program_that_leaves_a_pipe_is_not_waited_for() {
+    let error = run("mkfifo dump.grains").unwrap_err().to_string();
+    assert!(error.contains("dump.grains: expected a plain file, found none"), "{error}");
+}
+
+#[test]
 fn a_program_that_fills_the_disk_is_ended() {
     let error = run("yes > dump.grains").unwrap_err().to_string();
     assert!(error.contains("MB for the samples of this scene, found more"), "{error}");
@@ -141,7 +151,7 @@ fn a_program_ends_with_all_that_it_started() {
     let folder = tempfile::tempdir().unwrap();
     let told = folder.path().join("told");
     let text = format!("sleep 60 & echo $! > {}; wait", told.display());
-    assert!(run(&text).unwrap_err().to_string().contains("was ended after 1 s"));
+    assert!(run_within(1, &text).unwrap_err().to_string().contains("was not done after 1 s"));
     let child = fs::read_to_string(told).unwrap();
     let is_there =
         || fs::read_to_string(format!("/proc/{}/stat", child.trim())).is_ok_and(|stat| !stat.contains(") Z"));

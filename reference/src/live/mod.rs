@@ -1,8 +1,10 @@
 //! LAMMPS and LIGGGHTS as solvers, where they are installed: deck, run, dump, record.
 
+mod deadline;
 mod process;
 
 use std::env;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -12,6 +14,7 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
+use deadline::Deadline;
 use process::Limits;
 
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
@@ -66,7 +69,7 @@ impl Live {
         Self { program, executable: Ok(executable.to_owned()), time_limit: TIME_LIMIT }
     }
 
-    /// The same with another limit of time.
+    /// The same with another limit of the time that the run and the reading of its files may take together.
     #[must_use]
     pub fn with_time_limit(self, time_limit: Duration) -> Self {
         Self { time_limit, ..self }
@@ -101,12 +104,14 @@ impl Solver for Live {
         watch.begin(stepping.time_step, stepping.steps);
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let folder = process::scratch(&deck).map_err(|error| fail(Failure::NotRun(error.to_string()), Vec::new()))?;
-        let limits = Limits { time: self.time_limit, bytes: most_bytes(scene, stepping) };
+        let deadline = Deadline::after(self.time_limit);
+        let limits = Limits { deadline, bytes: most_bytes(scene, stepping) };
         let screen = process::run(executable, &deck.files[0].0, folder.path(), limits)
             .map_err(|(failure, last_lines)| fail(failure, last_lines))?;
-        let unusable = |error: ReadError| fail(Failure::Output(error.to_string()), screen.clone());
-        let mut observed = observe(scene, &deck, folder.path()).map_err(unusable)?;
-        let log = read_log(&folder.path().join(process::LOG)).map_err(unusable)?;
+        let unusable = |failure: Failure| fail(failure, screen.clone());
+        let mut observed = observe(scene, &deck, folder.path(), deadline).map_err(unusable)?;
+        let log = plain_file(folder.path(), process::LOG).and_then(|path| read_log(&path).map_err(output));
+        let log = log.map_err(unusable)?;
         for (column, values) in logged::read(&deck.logged, &log, &observed.series) {
             observed.add(scene, &column, values);
         }
@@ -162,8 +167,25 @@ fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads what a deck's run left in a folder. Values that are not finite are kept: they are told of by name and step.
-fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadError> {
+/// What a file that cannot be read makes of a run.
+fn output(error: ReadError) -> Failure {
+    Failure::Output(error.to_string())
+}
+
+/// The path of a file that a run left in a folder. A pipe, which would be waited for without end, is refused, and so is
+/// a link.
+fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> {
+    let path = folder.join(name);
+    match fs::symlink_metadata(&path) {
+        Ok(found) if !found.is_file() => Err(Failure::Output(format!("{name}: expected a plain file, found none"))),
+        // That there is nothing is told by whoever opens it.
+        _ => Ok(path),
+    }
+}
+
+/// Reads what a deck's run left in a folder, until its time is over. Values that are not finite are kept: they are told
+/// of by name and step.
+fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Result<Observed, Failure> {
     let stepping = deck.stepping;
     let mut snapshot = DumpSnapshot::default();
     let ids: Vec<u64> = (1..=scene.grains.len() as u64).collect();
@@ -172,9 +194,11 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadEr
         if !pairs.is_asked() || !is_there {
             continue;
         }
-        let mut reader = DumpReader::open(&folder.join(name))?.not_finite(NotFinite::Kept);
-        while reader.read(&mut snapshot)? {
-            pairs.take(name, &snapshot, &deck.names, None)?;
+        let path = plain_file(folder, name)?;
+        let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NotFinite::Kept);
+        while reader.read(&mut snapshot).map_err(output)? {
+            deadline.check()?;
+            pairs.take(name, &snapshot, &deck.names, None).map_err(output)?;
         }
     }
     let mut observer = Observer::new(scene).with_pairs(pairs);
@@ -185,14 +209,39 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path) -> Result<Observed, ReadEr
         if name == END && stepping.ends_on_a_sample() {
             continue;
         }
-        let path = folder.join(name);
-        let mut reader = DumpReader::open(&path)?.not_finite(NotFinite::Kept);
-        while reader.read(&mut snapshot)? {
+        let path = plain_file(folder, name)?;
+        let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NotFinite::Kept);
+        while reader.read(&mut snapshot).map_err(output)? {
+            deadline.check()?;
             let past = due.partition_point(|&step| step <= snapshot.step);
             due = &due[past..];
             let time = snapshot.step as f64 * stepping.time_step;
-            observer.take(name, &snapshot, &deck.names, time, None, past > 0)?;
+            observer.take(name, &snapshot, &deck.names, time, None, past > 0).map_err(output)?;
         }
     }
     Ok(observer.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_scene::source::SceneSource;
+
+    const SCENE: &str = "title = 't'\ndimension = 2\nduration = 0.02\n[materials.m]\ndensity = 1000.0\n\
+         [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1e6\n\
+         [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.0]\n[output]\nevery = 0.01\n";
+    const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n-1 1\n-1 1\n-1 1\n\
+         ITEM: ATOMS id x y vx vy omegaz\n1 0 0 0 0 0\n";
+
+    #[test]
+    fn reading_ends_when_the_time_is_over() {
+        let scene =
+            SceneSource::from_text("scene.toml", Path::new("."), SCENE).scene(&|_| Err("none".to_owned())).unwrap();
+        let deck = write_deck(&scene, &Resolution::TimeStep(0.01), Program::LAMMPS).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(SAMPLES), DUMP).unwrap();
+        let read = |time| observe(&scene, &deck, folder.path(), Deadline::after(time)).map(|seen| seen.series.step);
+        assert_eq!(read(TIME_LIMIT), Ok(vec![0]));
+        assert_eq!(read(Duration::ZERO), Err(Failure::TimeOut(0)));
+    }
 }

@@ -5,11 +5,12 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use grainbench_scene::solver::Failure;
 use tempfile::TempDir;
 
+use super::deadline::Deadline;
 use crate::deck::Deck;
 
 /// The log that a run leaves in its folder.
@@ -33,8 +34,8 @@ pub(crate) fn scratch(deck: &Deck) -> io::Result<TempDir> {
 /// What a program may take.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
-    /// Time.
-    pub(crate) time: Duration,
+    /// When it must have ended.
+    pub(crate) deadline: Deadline,
     /// All that it may leave in its folder (B).
     pub(crate) bytes: u64,
 }
@@ -78,22 +79,20 @@ pub(crate) fn run(
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut guard, 0);
     let mut child = guard.spawn().map_err(not_run)?;
-    let start = Instant::now();
     let mut pause = Duration::from_millis(1);
     let status = loop {
         let failure = match child.try_wait() {
             Ok(Some(status)) => break status,
             Err(error) => Failure::NotRun(error.to_string()),
-            Ok(None) if start.elapsed() >= limits.time => Failure::TimeOut(limits.time.as_secs()),
-            Ok(None) if size(folder) > limits.bytes => Failure::Output(format!(
-                "expected at most {} MB for the samples of this scene, found more",
-                limits.bytes / 1_000_000
-            )),
-            Ok(None) => {
-                sleep(pause);
-                pause = (pause * 2).min(Duration::from_millis(20));
-                continue;
-            }
+            Ok(None) if size(folder) > limits.bytes => too_much(limits.bytes),
+            Ok(None) => match limits.deadline.check() {
+                Err(time_out) => time_out,
+                Ok(()) => {
+                    sleep(pause);
+                    pause = (pause * 2).min(Duration::from_millis(20));
+                    continue;
+                }
+            },
         };
         // The guard ends the program; it may have ended by itself in the meantime.
         close(&mut child);
@@ -103,10 +102,7 @@ pub(crate) fn run(
     close(&mut child);
     let last_lines = last_lines(folder);
     match status.code() {
-        Some(0) if size(folder) > limits.bytes => {
-            let most = limits.bytes / 1_000_000;
-            Err((Failure::Output(format!("expected at most {most} MB for this scene, found more")), last_lines))
-        }
+        Some(0) if size(folder) > limits.bytes => Err((too_much(limits.bytes), last_lines)),
         Some(0) => Ok(last_lines),
         // What a shell says of a program that it could not start.
         Some(126 | 127) => Err((Failure::NotRun(executable.display().to_string()), last_lines)),
@@ -114,6 +110,11 @@ pub(crate) fn run(
         Some(code @ 129..=192) => Err((Failure::Crash(format!("signal {}", code - 128)), last_lines)),
         _ => Err((Failure::Crash(status.to_string()), last_lines)),
     }
+}
+
+/// The failure of a run that left more bytes than it may.
+fn too_much(most: u64) -> Failure {
+    Failure::Output(format!("expected at most {} MB for the samples of this scene, found more", most / 1_000_000))
 }
 
 /// Closes the standard input of the guard, which is told that the folder is still looked at. It may have ended.

@@ -395,8 +395,8 @@ pub enum Failure {
     /// It could not be started, or its folder not be made.
     #[error("could not be run: {0}")]
     NotRun(String),
-    /// It took too long and was ended.
-    #[error("was ended after {0} s")]
+    /// It took too long and was ended, or what it left took too long to read.
+    #[error("was not done after {0} s")]
     TimeOut(u64),
     /// It ended with another code than success.
     #[error("failed: {0}")]
