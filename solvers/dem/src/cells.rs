@@ -76,3 +76,31 @@ impl Cells {
         self.start[row + from] as usize..self.start[row + to + 1] as usize
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_scene::space::Plane;
+    use nalgebra::Vector2;
+
+    /// Grains on a lattice as wide as a cell have a cell each, wherever they are: what a grain is tested against does not
+    /// grow with their number.
+    #[test]
+    fn a_lattice_has_one_grain_a_cell() {
+        for origin in [-100.0, 0.0, 100.0] {
+            let at = |number: u32| {
+                let along = |part: u32| origin + 1.01 * f64::from(part);
+                Place::<Plane> { position: Vector2::new(along(number % 8), along(number / 8)), radius: 0.4 }
+            };
+            let (cells, order) = Cells::sort(&(0..64).map(at).collect::<Vec<_>>(), 1.0);
+            // The last of a row is on the border of the grid and shares the cell before it.
+            assert_eq!(cells.count, [7, 7, 1]);
+            let most = (0..7).flat_map(|j| (0..7).map(move |i| (i, j))).map(|(i, j)| cells.row(i, i, j, 0).len()).max();
+            assert_eq!((most, order.len()), (Some(4), 64), "from {origin}");
+            assert_eq!(
+                (cells.row(0, 0, 0, 0).len(), cells.row(3, 3, 5, 0).len(), cells.row(6, 6, 5, 0).len()),
+                (1, 1, 2)
+            );
+        }
+    }
+}

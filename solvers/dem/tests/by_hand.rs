@@ -10,7 +10,7 @@ use grainbench_scene::record::{Record, Snapshot};
 use grainbench_scene::solver::Resolution;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
-use support::{last, run, run_at};
+use support::{column, last, run, run_at};
 
 /// Ten significant digits: sums of some thousand steps lose no more than three of sixteen, differences of lengths with
 /// an overlap of a tenth one.
@@ -86,6 +86,41 @@ fn a_paddle_feels_its_dashpot_by_its_velocity_where_it_touches() {
         let (sine, cosine) = (spin * 3e-4_f64).sin_cos();
         let (overlap, along) = (0.1 - (0.095 * cosine - sine), cosine + 0.095 * sine);
         close(last(&record, "c.normal_force"), 1.0e6 * overlap + 0.02 * 1.0e6 * spin * along);
+    }
+}
+
+/// A paddle that comes from afar is felt when it comes, though nothing else moves: what is near it is looked for anew when it
+/// may have turned so far, whether the grain is .05 m from the axis about which it turns or 3 m.
+///
+/// The near end P of the paddle passes the disc at an angle of .3 rad before the end of its turn, or its side does: F_n = k δ +
+/// β k u·n with n from the nearest point P to the disc and u = ω e_z × P its velocity.
+#[test]
+fn a_paddle_that_comes_from_afar_is_felt() {
+    for (grain, ends, angle) in
+        [(0.05, [0.12, 0.5], PI - 0.3), (3.0, [2.0, 4.0], FRAC_PI_2), (3.0, [2.0, 4.0], -FRAC_PI_2)]
+    {
+        let start = if angle > PI / 2.0 { -1.0 } else { 0.0 };
+        let side = if start == 0.0 { -(angle + 0.02 * angle.signum()) } else { PI };
+        let place = |at: f64, turned: f64| Vector3::new(at * turned.cos(), at * turned.sin(), 0.0);
+        let [one, two] = ends.map(|at| place(at, side));
+        let record = heavy(
+            &format!(
+                "dimension = 2\nduration_cycles = 1000\n\
+                 [grains.g]\nmaterial = 'h'\nradius = 0.1\nposition = [{grain}, 0.0]\n\
+                 [walls.w]\nmaterial = 'h'\nsegment = [[{}, {}], [{}, {}]]\n\
+                 motion = [{{ spin = {angle}, centre = [0.0, 0.0] }}]\n[probes]\nc.contact = ['g', 'w']\n",
+                one.x, one.y, two.x, two.y
+            ),
+            1e-3,
+        );
+        let centre = Vector3::new(grain, 0.0, 0.0);
+        let along = place(1.0, side + angle);
+        let point = along * along.dot(&centre).clamp(ends[0], ends[1]);
+        let velocity = Vector3::new(-point.y, point.x, 0.0) * angle;
+        let (distance, normal) = ((centre - point).norm(), (centre - point).normalize());
+        assert!(distance < 0.1, "they touch: {distance}");
+        assert_eq!(column(&record, "c.normal_force")[500], 0.0, "half-way they do not");
+        close(last(&record, "c.normal_force"), 1.0e6 * (0.1 - distance) + 0.02 * 1.0e6 * velocity.dot(&normal));
     }
 }
 
@@ -217,4 +252,61 @@ fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
     closely(force(3, rectangle, "[1.2, 2.3, -0.6]", 0.71), Vector3::new(2.0, 3.0, -6.0) * (1e4 / 7.0));
     closely(force(3, rectangle, "[1.3, 0.7, 0.4]", 0.51), Vector3::new(6e3, 0.0, 8e3));
     closely(force(3, rectangle, "[0.4, 2.3, -0.4]", 0.51), Vector3::new(0.0, 6e3, -8e3));
+}
+
+/// The three dashpots of a linear contact add up, F_n = k δ + (β k + γ m* + 2ζ √(k m*)) δ̇, between grains and at a wall: m* of
+/// discs of .1 m and 1000 and 3000 kg/m³ is 7.5 π kg, that of one at a wall 10 π kg; e = .5 has ζ = ln 2/√(π² + ln² 2).
+#[test]
+fn dashpots_add_up() {
+    let ratio = 2.0_f64.ln() / (PI * PI + 2.0_f64.ln().powi(2)).sqrt();
+    let partners = [
+        ("grains.b = { material = 'o', radius = 0.1, position = [0.0, -0.199] }", 0.199, 7.5 * PI),
+        ("walls.b = { material = 'o', plane = { point = [0.0, -0.099], normal = [0.0, 1.0] } }", 0.099, 10.0 * PI),
+    ];
+    for (partner, reach, mass) in partners {
+        let record = run(&format!(
+            "dimension = 2\nduration_cycles = 3\nmaterials.n.density = 1000.0\nmaterials.o.density = 3000.0\n\
+             contacts.n = {{ between = ['n', 'o'], normal_stiffness = 1.0e6, stiffness_damping = 1.0e-4, \
+             normal_damping = 30.0, restitution = 0.5 }}\n\
+             grains.a = {{ material = 'n', radius = 0.1, position = [0.0, 0.0], velocity = [0.0, -1.0] }}\n{partner}\n\
+             [probes]\na.grain = 'a'\nc.contact = ['a', 'b']\n"
+        ));
+        let overlap = column(&record, "c.overlap");
+        close(overlap[0], if reach < 0.1 { 0.1 - reach } else { 0.2 - reach });
+        let (force, step) = (column(&record, "c.normal_force"), record.provenance.time_step);
+        let dashpot = 1.0e-4 * 1.0e6 + 30.0 * mass + 2.0 * ratio * (1.0e6 * mass).sqrt();
+        let expected = 1.0e6 * overlap[2] + dashpot * (overlap[2] - overlap[1]) / step;
+        // Of the difference of two overlaps of a millimetre, a step of some 1e-4 m apart, five digits less are left.
+        assert!((force[2] / expected - 1.0).abs() < 1e-9, "{} for {expected}", force[2]);
+    }
+}
+
+/// Rolling resistance between two discs that spin against each other, so that their surfaces do not slip: a moment
+/// k_r θ + 2η √(I k_r) Ω with the spring's k_r = 2.25 k μ² R_eff², R_eff = R/2, the angle θ by which one has turned against
+/// the other, and I the moment of inertia about the contact, of both together: 3/2 m R² of each disc, half as much for two
+/// alike. The spring holds ½ k_r θ².
+#[test]
+fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
+    // Spins of .5 and −.5 rad/s, R = .1 m, δ = 1 mm, μ = .1: the spring yields at k_r θ = μ R_eff k δ = 5 N m.
+    let stiffness = 2.25 * 1.0e6 * 0.1 * 0.1 * 0.05 * 0.05;
+    for (density, damping) in [(1.0e20, 0.0), (1.0e20, 1.0e-9)] {
+        let record = run_at(
+            &format!(
+                "dimension = 2\nduration_cycles = 20\nmaterials.n.density = {density:?}\n\
+                 contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 0.5, \
+                 rolling_friction = 0.1, rolling_damping = {damping} }}\n\
+                 grains.a = {{ material = 'n', radius = 0.1, position = [0.0, 0.0], spin = 0.5 }}\n\
+                 grains.b = {{ material = 'n', radius = 0.1, position = [0.199, 0.0], spin = -0.5 }}\n\
+                 [probes]\nall.system = true\n"
+            ),
+            Convention::DEFAULT,
+            &Resolution::TimeStep(1e-3),
+        );
+        let inertia = 0.75 * density * PI * 0.01 * 0.01;
+        let moment = stiffness * 0.02 + 2.0 * damping * (inertia * stiffness).sqrt();
+        let [a, b] = [0, 1].map(|at| end(&record).grains[at].torque.unwrap().z);
+        close(a, -moment);
+        close(b, moment);
+        close(last(&record, "all.elastic_energy"), 0.5 * 1.0e6 * 1e-6 + 0.5 * stiffness * 0.02 * 0.02);
+    }
 }

@@ -76,6 +76,33 @@ fn discs_push_with_the_springs_of_both() {
     assert!((force(3.0, 2.6) / alike - 1.5).abs() < 1e-12);
 }
 
+/// The same discs pass each other at 20 m/s: the springs of all tracers, those of either disc, have slipped in the first
+/// step and rub with μ times what they push with. The first disc goes up and is held back; what holds it is counted
+/// positive down, which is the right of the line from it to the other.
+#[test]
+fn discs_that_pass_each_other_rub_with_the_springs_of_both() {
+    let force = |friction: f64, speed: f64| {
+        let text = format!(
+            "dimension = 2\nduration = 1.0e-3\noutput.every_cycles = 1\n\
+             materials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }}\n\
+             contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = {friction} }}\n\
+             [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-0.99, 0.0]\nvelocity = [0.0, {speed}]\n\
+             [grains.b]\nmaterial = 'm'\nradius = 1.0\nposition = [0.99, 0.0]\nvelocity = [0.0, {}]\n\
+             [probes]\nc.contact = ['a', 'b']\n",
+            -speed
+        );
+        let record = try_run("mpm", |_| (), &text, Resolution::grid(8.0, 2)).unwrap();
+        column(&record, "c.shear_force")[1] / column(&record, "c.normal_force")[1]
+    };
+    for friction in [0.3, 0.1] {
+        for (speed, sign) in [(10.0, 1.0), (-10.0, -1.0)] {
+            let found = force(friction, speed);
+            // The line along which a tracer rubs turns by s/R from the middle of the contact to its ends, δ/R at most.
+            assert!((found / (sign * friction) - 1.0).abs() < 0.02, "{found} for {}", sign * friction);
+        }
+    }
+}
+
 /// A disc at rest on a belt that has begun to run at V = 6 m/s: springs are stretched beyond Coulomb's limit in every step, μ δ
 /// at a depth δ, so that the disc feels μ times what presses it, and gains v_x = μ (g t + v_y). Velocities at the start are
 /// taken for those half a step earlier, when nothing rubbed yet: t is half a step longer. Sums of some hundred steps are

@@ -13,6 +13,12 @@ fn scene(text: &str) -> Scene {
     source.scene(&|_| Err("no files".to_owned())).unwrap()
 }
 
+/// Why a scene is refused.
+fn refusal(text: &str) -> String {
+    let source = SceneSource::from_text("test", Path::new(""), text);
+    source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string()
+}
+
 fn close(found: f64, expected: f64) {
     assert!((found - expected).abs() <= 1e-9 * expected.abs(), "{found} for {expected}");
 }
@@ -67,4 +73,42 @@ fn slopes_masses_and_inertia() {
     close(sphere.gravity.z, -4.9);
     close(sphere.grains[0].mass, 523.598_775_598_298_9);
     close(sphere.grains[0].inertia, 52.359_877_559_829_89);
+}
+
+/// Two discs of .5 m, or three, in a period of 10 m overlap across its face by .7 m, 1.4 of the radius; so do two that start
+/// a period away. .1 m more between them than a period has room for is told too.
+#[test]
+fn overlaps_are_found_across_a_period() {
+    for xs in [vec![0.2, 9.9], vec![0.2, 5.0, 9.9], vec![9.9, 0.2], vec![10.2, 9.9], vec![0.2, 0.2 + 9.7]] {
+        let grain = |(at, x)| format!("grains.g{at} = {{ material = 'm', radius = 0.5, position = [{x}, 1.0] }}\n");
+        let grains: String = xs.iter().enumerate().map(grain).collect();
+        let said = refusal(&format!(
+            "title = 't'\ndimension = 2\nduration = 1.0\n\
+             domain = {{ low = [0.0, 0.0], high = [10.0, 4.0], periodic = [true, false] }}\n\
+             materials.m.density = 1.0\ncontacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0 }}\n{grains}"
+        ));
+        assert!(said.contains("1.4"), "{xs:?}: {said}");
+    }
+}
+
+/// A grain whose centre is on a face of the domain is in it, wherever the domain is; one beyond it is not.
+#[test]
+fn a_grain_on_a_face_is_in_its_domain() {
+    let text = |low: f64, x: f64| {
+        format!(
+            "title = 't'\ndimension = 2\nduration = 1.0\n\
+             domain = {{ low = [{low}, -3.0], high = [{}, -1.0], periodic = [false, false] }}\n\
+             materials.m.density = 1.0\ncontacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0 }}\n\
+             [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [{x}, -2.0]\n",
+            low + 2.0
+        )
+    };
+    for low in [-9.0, -1.0, 0.0, 5.0] {
+        for x in [low, low + 2.0] {
+            close(scene(&text(low, x)).grains[0].position.x, x);
+        }
+        for x in [low - 1e-6, low + 2.0 + 1e-6] {
+            assert!(refusal(&text(low, x)).contains("within the domain"), "{low}, {x}");
+        }
+    }
 }

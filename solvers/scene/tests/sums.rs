@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench_scene::record::{BodyState, GrainState, Look, Snapshot};
+use grainbench_scene::record::{BodyState, ContactState, GrainState, Look, Partner, Snapshot};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::source::SceneSource;
 use nalgebra::Vector3;
@@ -52,5 +52,47 @@ fn energies_and_momenta() {
     ] {
         let found = series.column(&format!("all.{column}")).unwrap()[0];
         assert!((found - expected).abs() < 1e-9 * (1.0 + expected.abs()), "{column}: {found} for {expected}");
+    }
+}
+
+/// Three discs of .5 m in a periodic square of 2 m: the second .9 m beside the first and pushed apart by 10 N with 3 N of
+/// friction up on the first, the third .8 m above it with 20 N and 4 N to the right; the wall does not count. σ_ij = Σ l_i
+/// f_j/V with the line l and the force f on the first: .9 (−10, 3) in the first row, .8 (4, −20) in the second, over 4 m².
+/// Two contacts of three discs: each touches 4/3.
+#[test]
+fn mean_stress_and_coordination() {
+    let text = "title = 't'\ndimension = 2\nduration = 1.0\n\
+                largest_initial_overlap = 0.5\ndomain = { low = [-1.0, -1.0], high = [1.0, 1.0], periodic = [true, true] }\n\
+                materials.m.density = 1.0\ncontacts.m = { between = ['m', 'm'], normal_stiffness = 1.0 }\n\
+                grains.a = { material = 'm', radius = 0.5, position = [0.0, 0.0] }\n\
+                grains.b = { material = 'm', radius = 0.5, position = [0.9, 0.0] }\n\
+                grains.c = { material = 'm', radius = 0.5, position = [0.0, 0.8] }\n\
+                [walls.w]\nmaterial = 'm'\nsegment = [[-0.1, -0.45], [0.1, -0.45]]\n[probes]\nall.stress = true\n";
+    let scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err("no files".to_owned())).unwrap();
+    let grains = scene.grains.iter().zip(1..).map(|(grain, id)| GrainState::start(id, grain)).collect();
+    let touch = |partner, normal: [f64; 2], overlap, normal_force, shear: [f64; 2]| ContactState {
+        grain: 1,
+        partner,
+        point: Vector3::zeros(),
+        normal: Vector3::new(normal[0], normal[1], 0.0),
+        overlap,
+        normal_force,
+        shear_force: Vector3::new(shear[0], shear[1], 0.0),
+        slipping: false,
+    };
+    let contacts = vec![
+        touch(Partner::Grain(2), [1.0, 0.0], 0.1, 10.0, [0.0, 3.0]),
+        touch(Partner::Grain(3), [0.0, 1.0], 0.2, 20.0, [4.0, 0.0]),
+        touch(Partner::Wall(0), [0.0, -1.0], 0.05, 50.0, [1.0, 0.0]),
+    ];
+    let snapshot = Snapshot { contacts: Some(contacts), ..Snapshot::of_grains(&scene, 0, 0.0, grains) };
+    let mut recorder = Recorder::new(&scene, 1.0, 1);
+    recorder.take(&scene, Look::of_rigid(snapshot, 0.0));
+    let series = recorder.finish().0;
+    for (column, expected) in
+        [("sigma_xx", -2.25), ("sigma_yy", -4.0), ("sigma_xy", 0.675), ("coordination", 4.0 / 3.0)]
+    {
+        let found = series.column(&format!("all.{column}")).unwrap()[0];
+        assert!((found - expected).abs() < 1e-12, "{column}: {found} for {expected}");
     }
 }
