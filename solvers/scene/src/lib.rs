@@ -17,6 +17,7 @@ pub mod generate;
 pub mod manufactured;
 pub mod memory;
 pub mod motion;
+mod near;
 pub mod overlap;
 pub mod packing;
 pub mod perturbed;

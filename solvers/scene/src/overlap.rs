@@ -1,7 +1,9 @@
 //! Finds grains that overlap at the start, so that a mistyped position is an error and not an explosion.
 
+use crate::near::near_pairs;
 use crate::scene::{Domain, Grain, Wall, WallShape};
 use nalgebra::Vector3;
+use std::ops::ControlFlow;
 
 /// The deepest overlap of a scene relative to the smaller radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +35,8 @@ impl Deepest {
 }
 
 /// The deepest overlap among grains, and of grains with walls, if anything overlaps. Where one among grains is deeper than
-/// `enough` no deeper ones are looked for: of many grains in one place all pairs would be compared.
+/// `enough` no deeper ones are looked for: of many grains in one place all pairs would be compared. The time grows with the
+/// number of grains.
 #[must_use]
 pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>, enough: f64) -> Option<Deepest> {
     let pairs = grain_pairs(grains, domain, enough);
@@ -46,42 +49,23 @@ pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>, enough
     pairs.into_iter().chain(contacts).filter(|found| found.ratio() > 0.0).max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
 }
 
-/// Sorts along x and compares only grains whose extents meet there.
+/// The deepest among grains; of those that are as deep the first.
 fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option<Deepest> {
-    let periodic = domain.filter(|domain| domain.periodic[0]);
-    // Grains may start lengths away from a periodic domain; where they are in it is where others are near.
-    let x = |at: usize| {
-        let x = grains[at].position.x;
-        let outside = periodic.filter(|domain| !(domain.low.x..=domain.high.x).contains(&x));
-        outside.map_or(x, |domain| domain.low.x + (x - domain.low.x).rem_euclid(domain.high.x - domain.low.x))
-    };
-    let left = |at: usize| x(at) - grains[at].radius;
-    let mut order: Vec<usize> = (0..grains.len()).collect();
-    order.sort_by(|&a, &b| left(a).total_cmp(&left(b)));
-    let mut worst: Option<Deepest> = None;
-    let deeper = |worst: Option<Deepest>, a: usize, b: usize| {
-        let between = nearest_image(grains[b].position - grains[a].position, domain);
-        let (ra, rb) = (grains[a].radius, grains[b].radius);
-        let ratio = (ra + rb - between.norm()) / ra.min(rb);
-        let is_deeper = ratio > worst.map_or(0.0, |deepest| deepest.ratio());
-        if is_deeper { Some(Deepest::Grains(a.min(b), a.max(b), ratio)) } else { worst }
-    };
-    let wrap = periodic.map(|domain| domain.high.x - domain.low.x);
-    let largest = grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
-    for (at, &a) in order.iter().enumerate() {
-        let right = x(a) + grains[a].radius;
-        let beside = order[at + 1..].iter().take_while(|&&b| left(b) < right);
-        worst = beside.fold(worst, |worst, &b| deeper(worst, a, b));
-        // Across a periodic face: the first grains of the order come again one length to the right.
-        if let Some(length) = wrap.filter(|length| right + largest > x(order[0]) + length - 2.0 * largest) {
-            let again = order.iter().take_while(|&&b| left(b) + length < right);
-            worst = again.filter(|&&b| b != a).fold(worst, |worst, &b| deeper(worst, a, b));
+    let centres: Vec<Vector3<f64>> = grains.iter().map(|grain| grain.position).collect();
+    let radii: Vec<f64> = grains.iter().map(|grain| grain.radius).collect();
+    let mut worst = (0.0, usize::MAX, usize::MAX);
+    // Ends early where one is deep enough: there is nothing else to be told.
+    let _ = near_pairs(&centres, &radii, 0.0, domain, |a, b| {
+        let ratio =
+            (radii[a] + radii[b] - nearest_image(centres[b] - centres[a], domain).norm()) / radii[a].min(radii[b]);
+        let (first, second) = (a.min(b), a.max(b));
+        if ratio > worst.0 || (ratio == worst.0 && (first, second) < (worst.1, worst.2)) {
+            worst = (ratio, first, second);
         }
-        if worst.is_some_and(|deepest| deepest.ratio() > enough) {
-            break;
-        }
-    }
-    worst
+        if worst.0 > enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let (ratio, first, second) = worst;
+    (ratio > 0.0).then_some(Deepest::Grains(first, second, ratio))
 }
 
 fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {

@@ -5,13 +5,15 @@
 //! pair overlaps. There is no friction and no time in it, so packings can be denser than those that grains with
 //! friction come to rest in.
 
+use crate::near::near_pairs;
 use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 
-/// Most grains: the pairs are found by a sweep along x.
+/// Most grains.
 pub const MOST: u32 = 20_000;
 /// Size at the start, as a fraction.
 const SMALL: f64 = 0.5;
@@ -111,29 +113,15 @@ impl Packing<'_> {
 
     /// Lists the pairs that are within the skin.
     fn list(&mut self) {
-        let largest = self.radii.iter().copied().fold(0.0, f64::max);
-        let mut order: Vec<u32> = (0..self.radii.len() as u32).collect();
-        let x = |number: u32| self.centres[number as usize].x;
-        order.sort_by(|&a, &b| x(a).total_cmp(&x(b)).then(a.cmp(&b)));
-        let length = self.domain.high.x - self.domain.low.x;
+        let radii: Vec<f64> = self.radii.iter().map(|radius| radius * self.scale).collect();
         let mut pairs = Vec::new();
-        for (place, &a) in order.iter().enumerate() {
-            let reach = (self.radii[a as usize] + largest) * self.scale + self.skin;
-            for step in 1..order.len() {
-                let (b, wrapped) = match order.get(place + step) {
-                    Some(&b) => (b, 0.0),
-                    None if self.domain.periodic[0] => (order[place + step - order.len()], length),
-                    None => break,
-                };
-                if x(b) + wrapped - x(a) > reach {
-                    break;
-                }
-                let touch = (self.radii[a as usize] + self.radii[b as usize]) * self.scale + self.skin;
-                if self.between(a as usize, b as usize).norm_squared() < touch * touch {
-                    pairs.push((a.min(b), a.max(b)));
-                }
+        let _ = near_pairs(&self.centres, &radii, self.skin, Some(self.domain), |a, b| {
+            let touch = (self.radii[a] + self.radii[b]) * self.scale + self.skin;
+            if self.between(a, b).norm_squared() < touch * touch {
+                pairs.push((a.min(b) as u32, a.max(b) as u32));
             }
-        }
+            ControlFlow::Continue(())
+        });
         // The order of the pairs is part of the result.
         pairs.sort_unstable();
         pairs.dedup();

@@ -1,0 +1,192 @@
+//! Which spheres are near each other, found in a time that grows with their number, whatever their sizes.
+
+use crate::scene::Domain;
+use nalgebra::Vector3;
+use std::collections::HashMap;
+use std::ops::{ControlFlow, Range};
+
+/// Numbers of cells stay below this, so that those beside them are numbers too.
+const FARTHEST: f64 = 1e18;
+
+/// Gives each pair (a, b), a ≠ b, of spheres that are less than `skin` (m) apart to `visit`, by nearest images along the
+/// periodic axes of `domain`, at least once, and some that are not so near. Ends where `visit` breaks.
+///
+/// Spheres are sorted into classes of radii within a factor of two, and each class into cells as wide as what two of them
+/// reach: a sphere looks for those of its class and of larger ones in the cells around it.
+pub(crate) fn near_pairs(
+    centres: &[Vector3<f64>],
+    radii: &[f64],
+    skin: f64,
+    domain: Option<&Domain>,
+    mut visit: impl FnMut(usize, usize) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let places: Vec<Vector3<f64>> = centres.iter().map(|&centre| wrapped(centre, domain)).collect();
+    let mut classes: HashMap<i32, Vec<u32>> = HashMap::new();
+    for (number, radius) in (0..).zip(radii) {
+        classes.entry(radius.log2().floor() as i32).or_default().push(number);
+    }
+    let mut classes: Vec<(i32, Vec<u32>)> = classes.into_iter().collect();
+    classes.sort_unstable_by_key(|class| class.0);
+    for (at, (_, larger)) in classes.iter().enumerate() {
+        let largest = larger.iter().map(|&b| radii[b as usize]).fold(0.0, f64::max);
+        let cells = Cells::new(&places, larger, 2.0 * largest + skin);
+        for (class, (_, smaller)) in classes[..=at].iter().enumerate() {
+            for &a in smaller {
+                // A sphere starts at most a face away from the sphere that it reaches.
+                for image in images(places[a as usize], domain, cells.width) {
+                    for row in cells.rows_around(image) {
+                        for &(_, b) in &cells.sorted[row] {
+                            if class < at || a < b {
+                                visit(a as usize, b as usize)?;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+/// Some spheres, sorted by cell.
+struct Cells {
+    /// Edge of a cell (m).
+    width: f64,
+    /// Cell along x, within rows of cells, and number of each sphere.
+    sorted: Vec<(i64, u32)>,
+    /// Where the rows stand, by their cells along y and z.
+    rows: HashMap<[i64; 2], Range<usize>>,
+}
+
+impl Cells {
+    fn new(places: &[Vector3<f64>], some: &[u32], width: f64) -> Self {
+        let mut keyed: Vec<([i64; 3], u32)> = some
+            .iter()
+            .map(|&number| {
+                let [x, y, z] = cell(places[number as usize], width);
+                ([z, y, x], number)
+            })
+            .collect();
+        keyed.sort_unstable();
+        let mut rows = HashMap::new();
+        let mut start = 0;
+        for row in keyed.chunk_by(|a, b| a.0[..2] == b.0[..2]) {
+            let [z, y, _] = row[0].0;
+            rows.insert([y, z], start..start + row.len());
+            start += row.len();
+        }
+        Self { width, sorted: keyed.into_iter().map(|([_, _, x], number)| (x, number)).collect(), rows }
+    }
+
+    /// The cells around a place, as parts of rows.
+    fn rows_around(&self, place: Vector3<f64>) -> impl Iterator<Item = Range<usize>> {
+        let [x, y, z] = cell(place, self.width);
+        let around = (-1..=1).flat_map(move |k| (-1..=1).map(move |j| [y + j, z + k]));
+        around.filter_map(move |row| self.rows.get(&row)).map(move |row| {
+            let of_row = &self.sorted[row.clone()];
+            row.start + of_row.partition_point(|&(at, _)| at < x - 1)
+                ..row.start + of_row.partition_point(|&(at, _)| at <= x + 1)
+        })
+    }
+}
+
+fn cell(place: Vector3<f64>, width: f64) -> [i64; 3] {
+    [0, 1, 2].map(|axis| (place[axis] / width).floor().clamp(-FARTHEST, FARTHEST) as i64)
+}
+
+/// Where a place is within the periodic axes of a domain.
+fn wrapped(mut place: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
+    if let Some(domain) = domain {
+        for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
+            let length = domain.high[axis] - domain.low[axis];
+            place[axis] = domain.low[axis] + (place[axis] - domain.low[axis]).rem_euclid(length);
+        }
+    }
+    place
+}
+
+/// A place in the domain and its images within `reach` (m) of the periodic faces.
+fn images(place: Vector3<f64>, domain: Option<&Domain>, reach: f64) -> Vec<Vector3<f64>> {
+    let mut images = vec![place];
+    if let Some(domain) = domain {
+        for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
+            let length = domain.high[axis] - domain.low[axis];
+            for at in 0..images.len() {
+                for shift in [-length, length] {
+                    let mut image = images[at];
+                    image[axis] += shift;
+                    if (domain.low[axis] - reach..=domain.high[axis] + reach).contains(&image[axis]) {
+                        images.push(image);
+                    }
+                }
+            }
+        }
+    }
+    images
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+    use std::collections::BTreeSet;
+
+    /// Spheres of three octaves of radii in a box, some of them periods away from it.
+    fn scatter(count: usize, spread: f64) -> (Vec<Vector3<f64>>, Vec<f64>) {
+        let mut lot = Pcg64::seed_from_u64(7);
+        let radii = (0..count).map(|_| 0.05 * 8.0_f64.powf(lot.random::<f64>())).collect();
+        let place = |lot: &mut Pcg64| Vector3::from_fn(|_, _| spread * (lot.random::<f64>() - 0.5));
+        ((0..count).map(|_| place(&mut lot)).collect(), radii)
+    }
+
+    fn visited(
+        centres: &[Vector3<f64>],
+        radii: &[f64],
+        skin: f64,
+        domain: Option<&Domain>,
+    ) -> BTreeSet<(usize, usize)> {
+        let mut found = BTreeSet::new();
+        let done = near_pairs(centres, radii, skin, domain, |a, b| {
+            assert_ne!(a, b);
+            found.insert((a.min(b), a.max(b)));
+            ControlFlow::Continue(())
+        });
+        assert!(done.is_continue());
+        found
+    }
+
+    #[test]
+    fn every_near_pair_is_visited() {
+        let (centres, radii) = scatter(300, 6.0);
+        for periodic in [[false; 3], [true, false, false], [true; 3]] {
+            let domain = Domain { low: Vector3::repeat(-1.5), high: Vector3::new(1.5, 2.5, 1.0), periodic };
+            for skin in [0.0, 0.1] {
+                let found = visited(&centres, &radii, skin, Some(&domain));
+                for a in 0..centres.len() {
+                    for b in a + 1..centres.len() {
+                        let mut apart = centres[b] - centres[a];
+                        for axis in (0..3).filter(|&axis| periodic[axis]) {
+                            let length = domain.high[axis] - domain.low[axis];
+                            apart[axis] -= length * (apart[axis] / length).round();
+                        }
+                        let is_near = apart.norm() < radii[a] + radii[b] + skin;
+                        assert!(!is_near || found.contains(&(a, b)), "{a} and {b} are {} m apart", apart.norm());
+                    }
+                }
+            }
+        }
+    }
+
+    /// Visits grow with the number of spheres and no faster, though one is far away and one as large as all others.
+    #[test]
+    fn visits_are_as_many_as_spheres() {
+        let visits = |count: usize| {
+            let (mut centres, mut radii) = scatter(count, 0.5 * (count as f64).cbrt());
+            (centres[0], centres[1], radii[1]) = (Vector3::repeat(1e12), Vector3::repeat(-1e3), 400.0);
+            visited(&centres, &radii, 0.0, None).len() as f64 / count as f64
+        };
+        let [few, many] = [visits(1_000), visits(30_000)];
+        assert!(many < 1.5 * few, "{few} and {many} for each sphere");
+    }
+}
