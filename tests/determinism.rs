@@ -38,3 +38,49 @@ fn a_rerun_gives_the_same_bits() {
         }
     }
 }
+
+/// Discs from a lot on a slope with restitution, under a wall that turns, and a block whose material is neo-Hookean.
+const SCENES: [(&str, &str); 2] = [
+    (
+        "dem",
+        "title = 't'\ndimension = 2\nduration = 0.2\ngravity = { magnitude = 9.8, slope_deg = 17.3 }\n\
+         domain = { low = [0.0, 0.0], high = [4.0, 4.0] }\n\
+         materials.m = { density = 1000.0, young_modulus = 1.0e7, poisson_ratio = 0.3 }\n\
+         contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, \
+         friction_angle_deg = 31.7, restitution = 0.83 }\n\
+         [grains.g]\nmaterial = 'm'\nrandom = { count = 40, radius_range = [0.1, 0.2], speed = 1.0, seed = 3 }\n\
+         [walls.w]\nmaterial = 'm'\nsegment = [[0.0, -0.1], [4.0, -0.1]]\n\
+         motion = [{ spin = 0.7, centre = [2.0, 0.0] }]\n[probes]\nall.system = true\n",
+    ),
+    (
+        "mpm",
+        "title = 't'\ndimension = 2\nduration = 5.0\nreference_length = 1.0\n\
+         materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }\n\
+         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [2.0, 1.0] }\nfixed = ['x-low']\n\
+         wave = { amplitude = 2.0 }\n[probes]\nb.body = 'b'\nall.system = true\n",
+    ),
+];
+
+/// The library of the system takes other functions where it may not use all that the processor can do: with the solvers'
+/// own ones nothing changes.
+#[test]
+fn the_library_of_the_system_has_no_part_in_the_bits() {
+    let directory = tempfile::tempdir().unwrap();
+    for (solver, scene) in SCENES.into_iter().chain([("rigid", SCENES[0].1)]) {
+        std::fs::write(directory.path().join("s.toml"), scene).unwrap();
+        let series = |masked: &str| {
+            let out = std::process::Command::new(env!("CARGO_BIN_EXE_grainbench"))
+                .args(["simulate", "s.toml", "--solver", solver, "--write", "dump", "--out", "out"])
+                .current_dir(directory.path())
+                .env("GLIBC_TUNABLES", masked)
+                .output()
+                .unwrap();
+            assert!(out.status.success(), "{solver}: {}", String::from_utf8_lossy(&out.stderr));
+            let read = |name: &str| std::fs::read(directory.path().join("out").join(name)).unwrap();
+            (read("series.csv"), read("snapshots.dump"))
+        };
+        let all = series("");
+        let plain = series("glibc.cpu.hwcaps=-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-AVX512F,-AVX512F_Usable");
+        assert!(all == plain, "{solver} gives other bits without the processor's instructions");
+    }
+}

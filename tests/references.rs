@@ -88,7 +88,7 @@ fn without_the_programs_the_stored_runs_judge_and_verify_says_that_they_are_miss
     };
     let (code, rows) = without(&["run", "collision", "--solver", "lammps", "--solver", "liggghts", "--json"]);
     assert_eq!(code, Some(0));
-    assert!(rows.len() == 8 && rows.iter().all(|row| row["verdict"] == "pass"), "{rows:?}");
+    assert!(rows.len() == 10 && rows.iter().all(|row| row["verdict"] == "pass"), "{rows:?}");
     assert!(rows.iter().all(|row| row["source"].as_str().unwrap().contains("stored run of 20")), "{rows:?}");
 
     let (code, rows) = without(&["reference", "verify", "collision-gamma-zeta.1", "--json"]);

@@ -239,6 +239,41 @@ fn no_hash_map_string_or_allocation_in_loops_over_points() {
     }
 }
 
+/// What a system's library computes may differ from one processor to the next by its last bit, for it picks a version by
+/// what the processor can do. Solvers take logarithms and the like from plain Rust.
+#[test]
+fn solvers_compute_the_same_bits_on_every_processor() {
+    const OF_THE_SYSTEM: [&str; 21] = [
+        ".ln()",
+        ".log2()",
+        ".log10()",
+        ".ln_1p()",
+        ".exp()",
+        ".exp2()",
+        ".exp_m1()",
+        ".sin()",
+        ".cos()",
+        ".tan()",
+        ".sin_cos()",
+        ".asin()",
+        ".acos()",
+        ".atan()",
+        ".atan2(",
+        ".sinh()",
+        ".cosh()",
+        ".tanh()",
+        ".powf(",
+        ".cbrt()",
+        ".hypot(",
+    ];
+    for (name, text) in rust().into_iter().filter(|(name, _)| name.starts_with("solvers/") && name.contains("/src/")) {
+        let code = code(&text);
+        let shipped = code.split("#[cfg(test)]").next().unwrap_or_default();
+        let found = OF_THE_SYSTEM.iter().find(|call| shipped.contains(*call));
+        assert!(found.is_none() || name.ends_with("/tests.rs"), "{name}: {found:?}: expected it from `libm`");
+    }
+}
+
 #[test]
 fn every_case_folder_is_whole() {
     let mut folders = BTreeSet::new();

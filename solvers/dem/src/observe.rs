@@ -102,5 +102,5 @@ fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
 /// (Cundall & Strack 1979, eq. 36).
 fn free_spin(scene: &Scene, start: Vector3<f64>, time_step: f64, step: u64) -> Vector3<f64> {
     let half = 0.5 * scene.global_damping * time_step;
-    start * ((1.0 - half) / (1.0 + half)).powf(step as f64)
+    start * libm::pow((1.0 - half) / (1.0 + half), step as f64)
 }

@@ -35,6 +35,7 @@ mod held;
 mod lanes;
 mod ledger;
 mod limits;
+mod logarithm;
 pub mod material;
 mod nodes;
 mod observe;

@@ -301,7 +301,7 @@ impl<S: Space> Simulation<S> {
 
 /// Rotation about z that is nearest to a plane deformation gradient (rad, from −π to π): R of F = R U.
 fn rotation_of(deformation: Matrix3<f64>) -> f64 {
-    (deformation.m21 - deformation.m12).atan2(deformation.m11 + deformation.m22)
+    libm::atan2(deformation.m21 - deformation.m12, deformation.m11 + deformation.m22)
 }
 
 /// The angle that differs by whole turns from `angle` and is nearest to `expected` (rad).

@@ -48,7 +48,7 @@ pub fn rings(centre: Vector3<f64>, inner: f64, outer: f64, spacing: f64) -> Vec<
 
 /// Direction to the middle of a sector.
 fn around(sector: usize, sectors: usize) -> Vector3<f64> {
-    let (sine, cosine) = ((sector as f64 + 0.5) * TAU / sectors as f64).sin_cos();
+    let (sine, cosine) = libm::sincos((sector as f64 + 0.5) * TAU / sectors as f64);
     Vector3::new(cosine, sine, 0.0)
 }
 
@@ -79,7 +79,7 @@ fn directions(bands: usize) -> Vec<(Vector3<f64>, f64)> {
     let bands = bands.div_ceil(2).max(1) * 2;
     let mut all = Vec::new();
     for band in 0..bands {
-        let edge = |number: usize| (number as f64 * PI / bands as f64).cos();
+        let edge = |number: usize| libm::cos(number as f64 * PI / bands as f64);
         let (upper, lower) = (edge(band), edge(band + 1));
         let squared = (upper * upper + upper * lower + lower * lower) / 3.0;
         let height = squared.sqrt().copysign(upper + lower);

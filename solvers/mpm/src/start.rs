@@ -66,7 +66,7 @@ impl<S: Space> Simulation<S> {
                         let block = &self.scene.bodies[place as usize];
                         let wave = block.wave.map_or(0.0, |wave| {
                             let low = body.held.map_or(block.shape.centre().x, |(_, [low, _])| low.x);
-                            wave.amplitude * (wave.wave_number * (position.x - low)).sin()
+                            wave.amplitude * libm::sin(wave.wave_number * (position.x - low))
                         });
                         block.velocity + Vector3::new(wave, 0.0, 0.0)
                     }

@@ -110,7 +110,7 @@ fn restitution(law: &ContactLaw, mass: f64) -> f64 {
     if ratio == 0.0 {
         return 1.0;
     }
-    if ratio < 1.0 { (-std::f64::consts::PI * ratio / (1.0 - ratio * ratio).sqrt()).exp() } else { 0.0 }
+    if ratio < 1.0 { libm::exp(-std::f64::consts::PI * ratio / (1.0 - ratio * ratio).sqrt()) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -135,7 +135,7 @@ impl Solver for Rigid {
         let length = scene.grains.iter().map(|grain| grain.radius).sum::<f64>() / scene.grains.len().max(1) as f64;
         let length = if length > 0.0 { length } else { 1.0 };
         let mean_mass = scene.grains.iter().map(|grain| grain.mass).sum::<f64>() / scene.grains.len().max(1) as f64;
-        let mass = if mean_mass > 0.0 { mean_mass.log2().round().exp2() } else { 1.0 };
+        let mass = if mean_mass > 0.0 { libm::exp2(libm::log2(mean_mass).round()) } else { 1.0 };
         let stepping = Stepping { time_step, iterations, length, mass, settings: self.settings };
         let mut running = Running { simulation: Simulation::new(scene, stepping), step: 0 };
         let course = Course { scene, time_step, steps, resumed: None, between_progress: STEPS_BETWEEN_PROGRESS };

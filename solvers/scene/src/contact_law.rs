@@ -269,7 +269,7 @@ impl ContactSpec {
                 return Err(check.error(&key("friction"), "one of `friction` and `friction_angle_deg`", "both"));
             }
             (Some(friction), None) => number("friction", friction, "coefficient of friction")?,
-            (None, Some(angle)) if (0.0..90.0).contains(&angle) => angle.to_radians().tan(),
+            (None, Some(angle)) if (0.0..90.0).contains(&angle) => libm::tan(angle.to_radians()),
             (None, Some(angle)) => {
                 let key = key("friction_angle_deg");
                 return Err(check.error(&key, "an angle from 0 to below 90°", &angle.to_string()));
@@ -281,7 +281,7 @@ impl ContactSpec {
             let found = restitution.to_string();
             return Err(check.error(&key("restitution"), "a coefficient above 0 and at most 1", &found));
         }
-        let log = restitution.ln();
+        let log = libm::log(restitution);
         let law = ContactLaw {
             springs: Springs::Absent,
             friction,

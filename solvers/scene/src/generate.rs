@@ -76,13 +76,13 @@ fn somewhere(generator: &mut impl Rng, radius: f64, domain: &Domain, dimension: 
 }
 
 fn direction(generator: &mut impl Rng, dimension: Dimension) -> Vector3<f64> {
-    let angle = std::f64::consts::TAU * generator.random::<f64>();
+    let (sine, cosine) = libm::sincos(std::f64::consts::TAU * generator.random::<f64>());
     match dimension {
-        Dimension::Two => Vector3::new(angle.cos(), angle.sin(), 0.0),
+        Dimension::Two => Vector3::new(cosine, sine, 0.0),
         Dimension::Three => {
             let height = 2.0 * generator.random::<f64>() - 1.0;
             let across = (1.0 - height * height).sqrt();
-            Vector3::new(across * angle.cos(), across * angle.sin(), height)
+            Vector3::new(across * cosine, across * sine, height)
         }
     }
 }

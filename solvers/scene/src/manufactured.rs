@@ -1,5 +1,6 @@
 //! Manufactured solutions: a motion is chosen, and the body force that makes it exact in a neo-Hookean material.
 
+use libm::{cos, log, sin, sincos};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
 
@@ -49,11 +50,11 @@ impl Manufactured {
         match *self {
             Self::AxisAligned { amplitude, length } => {
                 let phase = medium.bar_speed() * PI * time / length;
-                Vector3::new(amplitude * (2.0 * PI * at.x / length).sin() * phase.sin(), 0.0, 0.0)
+                Vector3::new(amplitude * sin(2.0 * PI * at.x / length) * sin(phase), 0.0, 0.0)
             }
             Self::Vortex { amplitude, rate } => {
                 let radius = at.xy().norm();
-                turned(at.xy(), amplitude * (rate * PI * time).sin() * bump(radius)[0]) - Vector3::new(at.x, at.y, 0.0)
+                turned(at.xy(), amplitude * sin(rate * PI * time) * bump(radius)[0]) - Vector3::new(at.x, at.y, 0.0)
             }
         }
     }
@@ -64,13 +65,13 @@ impl Manufactured {
         match *self {
             Self::AxisAligned { amplitude, length } => {
                 let rate = medium.bar_speed() * PI / length;
-                let speed = amplitude * (2.0 * PI * at.x / length).sin() * rate * (rate * time).cos();
+                let speed = amplitude * sin(2.0 * PI * at.x / length) * rate * cos(rate * time);
                 Vector3::new(speed, 0.0, 0.0)
             }
             Self::Vortex { amplitude, rate } => {
                 let shape = bump(at.xy().norm())[0];
-                let angle = amplitude * (rate * PI * time).sin() * shape;
-                let spin = amplitude * rate * PI * (rate * PI * time).cos() * shape;
+                let angle = amplitude * sin(rate * PI * time) * shape;
+                let spin = amplitude * rate * PI * cos(rate * PI * time) * shape;
                 Vector3::new(0.0, 0.0, spin).cross(&turned(at.xy(), angle))
             }
         }
@@ -87,12 +88,12 @@ impl Manufactured {
         match *self {
             Self::AxisAligned { amplitude, length } => {
                 let (wave, speed) = (2.0 * PI / length, medium.bar_speed());
-                let swing = (speed * PI * time / length).sin();
-                let displacement = amplitude * (wave * at.x).sin() * swing;
-                let stretch = 1.0 + wave * amplitude * (wave * at.x).cos() * swing;
+                let swing = sin(speed * PI * time / length);
+                let displacement = amplitude * sin(wave * at.x) * swing;
+                let stretch = 1.0 + wave * amplitude * cos(wave * at.x) * swing;
                 let bracket = 4.0 * shear
                     - speed * speed * density
-                    - 4.0 * (lame * (stretch.ln() - 1.0) - shear) / (stretch * stretch);
+                    - 4.0 * (lame * (log(stretch) - 1.0) - shear) / (stretch * stretch);
                 Vector3::new((PI / length).powi(2) * displacement / density * bracket, 0.0, 0.0)
             }
             Self::Vortex { amplitude, rate } => {
@@ -102,13 +103,13 @@ impl Manufactured {
                 }
                 let [shape, slope, curvature] = bump(radius);
                 let phase = rate * PI * time;
-                let spin = amplitude * rate * PI * phase.cos() * shape;
-                let spin_rate = -amplitude * (rate * PI).powi(2) * phase.sin() * shape;
-                let (slope, curvature) = (amplitude * phase.sin() * slope, amplitude * phase.sin() * curvature);
+                let spin = amplitude * rate * PI * cos(phase) * shape;
+                let spin_rate = -amplitude * (rate * PI).powi(2) * sin(phase) * shape;
+                let (slope, curvature) = (amplitude * sin(phase) * slope, amplitude * sin(phase) * curvature);
                 let stiffness = shear / density;
                 let outward = radius * (stiffness * slope * slope - spin * spin);
                 let across = radius * spin_rate - stiffness * (3.0 * slope + radius * curvature);
-                let direction = turned(at.xy() / radius, amplitude * phase.sin() * shape);
+                let direction = turned(at.xy() / radius, amplitude * sin(phase) * shape);
                 direction * outward + Vector3::z().cross(&direction) * across
             }
         }
@@ -116,7 +117,7 @@ impl Manufactured {
 }
 
 fn turned(vector: Vector2<f64>, angle: f64) -> Vector3<f64> {
-    let (sine, cosine) = angle.sin_cos();
+    let (sine, cosine) = sincos(angle);
     Vector3::new(vector.x * cosine - vector.y * sine, vector.x * sine + vector.y * cosine, 0.0)
 }
 

@@ -23,7 +23,7 @@ pub(crate) fn near_pairs(
     let places: Vec<Vector3<f64>> = centres.iter().map(|&centre| wrapped(centre, domain)).collect();
     let mut classes: HashMap<i32, Vec<u32>> = HashMap::new();
     for (number, radius) in (0..).zip(radii) {
-        classes.entry(radius.log2().floor() as i32).or_default().push(number);
+        classes.entry(libm::ilogb(*radius)).or_default().push(number);
     }
     let mut classes: Vec<(i32, Vec<u32>)> = classes.into_iter().collect();
     classes.sort_unstable_by_key(|class| class.0);

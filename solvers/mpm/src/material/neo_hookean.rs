@@ -1,6 +1,7 @@
 //! Neo-Hookean elasticity.
 
 use super::{Law, State};
+use crate::logarithm::ln;
 use crate::off::Off;
 use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;
@@ -18,7 +19,7 @@ impl NeoHookean {
     #[inline(always)]
     fn stress<S: Space>(&self, deformation: S::Matrix, volume_ratio: f64) -> S::Symmetric {
         let inverse = 1.0 / volume_ratio;
-        let part = (self.lame * volume_ratio.ln() - self.shear_modulus) * inverse;
+        let part = (self.lame * ln(volume_ratio) - self.shear_modulus) * inverse;
         S::scaled_sum(S::finger(deformation), self.shear_modulus * inverse, S::isotropic(part))
     }
 }
@@ -40,7 +41,7 @@ impl Law for NeoHookean {
 
     /// W = λ/2 ln²J + G/2 (tr b − 3 − 2 ln J).
     fn energy(&self, state: &State) -> f64 {
-        let log = state.deformation.determinant().ln();
+        let log = ln(state.deformation.determinant());
         let stretch = state.deformation.norm_squared() - 3.0 - 2.0 * log;
         0.5 * (self.lame * log * log + self.shear_modulus * stretch)
     }

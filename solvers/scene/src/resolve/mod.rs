@@ -150,9 +150,10 @@ impl Resolver<'_> {
                 let part = |part: &str| format!("{key}.{part}");
                 let magnitude = check.not_negative(&part("magnitude"), slope.magnitude, "acceleration (m/s²)")?;
                 let angle = check.finite(&part("slope_deg"), slope.slope_deg, "angle (degrees)")?.to_radians();
+                let (sine, cosine) = libm::sincos(angle);
                 let down = match check.dimension {
-                    Dimension::Two => Vector3::new(angle.sin(), -angle.cos(), 0.0),
-                    Dimension::Three => Vector3::new(angle.sin(), 0.0, -angle.cos()),
+                    Dimension::Two => Vector3::new(sine, -cosine, 0.0),
+                    Dimension::Three => Vector3::new(sine, 0.0, -cosine),
                 };
                 Ok(down * magnitude)
             }
