@@ -5,6 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use grainbench_scene::text::tamed;
 use thiserror::Error;
 
 use crate::junit::junit_xml;
@@ -126,6 +127,11 @@ impl Report {
     }
 }
 
+/// What the parser repeats of the file, as a message may show it.
+fn one_line(text: &str) -> String {
+    tamed(text, |_| false)
+}
+
 /// Reads a file of ours; an error names the place.
 pub(crate) fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, LoadError> {
     let mut json = serde_json::Deserializer::from_str(text);
@@ -141,9 +147,9 @@ pub(crate) fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> 
         path: path.to_owned(),
         line: error.line(),
         column: error.column(),
-        place,
+        place: one_line(&place),
         // The parser repeats the line and column at the end.
-        reason: error.to_string().split(" at line ").next().unwrap_or_default().to_owned(),
+        reason: one_line(error.to_string().split(" at line ").next().unwrap_or_default()),
     })
 }
 
@@ -191,6 +197,11 @@ mod tests {
         assert!(message.contains("report.json, line "), "{message}");
         assert!(message.contains("at `sections[0].runs[0].steps`"), "{message}");
         assert!(message.contains("invalid type: string \"many\", expected u64"), "{message}");
+
+        // What steers a terminal is written out.
+        fs::write(&path, text.replacen("\"steps\": 25000", "\"steps\": \"ma\u{7f}ny\"", 1)).unwrap();
+        let message = Report::load(dir.path()).unwrap_err().to_string();
+        assert!(message.contains("string \"ma\\u{7f}ny\""), "{message:?}");
 
         fs::write(&path, &text[..text.len() / 2]).unwrap();
         let message = Report::load(dir.path()).unwrap_err().to_string();
