@@ -1,5 +1,5 @@
-//! Hidden directories in which files are on their way, each with the name of the process that made it: what a process
-//! left that is no more can be told from what another is working on, and from what a user calls alike.
+//! Hidden directories and files on their way, whose names tell the process that made them: what a process left that is no
+//! more can be told, from the first moment, from what another is working on, and from what a user calls alike.
 
 use std::fs;
 use std::io;
@@ -9,10 +9,8 @@ use std::time::{Duration, SystemTime};
 
 use tempfile::{Builder, TempDir};
 
-/// What the names of hidden directories and of locks begin with.
+/// What all names of ours begin with.
 const PREFIX: &str = ".grainbench-";
-/// The file in a hidden directory that says whose it is.
-const OWNER: &str = "owner";
 /// The lock of a directory that is being written.
 const LOCK: &str = ".grainbench-lock";
 /// After which time something of an owner on another machine, who cannot be asked, is taken for left.
@@ -24,9 +22,18 @@ const PATIENCE: Duration = Duration::from_secs(24 * 3600);
 pub(crate) fn temporary_in(parent: &Path) -> io::Result<TempDir> {
     // What cannot be taken away is no reason to write nothing.
     let _ = sweep(parent);
-    let made = Builder::new().prefix(PREFIX).tempdir_in(parent).map_err(without_its_path)?;
-    fs::write(made.path().join(OWNER), owner())?;
-    Ok(made)
+    Builder::new().prefix(&prefix()).tempdir_in(parent).map_err(without_its_path)
+}
+
+/// What the names of this process begin with. A lot follows, without a dash.
+fn prefix() -> String {
+    format!("{PREFIX}{}@{}-", process::id(), machine())
+}
+
+/// The process and the machine that a name tells.
+fn owner_in(name: &str) -> Option<(u32, &str)> {
+    let (number, rest) = name.strip_prefix(PREFIX)?.split_once('@')?;
+    Some((number.parse().ok()?, rest.rsplit_once('-')?.0))
 }
 
 /// Takes away what processes that are no more had on its way into a folder. What has no owner of ours stays.
@@ -39,17 +46,11 @@ pub fn sweep(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if !name.starts_with(PREFIX) {
+        let Some((process, host)) = owner_in(&name) else { continue };
+        if !is_gone(process, host, &path) {
             continue;
         }
-        let swept = if path.is_dir() && (is_left(&path.join(OWNER)) || is_barren(&path)) {
-            fs::remove_dir_all(&path)
-        } else if path.is_file() && name != LOCK && is_left(&path) {
-            // On its way to being a lock.
-            fs::remove_file(&path)
-        } else {
-            continue;
-        };
+        let swept = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
         // Another may be sweeping too.
         swept.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
     }
@@ -67,7 +68,7 @@ impl Lock {
         let path = directory.join(LOCK);
         for _ in 0..TRIES {
             // With its owner in it from the first moment: an empty one would be nobody's for ever.
-            let mut file = Builder::new().prefix(PREFIX).tempfile_in(directory).map_err(without_its_path)?;
+            let mut file = Builder::new().prefix(&prefix()).tempfile_in(directory).map_err(without_its_path)?;
             io::Write::write_all(&mut file, owner().as_bytes())?;
             match file.persist_noclobber(&path).map_err(|error| error.error) {
                 Ok(_) => return Ok(Self(path)),
@@ -100,23 +101,20 @@ fn machine() -> String {
     name.map_or_else(|| "unknown".to_owned(), |name| name.trim().replace(char::is_whitespace, "-"))
 }
 
-/// Whether a file names an owner who is no more.
-fn is_left(path: &Path) -> bool {
-    let Ok(text) = fs::read_to_string(path) else { return false };
+/// Whether a lock names an owner who is no more.
+fn is_left(lock: &Path) -> bool {
+    let Ok(text) = fs::read_to_string(lock) else { return false };
     let words: Vec<&str> = text.split_whitespace().collect();
     let ["process", number, "on", host] = words[..] else { return false };
-    if host == machine() && Path::new("/proc/self").exists() {
-        return number.parse::<u32>().is_ok_and(|number| !Path::new(&format!("/proc/{number}")).exists());
-    }
-    age_of(path).is_some_and(|age| age > PATIENCE)
+    number.parse().is_ok_and(|process| is_gone(process, host, lock))
 }
 
-/// Whether a hidden directory is as its maker had it for a moment only, and long ago: empty, and nobody's yet.
-fn is_barren(path: &Path) -> bool {
-    let is_old = age_of(path).is_some_and(|age| age > PATIENCE);
-    let entries = |path: &Path| Some(fs::read_dir(path).ok()?.flatten().map(|entry| entry.path()).collect::<Vec<_>>());
-    let is_empty = |path: &Path| fs::metadata(path).is_ok_and(|of| of.len() == 0);
-    is_old && entries(path).is_some_and(|all| all.iter().all(|path| path.ends_with(OWNER) && is_empty(path)))
+/// Whether a process is no more; of one on another machine, whether what it made there is old.
+fn is_gone(process: u32, host: &str, made: &Path) -> bool {
+    if host == machine() && Path::new("/proc/self").exists() {
+        return !Path::new(&format!("/proc/{process}")).exists();
+    }
+    age_of(made).is_some_and(|age| age > PATIENCE)
 }
 
 /// How long ago something was changed.
@@ -146,16 +144,18 @@ mod tests {
     fn only_what_is_left_of_a_process_that_is_no_more_goes() {
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
-        for name in [".grainbench-notes", ".grainbench-left", ".grainbench-other"] {
+        let left = format!(".grainbench-{}@{}-aX3", gone(), machine());
+        let other = ".grainbench-1@another-machine-aX3";
+        for name in [".grainbench-notes", ".grainbench-1-notes", &left, other] {
             fs::create_dir(place(name)).unwrap();
+            fs::write(place(name).join("mine"), "").unwrap();
         }
-        fs::write(place(".grainbench-notes/mine"), "").unwrap();
-        fs::write(place(".grainbench-left").join(OWNER), format!("process {} on {}\n", gone(), machine())).unwrap();
-        fs::write(place(".grainbench-other").join(OWNER), "process 1 on another-machine\n").unwrap();
+        let file = format!(".grainbench-{}@{}-bY4", gone(), machine());
+        fs::write(place(&file), "").unwrap();
         let at_work = temporary_in(folder.path()).unwrap();
         sweep(folder.path()).unwrap();
-        assert!(place(".grainbench-notes/mine").is_file() && at_work.path().is_dir());
-        assert!(place(".grainbench-other").is_dir() && !place(".grainbench-left").exists());
+        assert!(at_work.path().is_dir() && !place(&left).exists() && !place(&file).exists());
+        assert!([".grainbench-notes", ".grainbench-1-notes", other].iter().all(|name| place(name).is_dir()));
     }
 
     #[test]
