@@ -31,6 +31,38 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
     assert_eq!(err, "error: lammps is not available: GRAINBENCH_LAMMPS names `nowhere/lmp`, where no file is\n");
 }
 
+/// A race says who is missing, and whose laps were too short to tell; where nobody has run it has not succeeded.
+#[test]
+fn a_race_tells_who_took_no_part() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
+    let race = |arguments: &[&str]| {
+        let answer = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+            .args(["race", "s.toml", "--rounds", "1"])
+            .args(arguments)
+            .current_dir(directory.path())
+            .env("GRAINBENCH_LAMMPS", "nowhere/lmp")
+            .env("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")
+            .output()
+            .unwrap();
+        let read = |name: &str| std::fs::read_to_string(directory.path().join("grainbench-race").join(name));
+        let race = read("race.json").ok().map(|text| serde_json::from_str::<Value>(&text).unwrap());
+        (answer.status.code(), race, String::from_utf8(answer.stdout).unwrap())
+    };
+    let (code, left, out) = race(&["--steps", "10,20"]);
+    assert_eq!(code, Some(1), "{out}");
+    let results = left.unwrap()["heats"][0]["results"].as_array().unwrap().clone();
+    let absent: Vec<&str> = results.iter().map(|raced| raced["absent"].as_str().unwrap()).collect();
+    assert!(absent[0].starts_with("too few steps to tell") && absent[1].contains("nowhere/lmp"), "{absent:?}");
+    assert!(out.contains("| `s.toml` |") && out.contains("nowhere/liggghts"), "{out}");
+
+    let (code, left, out) = race(&["--steps", "10,12000000", "--solver", "dem:lammps"]);
+    assert_eq!(code, Some(0), "{out}");
+    let raced = left.unwrap()["heats"][0]["results"][0].clone();
+    assert!(raced["rates"][0].as_f64().is_some_and(|rate| rate > 0.0) && raced["absent"].is_null(), "{raced}");
+    assert_eq!(race(&["--solver", "mpm"]).0, Some(2));
+}
+
 #[test]
 fn a_time_limit_that_is_no_time_is_refused() {
     let directory = tempfile::tempdir().unwrap();

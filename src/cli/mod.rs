@@ -11,6 +11,7 @@ mod interrupt;
 mod list;
 mod progress;
 mod provenance;
+mod race;
 mod reference;
 mod report;
 mod run;
@@ -57,6 +58,8 @@ enum Command {
     Stability(stability::Arguments),
     /// Tell what each effect is worth: each switched off in turn, each absent one compiled in.
     Effects(effects::Arguments),
+    /// Race with LAMMPS and LIGGGHTS, in turn on the same scenes: grains stepped in a second of processor time.
+    Race(race::Arguments),
     /// Make the stored runs of LAMMPS and LIGGGHTS, or run these again and compare.
     #[command(subcommand)]
     Reference(reference::Command),
@@ -80,6 +83,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Stability(arguments)) => stability::stability(&arguments),
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
+        Some(Command::Race(arguments)) => race::race(&arguments),
         Some(Command::Reference(command)) => reference::reference(&command),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Report(arguments)) => report::report(&arguments),

@@ -2,12 +2,14 @@
 //! ([`effects`]).
 //!
 //! Each goes through its pieces one by one, keeps every finished piece in a [`result_cache`], and takes from there what was
-//! finished before: a study that was ended goes on where it stopped.
+//! finished before: a study that was ended goes on where it stopped. Beside them stands the [`race`] with other programs, whose
+//! pieces are only worth something next to each other.
 
 pub mod clock;
 pub mod cost;
 pub mod effects;
 pub mod identity;
+pub mod race;
 pub mod result_cache;
 pub mod stability;
 
