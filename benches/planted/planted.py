@@ -95,7 +95,8 @@ class Planting:
         """The files of each class, as they are without defects."""
         return {name: {str(path.relative_to(self.tree)): command(["git", "show", f"HEAD:{path.relative_to(self.tree)}"],
                                                                  self.tree, capture_output=True)
-                       for path in sorted((self.tree / folder).rglob("*.rs")) if path.name != "planted.rs"}
+                       for path in sorted((self.tree / folder).rglob("*.rs"))
+                       if path.name not in ("planted.rs", "tests.rs")}
                 for name, folder in CLASSES.items()}
 
     def draw(self):

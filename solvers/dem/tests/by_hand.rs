@@ -6,10 +6,13 @@
 mod support;
 
 use grainbench_dem::convention::Convention;
+use grainbench_dem::stability::damped_step;
 use grainbench_scene::record::{Record, Snapshot};
 use grainbench_scene::solver::Resolution;
+use grainbench_scene::source::SceneSource;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::path::Path;
 use support::{column, last, run, run_at};
 
 /// Ten significant digits: sums of some thousand steps lose no more than three of sixteen, differences of lengths with
@@ -308,5 +311,31 @@ fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
         close(a, -moment);
         close(b, moment);
         close(last(&record, "all.elastic_energy"), 0.5 * 1.0e6 * 1e-6 + 0.5 * stiffness * 0.02 * 0.02);
+    }
+}
+
+/// The largest stable step of a spring with a dashpot that feels the velocity of half a step before: 2/ω (√(1 + ζ²) − ζ),
+/// of two discs of m = 10 π kg (m* = 5 π kg) and k = 1e6 N/m, ω = √(k/m*) = 252.313 /s and the ζ of e = .5, .215454: 6.4007 ms.
+/// Beside it that without the dashpot, 2/ω = 7.9266 ms. A wall has m* = m and the longer one.
+#[test]
+fn a_dashpot_shortens_the_stable_step() {
+    let step = |partner: &str| {
+        let text = format!(
+            "title = 't'\ndimension = 2\nduration_cycles = 1\nmaterials.n.density = 1000.0\n\
+             contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e6, restitution = 0.5 }}\n\
+             grains.a = {{ material = 'n', radius = 0.1, position = [0.0, 0.0] }}\n{partner}\n"
+        );
+        let source = SceneSource::from_text("test", Path::new(""), &text);
+        damped_step(&source.scene(&|_| Err("no files".to_owned())).unwrap())
+    };
+    let (mass, ratio) = (10.0 * PI, 2.0_f64.ln() / (PI * PI + 2.0_f64.ln().powi(2)).sqrt());
+    for (partner, mass) in [
+        ("grains.b = { material = 'n', radius = 0.1, position = [0.3, 0.0] }", 0.5 * mass),
+        ("walls.b = { material = 'n', plane = { point = [0.0, -1.0], normal = [0.0, 1.0] } }", mass),
+    ] {
+        let (damped, undamped) = step(partner);
+        let free = 2.0 * (mass / 1.0e6).sqrt();
+        close(undamped, free);
+        close(damped, free * ((1.0 + ratio * ratio).sqrt() - ratio));
     }
 }

@@ -56,3 +56,14 @@ fn a_body_by_itself_pays_nothing_for_contact() {
     let with_wall = run("mpm:penalty", &(text + wall), 8.0, 2).cost;
     assert!(with_wall.bytes > costs[0].0 && with_wall.contact_evaluations == Some(0), "{with_wall:?}");
 }
+
+/// A box of 2 m × 1 m at four cells a metre and two points a cell and axis has 16 · 8 points, and each is stepped once a step.
+#[test]
+fn points_are_counted_once_a_step() {
+    let text = format!(
+        "dimension = 2\nduration = 0.5\nreference_length = 1.0\n{MATERIAL}\
+         bodies.b = {{ material = 'm', box = {{ low = [0.0, 0.0], high = [2.0, 1.0] }} }}\n"
+    );
+    let cost = run("mpm", &text, 4.0, 2).cost;
+    assert!(cost.steps > 0 && cost.particle_steps == cost.steps * 128, "{cost:?}");
+}

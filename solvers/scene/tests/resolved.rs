@@ -112,3 +112,22 @@ fn a_grain_on_a_face_is_in_its_domain() {
         }
     }
 }
+
+/// A disc of .5 m whose centre is .4 m above a plane is .2 of its radius deep in it.
+#[test]
+fn overlaps_with_walls_are_parts_of_the_radius() {
+    let text = |height: f64| {
+        format!(
+            "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
+             contacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0 }}\n\
+             [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, {height}]\n\
+             [walls.w]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n"
+        )
+    };
+    assert!(
+        refusal(&text(0.4)).contains("grain 1 and wall w overlapping by 0.2000 of the radius"),
+        "{}",
+        refusal(&text(0.4))
+    );
+    close(scene(&text(0.46)).grains[0].position.y, 0.46);
+}
