@@ -2,33 +2,28 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod common;
+
+use common::grainbench_alone;
 use serde_json::Value;
 use std::process::Command;
 
 #[test]
 fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
     let directory = tempfile::tempdir().unwrap();
-    let program = |arguments: &[&str]| {
-        let command = Command::new(env!("CARGO_BIN_EXE_grainbench"))
-            .args(arguments)
-            .current_dir(directory.path())
-            .env("GRAINBENCH_LAMMPS", "nowhere/lmp")
-            .output()
-            .unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        (command.status.code(), text(command.stdout), text(command.stderr))
-    };
-    let (code, out, _) = program(&["run", "backspin/disc", "--solver", "lammps", "--live", "--json"]);
-    assert_eq!(code, Some(1), "nothing was judged");
-    let results: Value = serde_json::from_str(&out).unwrap();
+    let run = ["run", "backspin/disc", "--solver", "lammps", "--live", "--json"];
+    let answer = grainbench_alone(directory.path(), &run);
+    assert_eq!(answer.code, Some(1), "nothing was judged");
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
     let rows = results["verdicts"].as_array().unwrap();
-    assert!(!rows.is_empty() && rows.iter().all(|row| row["verdict"] == "not-available"), "{out}");
+    assert!(!rows.is_empty() && rows.iter().all(|row| row["verdict"] == "not-available"), "{}", answer.out);
     assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be judged has no control");
 
     std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
-    let (code, _, err) = program(&["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"]);
-    assert_eq!(code, Some(2));
-    assert_eq!(err, "error: lammps is not available: GRAINBENCH_LAMMPS names `nowhere/lmp`, where no file is\n");
+    let simulate = ["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"];
+    let answer = grainbench_alone(directory.path(), &simulate);
+    assert_eq!(answer.code, Some(2));
+    assert_eq!(answer.err, "error: lammps is not available: GRAINBENCH_LAMMPS names `nowhere/lmp`, where no file is\n");
 }
 
 /// A race says who is missing, and whose laps were too short to tell; where nobody has run it has not succeeded.
@@ -37,17 +32,10 @@ fn a_race_tells_who_took_no_part() {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
     let race = |arguments: &[&str]| {
-        let answer = Command::new(env!("CARGO_BIN_EXE_grainbench"))
-            .args(["race", "s.toml", "--rounds", "1"])
-            .args(arguments)
-            .current_dir(directory.path())
-            .env("GRAINBENCH_LAMMPS", "nowhere/lmp")
-            .env("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")
-            .output()
-            .unwrap();
+        let answer = grainbench_alone(directory.path(), &[&["race", "s.toml", "--rounds", "1"], arguments].concat());
         let read = |name: &str| std::fs::read_to_string(directory.path().join("grainbench-race").join(name));
         let race = read("race.json").ok().map(|text| serde_json::from_str::<Value>(&text).unwrap());
-        (answer.status.code(), race, String::from_utf8(answer.stdout).unwrap())
+        (answer.code, race, answer.out)
     };
     let (code, left, out) = race(&["--steps", "10,20"]);
     assert_eq!(code, Some(1), "{out}");

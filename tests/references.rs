@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::grainbench;
+use common::{grainbench, grainbench_alone};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored;
 use grainbench::cases::uncertainty::{self, Stored};
@@ -76,15 +76,9 @@ fn the_time_step_is_worth_little_where_it_is_small() {
 fn without_the_programs_the_stored_runs_judge_and_verify_says_that_they_are_missing() {
     let directory = tempfile::tempdir().unwrap();
     let without = |arguments: &[&str]| {
-        let command = Command::new(env!("CARGO_BIN_EXE_grainbench"))
-            .args(arguments)
-            .current_dir(directory.path())
-            .env("GRAINBENCH_LAMMPS", "nowhere/lmp")
-            .env("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")
-            .output()
-            .unwrap();
-        let results: Value = serde_json::from_slice(&command.stdout).unwrap();
-        (command.status.code(), results["verdicts"].as_array().unwrap().clone())
+        let answer = grainbench_alone(directory.path(), arguments);
+        let results: Value = serde_json::from_str(&answer.out).unwrap();
+        (answer.code, results["verdicts"].as_array().unwrap().clone())
     };
     let (code, rows) = without(&["run", "collision", "--solver", "lammps", "--solver", "liggghts", "--json"]);
     assert_eq!(code, Some(0));

@@ -18,8 +18,19 @@ pub(crate) struct Answer {
 
 /// Runs the program in a directory, so that messages hold relative paths.
 pub(crate) fn grainbench(directory: &Path, arguments: &[&str]) -> Answer {
+    grainbench_in(directory, arguments, &[])
+}
+
+/// The same where neither LAMMPS nor LIGGGHTS is installed.
+pub(crate) fn grainbench_alone(directory: &Path, arguments: &[&str]) -> Answer {
+    let absent = [("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")];
+    grainbench_in(directory, arguments, &absent)
+}
+
+fn grainbench_in(directory: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> Answer {
     let output = Command::new(env!("CARGO_BIN_EXE_grainbench"))
         .args(arguments)
+        .envs(environment.iter().copied())
         .current_dir(directory)
         .stdin(Stdio::null())
         .output()

@@ -46,6 +46,19 @@ fn a_plane_pushes_and_rubs_with_its_springs() {
     }
 }
 
+/// A scene of two discs of radius 1 m that overlap by .02 m and are looked at after the first step. `between` is their
+/// contact and what else it needs, `second` the material of the second disc; they pass each other with `speed` (m/s) each.
+fn two_discs(between: &str, second: &str, speed: f64) -> String {
+    format!(
+        "dimension = 2\nduration = 1.0e-3\noutput.every_cycles = 1\n\
+         materials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }}\n{between}\
+         [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-0.99, 0.0]\nvelocity = [0.0, {speed}]\n\
+         [grains.b]\nmaterial = '{second}'\nradius = 1.0\nposition = [0.99, 0.0]\nvelocity = [0.0, {}]\n\
+         [probes]\nc.contact = ['a', 'b']\n",
+        -speed
+    )
+}
+
 /// Two discs of radius R = 1 m that overlap by δ = .02 m, in the first step. Each has tracers on springs of ½κ per area, κ =
 /// 2.6 E'/h, with the depth g = δ − s²/R at the arc s from the line of centres: together κ ∫ g ds = κ (4/3) δ √(δR).
 ///
@@ -54,15 +67,8 @@ fn a_plane_pushes_and_rubs_with_its_springs() {
 #[test]
 fn discs_push_with_the_springs_of_both() {
     let force = |second: f64, penalty: f64| {
-        let text = format!(
-            "dimension = 2\nduration = 1.0e-3\noutput.every_cycles = 1\n\
-             materials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }}\n\
-             materials.n = {{ density = 1.0, young_modulus = {}, poisson_ratio = 0.3 }}\n\
-             contacts.m = {{ between = ['m', 'n'], law = 'coulomb' }}\n\
-             [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-0.99, 0.0]\n\
-             [grains.b]\nmaterial = 'n'\nradius = 1.0\nposition = [0.99, 0.0]\n[probes]\nc.contact = ['a', 'b']\n",
-            100.0 * second
-        );
+        let stiff = format!("materials.n = {{ density = 1.0, young_modulus = {}, poisson_ratio = 0.3 }}\n", 100.0 * second);
+        let text = two_discs(&(stiff + "contacts.m = { between = ['m', 'n'], law = 'coulomb' }\n"), "n", 0.0);
         let at = Resolution::grid(8.0, 2);
         let record = try_run("mpm", |setting| setting.penalty = penalty, &text, at).unwrap();
         column(&record, "c.normal_force")[1]
@@ -82,15 +88,8 @@ fn discs_push_with_the_springs_of_both() {
 #[test]
 fn discs_that_pass_each_other_rub_with_the_springs_of_both() {
     let force = |friction: f64, speed: f64| {
-        let text = format!(
-            "dimension = 2\nduration = 1.0e-3\noutput.every_cycles = 1\n\
-             materials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }}\n\
-             contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = {friction} }}\n\
-             [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-0.99, 0.0]\nvelocity = [0.0, {speed}]\n\
-             [grains.b]\nmaterial = 'm'\nradius = 1.0\nposition = [0.99, 0.0]\nvelocity = [0.0, {}]\n\
-             [probes]\nc.contact = ['a', 'b']\n",
-            -speed
-        );
+        let law = format!("contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = {friction} }}\n");
+        let text = two_discs(&law, "m", speed);
         let record = try_run("mpm", |_| (), &text, Resolution::grid(8.0, 2)).unwrap();
         column(&record, "c.shear_force")[1] / column(&record, "c.normal_force")[1]
     };
