@@ -14,6 +14,7 @@ pub use grainbench_cases as cases;
 pub use grainbench_dem as dem;
 pub use grainbench_fields as fields;
 pub use grainbench_harness as harness;
+pub use grainbench_lanes as lanes;
 pub use grainbench_mpm as mpm;
 pub use grainbench_reference as reference;
 pub use grainbench_reports as reports;

@@ -1,5 +1,5 @@
 //! Every gate of the registry, and for every gate its negative control: a test each. Those of the long set, which take
-//! minutes, take part with `GRAINBENCH_LONG=1`.
+//! minutes, take part with `GRAINBENCH_LONG=1`; `GRAINBENCH_PROCESSOR` forces the path that our solvers take.
 
 use grainbench::cases::registry::CASES;
 use grainbench::cases::runner;
@@ -7,10 +7,16 @@ use grainbench::harness::claim::Claim;
 use grainbench::harness::run::{Set, Standing};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::verdict::Outcome;
+use grainbench::lanes::Processor;
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::sync::Arc;
 
 fn main() -> std::process::ExitCode {
+    // A path that this processor does not have would be another one, and judge nothing.
+    if let Err(reason) = Processor::forced() {
+        eprintln!("error: {reason}");
+        return std::process::ExitCode::from(2);
+    }
     let long = std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1");
     let set = if long { Set::Long } else { Set::Tests };
     let mut trials = Vec::new();

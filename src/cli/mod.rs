@@ -23,6 +23,7 @@ mod subject;
 
 use clap::{Parser, Subcommand};
 use exit::Fault;
+use grainbench::lanes::Processor;
 use std::process::ExitCode;
 
 /// How far to trust a solver of granular simulations, and what that trust costs.
@@ -72,6 +73,9 @@ enum Command {
 /// Reads the command line, does what it says, and says how it went.
 pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
+    if let Err(reason) = Processor::forced() {
+        return Fault::input(reason).report();
+    }
     let done = match cli.command {
         None => run::run(&[], &cli.run),
         Some(Command::List(arguments)) => list::list(&arguments),

@@ -1,5 +1,6 @@
 //! What ran, where and when.
 
+use grainbench::lanes::Processor;
 use grainbench::reports::Provenance;
 use std::fs;
 
@@ -16,11 +17,11 @@ pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance 
     }
 }
 
-/// Processor, cores and operating system.
+/// Processor, cores, operating system, and what of the processor our solvers use.
 fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let plural = if cores == 1 { "" } else { "s" };
-    format!("{}, {cores} core{plural}, {}", processor(), system())
+    format!("{}, {cores} core{plural}, {}, loops for {}", processor(), system(), Processor::new().name())
 }
 
 /// The value of the first line `key … separator value` of a file of the system.

@@ -2,7 +2,7 @@
 //!
 //! Lengths are in cells, so that node i stands at i.
 
-use crate::lanes::Number;
+use grainbench_lanes::Number;
 
 /// Compiles a call for the basis that was chosen.
 macro_rules! with_basis {

@@ -149,7 +149,19 @@ impl<S: Space> Contacts<S> {
             ($B:ty, $friction:expr, $ledger:expr) => {{
                 let (pairs, friction, basis) = (found, $friction, PhantomData::<$B>);
                 let told = Told { ledger: $ledger, touches: record.then_some(touches), touched };
-                processor.run(Push { rules, bodies, pairs, tracers, friction, walls, nodes, most, near, told, basis });
+                processor.run_by_four(Push {
+                    rules,
+                    bodies,
+                    pairs,
+                    tracers,
+                    friction,
+                    walls,
+                    nodes,
+                    most,
+                    near,
+                    told,
+                    basis,
+                });
             }};
         }
         with_basis!(setting.basis, B => match (friction, accounts) {
@@ -224,11 +236,11 @@ impl<S: Space> Contacts<S> {
             match velocities {
                 Velocities::Stepped => {
                     let velocity = |node: &Node<S>| node.velocity;
-                    processor.run(Carry { lattice, part, of, tracers, nodes, most, velocity, elapsed, basis });
+                    processor.run_by_four(Carry { lattice, part, of, tracers, nodes, most, velocity, elapsed, basis });
                 }
                 Velocities::Projected => {
                     let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
-                    processor.run(Carry { lattice, part, of, tracers, nodes, most, velocity, elapsed, basis });
+                    processor.run_by_four(Carry { lattice, part, of, tracers, nodes, most, velocity, elapsed, basis });
                 }
             }
         });

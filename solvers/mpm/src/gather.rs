@@ -14,7 +14,6 @@
 use crate::basis::{Basis, with_basis};
 use crate::damping::Damping;
 use crate::grid::{Lattice, Node};
-use crate::lanes::{Four, Kernel, Lanes, Number};
 use crate::nodes::Grid;
 use crate::options;
 use crate::patch::{Copies, Patch};
@@ -24,6 +23,7 @@ use crate::scatter::{Shown, weighted};
 use crate::scheme::Scheme;
 use crate::state::State;
 use crate::transfer::{Apic, Flip, Part, Spin, Transfer};
+use grainbench_lanes::{FourKernel, FourLanes, Number, Wide};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -44,7 +44,7 @@ pub(crate) fn gather<S: Space>(
             let runs = &runs[part.runs.clone()];
             let gather: Gather<'_, S, $B, $T, $project> =
                 Gather { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, basis };
-            processor.run(gather);
+            processor.run_by_four(gather);
         }};
         ($B:ty, $T:ty, $transfer:expr, $part:expr) => {
             if scheme.is_projected() {
@@ -79,11 +79,11 @@ struct Gather<'a, S: Space, B, T, const PROJECT: bool> {
     basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_, S, B, T, PROJECT> {
+impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> FourKernel for Gather<'_, S, B, T, PROJECT> {
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) {
+    fn run<L: FourLanes>(self, lanes: L) {
         let Self { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, .. } = self;
-        let zero = Four::splat(lanes, 0.0);
+        let zero = Wide::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         let mut projected_copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in runs {
@@ -103,8 +103,8 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_,
                     for component in 0..S::DIMENSION {
                         let (mut velocity, mut changed) = ([zero; 3], [zero; 3]);
                         for (node, at) in nodes.into_iter().enumerate() {
-                            velocity[node] = Four::splat(lanes, S::component(at.velocity, component));
-                            changed[node] = Four::splat(lanes, S::component(at.change, component));
+                            velocity[node] = Wide::splat(lanes, S::component(at.velocity, component));
+                            changed[node] = Wide::splat(lanes, S::component(at.change, component));
                         }
                         let velocities = weighted::<B, _>(velocity, values);
                         let changes = weighted::<B, _>(changed, values);
@@ -145,10 +145,10 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_,
                 if PROJECT {
                     let shown = Shown::new::<S, T>(&lattice.cell, &stencil, velocity, affine);
                     let mass = batch.amounts(lanes, &points.mass);
-                    let masses = Four::scaled(values, mass);
+                    let masses = Wide::scaled(values, mass);
                     for row in 0..Patch::rows::<S, B>() {
                         let across = stencil.across::<S, B>(row);
-                        let masses = Four::scaled(masses, across.value);
+                        let masses = Wide::scaled(masses, across.value);
                         let mut momenta = [[zero; 3]; 3];
                         for (component, momenta) in momenta.iter_mut().enumerate().take(S::DIMENSION) {
                             let velocities = shown.row::<S, B, T>(row, component);
@@ -169,17 +169,17 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> Kernel for Gather<'_,
 
 /// Adds momentum from four points, component by component, to the nodes of a row.
 #[inline(always)]
-fn give<S: Space, B: Basis, L: Lanes>([x, y, z]: [[Four<L>; 3]; 3], projected: &mut [S::Vector]) {
+fn give<S: Space, B: Basis, L: FourLanes>([x, y, z]: [[Wide<L>; 3]; 3], projected: &mut [S::Vector]) {
     let sums = if S::DIMENSION == 2 {
-        let [a, b, c, d] = Four::sums([x[0], y[0], x[1], y[1]]);
-        let [e, f, ..] = Four::sums([x[2], y[2], z[0], z[0]]);
+        let [a, b, c, d] = Wide::sums([x[0], y[0], x[1], y[1]]);
+        let [e, f, ..] = Wide::sums([x[2], y[2], z[0], z[0]]);
         [[a, b, 0.0, 0.0], [c, d, 0.0, 0.0], [e, f, 0.0, 0.0]]
     } else {
         let zero = x[0].like(0.0);
         [
-            Four::sums([x[0], y[0], z[0], zero]),
-            Four::sums([x[1], y[1], z[1], zero]),
-            Four::sums([x[2], y[2], z[2], zero]),
+            Wide::sums([x[0], y[0], z[0], zero]),
+            Wide::sums([x[1], y[1], z[1], zero]),
+            Wide::sums([x[2], y[2], z[2], zero]),
         ]
     };
     for (projected, [x, y, z, _]) in projected.iter_mut().zip(sums).take(B::WIDTH) {

@@ -1,10 +1,10 @@
 //! Velocity gradients at points.
 
 use crate::basis::Basis;
-use crate::lanes::{Four, Kernel, Lanes};
 use crate::patch::{Copies, Patch};
 use crate::runs::Ground;
 use crate::scatter::weighted;
+use grainbench_lanes::{FourKernel, FourLanes, Wide};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
@@ -29,11 +29,11 @@ impl<'a, S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Gradients<'a, S, B
     }
 }
 
-impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Gradients<'_, S, B, N, V> {
+impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Gradients<'_, S, B, N, V> {
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) {
+    fn run<L: FourLanes>(self, lanes: L) {
         let Self { ground, nodes, velocity, gradients, .. } = self;
-        let zero = Four::splat(lanes, 0.0);
+        let zero = Wide::splat(lanes, 0.0);
         let first = ground.runs.first().map_or(0, |run| run.start);
         // Never read unless copied to.
         let Some(&any) = nodes.first() else { return };
@@ -51,7 +51,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Gradients<'
                     for (component, gradient) in gradient.iter_mut().enumerate().take(S::DIMENSION) {
                         let mut velocity = [zero; 3];
                         for (velocity, node) in velocity.iter_mut().zip(nodes) {
-                            *velocity = Four::splat(lanes, S::component(node, component));
+                            *velocity = Wide::splat(lanes, S::component(node, component));
                         }
                         let along = weighted::<B, _>(velocity, slopes);
                         let velocities = weighted::<B, _>(velocity, values);

@@ -5,7 +5,7 @@
 //! bodies meet is three nodes, one in each window.
 
 use crate::basis::{Axis, Basis};
-use crate::lanes::Number;
+use grainbench_lanes::Number;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;

@@ -3,9 +3,9 @@
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Stencil};
-use crate::lanes::{Four, LANES, Lanes, Number};
 use crate::points::Points;
 use crate::transfer::Part;
+use grainbench_lanes::{FourLanes, LANES, Number, Wide};
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 use std::array::from_fn;
@@ -81,16 +81,16 @@ impl<'a, S: Space> Ground<'a, S> {
 
     /// The nodes around a batch of a run.
     #[inline(always)]
-    pub(crate) fn stencil<B: Basis, L: Lanes>(&self, lanes: L, run: &Run, batch: Batch) -> Stencil<Four<L>> {
+    pub(crate) fn stencil<B: Basis, L: FourLanes>(&self, lanes: L, run: &Run, batch: Batch) -> Stencil<Wide<L>> {
         let position = batch.spread_vectors::<S, L>(lanes, self.position);
-        let mut half = [Four::splat(lanes, self.part.half); 3];
+        let mut half = [Wide::splat(lanes, self.part.half); 3];
         if B::EXTENDED {
             let mut last = None;
             let four = batch.four(self.deformation, &mut last);
             let extents = [0, 1, 2, 3].map(|lane: usize| self.part.extent::<S, B>(four[lane]));
             for (axis, half) in half.iter_mut().enumerate().take(S::DIMENSION) {
                 let [a, b, c, d] = &extents;
-                *half = batch.spread(lanes, Four::new(lanes, [a[axis], b[axis], c[axis], d[axis]]));
+                *half = batch.spread(lanes, Wide::four(lanes, [a[axis], b[axis], c[axis], d[axis]]));
             }
         }
         Stencil::around::<S, B>(self.lattice, run.base, position, half)
@@ -142,7 +142,7 @@ impl Batch {
         Self { start: self.start - first, ..self }
     }
 
-    /// What its points have. Lanes without a point get that of another one.
+    /// What its points have. FourLanes without a point get that of another one.
     #[inline(always)]
     fn four<'a, T: Copy>(self, values: &'a [T], last: &'a mut Option<[T; LANES]>) -> &'a [T; LANES] {
         match values[self.start..].first_chunk() {
@@ -159,7 +159,7 @@ impl Batch {
 
     /// The positions of its points (m), by component, for a stencil: all of them are among the same nodes.
     #[inline(always)]
-    pub(crate) fn spread_vectors<S: Space, L: Lanes>(self, lanes: L, values: &[S::Vector]) -> [Four<L>; 3] {
+    pub(crate) fn spread_vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [Wide<L>; 3] {
         let mut vectors = self.vectors::<S, L>(lanes, values);
         for vector in vectors.iter_mut().take(S::DIMENSION) {
             *vector = self.spread(lanes, *vector);
@@ -167,36 +167,36 @@ impl Batch {
         vectors
     }
 
-    /// Lanes without a point get what the first one has, so that all are among the nodes of the run.
+    /// FourLanes without a point get what the first one has, so that all are among the nodes of the run.
     #[inline(always)]
-    fn spread<L: Lanes>(self, lanes: L, of: Four<L>) -> Four<L> {
+    fn spread<L: FourLanes>(self, lanes: L, of: Wide<L>) -> Wide<L> {
         let [first, ..] = of.values();
-        of.like(0.0).pick_below(Four::new(lanes, OWN[self.count]), of, of.like(first))
+        of.like(0.0).pick_below(Wide::four(lanes, OWN[self.count]), of, of.like(first))
     }
 
     /// A number of each point, such as a mass; zero in lanes without one.
     #[inline(always)]
-    pub(crate) fn amounts<L: Lanes>(self, lanes: L, values: &[f64]) -> Four<L> {
+    pub(crate) fn amounts<L: FourLanes>(self, lanes: L, values: &[f64]) -> Wide<L> {
         let mut last = None;
-        Four::new(lanes, *self.four(values, &mut last)) * Four::new(lanes, OWN[self.count])
+        Wide::four(lanes, *self.four(values, &mut last)) * Wide::four(lanes, OWN[self.count])
     }
 
     /// A vector of each point, by component.
     #[inline(always)]
-    pub(crate) fn vectors<S: Space, L: Lanes>(self, lanes: L, values: &[S::Vector]) -> [Four<L>; 3] {
+    pub(crate) fn vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [Wide<L>; 3] {
         let mut last = None;
         let [a, b, c, d] = *self.four(values, &mut last);
-        let mut vectors = [Four::splat(lanes, 0.0); 3];
+        let mut vectors = [Wide::splat(lanes, 0.0); 3];
         for (axis, vector) in vectors.iter_mut().enumerate().take(S::DIMENSION) {
             let four = [S::component(a, axis), S::component(b, axis), S::component(c, axis), S::component(d, axis)];
-            *vector = Four::new(lanes, four);
+            *vector = Wide::four(lanes, four);
         }
         vectors
     }
 
     /// A matrix of each point, row by row.
     #[inline(always)]
-    pub(crate) fn matrices<S: Space, L: Lanes>(self, lanes: L, values: &[S::Matrix]) -> [[Four<L>; 3]; 3] {
+    pub(crate) fn matrices<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Matrix]) -> [[Wide<L>; 3]; 3] {
         let mut last = None;
         let [a, b, c, d] = *self.four(values, &mut last);
         let four = [S::embed_gradient(a), S::embed_gradient(b), S::embed_gradient(c), S::embed_gradient(d)];
@@ -205,7 +205,7 @@ impl Batch {
 
     /// What of a symmetric tensor of each point acts in this space, row by row.
     #[inline(always)]
-    pub(crate) fn tensors<S: Space, L: Lanes>(self, lanes: L, values: &[S::Symmetric]) -> [[Four<L>; 3]; 3] {
+    pub(crate) fn tensors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Symmetric]) -> [[Wide<L>; 3]; 3] {
         let mut last = None;
         let [a, b, c, d] = *self.four(values, &mut last);
         let four = [S::embed_symmetric(a), S::embed_symmetric(b), S::embed_symmetric(c), S::embed_symmetric(d)];
@@ -214,7 +214,7 @@ impl Batch {
 
     /// Writes a vector for each point.
     #[inline(always)]
-    pub(crate) fn write_vectors<S: Space, L: Lanes>(self, vectors: [Four<L>; 3], to: &mut [S::Vector]) {
+    pub(crate) fn write_vectors<S: Space, L: FourLanes>(self, vectors: [Wide<L>; 3], to: &mut [S::Vector]) {
         let [x, y, z] = [vectors[0].values(), vectors[1].values(), vectors[2].values()];
         for (lane, to) in to[self.start..self.start + self.count].iter_mut().enumerate() {
             *to = S::restrict(Vector3::new(x[lane], y[lane], z[lane]));
@@ -223,7 +223,7 @@ impl Batch {
 
     /// Writes a matrix, given row by row, for each point.
     #[inline(always)]
-    pub(crate) fn write_matrices<S: Space, L: Lanes>(self, rows: [[Four<L>; 3]; 3], to: &mut [S::Matrix]) {
+    pub(crate) fn write_matrices<S: Space, L: FourLanes>(self, rows: [[Wide<L>; 3]; 3], to: &mut [S::Matrix]) {
         let mut values = [[[0.0; LANES]; 3]; 3];
         for (values, row) in values.iter_mut().zip(rows) {
             *values = [row[0].values(), row[1].values(), row[2].values()];
@@ -236,12 +236,12 @@ impl Batch {
 
 /// What of four matrices acts in this space, row by row.
 #[inline(always)]
-fn side_by_side<S: Space, L: Lanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; LANES]) -> [[Four<L>; 3]; 3] {
-    let mut rows = [[Four::splat(lanes, 0.0); 3]; 3];
+fn side_by_side<S: Space, L: FourLanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; LANES]) -> [[Wide<L>; 3]; 3] {
+    let mut rows = [[Wide::splat(lanes, 0.0); 3]; 3];
     for (row, to) in rows.iter_mut().enumerate().take(S::DIMENSION) {
         for (column, to) in to.iter_mut().enumerate().take(S::DIMENSION) {
             let at = (row, column);
-            *to = Four::new(lanes, [a[at], b[at], c[at], d[at]]);
+            *to = Wide::four(lanes, [a[at], b[at], c[at], d[at]]);
         }
     }
     rows

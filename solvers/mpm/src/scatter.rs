@@ -11,7 +11,6 @@
 use crate::basis::{Basis, with_basis};
 use crate::contact::grip;
 use crate::grid::{Node, Stencil};
-use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
 use crate::nodes::Grid;
 use crate::options;
 use crate::patch::{Copies, Patch};
@@ -20,6 +19,7 @@ use crate::runs::Ground;
 use crate::scheme::Scheme;
 use crate::state::State;
 use crate::transfer::{Apic, Flip, Spin, Transfer};
+use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, Wide};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -36,9 +36,9 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &mut State<S>, grid: &mu
         let part = &bodies[place].part;
         let ground = Ground::new(lattice, part, &runs[part.runs.clone()], points);
         with_basis!(setting.basis, B => match setting.transfer {
-            options::Transfer::Flip { .. } => processor.run(Scatter::<S, B, Flip>::new(ground, points, nodes)),
-            options::Transfer::Apic => processor.run(Scatter::<S, B, Apic>::new(ground, points, nodes)),
-            options::Transfer::Spin => processor.run(Scatter::<S, B, Spin>::new(ground, points, nodes)),
+            options::Transfer::Flip { .. } => processor.run_by_four(Scatter::<S, B, Flip>::new(ground, points, nodes)),
+            options::Transfer::Apic => processor.run_by_four(Scatter::<S, B, Apic>::new(ground, points, nodes)),
+            options::Transfer::Spin => processor.run_by_four(Scatter::<S, B, Spin>::new(ground, points, nodes)),
         });
         let window = part.window.slots();
         grip::bear(&nodes[window.clone()], part.cell_mass, &mut most[window]);
@@ -110,11 +110,11 @@ impl<'a, S: Space, B: Basis, T: Transfer> Scatter<'a, S, B, T> {
     }
 }
 
-impl<S: Space, B: Basis, T: Transfer> Kernel for Scatter<'_, S, B, T> {
+impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) {
+    fn run<L: FourLanes>(self, lanes: L) {
         let Self { ground, points, nodes, .. } = self;
-        let zero = Four::splat(lanes, 0.0);
+        let zero = Wide::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         for run in ground.runs {
             let window = &ground.part.window;
@@ -126,15 +126,15 @@ impl<S: Space, B: Basis, T: Transfer> Kernel for Scatter<'_, S, B, T> {
                 let shown = Shown::new::<S, T>(&ground.lattice.cell, &stencil, velocity, affine);
                 let [values, slopes] = stencil.along_x();
                 let mass = batch.amounts(lanes, &points.mass);
-                let masses = Four::scaled(values, mass);
+                let masses = Wide::scaled(values, mass);
                 let volume = -batch.amounts(lanes, &points.volume);
                 let mut pull = batch.tensors::<S, L>(lanes, &points.stress);
                 for row in &mut pull {
-                    *row = Four::scaled(*row, volume);
+                    *row = Wide::scaled(*row, volume);
                 }
                 for row in 0..Patch::rows::<S, B>() {
                     let across = stencil.across::<S, B>(row);
-                    let masses = Four::scaled(masses, across.value);
+                    let masses = Wide::scaled(masses, across.value);
                     let mut brought = [[zero; 2 * LANES]; 3];
                     for (brought, &mass) in brought.iter_mut().zip(&masses) {
                         brought[0] = mass;
@@ -161,23 +161,23 @@ impl<S: Space, B: Basis, T: Transfer> Kernel for Scatter<'_, S, B, T> {
 
 /// Adds mass, momentum and force from four points to the nodes of a row.
 #[inline(always)]
-fn give<S: Space, B: Basis, L: Lanes>(brought: [[Four<L>; 2 * LANES]; 3], nodes: &mut [Node<S>]) {
+fn give<S: Space, B: Basis, L: FourLanes>(brought: [[Wide<L>; 2 * LANES]; 3], nodes: &mut [Node<S>]) {
     let zero = brought[0][7];
     let [x, y, z] = brought;
     let last = if S::DIMENSION == 2 {
         // One number of each node is left.
-        let [x, y, z, _] = Four::sums([x[4], y[4], z[4], zero]);
+        let [x, y, z, _] = Wide::sums([x[4], y[4], z[4], zero]);
         [[x, 0.0, 0.0, 0.0], [y, 0.0, 0.0, 0.0], [z, 0.0, 0.0, 0.0]]
     } else {
         [
-            Four::sums([x[4], x[5], x[6], zero]),
-            Four::sums([y[4], y[5], y[6], zero]),
-            Four::sums([z[4], z[5], z[6], zero]),
+            Wide::sums([x[4], x[5], x[6], zero]),
+            Wide::sums([y[4], y[5], y[6], zero]),
+            Wide::sums([z[4], z[5], z[6], zero]),
         ]
     };
     for (node, to) in nodes.iter_mut().enumerate().take(B::WIDTH) {
         let brought = &brought[node];
-        let [mass, a, b, c] = Four::sums([brought[0], brought[1], brought[2], brought[3]]);
+        let [mass, a, b, c] = Wide::sums([brought[0], brought[1], brought[2], brought[3]]);
         let [d, e, f, _] = last[node];
         let sums = [a, b, c, d, e, f];
         to.mass += mass;

@@ -1,7 +1,7 @@
 //! How a run is computed, from its first step to its last.
 
-use crate::lanes::Processor;
 use crate::options::{Contact, Setting, StressUpdate};
+use grainbench_lanes::Processor;
 use grainbench_scene::space::Space;
 
 /// What does not change in a run.

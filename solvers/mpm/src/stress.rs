@@ -5,7 +5,6 @@ use crate::bodies::{Body, Material};
 use crate::failure::Failure;
 use crate::gradients::Gradients;
 use crate::grid::Node;
-use crate::lanes::{Kernel, Lanes};
 use crate::ledger::Flow;
 use crate::material::{Law, PlasticStrain};
 use crate::nodes::{Grid, Velocities};
@@ -14,6 +13,7 @@ use crate::points::Points;
 use crate::runs::{self, Ground};
 use crate::scheme::Scheme;
 use crate::state::State;
+use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
@@ -61,11 +61,11 @@ pub(crate) fn follow<S: Space>(
         with_basis!(setting.basis, B => match velocities {
             Velocities::Stepped => {
                 let velocity = |node: &Node<S>| node.velocity;
-                processor.run(Gradients::<S, B, _, _>::new(ground, nodes, velocity, gradients));
+                processor.run_by_four(Gradients::<S, B, _, _>::new(ground, nodes, velocity, gradients));
             }
             Velocities::Projected => {
                 let velocity = |velocity: &S::Vector| *velocity;
-                processor.run(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
+                processor.run_by_four(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
             }
         });
         macro_rules! update {
@@ -73,7 +73,7 @@ pub(crate) fn follow<S: Space>(
                 let (law, failure) = ($law, &mut failure);
                 let update: Update<'_, S, _, $count> =
                     Update { law, range, gradients, time_step, spins, points, flow, failure };
-                processor.run(update);
+                processor.run_by_four(update);
             }};
             ($law:ident) => {
                 if counts { update!($law, true) } else { update!($law, false) }
@@ -109,9 +109,9 @@ struct Update<'a, S: Space, L, const COUNT: bool> {
     failure: &'a mut Option<BrokenPoint>,
 }
 
-impl<S: Space, L: Law, const COUNT: bool> Kernel for Update<'_, S, L, COUNT> {
+impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, S, L, COUNT> {
     #[inline(always)]
-    fn run<R: Lanes>(self, _: R) {
+    fn run<R: FourLanes>(self, _: R) {
         let Self { law, range, gradients, time_step, spins, points, flow, failure } = self;
         let affines = &mut points.affine;
         let deformations = &mut points.deformation[range.clone()];

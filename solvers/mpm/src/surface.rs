@@ -2,11 +2,11 @@
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Stencil};
-use crate::lanes::{Four, Kernel, LANES, Lanes, Number};
 use crate::patch::{Copies, Patch};
 use crate::runs;
 use crate::seed;
 use crate::transfer::Part;
+use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, Wide};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -307,12 +307,12 @@ pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Carry<'_, S, B, N, V> {
+impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'_, S, B, N, V> {
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) {
+    fn run<L: FourLanes>(self, lanes: L) {
         let Self { lattice, part, of, tracers, nodes, most, velocity, elapsed, .. } = self;
         let Tracers { position, area, neighbours, .. } = tracers;
-        let zero = Four::splat(lanes, 0.0);
+        let zero = Wide::splat(lanes, 0.0);
         // Never read unless copied to.
         let Some(&any) = nodes.first() else { return };
         let (mut copies, mut most_copies): (Copies<N>, Copies<f64>) = ([any; _], [0.0; _]);
@@ -326,7 +326,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Carry<'_, S
             let (seen, patch) = part.window.seen::<S, B, _>(base, nodes, &mut copies);
             let (bounds, _) = part.window.seen::<S, B, _>(base, most, &mut most_copies);
             let at = batch.spread_vectors::<S, L>(lanes, position);
-            let stencil = Stencil::around::<S, B>(lattice, base, at, [Four::splat(lanes, part.half); 3]);
+            let stencil = Stencil::around::<S, B>(lattice, base, at, [Wide::splat(lanes, part.half); 3]);
             let [values, slopes] = stencil.along_x();
             let (mut total, mut way) = (zero, [zero; 3]);
             let (mut gradient, mut slope) = ([[zero; 3]; 3], [zero; 3]);
@@ -334,7 +334,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Kernel for Carry<'_, S
                 let across = stencil.across::<S, B>(row);
                 let places = patch.row::<S, B>(row);
                 for (node, place) in places.enumerate() {
-                    let bound = Four::splat(lanes, bounds[place]);
+                    let bound = Wide::splat(lanes, bounds[place]);
                     let value = across.value * values[node];
                     let weight = value.pick_below(bound, value, bound);
                     total = total + weight;

@@ -2,8 +2,8 @@
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Node, Stencil, Window};
-use crate::lanes::Number;
 use crate::points::Points;
+use grainbench_lanes::Number;
 use grainbench_scene::space::Space;
 use std::ops::Range;
 

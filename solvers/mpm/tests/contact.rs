@@ -67,7 +67,8 @@ fn two_discs(between: &str, second: &str, speed: f64) -> String {
 #[test]
 fn discs_push_with_the_springs_of_both() {
     let force = |second: f64, penalty: f64| {
-        let stiff = format!("materials.n = {{ density = 1.0, young_modulus = {}, poisson_ratio = 0.3 }}\n", 100.0 * second);
+        let stiff =
+            format!("materials.n = {{ density = 1.0, young_modulus = {}, poisson_ratio = 0.3 }}\n", 100.0 * second);
         let text = two_discs(&(stiff + "contacts.m = { between = ['m', 'n'], law = 'coulomb' }\n"), "n", 0.0);
         let at = Resolution::grid(8.0, 2);
         let record = try_run("mpm", |setting| setting.penalty = penalty, &text, at).unwrap();

@@ -10,10 +10,10 @@ use super::{FrictionTable, Other, Touch};
 use crate::basis::Basis;
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node};
-use crate::lanes::{Kernel, Lanes};
 use crate::ledger::Ledger;
 use crate::surface::Tracers;
 use crate::walls::RigidPlane;
+use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
@@ -84,9 +84,9 @@ pub(crate) struct Push<'a, S: Space, B, F, A> {
     pub(crate) basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Kernel for Push<'_, S, B, F, A> {
+impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> FourKernel for Push<'_, S, B, F, A> {
     #[inline(always)]
-    fn run<L: Lanes>(mut self, _: L) {
+    fn run<L: FourLanes>(mut self, _: L) {
         self.at_walls();
         if !self.pairs.is_empty() {
             self.tracers.find_boxes();

@@ -1,8 +1,8 @@
 //! Neo-Hookean elasticity.
 
 use super::{Law, State};
-use crate::logarithm::ln;
 use crate::off::Off;
+use grainbench_lanes::logarithm::ln;
 use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;
 

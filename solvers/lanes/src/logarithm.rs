@@ -15,7 +15,8 @@ const LN_2: [f64; 2] = [0.693_146_705_627_441_4, 4.749_325_039_031_672_6e-7];
 /// ln x = k ln 2 + f − (f²/2 − s (f²/2 + R))
 /// ```
 #[inline(always)]
-pub(crate) fn ln(x: f64) -> f64 {
+#[must_use]
+pub fn ln(x: f64) -> f64 {
     let bits = x.to_bits();
     let exponent = (bits.wrapping_sub(ROOT_OF_HALF) as i64) >> 52;
     let f = f64::from_bits(bits.wrapping_sub((exponent << 52) as u64)) - 1.0;

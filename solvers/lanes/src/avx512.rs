@@ -1,0 +1,103 @@
+//! Eight lanes in registers of 512 bits. Whether the processor has them is what holding the token means.
+
+use crate::{Lanes, Quad, WIDEST};
+use pulp::x86::V4;
+use std::arch::x86_64::{__m256d, __m512d, __mmask8, _CMP_LT_OQ};
+
+/// Two quads in a register.
+#[inline(always)]
+fn both(lanes: V4, low: Quad, high: Quad) -> __m512d {
+    let [low, high]: [__m256d; 2] = [pulp::cast(low.0), pulp::cast(high.0)];
+    lanes.avx512f._mm512_insertf64x4::<1>(lanes.avx512f._mm512_castpd256_pd512(low), high)
+}
+
+/// The quads of a register.
+#[inline(always)]
+fn split(register: __m512d) -> [Quad; 2] {
+    let [low, high]: [[f64; 4]; 2] = pulp::cast(register);
+    [Quad(low), Quad(high)]
+}
+
+impl Lanes for V4 {
+    type Register = __m512d;
+    type Mask = __mmask8;
+    const WIDTH: usize = WIDEST;
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> __m512d {
+        self.avx512f._mm512_set1_pd(value)
+    }
+    #[inline(always)]
+    fn load(self, from: &[f64; WIDEST]) -> __m512d {
+        pulp::cast(*from)
+    }
+    #[inline(always)]
+    fn store(self, of: __m512d) -> [f64; WIDEST] {
+        pulp::cast(of)
+    }
+    #[inline(always)]
+    fn add(self, a: __m512d, b: __m512d) -> __m512d {
+        self.avx512f._mm512_add_pd(a, b)
+    }
+    #[inline(always)]
+    fn sub(self, a: __m512d, b: __m512d) -> __m512d {
+        self.avx512f._mm512_sub_pd(a, b)
+    }
+    #[inline(always)]
+    fn mul(self, a: __m512d, b: __m512d) -> __m512d {
+        self.avx512f._mm512_mul_pd(a, b)
+    }
+    #[inline(always)]
+    fn div(self, a: __m512d, b: __m512d) -> __m512d {
+        self.avx512f._mm512_div_pd(a, b)
+    }
+    #[inline(always)]
+    fn sqrt(self, a: __m512d) -> __m512d {
+        self.avx512f._mm512_sqrt_pd(a)
+    }
+    #[inline(always)]
+    fn below(self, a: __m512d, b: __m512d) -> __mmask8 {
+        self.avx512f._mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b)
+    }
+    #[inline(always)]
+    fn choose(self, mask: __mmask8, yes: __m512d, no: __m512d) -> __m512d {
+        self.avx512f._mm512_mask_blend_pd(mask, no, yes)
+    }
+    #[inline(always)]
+    fn bits(self, mask: __mmask8) -> u32 {
+        u32::from(mask)
+    }
+    #[inline(always)]
+    fn gather(self, table: &[Quad], at: &[usize; WIDEST]) -> [__m512d; 4] {
+        let avx = self.avx512f;
+        // The lanes of quads 0 and 2, 1 and 3, 4 and 6, 5 and 7 side by side, so that the last step leaves them in order.
+        let a = both(self, table[at[0]], table[at[2]]);
+        let b = both(self, table[at[1]], table[at[3]]);
+        let c = both(self, table[at[4]], table[at[6]]);
+        let d = both(self, table[at[5]], table[at[7]]);
+        let [even_ab, odd_ab] = [avx._mm512_unpacklo_pd(a, b), avx._mm512_unpackhi_pd(a, b)];
+        let [even_cd, odd_cd] = [avx._mm512_unpacklo_pd(c, d), avx._mm512_unpackhi_pd(c, d)];
+        [
+            avx._mm512_shuffle_f64x2::<0b10_00_10_00>(even_ab, even_cd),
+            avx._mm512_shuffle_f64x2::<0b10_00_10_00>(odd_ab, odd_cd),
+            avx._mm512_shuffle_f64x2::<0b11_01_11_01>(even_ab, even_cd),
+            avx._mm512_shuffle_f64x2::<0b11_01_11_01>(odd_ab, odd_cd),
+        ]
+    }
+    #[inline(always)]
+    fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
+        pulp::cast(self.avx512vl._mm256_maskz_compress_epi32(bits as __mmask8, pulp::cast(*of)))
+    }
+    #[inline(always)]
+    fn quads(self, [a, b, c, d]: [__m512d; 4]) -> [Quad; WIDEST] {
+        let avx = self.avx512f;
+        let [even_ab, odd_ab] = [avx._mm512_unpacklo_pd(a, b), avx._mm512_unpackhi_pd(a, b)];
+        let [even_cd, odd_cd] = [avx._mm512_unpacklo_pd(c, d), avx._mm512_unpackhi_pd(c, d)];
+        let [low, high] = [pulp::cast([0_u64, 1, 8, 9, 2, 3, 10, 11]), pulp::cast([4_u64, 5, 12, 13, 6, 7, 14, 15])];
+        let [zero, two] = split(avx._mm512_permutex2var_pd(even_ab, low, even_cd));
+        let [four, six] = split(avx._mm512_permutex2var_pd(even_ab, high, even_cd));
+        let [one, three] = split(avx._mm512_permutex2var_pd(odd_ab, low, odd_cd));
+        let [five, seven] = split(avx._mm512_permutex2var_pd(odd_ab, high, odd_cd));
+        [zero, one, two, three, four, five, six, seven]
+    }
+}

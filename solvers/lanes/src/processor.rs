@@ -1,0 +1,151 @@
+//! What this processor has, and loops that are compiled for it.
+
+use crate::{FourLanes, Lanes, Portable, Single};
+use std::sync::OnceLock;
+
+/// The environment variable that forces a path: `portable`, `avx2` or `avx512`.
+pub const PROCESSOR: &str = "GRAINBENCH_PROCESSOR";
+
+/// A loop that takes as many at a time as registers hold, or one by one.
+pub trait Kernel {
+    /// What it leaves.
+    type Output;
+    /// Runs it.
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output;
+}
+
+/// A loop that takes four at a time.
+pub trait FourKernel {
+    /// Runs it.
+    fn run<L: FourLanes>(self, lanes: L);
+}
+
+/// A path through the loops.
+#[derive(Clone, Copy, Debug)]
+pub enum Processor {
+    /// What every processor can do.
+    Portable,
+    /// Registers of 256 bits (x86-64-v3).
+    #[cfg(target_arch = "x86_64")]
+    Avx2(pulp::x86::V3),
+    /// Registers of 512 bits (x86-64-v4).
+    #[cfg(target_arch = "x86_64")]
+    Avx512(pulp::x86::V4),
+}
+
+impl Default for Processor {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Processor {
+    /// The path that the environment forces, else the best that this processor has.
+    #[must_use]
+    pub fn new() -> Self {
+        static CHOSEN: OnceLock<Processor> = OnceLock::new();
+        *CHOSEN.get_or_init(|| Self::forced().ok().flatten().unwrap_or_else(Self::best))
+    }
+
+    /// The best path that this processor has.
+    #[must_use]
+    pub fn best() -> Self {
+        Self::all().pop().unwrap_or(Self::Portable)
+    }
+
+    /// Every path that this processor has, the best last.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        #[allow(unused_mut, reason = "other processors have none but the first")]
+        let mut all = vec![Self::Portable];
+        #[cfg(target_arch = "x86_64")]
+        {
+            all.extend(pulp::x86::V3::try_new().map(Self::Avx2));
+            all.extend(pulp::x86::V4::try_new().map(Self::Avx512));
+        }
+        all
+    }
+
+    /// The path that the environment forces.
+    ///
+    /// # Errors
+    /// When it names none, or one that this processor does not have.
+    pub fn forced() -> Result<Option<Self>, String> {
+        let Some(name) = std::env::var_os(PROCESSOR) else { return Ok(None) };
+        let all = Self::all();
+        let names: Vec<String> = all.iter().map(|path| format!("`{}`", path.name())).collect();
+        let found = all.into_iter().find(|path| path.name() == name);
+        let expected = || format!("expected one that this processor has ({})", names.join(", "));
+        found.map(Some).ok_or_else(|| format!("{PROCESSOR}: {}, found `{}`", expected(), name.to_string_lossy()))
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Portable => "portable",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => "avx512",
+        }
+    }
+
+    /// Runs a loop over as many at a time as registers hold.
+    #[inline(always)]
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            Self::Portable => kernel.run(Single),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(features) => pulp::Simd::vectorize(features, Compiled { lanes: features, kernel }),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(features) => pulp::Simd::vectorize(features, Compiled { lanes: features, kernel }),
+        }
+    }
+
+    /// Runs a loop over four at a time.
+    #[inline(always)]
+    pub fn run_by_four<K: FourKernel>(self, kernel: K) {
+        match self {
+            Self::Portable => kernel.run(Portable),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: features, kernel }),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(features) => pulp::Simd::vectorize(*features, CompiledByFour { lanes: *features, kernel }),
+        }
+    }
+}
+
+/// A loop, compiled for a processor.
+#[cfg(target_arch = "x86_64")]
+struct Compiled<L, K> {
+    lanes: L,
+    kernel: K,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl<L: Lanes, K: Kernel> pulp::WithSimd for Compiled<L, K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> K::Output {
+        self.kernel.run(self.lanes)
+    }
+}
+
+/// A loop over four at a time, compiled for a processor.
+#[cfg(target_arch = "x86_64")]
+struct CompiledByFour<L, K> {
+    lanes: L,
+    kernel: K,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl<L: FourLanes, K: FourKernel> pulp::WithSimd for CompiledByFour<L, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.kernel.run(self.lanes);
+    }
+}

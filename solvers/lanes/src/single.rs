@@ -1,0 +1,83 @@
+//! One lane: a number by itself, on any processor.
+
+use crate::{Lanes, Quad, WIDEST};
+
+/// One number at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Single;
+
+impl Lanes for Single {
+    type Register = f64;
+    type Mask = bool;
+    const WIDTH: usize = 1;
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
+    fn load(self, from: &[f64; WIDEST]) -> f64 {
+        from[0]
+    }
+    #[inline(always)]
+    fn store(self, of: f64) -> [f64; WIDEST] {
+        [of, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    }
+    #[inline(always)]
+    fn add(self, a: f64, b: f64) -> f64 {
+        a + b
+    }
+    #[inline(always)]
+    fn sub(self, a: f64, b: f64) -> f64 {
+        a - b
+    }
+    #[inline(always)]
+    fn mul(self, a: f64, b: f64) -> f64 {
+        a * b
+    }
+    #[inline(always)]
+    fn div(self, a: f64, b: f64) -> f64 {
+        a / b
+    }
+    #[inline(always)]
+    fn sqrt(self, a: f64) -> f64 {
+        a.sqrt()
+    }
+    #[inline(always)]
+    fn below(self, a: f64, b: f64) -> bool {
+        a < b
+    }
+    #[inline(always)]
+    fn choose(self, mask: bool, yes: f64, no: f64) -> f64 {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn bits(self, mask: bool) -> u32 {
+        u32::from(mask)
+    }
+    #[inline(always)]
+    fn gather(self, table: &[Quad], at: &[usize; WIDEST]) -> [f64; 4] {
+        table[at[0]].0
+    }
+    #[inline(always)]
+    fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
+        packed(of, bits)
+    }
+    #[inline(always)]
+    fn quads(self, of: [f64; 4]) -> [Quad; WIDEST] {
+        let none = Quad::default();
+        [Quad(of), none, none, none, none, none, none, none]
+    }
+}
+
+/// The whole numbers whose bit is set, first.
+#[inline(always)]
+pub(crate) fn packed(of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
+    let (mut all, mut count) = ([0; WIDEST], 0);
+    for (lane, &value) in of.iter().enumerate() {
+        // Each is written, and the next over it where it was not wanted: no branch to foretell.
+        all[count % WIDEST] = value;
+        count += (bits >> lane & 1) as usize;
+    }
+    all
+}

@@ -1,0 +1,140 @@
+use super::*;
+
+/// Numbers that are awkward.
+const NUMBERS: [f64; 8] = [1.0 / 3.0, -0.0, 1e300, -7.1e-310, f64::INFINITY, 2.5, -1.0 / 7.0, 1e16];
+
+/// Bits of a result; which bits one that is no number has is not said.
+fn bits(value: f64) -> u64 {
+    if value.is_nan() { 0 } else { value.to_bits() }
+}
+
+/// Every operation of four lanes, as bits.
+struct ByFour<'a>(&'a mut Vec<u64>);
+
+impl FourKernel for ByFour<'_> {
+    fn run<L: FourLanes>(self, lanes: L) {
+        for (at, &a) in NUMBERS.iter().enumerate() {
+            for &b in &NUMBERS {
+                let one = Wide::four(lanes, [a, b, 0.1 * a, 3.0 * b]);
+                let two = Wide::four(lanes, [b, a + 0.1, b, NUMBERS[(at + 3) % 8]]);
+                let sums = Wide::sums([one, two, one * two, one - two]);
+                self.0.extend([one, two, -one, one * 0.3].iter().flat_map(|four| four.values()).chain(sums).map(bits));
+            }
+        }
+    }
+}
+
+/// Every operation on every two numbers, as bits, taken so many at a time.
+struct Every<'a>(&'a mut Vec<u64>);
+
+impl Kernel for Every<'_> {
+    type Output = ();
+
+    fn run<L: Lanes>(self, lanes: L) {
+        let pairs: Vec<(f64, f64)> = NUMBERS.iter().flat_map(|&a| NUMBERS.map(|b| (a, b))).collect();
+        let mut rows: [Vec<u64>; 12] = Default::default();
+        for pairs in pairs.chunks(L::WIDTH) {
+            let [mut a, mut b] = [[0.0; WIDEST]; 2];
+            pairs.iter().enumerate().for_each(|(lane, &pair)| (a[lane], b[lane]) = pair);
+            let [one, two] = [Wide::load(lanes, &a), Wide::load(lanes, &b)];
+            let less = one.below(two);
+            let of = [
+                one + two,
+                one - two,
+                one * two,
+                one / two,
+                -one,
+                one.sqrt(),
+                one * 0.3,
+                one + 0.7,
+                one - 1.1,
+                one.at_least(two),
+                Wide::choose(less, one.like(1.0), one.like(0.0)),
+            ];
+            assert_eq!(one.anywhere(less), less.bits() != 0);
+            for (row, wide) in rows.iter_mut().zip(of) {
+                row.extend(wide.store()[..pairs.len()].iter().map(|&value| bits(value)));
+            }
+            rows[11].extend((0..pairs.len()).map(|lane| u64::from(less.bits() >> lane & 1)));
+        }
+        self.0.extend(rows.concat());
+    }
+}
+
+/// Quads that go into registers and out again.
+struct There<'a>(&'a [Quad], &'a [usize]);
+
+impl Kernel for There<'_> {
+    type Output = Vec<(Quad, Quad)>;
+
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+        let mut all = Vec::new();
+        for at in self.1.chunks(L::WIDTH) {
+            let mut places = [0; WIDEST];
+            places[..at.len()].copy_from_slice(at);
+            let registers = lanes.gather(self.0, &places);
+            let columns = registers.map(|register| lanes.store(register));
+            let back = lanes.quads(registers);
+            all.extend((0..L::WIDTH).map(|lane| (Quad(columns.map(|column| column[lane])), back[lane])));
+        }
+        all
+    }
+}
+
+#[test]
+fn every_operation_leaves_the_same_bits_on_all_paths() {
+    let mut expected = [Vec::new(), Vec::new()];
+    Processor::Portable.run_by_four(ByFour(&mut expected[0]));
+    Processor::Portable.run(Every(&mut expected[1]));
+    assert_eq!(expected.each_ref().map(Vec::len), [64 * 20, 64 * 12]);
+    for path in Processor::all() {
+        let mut found = [Vec::new(), Vec::new()];
+        path.run_by_four(ByFour(&mut found[0]));
+        path.run(Every(&mut found[1]));
+        assert!(found == expected, "{}", path.name());
+    }
+}
+
+#[test]
+fn quads_are_turned_and_turned_back() {
+    let table: Vec<Quad> = (0..20).map(|row| Quad([0.0, 0.1, 0.2, 0.3].map(|at| f64::from(row) + at))).collect();
+    let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
+    let expected: Vec<_> = at.iter().map(|&at| (table[at], table[at])).collect();
+    for path in Processor::all() {
+        assert_eq!(path.run(There(&table, &at)), expected, "{}", path.name());
+    }
+}
+
+/// Whole numbers, packed by all bits.
+struct Packed;
+
+impl Kernel for Packed {
+    type Output = Vec<Vec<u32>>;
+
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+        let of = [3, 1, 4, 15, 9, 2, 6, 5];
+        (0..256_u32).map(|bits| lanes.pack(&of, bits)[..bits.count_ones() as usize].to_vec()).collect()
+    }
+}
+
+#[test]
+fn whole_numbers_are_packed_by_bits() {
+    let of = [3, 1, 4, 15, 9, 2, 6, 5];
+    let wanted = |bits: u32| (0..8).filter(move |lane| bits >> lane & 1 == 1).map(|lane| of[lane]).collect();
+    let expected: Vec<Vec<u32>> = (0..256).map(wanted).collect();
+    for path in Processor::all() {
+        assert_eq!(path.run(Packed), expected, "{}", path.name());
+    }
+}
+
+/// The portable path with four lanes computes as the one with one.
+#[test]
+fn four_portable_lanes_are_four_numbers() {
+    let [mut one, mut four] = [Vec::new(), Vec::new()];
+    Every(&mut one).run(Single);
+    Every(&mut four).run(Portable);
+    assert!(one == four);
+    let table = [1.0, 5.0, 9.0, 13.0].map(|from| Quad([from, from + 1.0, from + 2.0, from + 3.0]));
+    let at = [2, 0, 3, 1];
+    assert_eq!(There(&table, &at).run(Portable), There(&table, &at).run(Single));
+}
