@@ -16,7 +16,6 @@ use grainbench::reference::stored::{StoredRun, folder};
 use grainbench::scene::solver::RunError;
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::process::Command;
 
 #[test]
 fn every_run_that_gates_read_is_stored_and_no_other() {

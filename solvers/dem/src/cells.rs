@@ -1,7 +1,7 @@
 //! A grid of cells over the grains, and their order by cell.
 
-use crate::grains::Place;
-use grainbench_scene::space::Space;
+use crate::geometry::Geometry;
+use grainbench_lanes::Quad;
 use nalgebra::Vector3;
 
 /// A grid over the bounding box of the grains. Cells are at least `reach` wide, so that what lies within reach of a
@@ -17,11 +17,11 @@ pub(crate) struct Cells {
 
 impl Cells {
     /// Lays the grid and gives the order that sorts the grains by cell (a stable sort).
-    pub(crate) fn sort<S: Space>(place: &[Place<S>], reach: f64) -> (Self, Vec<u32>) {
+    pub(crate) fn sort<S: Geometry>(place: &[Quad], reach: f64) -> (Self, Vec<u32>) {
         let mut low = Vector3::repeat(f64::INFINITY);
         let mut high = Vector3::repeat(f64::NEG_INFINITY);
         for grain in place {
-            let position = S::embed(grain.position);
+            let position = S::vector_in_space(grain);
             low = low.inf(&position);
             high = high.sup(&position);
         }
@@ -41,7 +41,7 @@ impl Cells {
         }
         let width = Vector3::from_fn(|axis, _| (extent[axis] / count[axis] as f64).max(reach));
         let mut cells = Self { low, width, count, start: Vec::new() };
-        let cell_of: Vec<u32> = place.iter().map(|grain| cells.index(S::embed(grain.position)) as u32).collect();
+        let cell_of: Vec<u32> = place.iter().map(|grain| cells.index(S::vector_in_space(grain)) as u32).collect();
         let mut start = vec![0_u32; count.iter().product::<usize>() + 1];
         cell_of.iter().for_each(|&cell| start[cell as usize + 1] += 1);
         for cell in 1..start.len() {
@@ -81,7 +81,6 @@ impl Cells {
 mod tests {
     use super::*;
     use grainbench_scene::space::Plane;
-    use nalgebra::Vector2;
 
     /// Grains on a lattice as wide as a cell have a cell each, wherever they are: what a grain is tested against does not
     /// grow with their number.
@@ -90,9 +89,9 @@ mod tests {
         for origin in [-100.0, 0.0, 100.0] {
             let at = |number: u32| {
                 let along = |part: u32| origin + 1.01 * f64::from(part);
-                Place::<Plane> { position: Vector2::new(along(number % 8), along(number / 8)), radius: 0.4 }
+                Quad([along(number % 8), along(number / 8), 0.0, 0.4])
             };
-            let (cells, order) = Cells::sort(&(0..64).map(at).collect::<Vec<_>>(), 1.0);
+            let (cells, order) = Cells::sort::<Plane>(&(0..64).map(at).collect::<Vec<_>>(), 1.0);
             // The last of a row is on the border of the grid and shares the cell before it.
             assert_eq!(cells.count, [7, 7, 1]);
             let most = (0..7).flat_map(|j| (0..7).map(move |i| (i, j))).map(|(i, j)| cells.row(i, i, j, 0).len()).max();

@@ -1,14 +1,11 @@
 //! A simulation as the solver holds it, whatever it was compiled for.
 
-use crate::contact::normal::Normal;
-use crate::contact::rolling::Rolling;
-use crate::contact::tangential::Tangential;
-use crate::simulation::Kernel;
+use crate::geometry::Geometry;
+use crate::simulation::Simulated;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::record::{Counts, Look};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::solver::Broken;
-use grainbench_scene::space::Space;
 
 /// A simulation as the solver holds it, whatever it was compiled for.
 pub trait Simulation: Send {
@@ -29,7 +26,7 @@ pub trait Simulation: Send {
     /// # Errors
     /// When the checkpoint is of another run or damaged.
     fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Recorder, CheckpointError>;
-    /// The kernel in words: the space and the stages that it was compiled for.
+    /// The loops over contacts in words: the space and the stages that they were compiled for.
     fn layout(&self) -> &'static str;
     /// Steps, pairs and contacts counted so far; no times.
     fn counts(&self) -> Counts;
@@ -39,7 +36,7 @@ pub trait Simulation: Send {
     fn look(&self) -> Look;
 }
 
-impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Simulation for Kernel<S, N, T, R> {
+impl<S: Geometry> Simulation for Simulated<S> {
     fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>> {
         self.take_cycles(steps)
     }
@@ -57,7 +54,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Simulation for Kernel
     }
 
     fn layout(&self) -> &'static str {
-        std::any::type_name::<Self>()
+        self.forces.words()
     }
 
     fn counts(&self) -> Counts {

@@ -1,24 +1,26 @@
-//! The loops over contacts: pairs of grains, and grains at walls.
+//! The loops over contacts: pairs of grains that touch, and grains at walls.
 //!
-//! They find what touches, hand it to the chain of stages ([`crate::contact`]) and add the answers to the forces and
-//! torques on the grains. Tangential and rolling springs are stretched by what slipped and rolled in the time `elapsed`
-//! (s) since the last evaluation. With `RECORD` every contact is kept in `seen`.
+//! They hand what touches to the chain of stages ([`crate::contact`]) and add the answers to the forces and torques on the
+//! grains, in the order of the list. Only these two loops are compiled for the laws of a scene; the loop over pairs for
+//! each path of the processor too. Pairs that are recorded are taken one by one.
 
-use crate::contact::Options;
 use crate::contact::at_wall::AtWall;
-use crate::contact::chain::Memory;
+use crate::contact::chain::{Evaluation, Layout};
 use crate::contact::normal::Normal;
 use crate::contact::pair::Pair;
 use crate::contact::rolling::Rolling;
 use crate::contact::seen::Seen;
 use crate::contact::tangential::Tangential;
+use crate::contact::{MEMORY, Options};
+use crate::geometry::Geometry;
 use crate::grains::Grains;
-use crate::laws::Laws;
-use crate::neighbours::Neighbours;
-use crate::rotation::Rotation;
+use crate::laws::{Laws, gathered, places};
+use crate::neighbours::Pairs;
+use crate::touching::Touching;
 use crate::walls::MovingWall;
-use grainbench_scene::record::{Counts, Partner};
-use grainbench_scene::space::Space;
+use grainbench_lanes::{Kernel, Lanes, Processor, Quad, Single, WIDEST, Wide};
+use grainbench_scene::record::Partner;
+use std::marker::PhantomData;
 
 /// What every contact of an evaluation is computed with.
 #[derive(Clone, Copy)]
@@ -26,143 +28,267 @@ pub(crate) struct Terms<'a> {
     /// The contact laws of the scene.
     pub(crate) laws: &'a Laws,
     /// The options of the convention.
-    pub(crate) options: Options,
+    pub(crate) options: &'a Options,
     /// Time since the last evaluation (s).
     pub(crate) elapsed: f64,
 }
 
-/// Forces and torques at the contacts between grains; with `ACROSS`, of pairs across a periodic face, else of all other
-/// pairs.
-pub(crate) fn pairs<S, N, T, R, const RECORD: bool, const ACROSS: bool>(
-    terms: Terms<'_>,
-    grains: &mut Grains<S, T::Rotation>,
-    neighbours: &mut Neighbours<S, Memory<S, T, R>>,
-    seen: &mut Vec<Seen<S>>,
-    cost: &mut Counts,
-) where
-    S: Space,
-    N: Normal,
-    T: Tangential<S>,
-    R: Rolling<S>,
-{
-    let pairs = if ACROSS { &mut neighbours.across } else { &mut neighbours.near };
-    if pairs.partner.is_empty() {
-        return;
+impl<'a> Terms<'a> {
+    fn evaluation(&self, record: bool) -> Evaluation<'a> {
+        Evaluation { options: self.options, elapsed: self.elapsed, record }
     }
-    cost.pair_tests += pairs.partner.len() as u64;
-    let mut touching = 0_u64;
-    for (row, ends) in pairs.start.windows(2).enumerate() {
-        let range = ends[0] as usize..ends[1] as usize;
-        if ACROSS && range.is_empty() {
-            continue;
-        }
-        let (place, movement, rotation) = (grains.place[row], grains.movement[row], grains.rotation[row]);
-        let laws = terms.laws.of(grains.material[row]);
-        let shifts = if ACROSS { &neighbours.shift[range.clone()] } else { &[] };
-        let mut force = S::ORIGIN;
-        let mut torque = <T::Rotation as Rotation<S>>::Torque::default();
-        let listed = pairs.partner[range.clone()].iter().zip(&mut pairs.history[range]);
-        for (at, (&partner, history)) in listed.enumerate() {
-            let other = partner as usize;
-            let other_place = &grains.place[other];
-            let mut between = other_place.position - place.position;
-            if ACROSS {
-                between -= shifts[at];
-            }
-            let squared = S::dot(between, between);
-            let reach = place.radius + other_place.radius;
-            if squared < reach * reach {
-                touching += 1;
-                let other_movement = &grains.movement[other];
-                let pair = Pair {
-                    law: &laws[usize::from(grains.material[other])],
-                    between,
-                    squared,
-                    radii: [place.radius, other_place.radius],
-                    velocity: movement.velocity - other_movement.velocity,
-                    inverse_masses: [movement.inverse_mass, other_movement.inverse_mass],
-                    spins: [rotation.spin(), grains.rotation[other].spin()],
-                    inertia: if R::ACTIVE { [rotation.inertia(), grains.rotation[other].inertia()] } else { [0.0; 2] },
-                };
-                let answer = pair.respond::<N, T, R, RECORD>(&terms.options, terms.elapsed, history);
-                force += answer.force;
-                grains.force[other] -= answer.force;
-                if T::ACTIVE {
-                    T::Rotation::add(&mut torque, answer.twist * answer.arms[0]);
-                    T::Rotation::add(&mut grains.torque[other], answer.twist * answer.arms[1]);
-                }
-                if R::ACTIVE {
-                    T::Rotation::add(&mut torque, answer.rolling);
-                    T::Rotation::add(&mut grains.torque[other], -answer.rolling);
-                }
-                if RECORD {
-                    let [id, partner] = [row, other].map(|slot| grains.id[slot] + 1);
-                    seen.push(Seen::new(&answer, id, Partner::Grain(partner), place.position, place.radius));
-                }
-            } else {
-                *history = Memory::<S, T, R>::default();
-            }
-        }
-        grains.force[row] += force;
-        if T::ACTIVE {
-            T::Rotation::add(&mut grains.torque[row], T::Rotation::torque(torque));
-        }
-    }
-    cost.contact_evaluations += touching;
 }
 
-/// Forces and torques at the contacts between grains and walls, and the force on every wall.
-pub(crate) fn wall_contacts<S, N, T, R, const RECORD: bool>(
-    terms: Terms<'_>,
-    grains: &mut Grains<S, T::Rotation>,
-    walls: &mut [MovingWall<S, Memory<S, T, R>>],
-    seen: &mut Vec<Seen<S>>,
-    cost: &mut Counts,
-) where
-    S: Space,
-    N: Normal,
-    T: Tangential<S>,
-    R: Rolling<S>,
-{
-    for (number, wall) in walls.iter_mut().enumerate() {
+/// The loops over contacts, whatever laws they were compiled for.
+pub(crate) trait Forces<S: Geometry>: Send {
+    /// Adds the forces and torques of the pairs that touch. Where `seen` is given every contact is kept in it.
+    fn of_pairs(
+        &self,
+        processor: Processor,
+        terms: Terms<'_>,
+        grains: &mut Grains<S>,
+        pairs: &mut Pairs,
+        touching: &Touching,
+        seen: Option<&mut Vec<Seen>>,
+    );
+    /// Adds the forces and torques at a wall, finds the force on it and how many grains touch it.
+    fn at_wall(
+        &self,
+        terms: Terms<'_>,
+        grains: &mut Grains<S>,
+        wall: &mut MovingWall,
+        number: u16,
+        seen: Option<&mut Vec<Seen>>,
+    ) -> u64;
+    /// What a contact remembers.
+    fn layout(&self) -> Layout;
+    /// Whether tangential forces turn the grains.
+    fn turn(&self) -> bool;
+    /// The space and the stages in words.
+    fn words(&self) -> &'static str;
+}
+
+/// A normal, a tangential and a rolling stage in a space.
+pub(crate) struct Chain<S, N, T, R>(PhantomData<(S, N, T, R)>);
+
+impl<S, N, T, R> Chain<S, N, T, R> {
+    pub(crate) const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chain<S, N, T, R> {
+    fn of_pairs(
+        &self,
+        processor: Processor,
+        terms: Terms<'_>,
+        grains: &mut Grains<S>,
+        pairs: &mut Pairs,
+        touching: &Touching,
+        seen: Option<&mut Vec<Seen>>,
+    ) {
+        let one_by_one = seen.is_some();
+        let of_pairs = OfPairs::<S, N, T, R> { terms, grains, pairs, touching, seen, chain: PhantomData };
+        if one_by_one {
+            of_pairs.run(Single);
+        } else {
+            processor.run(of_pairs);
+        }
+    }
+
+    fn at_wall(
+        &self,
+        terms: Terms<'_>,
+        grains: &mut Grains<S>,
+        wall: &mut MovingWall,
+        number: u16,
+        mut seen: Option<&mut Vec<Seen>>,
+    ) -> u64 {
         let mut near = std::mem::take(&mut wall.near);
-        wall.force = S::ORIGIN;
-        cost.pair_tests += near.len() as u64;
-        for (slot, history) in &mut near {
+        wall.force = Default::default();
+        let mut touching = 0;
+        for (slot, memory) in &mut near {
             let slot = *slot as usize;
-            let place = grains.place[slot];
-            let facing = wall.facing(place.position);
-            if facing.distance >= place.radius {
-                *history = Memory::<S, T, R>::default();
+            let (position, radius) = (grains.position(slot), grains.radius(slot));
+            let facing = wall.facing(position);
+            if facing.distance >= radius {
+                *memory = [0.0; MEMORY];
                 continue;
             }
-            let movement = grains.movement[slot];
-            let rotation = grains.rotation[slot];
-            let at_wall = AtWall {
-                law: &terms.laws.of(grains.material[slot])[usize::from(wall.material())],
-                normal: facing.normal,
+            touching += 1;
+            let at_wall = AtWall::<S> {
+                law: terms.laws.between(grains.material[slot], wall.material()),
+                normal: S::vector_of(facing.normal),
                 distance: facing.distance,
-                radius: place.radius,
-                velocity: movement.velocity - facing.velocity,
-                inverse_mass: movement.inverse_mass,
-                spin: rotation.spin(),
-                inertia: if R::ACTIVE { rotation.inertia() } else { 0.0 },
+                radius,
+                velocity: S::vector_of(grains.velocity(slot) - facing.velocity),
+                inverse_mass: grains.inverse_mass(slot),
+                spin: grains.spin(slot).filter(|_| T::ACTIVE).map(|spin| S::as_spin(spin.into())),
+                inertia: if R::ACTIVE { 1.0 / grains.inverse_inertia[slot] } else { 0.0 },
             };
-            let answer = at_wall.respond::<N, T, R, RECORD>(&terms.options, terms.elapsed, history);
-            grains.force[slot] += answer.force;
-            wall.force -= answer.force;
-            if T::ACTIVE {
-                T::Rotation::add(&mut grains.torque[slot], answer.twist * answer.arms[0]);
+            let answer = at_wall.respond::<N, T, R>(terms.evaluation(seen.is_some()), memory);
+            let [load, torque] = S::load(answer.force, answer.torques[0], 0.0);
+            grains.load[slot].add(&Quad(load));
+            if let Some(sum) = grains.torque.get_mut(slot) {
+                sum.add(&Quad(torque));
             }
-            if R::ACTIVE {
-                T::Rotation::add(&mut grains.torque[slot], answer.rolling);
-            }
-            cost.contact_evaluations += 1;
-            if RECORD {
-                let (id, partner) = (grains.id[slot] + 1, Partner::Wall(number as u16));
-                seen.push(Seen::new(&answer, id, partner, place.position, place.radius));
+            let force = S::whole(answer.force, 0.0);
+            (0..3).for_each(|axis| wall.force[axis] -= force[axis]);
+            if let Some(seen) = &mut seen {
+                let (id, partner) = (grains.id[slot] + 1, Partner::Wall(number));
+                seen.push(Seen::new(&answer, id, partner, position, radius));
             }
         }
         wall.near = near;
+        touching
     }
+
+    fn layout(&self) -> Layout {
+        Layout::of::<S, T, R>()
+    }
+
+    fn turn(&self) -> bool {
+        T::ACTIVE
+    }
+
+    fn words(&self) -> &'static str {
+        std::any::type_name::<Self>()
+    }
+}
+
+/// The loop over pairs that touch.
+struct OfPairs<'a, S: Geometry, N, T, R> {
+    terms: Terms<'a>,
+    grains: &'a mut Grains<S>,
+    pairs: &'a mut Pairs,
+    touching: &'a Touching,
+    seen: Option<&'a mut Vec<Seen>>,
+    chain: PhantomData<(N, T, R)>,
+}
+
+impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel for OfPairs<'_, S, N, T, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { terms, grains, pairs, touching, mut seen, chain: _ } = self;
+        let zero = Wide::splat(lanes, 0.0);
+        let evaluation = terms.evaluation(L::WIDTH == 1 && seen.is_some());
+        let numbers = T::NUMBERS + R::NUMBERS;
+        let mut law = terms.laws.gather(lanes, &[0; WIDEST]);
+        let Grains { place, movement, turning, load, torque, inverse_inertia: inertia, material, id, .. } = grains;
+        // Tables of one length: a place in one of them is a place in all.
+        let grains = place.len();
+        let (place, movement, load, material) =
+            (&place[..], &movement[..grains], &mut load[..grains], &material[..grains]);
+        let turns = if T::ACTIVE && S::DIMENSION == 3 { grains } else { 0 };
+        let (turning, torque) = (&turning[..turns], &mut torque[..turns]);
+        let kept_from = touching.kept_from();
+        pairs.make_room(kept_from + touching.count);
+        let Pairs { shift, memory: [low, high], next: [low_next, high_next], .. } = pairs;
+        for from in (0..touching.count).step_by(L::WIDTH) {
+            let first = places(lanes, &touching.first[from..], grains);
+            let second = places(lanes, &touching.second[from..], grains);
+            if !terms.laws.is_one() {
+                let mut laws = [0; WIDEST];
+                for lane in 0..L::WIDTH {
+                    let [one, other] = [first[lane], second[lane]].map(|slot| material[slot]);
+                    laws[lane] = terms.laws.number(one, other);
+                }
+                law = terms.laws.gather(lanes, &laws);
+            }
+            let sites = [gathered(lanes, place, &first), gathered(lanes, place, &second)];
+            let moves = [gathered(lanes, movement, &first), gathered(lanes, movement, &second)];
+            let mut between = S::vector(sites[1]) - S::vector(sites[0]);
+            if !shift.is_empty() {
+                let pair = places(lanes, &touching.pair[from..], shift.len());
+                between = between - S::vector(gathered(lanes, shift, &pair));
+            }
+            let mut spins = None;
+            if T::ACTIVE {
+                let mut turned = [[zero; 4]; 2];
+                if S::DIMENSION == 3 {
+                    turned = [gathered(lanes, turning, &first), gathered(lanes, turning, &second)];
+                }
+                spins = Some([S::spin(moves[0], turned[0]), S::spin(moves[1], turned[1])]);
+            }
+            let mut inverse_inertia = [zero; 2];
+            if R::ACTIVE {
+                for (inverse, slots) in inverse_inertia.iter_mut().zip([&first, &second]) {
+                    let mut each = [0.0; WIDEST];
+                    for lane in 0..L::WIDTH {
+                        each[lane] = inertia[slots[lane]];
+                    }
+                    *inverse = Wide::load(lanes, &each);
+                }
+            }
+            let mut memory = [zero; MEMORY];
+            if numbers > 0 {
+                let remembered = places(lanes, &touching.remembered[from..], low.len());
+                memory[..4].copy_from_slice(&gathered(lanes, low, &remembered));
+            }
+            if numbers > 4 {
+                let remembered = places(lanes, &touching.remembered[from..], high.len());
+                memory[4..].copy_from_slice(&gathered(lanes, high, &remembered));
+            }
+            let contact = Pair::<S, Wide<L>> {
+                law: &law,
+                between,
+                radii: [sites[0][3], sites[1][3]],
+                velocity: S::vector(moves[0]) - S::vector(moves[1]),
+                inverse_masses: [moves[0][3], moves[1][3]],
+                spins,
+                inverse_inertia,
+            };
+            let answer = contact.respond::<N, T, R>(evaluation, &mut memory);
+
+            let count = (touching.count - from).min(L::WIDTH);
+            let [one, on_one] = S::load(answer.force, answer.torques[0], zero);
+            let [other, on_other] = S::load(-answer.force, answer.torques[1], zero);
+            let one = spread(lanes, one);
+            if S::DIMENSION == 2 && T::ACTIVE {
+                let other = spread(lanes, other);
+                for lane in 0..count {
+                    load[first[lane]].add(&one[lane]);
+                    load[second[lane]].add(&other[lane]);
+                }
+            } else {
+                for lane in 0..count {
+                    load[first[lane]].add(&one[lane]);
+                    load[second[lane]].subtract(&one[lane]);
+                }
+            }
+            if S::DIMENSION == 3 && T::ACTIVE {
+                let [on_one, on_other] = [spread(lanes, on_one), spread(lanes, on_other)];
+                for lane in 0..count {
+                    torque[first[lane]].add(&on_one[lane]);
+                    torque[second[lane]].add(&on_other[lane]);
+                }
+            }
+            if numbers > 0 {
+                let quads = spread(lanes, [memory[0], memory[1], memory[2], memory[3]]);
+                let at = kept_from + from;
+                low_next[at..at + count].copy_from_slice(&quads[..count]);
+            }
+            if numbers > 4 {
+                let quads = spread(lanes, [memory[4], memory[5], memory[6], memory[7]]);
+                let at = kept_from + from;
+                high_next[at..at + count].copy_from_slice(&quads[..count]);
+            }
+            if L::WIDTH == 1
+                && let Some(seen) = &mut seen
+            {
+                let slot = first[0];
+                let [id, partner] = [slot, second[0]].map(|slot| id[slot] + 1);
+                let (centre, radius) = (S::vector_in_space(&place[slot]), place[slot].0[3]);
+                seen.push(Seen::new(&answer, id, Partner::Grain(partner), centre, radius));
+            }
+        }
+    }
+}
+
+/// A quad for each lane.
+#[inline(always)]
+fn spread<L: Lanes>(lanes: L, [a, b, c, d]: [Wide<L>; 4]) -> [Quad; WIDEST] {
+    lanes.quads([a.register(), b.register(), c.register(), d.register()])
 }

@@ -1,80 +1,84 @@
-//! The grains in memory: arrays in the order of the cells they lie in, so that neighbours in space are neighbours
-//! there.
+//! The grains in memory: quads of numbers in the order of the cells they lie in, so that neighbours in space are
+//! neighbours there and a grain is a few aligned loads.
+//!
+//! Where no contact has a tangential force nothing exerts a torque: then grains do not rotate, and what only rotation
+//! needs takes no memory and is not computed with.
 
-use crate::rotation::Rotation;
+use crate::geometry::Geometry;
+use grainbench_lanes::Quad;
 use grainbench_scene::scene::{Grain, Scene};
-use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
-
-/// Position (m) and radius (m) of a grain: what is read for every pair that is tested.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub(crate) struct Place<S: Space> {
-    pub(crate) position: S::Vector,
-    pub(crate) radius: f64,
-}
-
-/// Velocity (m/s) and inverse mass (1/kg) of a grain: what is read for every pair that touches.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub(crate) struct Movement<S: Space> {
-    pub(crate) velocity: S::Vector,
-    pub(crate) inverse_mass: f64,
-}
+use std::marker::PhantomData;
 
 /// All grains, by slot. The slot of a grain changes when the grains are sorted, its place in the scene never.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-pub(crate) struct Grains<S: Space, R: Rotation<S>> {
-    pub(crate) place: Vec<Place<S>>,
-    pub(crate) movement: Vec<Movement<S>>,
-    pub(crate) rotation: Vec<R>,
-    /// Force F (N), the sum over contacts; the weight is not in it.
-    pub(crate) force: Vec<S::Vector>,
-    /// Torque M (N m), the sum over contacts.
-    pub(crate) torque: Vec<R::Torque>,
+pub(crate) struct Grains<S: Geometry> {
+    /// Position (m) and radius (m); in the plane x, y, the angle θ (rad) and the radius.
+    pub(crate) place: Vec<Quad>,
+    /// Velocity (m/s) and inverse mass (1/kg); in the plane vx, vy, the spin ω (rad/s) and the inverse mass.
+    pub(crate) movement: Vec<Quad>,
+    /// Angular velocity ω (rad/s) in space; empty in the plane and where grains do not rotate.
+    pub(crate) turning: Vec<Quad>,
+    /// Force F (N), the sum over contacts, without the weight; in the plane Fx, Fy and the torque M (N m).
+    pub(crate) load: Vec<Quad>,
+    /// Torque M (N m) in space, the sum over contacts; empty like the spins.
+    pub(crate) torque: Vec<Quad>,
+    /// Inverse moment of inertia 1/I (1/(kg m²)); empty where grains do not rotate.
+    pub(crate) inverse_inertia: Vec<f64>,
     /// Number of the material.
     pub(crate) material: Vec<u16>,
     /// Place of the grain in the scene.
     pub(crate) id: Vec<u32>,
     /// Slot of every place in the scene.
     pub(crate) slot: Vec<u32>,
+    space: PhantomData<S>,
 }
 
-impl<S: Space, R: Rotation<S>> Grains<S, R> {
+impl<S: Geometry> Grains<S> {
     /// Whether these can be the same grains, sorted otherwise.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
-        let Self { place, movement, rotation, force, torque, material, id, slot } = self;
+        let Self { place, movement, turning, load, torque, inverse_inertia, material, id, slot, space: _ } = self;
         let count = other.len();
-        let lengths = [place.len(), movement.len(), rotation.len(), force.len(), torque.len(), id.len(), slot.len()];
+        let lengths = [place.len(), movement.len(), load.len(), material.len(), id.len(), slot.len()];
+        let turning = [turning.len(), torque.len(), inverse_inertia.len()];
         let mut placed = slot.iter().enumerate();
         lengths.iter().all(|&length| length == count)
-            && material.len() == count
+            && turning == [other.turning.len(), other.torque.len(), other.inverse_inertia.len()]
             && placed.all(|(place, &slot)| id.get(slot as usize).is_some_and(|&id| id as usize == place))
             && (0..count).all(|slot| material[slot] == other.material[other.slot[id[slot] as usize] as usize])
     }
 
     /// The grains as the scene has them at the start, without forces.
-    pub(crate) fn new(scene: &Scene) -> Self {
-        let all = &scene.grains;
-        let place = |grain: &Grain| Place { position: S::restrict(grain.position), radius: grain.radius };
-        let movement =
-            |grain: &Grain| Movement { velocity: S::restrict(grain.velocity), inverse_mass: 1.0 / grain.mass };
-        let ids = || (0..all.len()).map(|id| id as u32);
-        let mut grains = Self {
-            place: all.iter().map(place).collect(),
-            movement: all.iter().map(movement).collect(),
-            rotation: all.iter().map(|grain| R::new(S::restrict_spin(grain.spin), 1.0 / grain.inertia)).collect(),
-            force: vec![S::ORIGIN; all.len()],
-            torque: vec![R::Torque::default(); all.len()],
-            material: all.iter().map(|grain| grain.material).collect(),
-            id: ids().collect(),
-            slot: ids().collect(),
+    pub(crate) fn new(scene: &Scene, rotate: bool) -> Self {
+        let (all, count) = (&scene.grains, scene.grains.len());
+        let quad = |vector: Vector3<f64>, last: f64| {
+            let mut quad = Quad([0.0, 0.0, 0.0, last]);
+            S::put(vector, &mut quad);
+            quad
         };
+        let only_if = |turns: bool, count: usize| if turns { count } else { 0 };
+        let turning = only_if(rotate && S::DIMENSION == 3, count);
+        let inverse_inertia = |grain: &Grain| 1.0 / grain.inertia;
+        let mut grains = Self {
+            place: all.iter().map(|grain| quad(grain.position, grain.radius)).collect(),
+            movement: all.iter().map(|grain| quad(grain.velocity, 1.0 / grain.mass)).collect(),
+            turning: vec![Quad::default(); turning],
+            load: vec![Quad::default(); count],
+            torque: vec![Quad::default(); turning],
+            inverse_inertia: all.iter().take(only_if(rotate, count)).map(inverse_inertia).collect(),
+            material: all.iter().map(|grain| grain.material).collect(),
+            id: (0..count as u32).collect(),
+            slot: (0..count as u32).collect(),
+            space: PhantomData,
+        };
+        for (slot, grain) in all.iter().enumerate() {
+            grains.set_spin(slot, grain.spin);
+        }
         // Nothing moves a driven grain: to what meets it, it is as heavy as a wall.
         for &driven in scene.driven.iter().flat_map(|driven| &driven.grains) {
-            grains.movement[driven].inverse_mass = 0.0;
+            grains.movement[driven].0[3] = 0.0;
         }
         grains
     }
@@ -84,25 +88,120 @@ impl<S: Space, R: Rotation<S>> Grains<S, R> {
         self.place.len()
     }
 
+    /// Whether the grains rotate.
+    pub(crate) fn rotate(&self) -> bool {
+        !self.inverse_inertia.is_empty()
+    }
+
+    /// Position (m).
+    pub(crate) fn position(&self, slot: usize) -> Vector3<f64> {
+        S::vector_in_space(&self.place[slot])
+    }
+
+    /// Radius R (m).
+    pub(crate) fn radius(&self, slot: usize) -> f64 {
+        self.place[slot].0[3]
+    }
+
+    /// Velocity (m/s).
+    pub(crate) fn velocity(&self, slot: usize) -> Vector3<f64> {
+        S::vector_in_space(&self.movement[slot])
+    }
+
+    /// Inverse mass (1/kg).
+    pub(crate) fn inverse_mass(&self, slot: usize) -> f64 {
+        self.movement[slot].0[3]
+    }
+
+    /// Angular velocity ω (rad/s); `None` where grains do not rotate.
+    pub(crate) fn spin(&self, slot: usize) -> Option<Vector3<f64>> {
+        self.rotate().then(|| turned::<S>(&self.movement, &self.turning, slot))
+    }
+
+    /// Angle θ about the z axis by which the grain has turned since the start (rad); zero in space.
+    pub(crate) fn angle(&self, slot: usize) -> f64 {
+        if S::DIMENSION == 2 { self.place[slot].0[2] } else { 0.0 }
+    }
+
+    /// Sum of the forces of its contacts (N).
+    pub(crate) fn force(&self, slot: usize) -> Vector3<f64> {
+        S::vector_in_space(&self.load[slot])
+    }
+
+    /// Sum of the torques of its contacts (N m).
+    pub(crate) fn torque(&self, slot: usize) -> Vector3<f64> {
+        if self.rotate() { turned::<S>(&self.load, &self.torque, slot) } else { Vector3::zeros() }
+    }
+
+    /// Replaces the angular velocity ω (rad/s), if grains rotate.
+    pub(crate) fn set_spin(&mut self, slot: usize, spin: Vector3<f64>) {
+        match (self.rotate(), S::DIMENSION) {
+            (false, _) => {}
+            (true, 2) => self.movement[slot].0[2] = spin.z,
+            (true, _) => S::put(spin, &mut self.turning[slot]),
+        }
+    }
+
+    /// Sets the force and the torque to zero.
+    pub(crate) fn unload(&mut self, slot: usize) {
+        self.load[slot] = Quad::default();
+        if let Some(torque) = self.torque.get_mut(slot) {
+            *torque = Quad::default();
+        }
+    }
+
     /// Force on a group of grains together (N); `group` holds their places in the scene.
     pub(crate) fn force_on(&self, group: &[usize]) -> Vector3<f64> {
-        group.iter().map(|&id| S::embed(self.force[self.slot[id] as usize])).sum()
+        group.iter().map(|&id| self.force(self.slot[id] as usize)).sum()
     }
 
     /// Sorts: slot `k` gets what was in slot `order[k]`.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         fn gather<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
-            *values = order.iter().map(|&from| values[from as usize]).collect();
+            if !values.is_empty() {
+                *values = order.iter().map(|&from| values[from as usize]).collect();
+            }
         }
         gather(&mut self.place, order);
         gather(&mut self.movement, order);
-        gather(&mut self.rotation, order);
-        gather(&mut self.force, order);
+        gather(&mut self.turning, order);
+        gather(&mut self.load, order);
         gather(&mut self.torque, order);
+        gather(&mut self.inverse_inertia, order);
         gather(&mut self.material, order);
         gather(&mut self.id, order);
         for (slot, &id) in self.id.iter().enumerate() {
             self.slot[id as usize] = slot as u32;
+        }
+    }
+}
+
+/// A spin or torque: the third number of a quad in the plane, a quad of its own in space.
+fn turned<S: Geometry>(planar: &[Quad], spatial: &[Quad], slot: usize) -> Vector3<f64> {
+    if S::DIMENSION == 2 { Vector3::new(0.0, 0.0, planar[slot].0[2]) } else { S::vector_in_space(&spatial[slot]) }
+}
+
+#[cfg(test)]
+impl<S: Geometry> Grains<S> {
+    /// Equal grains that do not rotate, at rest at these points.
+    pub(crate) fn at(points: &[Vector3<f64>], radius: f64) -> Self {
+        let count = points.len();
+        let place = |point: &Vector3<f64>| {
+            let mut place = Quad([0.0, 0.0, 0.0, radius]);
+            S::put(*point, &mut place);
+            place
+        };
+        Self {
+            place: points.iter().map(place).collect(),
+            movement: vec![Quad([0.0, 0.0, 0.0, 1.0]); count],
+            turning: Vec::new(),
+            load: vec![Quad::default(); count],
+            torque: Vec::new(),
+            inverse_inertia: Vec::new(),
+            material: vec![0; count],
+            id: (0..count as u32).collect(),
+            slot: (0..count as u32).collect(),
+            space: PhantomData,
         }
     }
 }

@@ -1,33 +1,34 @@
 //! The contact laws of a scene as the kernels read them: one row of numbers for every two materials.
 
+use grainbench_lanes::{Lanes, Quad, WIDEST, Wide};
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
-/// The numbers of a contact law. Which law they belong to is the type of the kernel's stages, so that a stage reads its
-/// numbers without asking; [`ContactLaw`] says what each means.
+/// The numbers of a contact law, one or several at a time. Which law they belong to is the type of the kernel's stages, so
+/// that a stage reads its numbers without asking; [`ContactLaw`] says what each means.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Constants {
+pub(crate) struct Constants<X> {
     /// Constants of the springs: k_n and k_s (N/m), or E* and G* (Pa).
-    pub springs: [f64; 2],
+    pub(crate) springs: [X; 2],
     /// Friction tan φ.
-    pub friction: f64,
+    pub(crate) friction: X,
     /// Cohesion c (N).
-    pub cohesion: f64,
+    pub(crate) cohesion: X,
     /// Stiffness-proportional damping β (s).
-    pub stiffness_damping: f64,
+    pub(crate) stiffness_damping: X,
     /// Mass-proportional normal damping γ_n (1/s).
-    pub normal_damping: f64,
+    pub(crate) normal_damping: X,
     /// Mass-proportional tangential damping γ_t (1/s).
-    pub tangential_damping: f64,
+    pub(crate) tangential_damping: X,
     /// Damping ratio ζ.
-    pub damping_ratio: f64,
+    pub(crate) damping_ratio: X,
     /// Coefficient of rolling resistance μ_r.
-    pub rolling_friction: f64,
+    pub(crate) rolling_friction: X,
     /// Damping ratio η_r of the rolling spring.
-    pub rolling_damping: f64,
+    pub(crate) rolling_damping: X,
 }
 
-impl From<&ContactLaw> for Constants {
+impl From<&ContactLaw> for Constants<f64> {
     /// A law without friction has no tangential spring or dashpot either, also in a scene that has friction elsewhere.
     fn from(law: &ContactLaw) -> Self {
         let [normal, tangential] = law.springs.constants();
@@ -49,7 +50,9 @@ impl From<&ContactLaw> for Constants {
 /// The law between every two materials.
 pub(crate) struct Laws {
     /// Row after row: the laws of a material with every other.
-    laws: Vec<Constants>,
+    laws: Vec<Constants<f64>>,
+    /// The same in quads: springs, friction and cohesion; dashpots; rolling.
+    quads: [Vec<Quad>; 3],
     material_count: usize,
 }
 
@@ -57,12 +60,74 @@ impl Laws {
     /// The laws of a scene.
     pub(crate) fn new(scene: &Scene) -> Self {
         let constants = |law: &Option<ContactLaw>| law.as_ref().map(Constants::from).unwrap_or_default();
-        Self { laws: scene.laws.iter().map(constants).collect(), material_count: scene.materials.len() }
+        let laws: Vec<Constants<f64>> = scene.laws.iter().map(constants).collect();
+        let quads = |quad: fn(&Constants<f64>) -> [f64; 4]| laws.iter().map(|law| Quad(quad(law))).collect();
+        Self {
+            quads: [
+                quads(|law| [law.springs[0], law.springs[1], law.friction, law.cohesion]),
+                quads(|law| [law.stiffness_damping, law.normal_damping, law.tangential_damping, law.damping_ratio]),
+                quads(|law| [law.rolling_friction, law.rolling_damping, 0.0, 0.0]),
+            ],
+            laws,
+            material_count: scene.materials.len(),
+        }
     }
 
-    /// The laws of a material with the others, by their number; the laws of the next materials follow.
-    #[inline(always)]
-    pub(crate) fn of(&self, material: u16) -> &[Constants] {
-        &self.laws[usize::from(material) * self.material_count..]
+    /// Whether there is one law only.
+    pub(crate) fn is_one(&self) -> bool {
+        self.material_count == 1
     }
+
+    /// The number of the law between two materials.
+    #[inline(always)]
+    pub(crate) fn number(&self, one: u16, other: u16) -> usize {
+        usize::from(one) * self.material_count + usize::from(other)
+    }
+
+    /// The law between two materials.
+    pub(crate) fn between(&self, one: u16, other: u16) -> &Constants<f64> {
+        &self.laws[self.number(one, other)]
+    }
+
+    /// The laws of these numbers, in lanes.
+    #[inline(always)]
+    pub(crate) fn gather<L: Lanes>(&self, lanes: L, numbers: &[usize; WIDEST]) -> Constants<Wide<L>> {
+        let [normal, tangential, friction, cohesion] = gathered(lanes, &self.quads[0], numbers);
+        let [stiffness_damping, normal_damping, tangential_damping, damping_ratio] =
+            gathered(lanes, &self.quads[1], numbers);
+        let [rolling_friction, rolling_damping, _, _] = gathered(lanes, &self.quads[2], numbers);
+        Constants {
+            springs: [normal, tangential],
+            friction,
+            cohesion,
+            stiffness_damping,
+            normal_damping,
+            tangential_damping,
+            damping_ratio,
+            rolling_friction,
+            rolling_damping,
+        }
+    }
+}
+
+/// The quads of a table at the first places of `at`, in lanes.
+#[inline(always)]
+pub(crate) fn gathered<L: Lanes>(lanes: L, table: &[Quad], at: &[usize; WIDEST]) -> [Wide<L>; 4] {
+    let [a, b, c, d] = lanes.gather(table, at);
+    [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
+}
+
+/// Places in tables of a length, as many as a register holds: looked at once, so that no table must.
+///
+/// # Panics
+/// When one of them lies beyond the tables.
+#[inline(always)]
+pub(crate) fn places<L: Lanes>(_: L, of: &[u32], length: usize) -> [usize; WIDEST] {
+    let of = &of[..L::WIDTH];
+    let mut places = [0; WIDEST];
+    for lane in 0..L::WIDTH {
+        places[lane] = of[lane] as usize;
+        assert!(places[lane] < length, "a place in the tables");
+    }
+    places
 }

@@ -9,25 +9,31 @@
 //! ```
 //!
 //! Source: P. A. Cundall and O. D. L. Strack, Géotechnique 29 (1979) 47–65. What later codes do differently is named in
-//! [`convention`]. The kernel is compiled once for each combination of effects ([`contact`]) and picked in [`solver`];
-//! one cycle is written in `simulation`, its motion in `motion` and its loops over contacts in `forces`.
+//! [`convention`].
+//!
+//! One cycle is written in `simulation`, its motion in `motion`. The pairs that touch are picked from the list in
+//! `touching`, and the loops over contacts stand in `forces`: these alone are compiled for each combination of effects
+//! (`contact`), picked in [`solver`], and for each path of the processor, with the same bits on all.
 
 mod accounts;
 mod cells;
-pub mod contact;
+mod contact;
 pub mod convention;
 mod edge;
 mod forces;
+mod geometry;
 mod grains;
 mod laws;
 mod motion;
 mod neighbours;
 mod observe;
-pub mod rotation;
+#[cfg(test)]
+mod processors;
 mod simulation;
 pub mod solver;
 pub mod stability;
 mod state;
+mod touching;
 mod walls;
 
 pub use edge::Simulation;

@@ -6,9 +6,11 @@
 //!
 //! Source: Cundall & Strack, Géotechnique 29 (1979) 47–65, eqs. 22 and 22a, and eqs. 35 and 36 with global damping.
 
+use crate::geometry::Geometry;
 use crate::grains::Grains;
-use crate::rotation::Rotation;
-use grainbench_scene::space::Space;
+use grainbench_lanes::Quad;
+use nalgebra::Vector3;
+use std::ops::Range;
 
 /// Global damping of the equation of motion, or its absence.
 trait Drag {
@@ -16,7 +18,7 @@ trait Drag {
     /// from the rate α (1/s) and the time step Δt (s).
     fn factors(rate: f64, time_step: f64) -> (f64, f64);
     /// `keep · velocity`, without arithmetic where nothing is lost.
-    fn keep<V: std::ops::Mul<f64, Output = V>>(velocity: V, keep: f64) -> V;
+    fn keep(velocity: f64, keep: f64) -> f64;
 }
 
 /// No global damping: `keep` is 1 and `gain` is Δt.
@@ -27,7 +29,7 @@ impl Drag for NoDrag {
         (1.0, time_step)
     }
     #[inline(always)]
-    fn keep<V: std::ops::Mul<f64, Output = V>>(velocity: V, _keep: f64) -> V {
+    fn keep(velocity: f64, _keep: f64) -> f64 {
         velocity
     }
 }
@@ -41,84 +43,90 @@ impl Drag for MassProportional {
         ((1.0 - half) / (1.0 + half), time_step / (1.0 + half))
     }
     #[inline(always)]
-    fn keep<V: std::ops::Mul<f64, Output = V>>(velocity: V, keep: f64) -> V {
+    fn keep(velocity: f64, keep: f64) -> f64 {
         velocity * keep
     }
 }
 
 /// What acts on every grain beside its contacts, and for how long.
 #[derive(Clone, Copy)]
-pub(crate) struct Motion<S: Space> {
-    /// Gravity g (m/s²).
-    pub(crate) gravity: S::Vector,
+pub(crate) struct Motion {
+    /// Gravity g (m/s²), nothing out of the plane in two dimensions.
+    pub(crate) gravity: Vector3<f64>,
     /// Rate α of global damping (1/s).
     pub(crate) global_damping: f64,
     /// Time step Δt (s).
     pub(crate) time_step: f64,
 }
 
-impl<S: Space> Motion<S> {
-    /// Moves every grain over one step, by the forces on it, and sets those to zero. Whether every grain is still
-    /// within `nearby` (m) of its reference position.
-    pub(crate) fn advance<R: Rotation<S>>(
-        &self,
-        grains: &mut Grains<S, R>,
-        reference: &[S::Vector],
-        nearby: f64,
-    ) -> bool {
-        match (self.global_damping == 0.0, self.gravity == S::ORIGIN) {
-            (true, true) => self.drift::<R, NoDrag, false>(grains, reference, nearby),
-            (true, false) => self.drift::<R, NoDrag, true>(grains, reference, nearby),
-            (false, true) => self.drift::<R, MassProportional, false>(grains, reference, nearby),
-            (false, false) => self.drift::<R, MassProportional, true>(grains, reference, nearby),
+impl Motion {
+    /// Moves the grains in these slots over one step, by the forces on them, and sets those to zero. Gives the speed of the
+    /// fastest, squared (m²/s²), infinite where one is not a number.
+    pub(crate) fn advance<S: Geometry>(&self, grains: &mut Grains<S>, slots: Range<usize>) -> f64 {
+        match (self.global_damping == 0.0, self.gravity == Vector3::zeros()) {
+            (true, true) => self.drift::<S, NoDrag, false>(grains, slots),
+            (true, false) => self.drift::<S, NoDrag, true>(grains, slots),
+            (false, true) => self.drift::<S, MassProportional, false>(grains, slots),
+            (false, false) => self.drift::<S, MassProportional, true>(grains, slots),
         }
     }
 
-    /// The same, compiled for one kind of damping, with gravity or without.
-    fn drift<R: Rotation<S>, D: Drag, const GRAVITY: bool>(
-        &self,
-        grains: &mut Grains<S, R>,
-        reference: &[S::Vector],
-        nearby: f64,
-    ) -> bool {
+    /// The same, compiled for one kind of damping, with gravity or without. In the plane the angle moves with the
+    /// spin as a position does with its velocity.
+    fn drift<S: Geometry, D: Drag, const GRAVITY: bool>(&self, grains: &mut Grains<S>, slots: Range<usize>) -> f64 {
         let (keep, gain) = D::factors(self.global_damping, self.time_step);
-        let (gravity, time_step) = (self.gravity, self.time_step);
-        let near_enough = nearby * nearby;
-        let mut stayed = true;
-        let linear = grains.place.iter_mut().zip(&mut grains.movement).zip(&mut grains.force);
-        for (((place, movement), force), reference) in linear.zip(reference) {
-            let mut acceleration = *force * movement.inverse_mass;
-            if GRAVITY {
-                acceleration += gravity;
+        let (gravity, time_step) = ([self.gravity.x, self.gravity.y, self.gravity.z], self.time_step);
+        let (mut fastest, mut total) = (0.0, 0.0);
+        let Grains { place, movement, turning, load, torque, inverse_inertia, .. } = grains;
+        let mut inertia = inverse_inertia.get(slots.clone()).unwrap_or_default().iter();
+        let linear = place[slots.clone()].iter_mut().zip(&mut movement[slots.clone()]).zip(&mut load[slots.clone()]);
+        for ((Quad(place), Quad(movement)), load) in linear {
+            let mut inverse = [movement[3]; 3];
+            if S::DIMENSION == 2 {
+                inverse[2] = inertia.next().copied().unwrap_or_default();
             }
-            *force = S::ORIGIN;
-            movement.velocity = D::keep(movement.velocity, keep) + acceleration * gain;
-            place.position += movement.velocity * time_step;
-            let away = place.position - *reference;
-            // A position that is not a number has not stayed: listing anew looks at every grain.
-            stayed &= S::dot(away, away) <= near_enough;
+            let mut squared = 0.0;
+            for axis in 0..3 {
+                let mut acceleration = load.0[axis] * inverse[axis];
+                if GRAVITY {
+                    acceleration += gravity[axis];
+                }
+                movement[axis] = D::keep(movement[axis], keep) + acceleration * gain;
+                place[axis] += movement[axis] * time_step;
+                if axis < S::DIMENSION {
+                    squared += movement[axis] * movement[axis];
+                }
+            }
+            *load = Quad::default();
+            fastest = if squared > fastest { squared } else { fastest };
+            total += squared;
         }
-        // Nothing is left of this loop where grains do not rotate.
-        for (rotation, torque) in grains.rotation.iter_mut().zip(&mut grains.torque) {
-            rotation.advance(*torque, keep, gain, time_step);
-            *torque = Default::default();
+        // Nothing is left of this loop in the plane, and where grains do not rotate.
+        let turning = turning.get_mut(slots.clone()).unwrap_or_default();
+        let torque = torque.get_mut(slots.clone()).unwrap_or_default();
+        let inertia = inverse_inertia.get(slots).unwrap_or_default();
+        for ((Quad(spin), torque), inverse_inertia) in turning.iter_mut().zip(torque).zip(inertia) {
+            for (spin, torque) in spin.iter_mut().take(3).zip(torque.0) {
+                *spin = D::keep(*spin, keep) + torque * inverse_inertia * gain;
+            }
+            *torque = Quad::default();
         }
-        stayed
+        // What is not a number is no larger than another, but it stays in a sum.
+        if f64::is_finite(total) { fastest } else { f64::INFINITY }
     }
 
     /// Takes the velocities at the start to half a step before it, so that the first cycle ends at half a step after
     /// it.
-    pub(crate) fn step_back_half<R: Rotation<S>>(&self, grains: &mut Grains<S, R>) {
+    pub(crate) fn step_back_half<S: Geometry>(&self, grains: &mut Grains<S>) {
         let half = 0.5 * self.time_step;
         let drag = 1.0 + self.global_damping * half;
         for slot in 0..grains.len() {
-            let movement = &mut grains.movement[slot];
-            let acceleration = grains.force[slot] * movement.inverse_mass + self.gravity;
-            movement.velocity = movement.velocity * drag - acceleration * half;
-            let rotation = &mut grains.rotation[slot];
-            if let Some(spin) = rotation.spin() {
-                let acceleration = rotation.acceleration(grains.torque[slot]);
-                rotation.set_spin(spin * drag - acceleration * half);
+            let acceleration = grains.force(slot) * grains.inverse_mass(slot) + self.gravity;
+            let velocity = grains.velocity(slot) * drag - acceleration * half;
+            S::put(velocity, &mut grains.movement[slot]);
+            if let Some(spin) = grains.spin(slot) {
+                let acceleration = grains.torque(slot) * grains.inverse_inertia[slot];
+                grains.set_spin(slot, spin * drag - acceleration * half);
             }
         }
     }

@@ -1,54 +1,50 @@
 //! What a simulation shows at a step: grains with their velocities at the time of the positions, contacts, walls and
 //! energies.
 
-use crate::contact::normal::Normal;
-use crate::contact::rolling::Rolling;
-use crate::contact::tangential::Tangential;
+use crate::geometry::Geometry;
 use crate::neighbours::wrapped;
-use crate::rotation::Rotation;
-use crate::simulation::Kernel;
+use crate::simulation::Simulated;
 use grainbench_scene::record::{self, ContactState, GrainState, Look, Snapshot, WallState};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
 /// The state at this step: grains, contacts, walls and energies.
-pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel: &Kernel<S, N, T, R>) -> Look {
-    let scene = &kernel.scene;
-    let mut grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(kernel, id)).collect();
+pub(crate) fn look<S: Geometry>(simulation: &Simulated<S>) -> Look {
+    let scene = &simulation.scene;
+    let mut grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(simulation, id)).collect();
     for driven in &scene.driven {
         for &grain in &driven.grains {
             (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
         }
     }
-    let elastic_energy = kernel.seen.iter().map(|seen| seen.elastic_energy).sum();
-    let budget = kernel.accounting.then(|| kernel.accounts.budget(scene, &grains, elastic_energy));
-    let mut contacts: Vec<ContactState> = kernel
+    let elastic_energy = simulation.seen.iter().map(|seen| seen.elastic_energy).sum();
+    let budget = simulation.accounting.then(|| simulation.accounts.budget(scene, &grains, elastic_energy));
+    let mut contacts: Vec<ContactState> = simulation
         .seen
         .iter()
         .map(|seen| ContactState {
             grain: seen.grain,
             partner: seen.partner,
-            point: S::embed(seen.point),
-            normal: S::embed(seen.normal),
+            point: seen.point,
+            normal: seen.normal,
             overlap: seen.overlap,
             normal_force: seen.normal_force,
-            shear_force: S::embed(S::along(seen.shear, seen.normal)),
+            shear_force: seen.shear,
             slipping: seen.slipping,
         })
         .collect();
     contacts.sort_by_key(|contact| contact.grain);
-    let walls = kernel
+    let walls = simulation
         .walls
         .iter()
         .map(|wall| {
             let (corners, infinite) = wall.shape.corners();
-            WallState { name: wall.name().to_owned(), corners, infinite, force: Some(S::embed(wall.force)) }
+            WallState { name: wall.name().to_owned(), corners, infinite, force: Some(wall.force) }
         })
         .collect();
     let snapshot = Snapshot {
-        step: kernel.step,
-        time: kernel.step as f64 * kernel.motion.time_step,
+        step: simulation.step,
+        time: simulation.step as f64 * simulation.motion.time_step,
         bounds: record::bounds(scene, &grains),
         periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
         grains,
@@ -57,43 +53,35 @@ pub(crate) fn look<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(kernel:
         bodies: Vec::new(),
         points: Vec::new(),
     };
-    Look { driven: kernel.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
+    Look { driven: simulation.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
 }
 
 /// A grain, with its velocity (m/s) and spin (rad/s) brought from half a step before to the time of the positions.
-fn grain_state<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>>(
-    kernel: &Kernel<S, N, T, R>,
-    id: usize,
-) -> GrainState {
-    let (scene, grains) = (&kernel.scene, &kernel.grains);
+fn grain_state<S: Geometry>(simulation: &Simulated<S>, id: usize) -> GrainState {
+    let (scene, grains) = (&simulation.scene, &simulation.grains);
     let slot = grains.slot[id] as usize;
     let start = &scene.grains[id];
-    let half = 0.5 * kernel.motion.time_step;
+    let half = 0.5 * simulation.motion.time_step;
     let drag = 1.0 / (1.0 + scene.global_damping * half);
-    let movement = &grains.movement[slot];
-    let acceleration = S::embed(grains.force[slot]) * movement.inverse_mass + scene.gravity;
-    let rotation = &grains.rotation[slot];
-    let spin = match rotation.spin() {
-        Some(spin) => {
-            let acceleration = rotation.acceleration(grains.torque[slot]);
-            S::embed_spin(spin * drag + acceleration * (half * drag))
-        }
-        None => free_spin(scene, start.spin, kernel.motion.time_step, kernel.step),
+    let acceleration = grains.force(slot) * grains.inverse_mass(slot) + scene.gravity;
+    let spin = match grains.spin(slot) {
+        Some(spin) => spin * drag + grains.torque(slot) * (grains.inverse_inertia[slot] * half * drag),
+        None => free_spin(scene, start.spin, simulation.motion.time_step, simulation.step),
     };
     let domain = scene.domain.filter(|_| scene.is_periodic());
-    let position = grains.place[slot].position;
-    let angle = if rotation.spin().is_some() {
-        rotation.angle()
+    let position = grains.position(slot);
+    let angle = if grains.rotate() {
+        grains.angle(slot)
     } else {
-        start.spin.z * kernel.step as f64 * kernel.motion.time_step
+        start.spin.z * simulation.step as f64 * simulation.motion.time_step
     };
     GrainState {
-        position: S::embed(domain.map_or(position, |domain| wrapped::<S>(position, &domain))),
-        velocity: (S::embed(movement.velocity) + acceleration * half) * drag,
+        position: domain.map_or(position, |domain| wrapped(position, &domain, S::DIMENSION)),
+        velocity: (grains.velocity(slot) + acceleration * half) * drag,
         spin,
         angle: (S::DIMENSION == 2).then_some(angle),
-        force: Some(S::embed(grains.force[slot])),
-        torque: Some(S::embed_spin(T::Rotation::torque(grains.torque[slot]))),
+        force: Some(grains.force(slot)),
+        torque: Some(grains.torque(slot)),
         ..GrainState::start(id as u32 + 1, start)
     }
 }

@@ -1,54 +1,57 @@
-//! One simulation: the calculation cycle of Cundall & Strack, compiled for the effects of its scene.
+//! One simulation: the calculation cycle of Cundall & Strack.
 //!
 //! A cycle moves the grains by the forces of the last one ([`crate::motion`]), moves the walls, lists the neighbours
 //! anew if it must ([`crate::neighbours`]), and finds the forces for the next ([`crate::forces`]).
 
 use crate::accounts::{Accounts, Step};
-use crate::contact::Options;
-use crate::contact::chain::{Memory, exchanged};
-use crate::contact::normal::Normal;
-use crate::contact::rolling::Rolling;
 use crate::contact::seen::Seen;
-use crate::contact::tangential::Tangential;
-use crate::forces::{Terms, pairs, wall_contacts};
+use crate::contact::{MEMORY, Options};
+use crate::forces::{Forces, Terms};
+use crate::geometry::Geometry;
 use crate::grains::Grains;
 use crate::laws::Laws;
 use crate::motion::Motion;
 use crate::neighbours::Neighbours;
-use crate::rotation::Rotation;
 use crate::stability::stable_fraction;
+use crate::touching::{Touching, blocks};
 use crate::walls::{MovingWall, NearWall};
+use grainbench_lanes::Processor;
 use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Broken, Cause, Subject};
-use grainbench_scene::space::Space;
 use nalgebra::Vector3;
-use std::marker::PhantomData;
 
 /// Skin of the neighbour list as a fraction of the mean radius: a tenth of a diameter, as in the stored LAMMPS run. A
 /// wider skin tests more pairs in vain and builds fewer lists anew.
 const SKIN: f64 = 0.2;
 
-/// A simulation in a space, with a normal, a tangential and a rolling stage.
-pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
+/// A simulation in a space.
+pub(crate) struct Simulated<S: Geometry> {
     pub(crate) scene: Scene,
     laws: Laws,
     options: Options,
     /// Gravity, global damping and the time step.
-    pub(crate) motion: Motion<S>,
-    pub(crate) grains: Grains<S, T::Rotation>,
-    pub(crate) neighbours: Neighbours<S, Memory<S, T, R>>,
-    pub(crate) walls: Vec<MovingWall<S, Memory<S, T, R>>>,
+    pub(crate) motion: Motion,
+    pub(crate) grains: Grains<S>,
+    pub(crate) neighbours: Neighbours,
+    touching: Touching,
+    pub(crate) walls: Vec<MovingWall>,
+    /// The loops over contacts, compiled for the laws of the scene.
+    pub(crate) forces: Box<dyn Forces<S>>,
+    /// The path through them.
+    pub(crate) processor: Processor,
     /// Every contact of the last force evaluation, if it was recorded.
-    pub(crate) seen: Vec<Seen<S>>,
+    pub(crate) seen: Vec<Seen>,
     /// Largest radius of a grain (m).
     largest_radius: f64,
     /// Critical time step 2√(m_min/k_max) of the scene (s).
     critical: f64,
     /// Cycles taken.
     pub(crate) step: u64,
-    /// Whether no grain has moved half of the skin since the pairs were listed.
-    list_holds: bool,
+    /// Bound on how far any grain has moved since the pairs were listed (m).
+    pub(crate) travelled: f64,
+    /// Speed of the fastest driven group (m/s).
+    driven_speed: f64,
     /// Bound on the distance from any wall's centre of rotation to any grain (m).
     pub(crate) extent: f64,
     pub(crate) cost: Counts,
@@ -57,26 +60,35 @@ pub(crate) struct Kernel<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> {
     pub(crate) accounts: Accounts,
     /// Mass of the grains that are not driven (kg).
     free_mass: f64,
-    stage: PhantomData<N>,
 }
 
-impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
+impl<S: Geometry> Simulated<S> {
     /// Sets up a scene: the forces at the start, and velocities half a step before it, so that all cycles are alike.
-    pub(crate) fn new(scene: &Scene, options: Options, time_step: f64) -> Result<Self, Box<Broken>> {
+    pub(crate) fn new(
+        scene: &Scene,
+        forces: Box<dyn Forces<S>>,
+        options: Options,
+        time_step: f64,
+    ) -> Result<Self, Box<Broken>> {
         let largest_radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
         let mean_radius = scene.grains.iter().map(|grain| grain.radius).sum::<f64>() / scene.grains.len() as f64;
-        let mut kernel = Self {
+        let gravity = S::embed(S::restrict(scene.gravity));
+        let mut simulation = Self {
             laws: Laws::new(scene),
             options,
-            grains: Grains::new(scene),
+            grains: Grains::new(scene, forces.turn()),
             neighbours: Neighbours::new(SKIN * mean_radius),
             walls: scene.walls.iter().map(MovingWall::new).collect(),
+            touching: Touching::default(),
+            forces,
+            processor: Processor::new(),
             seen: Vec::new(),
-            motion: Motion { gravity: S::restrict(scene.gravity), global_damping: scene.global_damping, time_step },
+            motion: Motion { gravity, global_damping: scene.global_damping, time_step },
             largest_radius,
             critical: scene.critical_time_step(),
             step: 0,
-            list_holds: true,
+            travelled: 0.0,
+            driven_speed: scene.driven.iter().map(|driven| driven.velocity.norm()).fold(0.0, f64::max),
             extent: 0.0,
             cost: Counts::default(),
             accounting: scene.asks_for_budget(),
@@ -86,38 +98,42 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
                 let free = scene.grains.iter().zip(groups).filter(|(_, group)| group.is_none());
                 free.map(|(grain, _)| grain.mass).sum()
             },
-            stage: PhantomData,
             scene: scene.clone(),
         };
-        kernel.rebuild()?;
-        kernel.evaluate_forces::<true>(0.0);
-        kernel.motion.step_back_half(&mut kernel.grains);
-        kernel.drive(0.0);
-        if kernel.accounting {
-            kernel.account();
+        simulation.rebuild()?;
+        simulation.evaluate_forces(true, 0.0, false);
+        simulation.motion.step_back_half(&mut simulation.grains);
+        simulation.drive(0.0);
+        if simulation.accounting {
+            simulation.account();
         }
-        Ok(kernel)
+        Ok(simulation)
     }
 
     /// Takes `steps` cycles.
     pub(crate) fn take_cycles(&mut self, steps: u64) -> Result<(), Box<Broken>> {
-        for _ in 1..steps {
-            if self.accounting {
-                self.cycle::<true>()?;
-            } else {
-                self.cycle::<false>()?;
-            }
+        // Where nothing is done between finding forces and moving by them, grains are moved while they are at hand.
+        let at_once = !self.accounting && self.scene.driven.is_empty();
+        let mut has_moved = false;
+        for left in (0..steps).rev() {
+            // The last cycle leaves its contacts to be looked at.
+            let (record, move_on) = (self.accounting || left == 0, at_once && left > 0);
+            self.cycle(record, has_moved, move_on)?;
+            has_moved = move_on;
         }
-        // The last cycle leaves its contacts to be looked at.
-        if steps > 0 { self.cycle::<true>() } else { Ok(()) }
+        Ok(())
     }
 
-    /// One cycle: motion by the forces of the last, walls, and the forces for the next. With `RECORD` its contacts are
-    /// kept.
-    fn cycle<const RECORD: bool>(&mut self) -> Result<(), Box<Broken>> {
-        self.shield_driven();
+    /// One cycle: motion by the forces of the last, unless the grains have moved already, walls, and the forces for the
+    /// next, after which they `move_on`. With `record` its contacts are kept.
+    fn cycle(&mut self, record: bool, has_moved: bool, move_on: bool) -> Result<(), Box<Broken>> {
         let half_skin = 0.5 * self.neighbours.skin;
-        self.list_holds = self.motion.advance(&mut self.grains, &self.neighbours.reference, half_skin);
+        if !has_moved {
+            self.shield_driven();
+            let all = 0..self.grains.len();
+            let fastest = self.motion.advance(&mut self.grains, all);
+            self.travel(fastest);
+        }
         self.drive(self.motion.time_step);
         self.step += 1;
         let time = self.step as f64 * self.motion.time_step;
@@ -126,11 +142,14 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
             wall.move_to(time, self.motion.time_step);
             walls_moved = walls_moved.max(wall.moved_since_list(self.extent));
         }
-        if !(self.list_holds && walls_moved <= half_skin) {
+        if self.travelled > half_skin {
+            self.travelled = self.neighbours.farthest(&self.grains);
+        }
+        if self.travelled.max(walls_moved) > half_skin {
             self.rebuild()?;
         }
-        self.evaluate_forces::<RECORD>(self.motion.time_step);
-        if RECORD && self.accounting {
+        self.evaluate_forces(record, self.motion.time_step, move_on);
+        if record && self.accounting {
             self.account();
         }
         self.cost.steps += 1;
@@ -139,25 +158,53 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
     }
 
     /// Finds the forces and torques at all contacts; springs are stretched by what slipped and rolled in `elapsed` (s).
-    fn evaluate_forces<const RECORD: bool>(&mut self, elapsed: f64) {
-        let terms = Terms { laws: &self.laws, options: self.options, elapsed };
-        let (grains, neighbours, walls) = (&mut self.grains, &mut self.neighbours, &mut self.walls);
-        let (seen, cost) = (&mut self.seen, &mut self.cost);
-        if RECORD {
+    fn evaluate_forces(&mut self, record: bool, elapsed: f64, move_on: bool) {
+        let Self { laws, options, motion, grains, neighbours, touching, walls, forces, processor, seen, cost, .. } =
+            self;
+        let terms = Terms { laws, options, elapsed };
+        if record {
             seen.clear();
         }
-        pairs::<S, N, T, R, RECORD, false>(terms, grains, neighbours, seen, cost);
-        pairs::<S, N, T, R, RECORD, true>(terms, grains, neighbours, seen, cost);
-        wall_contacts::<S, N, T, R, RECORD>(terms, grains, walls, seen, cost);
+        for (number, wall) in walls.iter_mut().enumerate() {
+            cost.pair_tests += wall.near.len() as u64;
+            let seen = record.then_some(&mut *seen);
+            cost.contact_evaluations += forces.at_wall(terms, grains, wall, number as u16, seen);
+        }
+        let (mut moved, mut fastest) = (0, 0.0_f64);
+        for pairs in [&mut neighbours.across, &mut neighbours.near] {
+            let is_last = pairs.shift.is_empty();
+            let mut contacts = 0;
+            for block in blocks(pairs.len()) {
+                // All pairs of the grains in the rows before the next have been looked at.
+                let done = if block.end < pairs.len() { pairs.row[block.end] as usize } else { moved };
+                touching.find(*processor, grains, pairs, block);
+                contacts += touching.count;
+                forces.of_pairs(*processor, terms, grains, pairs, touching, record.then_some(&mut *seen));
+                if move_on && is_last {
+                    fastest = fastest.max(motion.advance(grains, moved..done));
+                    moved = done;
+                }
+            }
+            pairs.remember(contacts);
+            cost.pair_tests += pairs.len() as u64;
+            cost.contact_evaluations += contacts as u64;
+        }
+        if move_on {
+            fastest = fastest.max(motion.advance(grains, moved..grains.len()));
+            self.travel(fastest);
+        }
+    }
+
+    /// Takes note of a step of grains the fastest of which has a speed, squared (m²/s²).
+    fn travel(&mut self, fastest: f64) {
+        self.travelled += fastest.sqrt().max(self.driven_speed) * self.motion.time_step;
     }
 
     /// Sets the forces and torques on driven grains to zero: nothing that acts on them moves them.
     fn shield_driven(&mut self) {
         let grains = &mut self.grains;
         for &grain in self.scene.driven.iter().flat_map(|driven| &driven.grains) {
-            let slot = grains.slot[grain] as usize;
-            grains.force[slot] = S::ORIGIN;
-            grains.torque[slot] = Default::default();
+            grains.unload(grains.slot[grain] as usize);
         }
     }
 
@@ -166,13 +213,13 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
     fn drive(&mut self, drifted: f64) {
         let grains = &mut self.grains;
         for driven in &self.scene.driven {
-            let velocity = S::restrict(driven.velocity);
+            let velocity = S::embed(S::restrict(driven.velocity));
             for &grain in &driven.grains {
                 let slot = grains.slot[grain] as usize;
-                let movement = &mut grains.movement[slot];
-                grains.place[slot].position += (velocity - movement.velocity) * drifted;
-                movement.velocity = velocity;
-                grains.rotation[slot].set_spin(S::NO_SPIN);
+                let position = grains.position(slot) + (velocity - grains.velocity(slot)) * drifted;
+                S::put(position, &mut grains.place[slot]);
+                S::put(velocity, &mut grains.movement[slot]);
+                grains.set_spin(slot, Vector3::zeros());
             }
         }
     }
@@ -186,7 +233,7 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
     fn account(&mut self) {
         let (driven, walls) = (&self.scene.driven, &self.walls);
         let mut forces = self.forces_on_driven();
-        forces.extend(walls.iter().map(|wall| S::embed(wall.force)));
+        forces.extend(walls.iter().map(|wall| wall.force));
         let velocities = driven.iter().map(|driven| driven.velocity).chain(walls.iter().map(MovingWall::velocity));
         self.accounts.add(Step {
             forces,
@@ -198,11 +245,11 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
         });
     }
 
-    /// Forgets the history of every contact.
+    /// Forgets what every contact remembers.
     pub(crate) fn forget(&mut self) {
         self.neighbours.forget();
         for wall in &mut self.walls {
-            wall.near.iter_mut().for_each(|(_, history)| *history = Memory::<S, T, R>::default());
+            wall.near.iter_mut().for_each(|(_, memory)| *memory = [0.0; MEMORY]);
         }
     }
 
@@ -210,27 +257,29 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
     fn rebuild(&mut self) -> Result<(), Box<Broken>> {
         self.refuse_broken_state()?;
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
-        let by_wall: Vec<NearWall<Memory<S, T, R>>> = self
+        let by_wall: Vec<NearWall> = self
             .walls
             .iter()
-            .map(|wall| wall.near.iter().map(|&(slot, history)| (self.grains.id[slot as usize], history)).collect())
+            .map(|wall| wall.near.iter().map(|&(slot, memory)| (self.grains.id[slot as usize], memory)).collect())
             .collect();
-        self.neighbours.rebuild(&mut self.grains, domain.as_ref(), self.largest_radius, exchanged::<S, T, R>);
-        let mut remembered = vec![Memory::<S, T, R>::default(); self.grains.len()];
+        let layout = self.forces.layout();
+        self.neighbours.rebuild(&mut self.grains, domain.as_ref(), self.largest_radius, layout);
+        let mut remembered = vec![[0.0; MEMORY]; self.grains.len()];
         self.extent = 0.0;
         for (wall, before) in self.walls.iter_mut().zip(&by_wall) {
-            before.iter().for_each(|&(id, history)| remembered[id as usize] = history);
+            before.iter().for_each(|&(id, memory)| remembered[id as usize] = memory);
             wall.begin_list();
-            for (slot, place) in self.grains.place.iter().enumerate() {
-                if wall.facing(place.position).distance < place.radius + self.neighbours.skin {
+            for slot in 0..self.grains.len() {
+                let position = self.grains.position(slot);
+                if wall.facing(position).distance < self.grains.radius(slot) + self.neighbours.skin {
                     wall.near.push((slot as u32, remembered[self.grains.id[slot] as usize]));
                 }
-                self.extent = self.extent.max(wall.distance_to_centre(S::embed(place.position)));
+                self.extent = self.extent.max(wall.distance_to_centre(position));
             }
-            before.iter().for_each(|&(id, _)| remembered[id as usize] = Memory::<S, T, R>::default());
+            before.iter().for_each(|&(id, _)| remembered[id as usize] = [0.0; MEMORY]);
         }
         self.extent += self.largest_radius + self.neighbours.skin;
-        self.list_holds = true;
+        self.travelled = 0.0;
         self.cost.neighbour_builds = self.neighbours.builds;
         Ok(())
     }
@@ -238,16 +287,16 @@ impl<S: Space, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel<S, N, T, R> {
     /// Refuses a state in which a position or velocity is not finite, or a grain moves by more than its radius in a
     /// step.
     fn refuse_broken_state(&self) -> Result<(), Box<Broken>> {
-        for (slot, (place, movement)) in self.grains.place.iter().zip(&self.grains.movement).enumerate() {
-            let position = S::embed(place.position);
-            let moved = S::embed(movement.velocity).norm() * self.motion.time_step;
+        for slot in 0..self.grains.len() {
+            let (position, radius) = (self.grains.position(slot), self.grains.radius(slot));
+            let moved = self.grains.velocity(slot).norm() * self.motion.time_step;
             let finite = position.iter().all(|value| value.is_finite()) && moved.is_finite();
-            let cause = match (finite, moved > place.radius) {
+            let cause = match (finite, moved > radius) {
                 (false, _) => Cause::NotFinite,
-                (true, true) => Cause::Runaway { moved, radius: place.radius },
+                (true, true) => Cause::Runaway { moved, radius },
                 (true, false) => continue,
             };
-            let last = self.neighbours.reference.get(slot).map_or(position, |&at| S::embed(at));
+            let last = self.neighbours.reference.get(slot).map_or(position, S::vector_in_space);
             return Err(self.broken(slot, if finite { position } else { last }, cause));
         }
         Ok(())

@@ -1,12 +1,14 @@
 //! The discrete element method as a solver: it picks the kernel once, before the first step, and keeps the record.
 
 use crate::contact::Options;
-use crate::contact::normal::{Hertz, HertzDashpot, Spring, SpringDashpot, SpringRestitution};
+use crate::contact::normal::{Hertz, HertzDashpot, Normal, Spring, SpringDashpot};
 use crate::contact::rolling::{ElasticPlastic, FreeRolling};
-use crate::contact::tangential::{CapAsLammps, CapOnSpring, CapOnTotal, Coulomb, Frictionless, Projected, Turned};
-use crate::convention::{Convention, CoulombCap, History};
+use crate::contact::tangential::{Coulomb, Frictionless, Projected, Tangential, Turned};
+use crate::convention::{Convention, History};
 use crate::edge::Simulation;
-use crate::simulation::Kernel;
+use crate::forces::{Chain, Forces};
+use crate::geometry::Geometry;
+use crate::simulation::Simulated;
 use crate::stability::damped_step;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::drive::{Course, Driven, Stepper};
@@ -15,7 +17,7 @@ use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Scene};
 use grainbench_scene::solver::{Broken, Defect, Resolution, RunError, Solver, Watch};
-use grainbench_scene::space::{Plane, Solid, Space};
+use grainbench_scene::space::{Plane, Solid};
 use grainbench_scene::terms::Terms;
 
 /// The discrete element method in one convention.
@@ -49,62 +51,20 @@ impl Dem {
     /// When the scene cannot be expressed or is broken from the start.
     pub fn start(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, RunError> {
         self.refuse(scene)?;
-        let simulation = match scene.dimension {
-            Dimension::Two => self.start_in::<Plane>(scene, time_step),
-            Dimension::Three => self.start_in::<Solid>(scene, time_step),
+        let simulation: Result<Box<dyn Simulation>, Box<Broken>> = match scene.dimension {
+            Dimension::Two => self.start_with(scene, plane(scene, &self.convention), time_step),
+            Dimension::Three => self.start_with(scene, solid(scene), time_step),
         };
         simulation.map_err(RunError::Broken)
     }
 
-    /// The kernel for the effects that the scene calls for.
-    fn start_in<S: Space>(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, Box<Broken>> {
-        let effects = Effects::of(scene);
-        let convention = &self.convention;
-        let options = Options::of(convention);
-        macro_rules! kernel {
-            ($normal:ty, $tangential:ty, $rolling:ty) => {
-                Box::new(Kernel::<S, $normal, $tangential, $rolling>::new(scene, options, time_step)?)
-            };
-        }
-        // The tangential stage by the convention; without dashpots both caps are the same.
-        macro_rules! undamped {
-            ($normal:ty, $rolling:ty) => {
-                match convention.history {
-                    History::Turned => kernel!($normal, Coulomb<CapOnSpring, Turned>, $rolling),
-                    History::Projected => kernel!($normal, Coulomb<CapOnSpring, Projected>, $rolling),
-                }
-            };
-        }
-        macro_rules! damped {
-            ($normal:ty, $rolling:ty) => {
-                match (convention.coulomb_cap, convention.history) {
-                    (CoulombCap::Spring, _) => undamped!($normal, $rolling),
-                    (CoulombCap::SpringAndDashpot, History::Turned) => {
-                        kernel!($normal, Coulomb<CapOnTotal, Turned>, $rolling)
-                    }
-                    (CoulombCap::SpringAndDashpot, History::Projected) => {
-                        kernel!($normal, Coulomb<CapAsLammps, Projected>, $rolling)
-                    }
-                }
-            };
-        }
-        macro_rules! stages {
-            ($normal:ty, $tangential:ident) => {
-                match (effects.friction, effects.rolling_resistance) {
-                    (false, _) => kernel!($normal, Frictionless, FreeRolling),
-                    (true, false) => $tangential!($normal, FreeRolling),
-                    (true, true) => $tangential!($normal, ElasticPlastic),
-                }
-            };
-        }
-        let simulation: Box<dyn Simulation> = match (effects.hertz, effects.contact_damping, effects.restitution) {
-            (false, false, _) => stages!(Spring, undamped),
-            (false, true, false) => stages!(SpringDashpot, damped),
-            (false, true, true) => stages!(SpringRestitution, damped),
-            (true, false, _) => stages!(Hertz, undamped),
-            (true, true, _) => stages!(HertzDashpot, damped),
-        };
-        Ok(simulation)
+    fn start_with<S: Geometry>(
+        &self,
+        scene: &Scene,
+        forces: Box<dyn Forces<S>>,
+        time_step: f64,
+    ) -> Result<Box<dyn Simulation>, Box<Broken>> {
+        Ok(Box::new(Simulated::new(scene, forces, Options::of(&self.convention), time_step)?))
     }
 
     /// The run that a checkpoint belongs to.
@@ -203,6 +163,39 @@ impl Dem {
             snapshots,
             cost,
         })
+    }
+}
+
+/// The loops over contacts in the plane, for the effects that a scene calls for in a convention.
+pub(crate) fn plane(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Plane>> {
+    match convention.history {
+        History::Turned => chain::<Plane, Coulomb<Turned>>(scene),
+        History::Projected => chain::<Plane, Coulomb<Projected>>(scene),
+    }
+}
+
+/// The loops over contacts in space, where a stretch is a vector in every convention.
+pub(crate) fn solid(scene: &Scene) -> Box<dyn Forces<Solid>> {
+    chain::<Solid, Coulomb<Projected>>(scene)
+}
+
+/// The loops over contacts for the effects that a scene calls for, with `T` where it has friction.
+fn chain<S: Geometry, T: Tangential<S>>(scene: &Scene) -> Box<dyn Forces<S>> {
+    let effects = Effects::of(scene);
+    match (effects.hertz, effects.contact_damping) {
+        (false, false) => after::<S, Spring, T>(effects),
+        (false, true) => after::<S, SpringDashpot, T>(effects),
+        (true, false) => after::<S, Hertz, T>(effects),
+        (true, true) => after::<S, HertzDashpot, T>(effects),
+    }
+}
+
+/// The stages after a normal stage.
+fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn Forces<S>> {
+    match (effects.friction, effects.rolling_resistance) {
+        (false, _) => Box::new(Chain::<S, N, Frictionless, FreeRolling>::new()),
+        (true, false) => Box::new(Chain::<S, N, T, FreeRolling>::new()),
+        (true, true) => Box::new(Chain::<S, N, T, ElasticPlastic>::new()),
     }
 }
 

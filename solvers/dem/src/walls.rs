@@ -1,18 +1,18 @@
 //! Walls in motion: where they are at a step, how they moved over it, and which grains are near.
 
+use crate::contact::Memory;
 use grainbench_scene::motion::Displacement;
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_segment};
 use grainbench_scene::scene::{Wall, WallShape};
-use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Slots or ids of grains near a wall, and the history of their contacts.
-pub(crate) type NearWall<H> = Vec<(u32, H)>;
+/// Slots or ids of grains near a wall, and what their contacts remember.
+pub(crate) type NearWall = Vec<(u32, Memory<f64>)>;
 
 /// A wall during the run.
 #[derive(Clone, Debug)]
-pub(crate) struct MovingWall<S: Space, H> {
+pub(crate) struct MovingWall {
     wall: Wall,
     /// Shape now.
     pub(crate) shape: WallShape,
@@ -23,22 +23,21 @@ pub(crate) struct MovingWall<S: Space, H> {
     velocity: Vector3<f64>,
     spin: Vector3<f64>,
     /// The grains near the wall, by slot.
-    pub(crate) near: NearWall<H>,
+    pub(crate) near: NearWall,
     /// Force of the grains on the wall in the last force evaluation (N).
-    pub(crate) force: S::Vector,
+    pub(crate) force: Vector3<f64>,
 }
 
 /// What a wall must remember between two steps; the rest follows from its motion.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound(serialize = "H: Serialize", deserialize = "H: Deserialize<'de>"))]
-pub(crate) struct WallMemory<S: Space, H> {
+pub(crate) struct WallMemory {
     displacement: Displacement,
     at_list: Displacement,
-    near: NearWall<H>,
-    force: S::Vector,
+    near: NearWall,
+    force: Vector3<f64>,
 }
 
-impl<S: Space, H> WallMemory<S, H> {
+impl WallMemory {
     /// Whether it remembers none but so many grains.
     pub(crate) fn is_of(&self, grains: usize) -> bool {
         self.near.iter().all(|&(slot, _)| (slot as usize) < grains)
@@ -46,16 +45,16 @@ impl<S: Space, H> WallMemory<S, H> {
 }
 
 /// What a grain sees of a wall.
-pub(crate) struct Facing<S: Space> {
+pub(crate) struct Facing {
     /// Unit vector from the grain to the wall.
-    pub(crate) normal: S::Vector,
+    pub(crate) normal: Vector3<f64>,
     /// Distance from the grain's centre to the wall (m), negative inside the solid of a plane.
     pub(crate) distance: f64,
     /// Velocity of the wall there (m/s).
-    pub(crate) velocity: S::Vector,
+    pub(crate) velocity: Vector3<f64>,
 }
 
-impl<S: Space, H: Copy + Default> MovingWall<S, H> {
+impl MovingWall {
     pub(crate) fn new(wall: &Wall) -> Self {
         let rest = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
         Self {
@@ -66,7 +65,7 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
             velocity: Vector3::zeros(),
             spin: Vector3::zeros(),
             near: Vec::new(),
-            force: S::ORIGIN,
+            force: Vector3::zeros(),
             wall: wall.clone(),
         }
     }
@@ -85,7 +84,7 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
     }
 
     /// What it must remember between two steps.
-    pub(crate) fn memory(&self) -> WallMemory<S, H> {
+    pub(crate) fn memory(&self) -> WallMemory {
         WallMemory {
             displacement: self.displacement,
             at_list: self.at_list,
@@ -95,7 +94,7 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
     }
 
     /// Takes up what it remembered.
-    pub(crate) fn recall(&mut self, memory: WallMemory<S, H>) {
+    pub(crate) fn recall(&mut self, memory: WallMemory) {
         if self.displacement != memory.displacement {
             self.displaced_to(memory.displacement);
         }
@@ -142,8 +141,7 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
 
     /// The wall as a grain at `position` sees it.
     #[inline(always)]
-    pub(crate) fn facing(&self, position: S::Vector) -> Facing<S> {
-        let at = S::embed(position);
+    pub(crate) fn facing(&self, at: Vector3<f64>) -> Facing {
         let (nearest, normal, distance) = match &self.shape {
             WallShape::Plane { point, normal } => {
                 let distance = (at - point).dot(normal);
@@ -153,7 +151,7 @@ impl<S: Space, H: Copy + Default> MovingWall<S, H> {
             WallShape::Rectangle { corner, edges } => facing_point(at, nearest_on_rectangle(at, corner, edges)),
         };
         let velocity = self.velocity + self.spin.cross(&(nearest - self.centre));
-        Facing { normal: S::restrict(normal), distance, velocity: S::restrict(velocity) }
+        Facing { normal, distance, velocity }
     }
 }
 

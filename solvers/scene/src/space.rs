@@ -15,7 +15,7 @@ mod sealed {
     impl Sealed for super::Solid {}
 }
 
-/// What solvers ask of a vector, a spin or a tangential displacement.
+/// What solvers ask of a vector.
 pub trait Linear:
     Copy
     + Debug
@@ -53,19 +53,11 @@ impl<T> Linear for T where
 }
 
 /// A space of two or three dimensions.
-///
-/// The unit normal `e` of a contact points from the first grain to the second. In the plane the tangential direction
-/// is `t = (e₂, −e₁)`, the clockwise perpendicular (Cundall & Strack 1979, eq. 10), and a tangential quantity is the
-/// scalar along it, so that it turns with the contact. In space it is a vector perpendicular to `e`.
 pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     /// Number of dimensions.
     const DIMENSION: usize;
     /// Position, velocity, force.
     type Vector: Linear;
-    /// Angular velocity, torque: a scalar in the plane.
-    type Spin: Linear;
-    /// Tangential displacement or force at a contact: a scalar in the plane.
-    type Tangent: Linear;
     /// Gradient of a vector.
     type Matrix: Linear + Mul<Output = Self::Matrix> + Mul<Self::Vector, Output = Self::Vector>;
     /// Symmetric tensor with its parts out of the plane (plane strain): xx, yy, zz, xy, (yz, zx).
@@ -74,42 +66,13 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     const ORIGIN: Self::Vector;
     /// The gradient zero.
     const NO_GRADIENT: Self::Matrix;
-    /// The spin zero.
-    const NO_SPIN: Self::Spin;
-    /// The tangential displacement zero.
-    const NO_TANGENT: Self::Tangent;
 
     /// Scalar product.
     fn dot(a: Self::Vector, b: Self::Vector) -> f64;
-    /// `r × F`.
-    fn torque(arm: Self::Vector, force: Self::Vector) -> Self::Spin;
-    /// `ω × r`.
-    fn turn(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
-    /// Tangential part of `velocity + rolling × normal`: the slip velocity at a contact when `velocity` is that of
-    /// the first centre relative to the second and `rolling` is `ω₁a₁ + ω₂a₂` with torque arms `a`.
-    fn slip_velocity(velocity: Self::Vector, rolling: Self::Spin, normal: Self::Vector) -> Self::Tangent;
-    /// A stored tangential displacement, carried along with a contact that has turned to `normal`: in the plane it
-    /// turns with it; in space its normal part is taken off (as LAMMPS and LIGGGHTS do).
-    fn carry(displacement: Self::Tangent, normal: Self::Vector) -> Self::Tangent;
-    /// A tangential quantity of the same contact with the roles of first and second grain exchanged.
-    fn exchange(tangent: Self::Tangent) -> Self::Tangent;
-    /// A tangential quantity as a vector.
-    fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
-    /// Squared length of a tangential quantity.
-    fn tangent_squared(tangent: Self::Tangent) -> f64;
-    /// A relative spin without its part along the normal, which is twisting and not rolling; in the plane all of it
-    /// rolls.
-    fn without_twist(spin: Self::Spin, normal: Self::Vector) -> Self::Spin;
-    /// Product of two spins, for rotational energy.
-    fn spin_dot(a: Self::Spin, b: Self::Spin) -> f64;
     /// The vector in three dimensions, z = 0 for the plane.
     fn embed(vector: Self::Vector) -> Vector3<f64>;
     /// The vector without what this space does not have.
     fn restrict(vector: Vector3<f64>) -> Self::Vector;
-    /// The spin in three dimensions, along z for the plane.
-    fn embed_spin(spin: Self::Spin) -> Vector3<f64>;
-    /// The spin without what this space does not have.
-    fn restrict_spin(spin: Vector3<f64>) -> Self::Spin;
     /// `a bᵀ`.
     fn outer(a: Self::Vector, b: Self::Vector) -> Self::Matrix;
     /// The gradient in three dimensions, zero out of the plane.
@@ -156,54 +119,14 @@ pub struct Solid;
 impl Space for Plane {
     const DIMENSION: usize = 2;
     type Vector = Vector2<f64>;
-    type Spin = f64;
-    type Tangent = f64;
     type Matrix = Matrix2<f64>;
     type Symmetric = [f64; 4];
     const NO_GRADIENT: Matrix2<f64> = Matrix2::new(0.0, 0.0, 0.0, 0.0);
     const ORIGIN: Vector2<f64> = Vector2::new(0.0, 0.0);
-    const NO_SPIN: f64 = 0.0;
-    const NO_TANGENT: f64 = 0.0;
 
     #[inline(always)]
     fn dot(a: Vector2<f64>, b: Vector2<f64>) -> f64 {
         a.x * b.x + a.y * b.y
-    }
-    #[inline(always)]
-    fn torque(arm: Vector2<f64>, force: Vector2<f64>) -> f64 {
-        arm.x * force.y - arm.y * force.x
-    }
-    #[inline(always)]
-    fn turn(spin: f64, arm: Vector2<f64>) -> Vector2<f64> {
-        Vector2::new(-spin * arm.y, spin * arm.x)
-    }
-    #[inline(always)]
-    fn slip_velocity(velocity: Vector2<f64>, rolling: f64, normal: Vector2<f64>) -> f64 {
-        velocity.x * normal.y - velocity.y * normal.x - rolling
-    }
-    #[inline(always)]
-    fn carry(displacement: f64, _normal: Vector2<f64>) -> f64 {
-        displacement
-    }
-    #[inline(always)]
-    fn exchange(tangent: f64) -> f64 {
-        tangent
-    }
-    #[inline(always)]
-    fn along(tangent: f64, normal: Vector2<f64>) -> Vector2<f64> {
-        Vector2::new(tangent * normal.y, -tangent * normal.x)
-    }
-    #[inline(always)]
-    fn tangent_squared(tangent: f64) -> f64 {
-        tangent * tangent
-    }
-    #[inline(always)]
-    fn without_twist(spin: f64, _normal: Vector2<f64>) -> f64 {
-        spin
-    }
-    #[inline(always)]
-    fn spin_dot(a: f64, b: f64) -> f64 {
-        a * b
     }
     #[inline(always)]
     fn embed(vector: Vector2<f64>) -> Vector3<f64> {
@@ -212,12 +135,6 @@ impl Space for Plane {
     #[inline(always)]
     fn restrict(vector: Vector3<f64>) -> Vector2<f64> {
         vector.xy()
-    }
-    fn embed_spin(spin: f64) -> Vector3<f64> {
-        Vector3::new(0.0, 0.0, spin)
-    }
-    fn restrict_spin(spin: Vector3<f64>) -> f64 {
-        spin.z
     }
     #[inline(always)]
     fn outer(a: Vector2<f64>, b: Vector2<f64>) -> Matrix2<f64> {
@@ -294,54 +211,14 @@ impl Space for Plane {
 impl Space for Solid {
     const DIMENSION: usize = 3;
     type Vector = Vector3<f64>;
-    type Spin = Vector3<f64>;
-    type Tangent = Vector3<f64>;
     type Matrix = Matrix3<f64>;
     type Symmetric = [f64; 6];
     const NO_GRADIENT: Matrix3<f64> = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     const ORIGIN: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
-    const NO_SPIN: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
-    const NO_TANGENT: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
 
     #[inline(always)]
     fn dot(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
         a.x * b.x + a.y * b.y + a.z * b.z
-    }
-    #[inline(always)]
-    fn torque(arm: Vector3<f64>, force: Vector3<f64>) -> Vector3<f64> {
-        arm.cross(&force)
-    }
-    #[inline(always)]
-    fn turn(spin: Vector3<f64>, arm: Vector3<f64>) -> Vector3<f64> {
-        spin.cross(&arm)
-    }
-    #[inline(always)]
-    fn slip_velocity(velocity: Vector3<f64>, rolling: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
-        velocity - normal * Self::dot(velocity, normal) + rolling.cross(&normal)
-    }
-    #[inline(always)]
-    fn carry(displacement: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
-        displacement - normal * Self::dot(displacement, normal)
-    }
-    #[inline(always)]
-    fn exchange(tangent: Vector3<f64>) -> Vector3<f64> {
-        -tangent
-    }
-    #[inline(always)]
-    fn along(tangent: Vector3<f64>, _normal: Vector3<f64>) -> Vector3<f64> {
-        tangent
-    }
-    #[inline(always)]
-    fn tangent_squared(tangent: Vector3<f64>) -> f64 {
-        Self::dot(tangent, tangent)
-    }
-    #[inline(always)]
-    fn without_twist(spin: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
-        spin - normal * Self::dot(spin, normal)
-    }
-    #[inline(always)]
-    fn spin_dot(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
-        Self::dot(a, b)
     }
     #[inline(always)]
     fn embed(vector: Vector3<f64>) -> Vector3<f64> {
@@ -350,12 +227,6 @@ impl Space for Solid {
     #[inline(always)]
     fn restrict(vector: Vector3<f64>) -> Vector3<f64> {
         vector
-    }
-    fn embed_spin(spin: Vector3<f64>) -> Vector3<f64> {
-        spin
-    }
-    fn restrict_spin(spin: Vector3<f64>) -> Vector3<f64> {
-        spin
     }
     #[inline(always)]
     fn outer(a: Vector3<f64>, b: Vector3<f64>) -> Matrix3<f64> {
@@ -433,15 +304,9 @@ impl Space for Solid {
 mod tests {
     use super::*;
 
-    /// Both spaces must give the same slip, force and torque for the same planar contact.
+    /// Both spaces give the same for the same tensors of the plane.
     #[test]
     fn plane_agrees_with_solid() {
-        let (angle, velocity, rolling, displacement) = (0.7_f64, Vector2::new(0.3, -1.1), 2.5, -0.4);
-        let normal = Vector2::new(angle.cos(), angle.sin());
-        let flat = Plane::slip_velocity(velocity, rolling, normal);
-        let full = Solid::slip_velocity(Plane::embed(velocity), Plane::embed_spin(rolling), Plane::embed(normal));
-        assert!((Plane::embed(Plane::along(flat, normal)) - full).norm() < 1e-15);
-
         let (tensor, gradient) = ([1.0, -2.0, 0.5, 0.7], Matrix2::new(0.01, 0.2, -0.1, 0.03));
         let unit = gradient + Matrix2::identity();
         let mut solid_unit = Plane::embed_gradient(unit);
@@ -453,11 +318,5 @@ mod tests {
         assert!(same(Plane::turned(tensor, gradient), Solid::turned(embedded, Plane::embed_gradient(gradient))));
         assert!(same(Plane::finger(unit), Solid::finger(solid_unit)));
         assert!((Plane::determinant(unit) - Solid::determinant(solid_unit)).abs() < 1e-15);
-
-        let force = Plane::along(displacement, normal);
-        let torque = Plane::torque(normal, force);
-        let full_torque = Solid::torque(Plane::embed(normal), Plane::embed(force));
-        assert!((Plane::embed_spin(torque) - full_torque).norm() < 1e-15);
-        assert_eq!(Plane::turn(2.0, Vector2::new(1.0, 0.0)), Vector2::new(0.0, 2.0));
     }
 }

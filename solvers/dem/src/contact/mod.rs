@@ -6,57 +6,67 @@
 
 pub(crate) mod at_wall;
 pub(crate) mod chain;
-pub mod normal;
+pub(crate) mod normal;
 pub(crate) mod pair;
-pub mod rolling;
+pub(crate) mod rolling;
 pub(crate) mod seen;
-pub mod tangential;
+pub(crate) mod tangential;
 
-use crate::convention::{CapNormal, Convention, Tension, TorqueArm, WallRolling};
+use crate::convention::{CapNormal, Convention, CoulombCap, History, Tension, TorqueArm, WallRolling};
+use crate::geometry::Geometry;
 use crate::laws::Constants;
-use grainbench_scene::space::Space;
+use grainbench_lanes::Number;
+pub(crate) use tangential::Cap;
 
-/// Two bodies that touch, as the stages see them.
+/// Numbers that a contact may remember from step to step: the tangential stage's first, the rolling stage's after them.
+pub(crate) const MEMORY: usize = 8;
+
+/// What a contact remembers from step to step.
+pub(crate) type Memory<X> = [X; MEMORY];
+
+/// Two bodies that touch, as the stages see them; or several such contacts at a time.
 #[derive(Clone, Copy, Debug)]
-pub struct Touch<'a, S: Space> {
+pub(crate) struct Touch<'a, S: Geometry, X: Number> {
     /// The law between their materials.
-    pub law: &'a Constants,
+    pub(crate) law: &'a Constants<X>,
     /// Vector from the first centre to the second (m); at a wall the unit vector `e` from the centre to the wall.
-    pub between: S::Vector,
+    pub(crate) between: S::Vectors<X>,
     /// The inverse of the length of `between` (1/m).
-    pub inverse_distance: f64,
+    pub(crate) inverse_distance: X,
     /// Unit vector `e = between · inverse_distance`. Only dashpots, the tangential and the rolling stage read it: the
     /// normal force is taken along `between`.
-    pub normal: S::Vector,
+    pub(crate) normal: S::Vectors<X>,
     /// Overlap δ (m), positive.
-    pub overlap: f64,
+    pub(crate) overlap: X,
     /// Velocity of the first centre relative to the second body at the contact, v₁ − v₂ (m/s).
-    pub velocity: S::Vector,
+    pub(crate) velocity: S::Vectors<X>,
     /// Effective mass m₁m₂/(m₁+m₂), or m₁ at a wall (kg). Only set for dashpots.
-    pub effective_mass: f64,
+    pub(crate) effective_mass: X,
     /// Effective radius R₁R₂/(R₁+R₂), or R₁ at a wall (m). Only set for stages that say so.
-    pub effective_radius: f64,
+    pub(crate) effective_radius: X,
 }
 
 /// The options of a convention that are values and not types.
 #[derive(Clone, Copy, Debug)]
-pub struct Options {
+pub(crate) struct Options {
     /// Part of the overlap that is taken off the torque arm: 0 or 1/2.
-    pub arm_reduction: f64,
+    pub(crate) arm_reduction: f64,
     /// Smallest normal force (N): zero without tension, else −∞.
-    pub least_normal_force: f64,
+    pub(crate) least_normal_force: f64,
     /// Weight of the dashpot in the normal force that Coulomb's limit is proportional to: 0 or 1.
-    pub dashpot_in_cap: f64,
+    pub(crate) dashpot_in_cap: f64,
     /// Weight of a normal force that pulls in Coulomb's limit: 0 or 1.
-    pub pull_in_cap: f64,
+    pub(crate) pull_in_cap: f64,
+    /// What Coulomb's limit acts on.
+    pub(crate) cap: Cap,
     /// Whether grains roll at walls by their surface's velocity over the distance of the wall, and not by their spin.
-    pub rolls_by_surface: bool,
+    pub(crate) rolls_by_surface: bool,
 }
 
 impl Options {
     /// The values of a convention's options.
     #[must_use]
-    pub const fn of(convention: &Convention) -> Self {
+    pub(crate) const fn of(convention: &Convention) -> Self {
         Self {
             arm_reduction: match convention.torque_arm {
                 TorqueArm::Radius => 0.0,
@@ -73,6 +83,11 @@ impl Options {
             pull_in_cap: match convention.cap_normal {
                 CapNormal::Spring | CapNormal::Total => 1.0,
                 CapNormal::Pushing => 0.0,
+            },
+            cap: match (convention.coulomb_cap, convention.history) {
+                (CoulombCap::Spring, _) => Cap::Spring,
+                (CoulombCap::SpringAndDashpot, History::Turned) => Cap::Total,
+                (CoulombCap::SpringAndDashpot, History::Projected) => Cap::TotalAsLammps,
             },
             rolls_by_surface: matches!(convention.wall_rolling, WallRolling::Surface),
         }

@@ -1,60 +1,74 @@
 //! First stage: the force along the normal, and the stiffness that the other stages build on.
 
 use super::{Options, Touch};
-use grainbench_scene::space::Space;
+use crate::geometry::{Geometry, Linear};
+use crate::laws::Constants;
+use grainbench_lanes::Number;
 
 /// Normal force at a contact (N), positive when it pushes apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NormalForce {
+pub(crate) struct NormalForce<X> {
     /// Of spring and dashpot.
-    pub total: f64,
+    pub(crate) total: X,
     /// What Coulomb's limit is proportional to.
-    pub for_cap: f64,
+    pub(crate) for_cap: X,
 }
 
 /// The normal stage.
-pub trait Normal: Copy + Send + 'static {
+pub(crate) trait Normal: Copy + Send + 'static {
     /// Whether dashpots act at contacts, along the tangent too.
     const DAMPED: bool;
     /// Whether the stage reads the effective radius.
     const CURVED: bool;
 
     /// The normal force.
-    fn force<S: Space>(touch: &Touch<'_, S>, options: &Options) -> NormalForce;
+    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, options: &Options) -> NormalForce<X>;
     /// Stiffness k_s of the tangential spring (N/m).
-    fn tangential_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64;
+    fn tangential_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
     /// Secant stiffness F/δ of the normal spring (N/m).
-    fn secant_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64;
+    fn secant_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
     /// Energy in the normal spring (J).
-    fn energy<S: Space>(touch: &Touch<'_, S>) -> f64;
+    fn energy<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
 }
 
 /// Spring and dashpot together.
 #[inline(always)]
-fn damped<S: Space>(touch: &Touch<'_, S>, options: &Options, spring: f64, viscosity: f64) -> NormalForce {
-    let dashpot = viscosity * S::dot(touch.velocity, touch.normal);
-    let total = (spring + dashpot).max(options.least_normal_force);
-    let signed = spring + options.dashpot_in_cap * (total - spring);
-    NormalForce { total, for_cap: signed.max(-signed * options.pull_in_cap) }
+fn damped<S: Geometry, X: Number>(
+    touch: &Touch<'_, S, X>,
+    options: &Options,
+    spring: X,
+    viscosity: X,
+) -> NormalForce<X> {
+    let dashpot = viscosity * touch.velocity.dot(touch.normal);
+    let total = (spring + dashpot).at_least(spring.like(options.least_normal_force));
+    let signed = spring + (total - spring) * options.dashpot_in_cap;
+    NormalForce { total, for_cap: signed.at_least(-signed * options.pull_in_cap) }
+}
+
+/// Viscosity 2ζ√(k m) (N s/m) from `stiff_mass` k m (N kg/m): without a root where no contact has such a dashpot.
+#[inline(always)]
+fn restitution<X: Number>(law: &Constants<X>, stiff_mass: X) -> X {
+    let zero = stiff_mass.like(0.0);
+    if stiff_mass.anywhere(zero.below(law.damping_ratio)) { law.damping_ratio * 2.0 * stiff_mass.sqrt() } else { zero }
 }
 
 /// A linear spring, F_n = k_n δ.
 #[derive(Clone, Copy, Debug)]
-pub struct Spring;
+pub(crate) struct Spring;
 
 /// What every linear stage answers alike.
 macro_rules! linear_stiffness {
     () => {
         #[inline(always)]
-        fn tangential_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64 {
+        fn tangential_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
             touch.law.springs[1]
         }
         #[inline(always)]
-        fn secant_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64 {
+        fn secant_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
             touch.law.springs[0]
         }
-        fn energy<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            0.5 * touch.law.springs[0] * touch.overlap * touch.overlap
+        fn energy<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+            touch.law.springs[0] * 0.5 * touch.overlap * touch.overlap
         }
     };
 }
@@ -64,50 +78,31 @@ impl Normal for Spring {
     const CURVED: bool = false;
 
     #[inline(always)]
-    fn force<S: Space>(touch: &Touch<'_, S>, _options: &Options) -> NormalForce {
+    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, _options: &Options) -> NormalForce<X> {
         let spring = touch.law.springs[0] * touch.overlap;
         NormalForce { total: spring, for_cap: spring }
     }
     linear_stiffness!();
 }
 
-/// A linear spring and a dashpot, F_n = k_n δ + c_n δ̇ with c_n = β k_n + γ_n m_eff (Cundall & Strack 1979, eqs. 26 and
-/// 28; LAMMPS and LIGGGHTS write the second term).
+/// A linear spring and dashpots, F_n = k_n δ + c_n δ̇ with c_n = β k_n + γ_n m_eff + 2ζ√(k_n m_eff).
+///
+/// The first two terms are Cundall & Strack's (1979, eqs. 26 and 28; LAMMPS and LIGGGHTS write the second). The third gives a
+/// coefficient of restitution e, with ζ = −ln e/√(π² + ln² e). Exact when contact ends with the overlap: the damped
+/// half-oscillation ends at e = exp(−πζ/√(1 − ζ²)).
 #[derive(Clone, Copy, Debug)]
-pub struct SpringDashpot;
+pub(crate) struct SpringDashpot;
 
 impl Normal for SpringDashpot {
     const DAMPED: bool = true;
     const CURVED: bool = false;
 
     #[inline(always)]
-    fn force<S: Space>(touch: &Touch<'_, S>, options: &Options) -> NormalForce {
+    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, options: &Options) -> NormalForce<X> {
         let law = touch.law;
         let spring = law.springs[0] * touch.overlap;
         let viscosity = law.stiffness_damping * law.springs[0] + law.normal_damping * touch.effective_mass;
-        damped(touch, options, spring, viscosity)
-    }
-    linear_stiffness!();
-}
-
-/// The same with a dashpot that gives a coefficient of restitution e beside the others: c_n = 2ζ√(k_n m_eff) with
-/// ζ = −ln e/√(π² + ln² e). Exact when contact ends with the overlap: the damped half-oscillation ends at
-/// e = exp(−πζ/√(1 − ζ²)).
-#[derive(Clone, Copy, Debug)]
-pub struct SpringRestitution;
-
-impl Normal for SpringRestitution {
-    const DAMPED: bool = true;
-    const CURVED: bool = false;
-
-    #[inline(always)]
-    fn force<S: Space>(touch: &Touch<'_, S>, options: &Options) -> NormalForce {
-        let law = touch.law;
-        let spring = law.springs[0] * touch.overlap;
-        let viscosity = law.stiffness_damping * law.springs[0]
-            + law.normal_damping * touch.effective_mass
-            + 2.0 * law.damping_ratio * (law.springs[0] * touch.effective_mass).sqrt();
-        damped(touch, options, spring, viscosity)
+        damped(touch, options, spring, viscosity + restitution(law, law.springs[0] * touch.effective_mass))
     }
     linear_stiffness!();
 }
@@ -117,29 +112,29 @@ impl Normal for SpringRestitution {
 macro_rules! hertz_stiffness {
     () => {
         #[inline(always)]
-        fn tangential_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            8.0 * touch.law.springs[1] * (touch.effective_radius * touch.overlap).sqrt()
+        fn tangential_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+            touch.law.springs[1] * 8.0 * (touch.effective_radius * touch.overlap).sqrt()
         }
         #[inline(always)]
-        fn secant_stiffness<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            4.0 / 3.0 * touch.law.springs[0] * (touch.effective_radius * touch.overlap).sqrt()
+        fn secant_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+            touch.law.springs[0] * (4.0 / 3.0) * (touch.effective_radius * touch.overlap).sqrt()
         }
-        fn energy<S: Space>(touch: &Touch<'_, S>) -> f64 {
-            0.4 * Self::secant_stiffness(touch) * touch.overlap * touch.overlap
+        fn energy<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+            Self::secant_stiffness(touch) * 0.4 * touch.overlap * touch.overlap
         }
     };
 }
 
 /// Hertz contact of elastic spheres.
 #[derive(Clone, Copy, Debug)]
-pub struct Hertz;
+pub(crate) struct Hertz;
 
 impl Normal for Hertz {
     const DAMPED: bool = false;
     const CURVED: bool = true;
 
     #[inline(always)]
-    fn force<S: Space>(touch: &Touch<'_, S>, _options: &Options) -> NormalForce {
+    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, _options: &Options) -> NormalForce<X> {
         let spring = Self::secant_stiffness(touch) * touch.overlap;
         NormalForce { total: spring, for_cap: spring }
     }
@@ -150,19 +145,19 @@ impl Normal for Hertz {
 /// the coefficient of restitution e exactly when contact ends with the overlap (Tsuji, Tanaka & Ishida 1992; Antypov &
 /// Elliott 2011 show that it maps onto a damped harmonic oscillator).
 #[derive(Clone, Copy, Debug)]
-pub struct HertzDashpot;
+pub(crate) struct HertzDashpot;
 
 impl Normal for HertzDashpot {
     const DAMPED: bool = true;
     const CURVED: bool = true;
 
     #[inline(always)]
-    fn force<S: Space>(touch: &Touch<'_, S>, options: &Options) -> NormalForce {
+    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, options: &Options) -> NormalForce<X> {
         let law = touch.law;
         let secant = Self::secant_stiffness(touch);
-        let tangent = 1.5 * secant;
-        let viscosity = law.normal_damping * touch.effective_mass
-            + 2.0 * law.damping_ratio * (5.0 / 6.0 * tangent * touch.effective_mass).sqrt();
+        let tangent = secant * 1.5;
+        let viscosity =
+            law.normal_damping * touch.effective_mass + restitution(law, tangent * (5.0 / 6.0) * touch.effective_mass);
         damped(touch, options, secant * touch.overlap, viscosity)
     }
     hertz_stiffness!();

@@ -1,44 +1,43 @@
 //! Two grains that touch, made ready for the chain of stages.
 
-use super::chain::{Answer, Memory, Turning, stages};
+use super::chain::{Answer, Evaluation, Turning, stages};
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{Options, Touch};
+use super::{Memory, Touch};
+use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
-use grainbench_scene::space::Space;
+use grainbench_lanes::Number;
 
-/// Two grains that touch, as the loop over pairs finds them.
-pub(crate) struct Pair<'a, S: Space> {
+/// Two grains that touch, as the loop over pairs finds them; or several pairs at a time.
+pub(crate) struct Pair<'a, S: Geometry, X: Number> {
     /// The law between their materials.
-    pub(crate) law: &'a Constants,
+    pub(crate) law: &'a Constants<X>,
     /// Vector from the first centre to the second (m).
-    pub(crate) between: S::Vector,
-    /// Its squared length (m²).
-    pub(crate) squared: f64,
+    pub(crate) between: S::Vectors<X>,
     /// Radii R (m).
-    pub(crate) radii: [f64; 2],
+    pub(crate) radii: [X; 2],
     /// Velocity of the first centre relative to the second (m/s).
-    pub(crate) velocity: S::Vector,
+    pub(crate) velocity: S::Vectors<X>,
     /// Inverse masses 1/m (1/kg).
-    pub(crate) inverse_masses: [f64; 2],
-    /// Angular velocities ω (rad/s).
-    pub(crate) spins: [Option<S::Spin>; 2],
-    /// Moments of inertia I (kg m²), only set for rolling resistance.
-    pub(crate) inertia: [f64; 2],
+    pub(crate) inverse_masses: [X; 2],
+    /// Angular velocities ω (rad/s), if they rotate.
+    pub(crate) spins: Option<[S::Spins<X>; 2]>,
+    /// Inverse moments of inertia 1/I (1/(kg m²)), only set for rolling resistance.
+    pub(crate) inverse_inertia: [X; 2],
 }
 
-impl<S: Space> Pair<'_, S> {
-    /// Forces and moments at the contact; `elapsed` is the time since the last evaluation (s).
+impl<S: Geometry, X: Number> Pair<'_, S, X> {
+    /// Forces and moments at the contact.
     #[inline(always)]
-    pub(crate) fn respond<N: Normal, T: Tangential<S>, R: Rolling<S>, const RECORD: bool>(
+    pub(crate) fn respond<N: Normal, T: Tangential<S>, R: Rolling<S>>(
         &self,
-        options: &Options,
-        elapsed: f64,
-        history: &mut Memory<S, T, R>,
-    ) -> Answer<S> {
-        let distance = self.squared.sqrt();
-        let inverse_distance = 1.0 / distance;
+        evaluation: Evaluation<'_>,
+        memory: &mut Memory<X>,
+    ) -> Answer<S, X> {
+        let distance = self.between.dot(self.between).sqrt();
+        let [zero, one] = [distance.like(0.0), distance.like(1.0)];
+        let inverse_distance = one / distance;
         let [first, second] = self.radii;
         let overlap = first + second - distance;
         let touch = Touch {
@@ -48,28 +47,37 @@ impl<S: Space> Pair<'_, S> {
             normal: self.between * inverse_distance,
             overlap,
             velocity: self.velocity,
-            effective_mass: if N::DAMPED { harmonic(self.inverse_masses) } else { 0.0 },
-            effective_radius: if N::CURVED || R::ACTIVE { first * second / (first + second) } else { 0.0 },
+            effective_mass: if N::DAMPED { harmonic(self.inverse_masses) } else { zero },
+            effective_radius: if N::CURVED || R::ACTIVE { first * second / (first + second) } else { zero },
         };
-        let arms = self.radii.map(|radius| radius - options.arm_reduction * overlap);
+        let off = overlap * evaluation.options.arm_reduction;
+        let arms = [first - off, second - off];
         let turning = match self.spins {
-            [Some(a), Some(b)] => {
-                let about = |k: usize| self.inertia[k] + self.radii[k] * self.radii[k] / self.inverse_masses[k];
-                let inertia = if R::ACTIVE { harmonic([1.0 / about(0), 1.0 / about(1)]) } else { 0.0 };
+            Some([a, b]) => {
+                let inertia = if R::ACTIVE { harmonic([self.about_contact(0), self.about_contact(1)]) } else { zero };
                 Some(Turning { surface: a * arms[0] + b * arms[1], relative: a - b, inertia })
             }
-            _ => None,
+            None => None,
         };
-        stages::<S, N, T, R, RECORD>(&touch, arms, turning, options, elapsed, history)
+        stages::<S, N, T, R, X>(&touch, arms, turning, evaluation, memory)
+    }
+
+    /// Inverse moment of inertia of a grain about the contact, 1/(I + m R²) (1/(kg m²)).
+    #[inline(always)]
+    fn about_contact(&self, grain: usize) -> X {
+        let radius = self.radii[grain];
+        let one = radius.like(1.0);
+        one / (one / self.inverse_inertia[grain] + radius * radius / self.inverse_masses[grain])
     }
 }
 
 /// The mass (kg), or moment of inertia (kg m²), of two bodies against each other, from the inverses of both; none where
 /// both are driven: they do not feel each other.
 #[inline(always)]
-fn harmonic([first, second]: [f64; 2]) -> f64 {
+fn harmonic<X: Number>([first, second]: [X; 2]) -> X {
     let inverse = first + second;
-    if inverse > 0.0 { 1.0 / inverse } else { 0.0 }
+    let [zero, one] = [inverse.like(0.0), inverse.like(1.0)];
+    X::choose(zero.below(inverse), one / inverse, zero)
 }
 
 #[cfg(test)]
@@ -77,8 +85,10 @@ mod tests {
     use super::*;
     use crate::contact::normal::Spring;
     use crate::contact::rolling::FreeRolling;
-    use crate::contact::tangential::{CapOnSpring, Coulomb, Turned};
+    use crate::contact::tangential::{Coulomb, Projected};
+    use crate::contact::{MEMORY, Options};
     use crate::convention::Convention;
+    use crate::geometry::Components;
     use grainbench_scene::space::Solid;
     use nalgebra::Vector3;
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -90,27 +100,27 @@ mod tests {
     /// −ω × e (2R − δ).
     #[test]
     fn stuck_spheres_carry_their_spring_when_they_swing() {
-        type Stretched = Coulomb<CapOnSpring, Turned>;
+        type Stretched = Coulomb<Projected>;
         let law = Constants { springs: [1e6, 5e5], friction: 1e3, ..Constants::default() };
         let options = Options::of(&Convention::LIGGGHTS);
         let (steps, overlap, slip) = (1000, 0.01, 1e-4);
         let spin = Vector3::z() * FRAC_PI_2;
-        let mut history = Memory::<Solid, Stretched, FreeRolling>::default();
+        let mut memory = [0.0; MEMORY];
         let mut swung = |turned: f64, extra: Vector3<f64>, elapsed: f64| {
             let (sine, cosine) = (FRAC_PI_2 * turned).sin_cos();
             let between = Vector3::new(cosine, sine, 0.0) * (1.0 - overlap);
-            let pair = Pair::<Solid> {
+            let pair = Pair::<Solid, f64> {
                 law: &law,
-                between,
-                squared: between.norm_squared(),
+                between: Components(between.into()),
                 radii: [0.4, 0.6],
-                velocity: extra - spin.cross(&between),
+                velocity: Components((extra - spin.cross(&between)).into()),
                 inverse_masses: [1.0; 2],
-                spins: [Some(spin); 2],
-                inertia: [0.0; 2],
+                spins: Some([Components(spin.into()); 2]),
+                inverse_inertia: [0.0; 2],
             };
-            let answer = pair.respond::<Spring, Stretched, FreeRolling, false>(&options, elapsed, &mut history);
-            (answer.shear, answer.normal)
+            let evaluation = Evaluation { options: &options, elapsed, record: false };
+            let answer = pair.respond::<Spring, Stretched, FreeRolling>(evaluation, &mut memory);
+            (Vector3::from(answer.shear.0), Vector3::from(answer.normal.0))
         };
         // Stretched along +y in a first step; the spring pulls the first sphere back.
         let (start, _) = swung(0.0, Vector3::y() * slip, 1.0);

@@ -2,56 +2,52 @@
 
 use super::Touch;
 use super::normal::{Normal, NormalForce};
-use grainbench_scene::space::Space;
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
-use std::fmt::Debug;
+use crate::geometry::{Geometry, Linear};
+use grainbench_lanes::Number;
 
 /// The rolling stage.
-pub trait Rolling<S: Space>: Copy + Send + 'static {
+pub(crate) trait Rolling<S: Geometry>: Copy + Send + 'static {
     /// Whether there is a moment at all.
     const ACTIVE: bool;
-    /// What a contact remembers from step to step.
-    type History: Copy + Debug + Default + Send + Serialize + DeserializeOwned;
+    /// Numbers that a contact remembers from step to step. With the roles of first and second grain exchanged they have the
+    /// opposite sign.
+    const NUMBERS: usize;
 
     /// Moment on the first body (N m), from the angular velocity of the first body relative to the second (rad/s), the
     /// time that has passed since the last one (s) and the moment of inertia of the pair about the contact (kg m²).
-    fn moment<N: Normal>(
-        touch: &Touch<'_, S>,
-        normal: NormalForce,
-        rate: S::Spin,
+    fn moment<N: Normal, X: Number>(
+        touch: &Touch<'_, S, X>,
+        normal: NormalForce<X>,
+        rate: S::Spins<X>,
         elapsed: f64,
-        inertia: f64,
-        history: &mut Self::History,
-    ) -> S::Spin;
-    /// The history with the roles of first and second grain exchanged.
-    fn exchange(history: Self::History) -> Self::History;
+        inertia: X,
+        memory: &mut [X],
+    ) -> S::Spins<X>;
     /// Energy in the rolling spring (J).
-    fn energy<N: Normal>(touch: &Touch<'_, S>, history: Self::History) -> f64;
+    fn energy<N: Normal, X: Number>(touch: &Touch<'_, S, X>, memory: &[X]) -> X;
 }
 
-/// No rolling resistance: no history, no moment.
+/// No rolling resistance: nothing is remembered, no moment.
 #[derive(Clone, Copy, Debug)]
-pub struct FreeRolling;
+pub(crate) struct FreeRolling;
 
-impl<S: Space> Rolling<S> for FreeRolling {
+impl<S: Geometry> Rolling<S> for FreeRolling {
     const ACTIVE: bool = false;
-    type History = ();
+    const NUMBERS: usize = 0;
 
     #[inline(always)]
-    fn moment<N: Normal>(
-        _touch: &Touch<'_, S>,
-        _normal: NormalForce,
-        _rate: S::Spin,
+    fn moment<N: Normal, X: Number>(
+        touch: &Touch<'_, S, X>,
+        _normal: NormalForce<X>,
+        _rate: S::Spins<X>,
         _elapsed: f64,
-        _inertia: f64,
-        _history: &mut (),
-    ) -> S::Spin {
-        S::NO_SPIN
+        _inertia: X,
+        _memory: &mut [X],
+    ) -> S::Spins<X> {
+        S::as_spin([touch.overlap.like(0.0); 3])
     }
-    fn exchange((): ()) {}
-    fn energy<N: Normal>(_touch: &Touch<'_, S>, (): ()) -> f64 {
-        0.0
+    fn energy<N: Normal, X: Number>(touch: &Touch<'_, S, X>, _memory: &[X]) -> X {
+        touch.overlap.like(0.0)
     }
 }
 
@@ -63,63 +59,52 @@ impl<S: Space> Rolling<S> for FreeRolling {
 ///
 /// θ is the rolling angle, cut back when the spring yields; the dashpot acts only while it has not. The part of the
 /// relative spin along the normal is twisting, not rolling, and exerts nothing.
+///
+/// The angle (rad) is what a contact remembers.
 #[derive(Clone, Copy, Debug)]
-pub struct ElasticPlastic;
+pub(crate) struct ElasticPlastic;
 
-/// The angle of a rolling spring (rad).
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Angle<S: Space>(S::Spin);
-
-impl<S: Space> Default for Angle<S> {
-    #[inline(always)]
-    fn default() -> Self {
-        Self(S::NO_SPIN)
-    }
-}
-
-impl<S: Space> Rolling<S> for ElasticPlastic {
+impl<S: Geometry> Rolling<S> for ElasticPlastic {
     const ACTIVE: bool = true;
-    type History = Angle<S>;
+    const NUMBERS: usize = <S::Spins<f64> as Linear<f64>>::COUNT;
 
     #[inline(always)]
-    fn moment<N: Normal>(
-        touch: &Touch<'_, S>,
-        normal: NormalForce,
-        rate: S::Spin,
+    fn moment<N: Normal, X: Number>(
+        touch: &Touch<'_, S, X>,
+        normal: NormalForce<X>,
+        rate: S::Spins<X>,
         elapsed: f64,
-        inertia: f64,
-        history: &mut Angle<S>,
-    ) -> S::Spin {
+        inertia: X,
+        memory: &mut [X],
+    ) -> S::Spins<X> {
         let law = touch.law;
         let arm = law.rolling_friction * touch.effective_radius;
-        if arm == 0.0 {
-            return S::NO_SPIN;
-        }
-        let rate = S::without_twist(rate, touch.normal);
-        let stiffness = rolling_stiffness::<S, N>(touch);
-        let mut angle = S::without_twist(history.0 + rate * elapsed, touch.normal);
+        let zero = arm.like(0.0);
+        let rate = S::rolled(rate, touch.normal);
+        let stiffness = rolling_stiffness::<S, N, X>(touch);
+        let mut angle = S::rolled(S::Spins::<X>::read(memory) + rate * arm.like(elapsed), touch.normal);
         let limit = arm * normal.for_cap;
-        let squared = stiffness * stiffness * S::spin_dot(angle, angle);
-        let yields = squared > limit * limit;
-        if yields {
-            angle = angle * (limit / squared.sqrt());
+        let squared = stiffness * stiffness * angle.dot(angle);
+        let yields = (limit * limit).below(squared);
+        if arm.anywhere(yields) {
+            angle = S::Spins::<X>::choose(yields, angle * (limit / squared.sqrt()), angle);
         }
-        history.0 = angle;
-        let moment = -(angle * stiffness);
-        if yields { moment } else { moment - rate * (2.0 * law.rolling_damping * (inertia * stiffness).sqrt()) }
+        let spring = -(angle * stiffness);
+        let dashpot = rate * (law.rolling_damping * 2.0 * (inertia * stiffness).sqrt());
+        // Contacts that do not resist, beside others that do, remember nothing.
+        let (resists, none) = (zero.below(arm), S::as_spin([zero; 3]));
+        S::Spins::<X>::choose(resists, angle, none).write(memory);
+        S::Spins::<X>::choose(resists, S::Spins::<X>::choose(yields, spring, spring - dashpot), none)
     }
-    fn exchange(history: Angle<S>) -> Angle<S> {
-        Angle(-history.0)
-    }
-    fn energy<N: Normal>(touch: &Touch<'_, S>, history: Angle<S>) -> f64 {
-        0.5 * rolling_stiffness::<S, N>(touch) * S::spin_dot(history.0, history.0)
+    fn energy<N: Normal, X: Number>(touch: &Touch<'_, S, X>, memory: &[X]) -> X {
+        let angle = S::Spins::<X>::read(memory);
+        rolling_stiffness::<S, N, X>(touch) * 0.5 * angle.dot(angle)
     }
 }
 
 /// k_r = 2.25 k_n μ_r² R_eff² (N m/rad), with the secant stiffness where it is not constant.
 #[inline(always)]
-fn rolling_stiffness<S: Space, N: Normal>(touch: &Touch<'_, S>) -> f64 {
+fn rolling_stiffness<S: Geometry, N: Normal, X: Number>(touch: &Touch<'_, S, X>) -> X {
     let arm = touch.law.rolling_friction * touch.effective_radius;
-    2.25 * N::secant_stiffness(touch) * arm * arm
+    N::secant_stiffness(touch) * 2.25 * arm * arm
 }

@@ -3,331 +3,364 @@
 //! The spring's stretch s (m) is what the contact remembers. It grows by the slip velocity times the time step, and it
 //! is carried along with a contact that turns ([`Carrying`]). Coulomb's limit cuts it back ([`Cap`]).
 
-use super::Touch;
+use super::chain::Evaluation;
 use super::normal::{Normal, NormalForce};
-use crate::rotation::{Rigid, Rotating, Rotation};
-use grainbench_scene::space::{Linear, Space};
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
+use super::{Memory, Touch};
+use crate::geometry::{Geometry, Linear};
+use grainbench_lanes::Number;
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
 /// What the tangential stage answers.
 #[derive(Clone, Copy, Debug)]
-pub struct Shear<S: Space> {
+pub(crate) struct Shear<S: Geometry, X: Number> {
     /// Force F_s on the first body along the tangent (N).
-    pub force: S::Tangent,
+    pub(crate) force: S::Tangents<X>,
     /// Whether Coulomb's limit was reached.
-    pub slipping: bool,
+    pub(crate) slipping: X::Mask,
 }
 
 /// The tangential stage.
-pub trait Tangential<S: Space>: Copy + Send + 'static {
+pub(crate) trait Tangential<S: Geometry>: Copy + Send + 'static {
     /// Whether there is a tangential force at all.
     const ACTIVE: bool;
-    /// What a contact remembers from step to step: the stretch of its tangential spring (m).
-    type History: Copy + Debug + Default + Send + Serialize + DeserializeOwned;
-    /// The rotation of a grain: only tangential forces and rolling moments drive it.
-    type Rotation: Rotation<S>;
+    /// Numbers that a contact remembers from step to step, first in its memory: the stretch of its tangential spring (m).
+    const NUMBERS: usize;
+    /// What they are multiplied by when the roles of first and second grain are exchanged.
+    const EXCHANGED: f64;
 
-    /// The tangential force, from the slip velocity (m/s) and the time `elapsed` since the last evaluation (s).
-    fn respond<N: Normal>(
-        touch: &Touch<'_, S>,
-        normal: NormalForce,
-        slip: S::Tangent,
-        elapsed: f64,
-        history: &mut Self::History,
-    ) -> Shear<S>;
+    /// The tangential force, from the slip velocity (m/s).
+    fn respond<N: Normal, X: Number>(
+        touch: &Touch<'_, S, X>,
+        normal: NormalForce<X>,
+        slip: S::Tangents<X>,
+        evaluation: Evaluation<'_>,
+        memory: &mut Memory<X>,
+    ) -> Shear<S, X>;
 
     /// Work of friction in a step (J), ½ k_s (s + s')·(s + ṡ Δt − s'): the mean force of the spring times the distance
     /// that its end slid. Here s is the stretch before the step, carried to the normal of now, s' the stretch after it,
     /// and ṡ the slip velocity.
-    fn rubbed<N: Normal>(
-        touch: &Touch<'_, S>,
-        slip: S::Tangent,
+    fn rubbed<N: Normal, X: Number>(
+        touch: &Touch<'_, S, X>,
+        slip: S::Tangents<X>,
         elapsed: f64,
-        before: Self::History,
-        after: Self::History,
-    ) -> f64;
+        before: &Memory<X>,
+        after: &Memory<X>,
+    ) -> X;
 
-    /// The history with the roles of first and second grain exchanged.
-    fn exchange(history: Self::History) -> Self::History;
     /// Energy ½ k_s s² in the tangential spring (J), from the stiffness k_s (N/m).
-    fn energy(history: Self::History, stiffness: f64) -> f64;
+    fn energy<X: Number>(memory: &Memory<X>, stiffness: X) -> X;
 }
 
-/// No friction: no tangential force, no history and no rotation.
+/// No friction: no tangential force, no memory and no rotation.
 #[derive(Clone, Copy, Debug)]
-pub struct Frictionless;
+pub(crate) struct Frictionless;
 
-impl<S: Space> Tangential<S> for Frictionless {
+impl<S: Geometry> Tangential<S> for Frictionless {
     const ACTIVE: bool = false;
-    type History = ();
-    type Rotation = Rigid;
+    const NUMBERS: usize = 0;
+    const EXCHANGED: f64 = 1.0;
 
     #[inline(always)]
-    fn respond<N: Normal>(
-        _touch: &Touch<'_, S>,
-        _normal: NormalForce,
-        _slip: S::Tangent,
+    fn respond<N: Normal, X: Number>(
+        _touch: &Touch<'_, S, X>,
+        _normal: NormalForce<X>,
+        slip: S::Tangents<X>,
+        _evaluation: Evaluation<'_>,
+        _memory: &mut Memory<X>,
+    ) -> Shear<S, X> {
+        let squared = slip.dot(slip);
+        Shear { force: slip * squared.like(0.0), slipping: squared.below(squared) }
+    }
+    fn rubbed<N: Normal, X: Number>(
+        touch: &Touch<'_, S, X>,
+        _slip: S::Tangents<X>,
         _elapsed: f64,
-        _history: &mut (),
-    ) -> Shear<S> {
-        Shear { force: S::NO_TANGENT, slipping: false }
+        _before: &Memory<X>,
+        _after: &Memory<X>,
+    ) -> X {
+        touch.overlap.like(0.0)
     }
-    fn rubbed<N: Normal>(_touch: &Touch<'_, S>, _slip: S::Tangent, _elapsed: f64, (): (), (): ()) -> f64 {
-        0.0
-    }
-    fn exchange((): ()) {}
-    fn energy((): (), _stiffness: f64) -> f64 {
-        0.0
+    fn energy<X: Number>(_memory: &Memory<X>, stiffness: X) -> X {
+        stiffness.like(0.0)
     }
 }
 
-/// How Coulomb's limit is applied to the spring and the dashpot.
-pub trait Cap: Copy + Debug + Send + 'static {
-    /// The tangential force and whether the contact slips, from the stretch of the spring s (m), the slip velocity
-    /// (m/s), the stiffness k_s (N/m), the viscosity c_s (N s/m) and the limit (N). The stretch is cut back when the
-    /// contact slips.
-    fn limit<S: Space, const DAMPED: bool>(
-        stretch: &mut S::Tangent,
-        slip: S::Tangent,
-        stiffness: f64,
-        viscosity: f64,
-        limit: f64,
-    ) -> Shear<S>;
+/// What Coulomb's limit acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cap {
+    /// The spring; the dashpot is added only while the contact sticks.
+    Spring,
+    /// Spring and dashpot together; the spring is reset so that their sum is the limit (Luding 2008, Granular Matter 10,
+    /// 235, eq. 22).
+    Total,
+    /// The same, but that a force beyond the limit is dropped where there is no stretch yet: seen of LAMMPS in its
+    /// evaluation at the start.
+    TotalAsLammps,
 }
 
-/// The limit acts on the spring; the dashpot is added only while the contact sticks.
+/// A tangential spring and dashpot before Coulomb's limit.
 #[derive(Clone, Copy, Debug)]
-pub struct CapOnSpring;
-
-impl Cap for CapOnSpring {
-    #[inline(always)]
-    fn limit<S: Space, const DAMPED: bool>(
-        stretch: &mut S::Tangent,
-        slip: S::Tangent,
-        stiffness: f64,
-        viscosity: f64,
-        limit: f64,
-    ) -> Shear<S> {
-        let spring_squared = stiffness * stiffness * S::tangent_squared(*stretch);
-        let slipping = spring_squared > limit * limit;
-        if slipping {
-            *stretch = *stretch * (limit / spring_squared.sqrt());
-        }
-        let mut force = -(*stretch * stiffness);
-        if DAMPED && !slipping {
-            force -= slip * viscosity;
-        }
-        Shear { force, slipping }
-    }
+struct Bound<X> {
+    /// Stiffness k_s (N/m).
+    stiffness: X,
+    /// Viscosity c_s (N s/m), where contacts are damped.
+    viscosity: Option<X>,
+    /// The limit (N).
+    limit: X,
 }
 
-/// The limit acts on spring and dashpot together; the spring is reset so that their sum is the limit (Luding 2008,
-/// Granular Matter 10, 235, eq. 22).
-#[derive(Clone, Copy, Debug)]
-pub struct CapOnTotal;
-
-impl Cap for CapOnTotal {
+impl<X: Number> Bound<X> {
+    /// The tangential force and whether the contact slips, from the stretch of the spring s (m) and the slip velocity
+    /// (m/s). The stretch is cut back when the contact slips.
     #[inline(always)]
-    fn limit<S: Space, const DAMPED: bool>(
-        stretch: &mut S::Tangent,
-        slip: S::Tangent,
-        stiffness: f64,
-        viscosity: f64,
-        limit: f64,
-    ) -> Shear<S> {
+    fn limit<S: Geometry>(&self, cap: Cap, stretch: &mut S::Tangents<X>, slip: S::Tangents<X>) -> Shear<S, X> {
+        let Some(viscosity) = self.viscosity.filter(|_| cap != Cap::Spring) else {
+            return self.limit_spring::<S>(stretch, slip, self.viscosity);
+        };
         // A contact without a dashpot is limited alike, to the last bit, whatever other contacts of the scene have.
-        if !DAMPED || viscosity == 0.0 {
-            return CapOnSpring::limit::<S, false>(stretch, slip, stiffness, viscosity, limit);
+        let zero = viscosity.like(0.0);
+        let damped = zero.below(viscosity);
+        if !viscosity.anywhere(damped) {
+            return self.limit_spring::<S>(stretch, slip, None);
         }
-        let mut force = -(*stretch * stiffness + slip * viscosity);
-        let squared = S::tangent_squared(force);
-        let slipping = squared > limit * limit;
-        if slipping {
-            force = force * (limit / squared.sqrt());
-            *stretch = -(force + slip * viscosity) * (1.0 / stiffness);
+        let (before, mut spring) = (*stretch, *stretch);
+        let mut shear = self.limit_total::<S>(stretch, slip, viscosity);
+        if cap == Cap::TotalAsLammps {
+            let stretched = X::choose(shear.slipping, before.dot(before), zero.like(1.0));
+            let kept = zero.below(stretched);
+            *stretch = S::Tangents::<X>::choose(kept, *stretch, before);
+            shear.force = S::Tangents::<X>::choose(kept, shear.force, shear.force * zero);
         }
-        Shear { force, slipping }
-    }
-}
-
-/// The same, but that a force beyond the limit is dropped where there is no stretch yet: seen of LAMMPS in its evaluation
-/// at the start.
-#[derive(Clone, Copy, Debug)]
-pub struct CapAsLammps;
-
-impl Cap for CapAsLammps {
-    #[inline(always)]
-    fn limit<S: Space, const DAMPED: bool>(
-        stretch: &mut S::Tangent,
-        slip: S::Tangent,
-        stiffness: f64,
-        viscosity: f64,
-        limit: f64,
-    ) -> Shear<S> {
-        let before = *stretch;
-        let shear = CapOnTotal::limit::<S, DAMPED>(stretch, slip, stiffness, viscosity, limit);
-        if DAMPED && viscosity != 0.0 && shear.slipping && S::tangent_squared(before) == 0.0 {
-            *stretch = before;
-            return Shear { force: S::NO_TANGENT, ..shear };
+        if viscosity.anywhere(viscosity.below(zero.like(f64::MIN_POSITIVE))) {
+            let undamped = self.limit_spring::<S>(&mut spring, slip, None);
+            *stretch = S::Tangents::<X>::choose(damped, *stretch, spring);
+            shear.force = S::Tangents::<X>::choose(damped, shear.force, undamped.force);
+            let both = [shear.slipping, undamped.slipping].map(|mask| X::choose(mask, zero.like(1.0), zero));
+            shear.slipping = zero.below(X::choose(damped, both[0], both[1]));
         }
         shear
+    }
+
+    /// The limit on the spring alone.
+    #[inline(always)]
+    fn limit_spring<S: Geometry>(
+        &self,
+        stretch: &mut S::Tangents<X>,
+        slip: S::Tangents<X>,
+        viscosity: Option<X>,
+    ) -> Shear<S, X> {
+        let Self { stiffness, limit, .. } = *self;
+        let squared = stiffness * stiffness * stretch.dot(*stretch);
+        let slipping = (limit * limit).below(squared);
+        if limit.anywhere(slipping) {
+            *stretch = S::Tangents::<X>::choose(slipping, *stretch * (limit / squared.sqrt()), *stretch);
+        }
+        let mut force = -(*stretch * stiffness);
+        if let Some(viscosity) = viscosity {
+            force = S::Tangents::<X>::choose(slipping, force, force - slip * viscosity);
+        }
+        Shear { force, slipping }
+    }
+
+    /// The limit on spring and dashpot together.
+    #[inline(always)]
+    fn limit_total<S: Geometry>(
+        &self,
+        stretch: &mut S::Tangents<X>,
+        slip: S::Tangents<X>,
+        viscosity: X,
+    ) -> Shear<S, X> {
+        let Self { stiffness, limit, .. } = *self;
+        let mut force = -(*stretch * stiffness + slip * viscosity);
+        let squared = force.dot(force);
+        let slipping = (limit * limit).below(squared);
+        if limit.anywhere(slipping) {
+            force = S::Tangents::<X>::choose(slipping, force * (limit / squared.sqrt()), force);
+            let cut = -(force + slip * viscosity) * (stiffness.like(1.0) / stiffness);
+            *stretch = S::Tangents::<X>::choose(slipping, cut, *stretch);
+        }
+        Shear { force, slipping }
     }
 }
 
 /// How the stretch of a tangential spring is carried along with a contact that turns.
-pub trait Carrying<S: Space>: Copy + Debug + Send + 'static {
-    /// The stretch as it is stored (m).
-    type Stored: Linear;
-    /// No stretch.
-    const NONE: Self::Stored;
-    /// The stretch (m) at a contact that has turned to `normal`, from what is stored.
-    fn carried(stored: Self::Stored, normal: S::Vector) -> S::Tangent;
-    /// What is stored of the stretch (m) at a contact with `normal`.
-    fn stored(stretch: S::Tangent, normal: S::Vector) -> Self::Stored;
-    /// The stored stretch with the roles of first and second grain exchanged.
-    fn exchange(stored: Self::Stored) -> Self::Stored;
-    /// Squared length of the stored stretch (m²).
-    fn squared(stored: Self::Stored) -> f64;
+pub(crate) trait Carrying<S: Geometry>: Copy + Debug + Send + 'static {
+    /// Numbers that are remembered of the stretch.
+    const NUMBERS: usize;
+    /// What they are multiplied by when the roles of first and second grain are exchanged.
+    const EXCHANGED: f64;
+    /// The stretch (m) at a contact that has turned to `normal`, from what is remembered.
+    fn carried<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X>;
+    /// Remembers the stretch (m) of a contact with `normal`.
+    fn keep<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>, memory: &mut Memory<X>);
+    /// Squared stretch (m²).
+    fn squared<X: Number>(memory: &Memory<X>) -> X;
 }
 
-/// The stretch turns with the contact: in the plane it is a scalar along the tangent (Cundall & Strack 1979), in three
-/// dimensions its normal part is taken off.
+/// The stretch is a number along the tangent and turns with the contact (Cundall & Strack 1979): in the plane only.
 #[derive(Clone, Copy, Debug)]
-pub struct Turned;
+pub(crate) struct Turned;
 
-impl<S: Space> Carrying<S> for Turned {
-    type Stored = S::Tangent;
-    const NONE: S::Tangent = S::NO_TANGENT;
+impl Carrying<grainbench_scene::space::Plane> for Turned {
+    const NUMBERS: usize = 1;
+    const EXCHANGED: f64 = 1.0;
 
     #[inline(always)]
-    fn carried(stored: S::Tangent, normal: S::Vector) -> S::Tangent {
-        S::carry(stored, normal)
+    fn carried<X: Number>(
+        memory: &Memory<X>,
+        _normal: crate::geometry::Components<X, 2>,
+    ) -> crate::geometry::Components<X, 1> {
+        Linear::read(memory)
     }
     #[inline(always)]
-    fn stored(stretch: S::Tangent, _normal: S::Vector) -> S::Tangent {
-        stretch
+    fn keep<X: Number>(
+        stretch: crate::geometry::Components<X, 1>,
+        _normal: crate::geometry::Components<X, 2>,
+        memory: &mut Memory<X>,
+    ) {
+        stretch.write(memory);
     }
-    fn exchange(stored: S::Tangent) -> S::Tangent {
-        S::exchange(stored)
-    }
-    fn squared(stored: S::Tangent) -> f64 {
-        S::tangent_squared(stored)
+    fn squared<X: Number>(memory: &Memory<X>) -> X {
+        memory[0] * memory[0]
     }
 }
 
 /// The stretch is a vector that keeps its direction and loses its normal part, in the plane too (LAMMPS, LIGGGHTS): it
 /// shrinks a little as the contact turns.
 #[derive(Clone, Copy, Debug)]
-pub struct Projected;
+pub(crate) struct Projected;
 
-impl<S: Space> Carrying<S> for Projected {
-    type Stored = S::Vector;
-    const NONE: S::Vector = S::ORIGIN;
+impl<S: Geometry> Carrying<S> for Projected {
+    const NUMBERS: usize = <S::Vectors<f64> as Linear<f64>>::COUNT;
+    const EXCHANGED: f64 = -1.0;
 
     #[inline(always)]
-    fn carried(stored: S::Vector, normal: S::Vector) -> S::Tangent {
-        S::slip_velocity(stored, S::NO_SPIN, normal)
+    fn carried<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X> {
+        S::tangential(S::Vectors::<X>::read(memory), normal)
     }
     #[inline(always)]
-    fn stored(stretch: S::Tangent, normal: S::Vector) -> S::Vector {
-        S::along(stretch, normal)
+    fn keep<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>, memory: &mut Memory<X>) {
+        S::along(stretch, normal).write(memory);
     }
-    fn exchange(stored: S::Vector) -> S::Vector {
-        -stored
-    }
-    fn squared(stored: S::Vector) -> f64 {
-        S::dot(stored, stored)
+    fn squared<X: Number>(memory: &Memory<X>) -> X {
+        let stretch = S::Vectors::<X>::read(memory);
+        stretch.dot(stretch)
     }
 }
 
 /// An incremental spring F_s = −k_s s with Coulomb's limit |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to
 /// 19), and a dashpot c_s = β k_s + γ_t m_eff where contacts are damped.
 #[derive(Clone, Copy, Debug)]
-pub struct Coulomb<C: Cap, H>(PhantomData<(C, H)>);
+pub(crate) struct Coulomb<H>(PhantomData<H>);
 
-/// The stretch of a tangential spring (m).
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Stretch<S: Space, H: Carrying<S>>(H::Stored);
-
-impl<S: Space, H: Carrying<S>> Default for Stretch<S, H> {
-    #[inline(always)]
-    fn default() -> Self {
-        Self(H::NONE)
-    }
-}
-
-impl<S: Space, C: Cap, H: Carrying<S>> Tangential<S> for Coulomb<C, H> {
+impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
     const ACTIVE: bool = true;
-    type History = Stretch<S, H>;
-    type Rotation = Rotating<S>;
+    const NUMBERS: usize = H::NUMBERS;
+    const EXCHANGED: f64 = H::EXCHANGED;
 
     #[inline(always)]
-    fn respond<N: Normal>(
-        touch: &Touch<'_, S>,
-        normal: NormalForce,
-        slip: S::Tangent,
-        elapsed: f64,
-        history: &mut Stretch<S, H>,
-    ) -> Shear<S> {
+    fn respond<N: Normal, X: Number>(
+        touch: &Touch<'_, S, X>,
+        normal: NormalForce<X>,
+        slip: S::Tangents<X>,
+        evaluation: Evaluation<'_>,
+        memory: &mut Memory<X>,
+    ) -> Shear<S, X> {
         let law = touch.law;
-        let mut stretch = H::carried(history.0, touch.normal) + slip * elapsed;
-        let limit = law.friction * normal.for_cap + law.cohesion;
+        let elapsed = touch.overlap.like(evaluation.elapsed);
+        let mut stretch = H::carried(memory, touch.normal) + slip * elapsed;
         let stiffness = N::tangential_stiffness(touch);
-        let shear = if N::DAMPED {
-            let viscosity = law.stiffness_damping * stiffness + law.tangential_damping * touch.effective_mass;
-            C::limit::<S, true>(&mut stretch, slip, stiffness, viscosity, limit)
-        } else {
-            C::limit::<S, false>(&mut stretch, slip, stiffness, 0.0, limit)
+        let viscosity = law.stiffness_damping * stiffness + law.tangential_damping * touch.effective_mass;
+        let bound = Bound {
+            stiffness,
+            viscosity: if N::DAMPED { Some(viscosity) } else { None },
+            limit: law.friction * normal.for_cap + law.cohesion,
         };
-        history.0 = H::stored(stretch, touch.normal);
+        let shear = bound.limit::<S>(evaluation.options.cap, &mut stretch, slip);
+        H::keep(stretch, touch.normal, memory);
         shear
     }
-    fn rubbed<N: Normal>(
-        touch: &Touch<'_, S>,
-        slip: S::Tangent,
+    fn rubbed<N: Normal, X: Number>(
+        touch: &Touch<'_, S, X>,
+        slip: S::Tangents<X>,
         elapsed: f64,
-        before: Stretch<S, H>,
-        after: Stretch<S, H>,
-    ) -> f64 {
-        let [before, after] = [before, after].map(|history| H::carried(history.0, touch.normal));
-        let slid = before + slip * elapsed - after;
+        before: &Memory<X>,
+        after: &Memory<X>,
+    ) -> X {
+        let [before, after] = [before, after].map(|memory| H::carried(memory, touch.normal));
+        let slid = before + slip * touch.overlap.like(elapsed) - after;
         let [sum, slid] = [before + after, slid].map(|tangent| S::along(tangent, touch.normal));
-        0.5 * N::tangential_stiffness(touch) * S::dot(sum, slid)
+        N::tangential_stiffness(touch) * 0.5 * sum.dot(slid)
     }
-    fn exchange(history: Stretch<S, H>) -> Stretch<S, H> {
-        Stretch(H::exchange(history.0))
-    }
-    fn energy(history: Stretch<S, H>, stiffness: f64) -> f64 {
-        0.5 * stiffness * H::squared(history.0)
+    fn energy<X: Number>(memory: &Memory<X>, stiffness: X) -> X {
+        stiffness * 0.5 * H::squared(memory)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Components;
     use grainbench_scene::space::Plane;
 
     /// Above the limit both conventions leave a stretch that gives the limit: of the spring alone, or of the sum.
     #[test]
     fn caps_leave_a_consistent_stretch() {
-        let (slip, stiffness, viscosity, limit) = (2.0, 100.0, 3.0, 5.0);
-        let mut spring = 0.2;
-        let shear = CapOnSpring::limit::<Plane, true>(&mut spring, slip, stiffness, viscosity, limit);
-        assert!(shear.slipping && (shear.force + limit).abs() < 1e-14 && (spring * stiffness - limit).abs() < 1e-14);
+        let slip = Components([2.0]);
+        let (stiffness, viscosity, limit) = (100.0, 3.0, 5.0);
+        let bound = Bound { stiffness, viscosity: Some(viscosity), limit };
+        let limited = |cap, stretch: f64| {
+            let mut stretch = Components([stretch]);
+            let shear = bound.limit::<Plane>(cap, &mut stretch, slip);
+            (shear.force.0[0], stretch.0[0], shear.slipping)
+        };
+        let (force, spring, slipping) = limited(Cap::Spring, 0.2);
+        assert!(slipping && (force + limit).abs() < 1e-14 && (spring * stiffness - limit).abs() < 1e-14);
+        let (force, stretch, slipping) = limited(Cap::Total, 0.2);
+        assert!(slipping && (force + limit).abs() < 1e-14);
+        assert!((stretch * stiffness + 2.0 * viscosity - limit).abs() < 1e-14);
+        assert_eq!(limited(Cap::TotalAsLammps, 0.2), (force, stretch, true));
 
-        let mut total = 0.2;
-        let shear = CapOnTotal::limit::<Plane, true>(&mut total, slip, stiffness, viscosity, limit);
-        assert!(shear.slipping && (shear.force + limit).abs() < 1e-14);
-        assert!((total * stiffness + slip * viscosity - limit).abs() < 1e-14);
+        // Where there is no stretch yet: −3·2 is beyond the limit.
+        let (force, stretch, slipping) = limited(Cap::TotalAsLammps, 0.0);
+        assert!(slipping && force == 0.0 && stretch == 0.0);
+        assert!((limited(Cap::Total, 0.0).0 + limit).abs() < 1e-14);
+        // Within the limit none of them cuts: −(100·.01 + 3·2/4).
+        let bound = Bound { limit: 50.0, ..bound };
+        for cap in [Cap::Spring, Cap::Total, Cap::TotalAsLammps] {
+            let mut stretch = Components([0.01]);
+            let shear = bound.limit::<Plane>(cap, &mut stretch, Components([0.5]));
+            assert!(!shear.slipping && stretch.0 == [0.01] && (shear.force.0[0] + 2.5).abs() < 1e-15, "{cap:?}");
+        }
+    }
+
+    /// Contacts with a dashpot beside contacts without: each is limited as it would be by itself.
+    #[test]
+    fn contacts_side_by_side_are_limited_as_alone() {
+        use grainbench_lanes::{Portable, Wide};
+        let stretches = [0.2, 0.0, 0.01, -0.3];
+        let (viscosities, limits) = ([3.0, 0.0, 3.0, 0.0], [5.0, 5.0, 50.0, 5.0]);
+        let wide = |values: [f64; 4]| Wide::four(Portable, values);
+        for cap in [Cap::Spring, Cap::Total, Cap::TotalAsLammps] {
+            let bound = Bound { stiffness: wide([100.0; 4]), viscosity: Some(wide(viscosities)), limit: wide(limits) };
+            let mut stretch = Components([wide(stretches)]);
+            let shear = bound.limit::<Plane>(cap, &mut stretch, Components([wide([2.0; 4])]));
+            for lane in 0..4 {
+                let alone = Bound { stiffness: 100.0, viscosity: Some(viscosities[lane]), limit: limits[lane] };
+                let mut expected = Components([stretches[lane]]);
+                let force = alone.limit::<Plane>(cap, &mut expected, Components([2.0]));
+                let found = (shear.force.0[0].values()[lane], stretch.0[0].values()[lane]);
+                assert_eq!(found, (force.force.0[0], expected.0[0]), "{cap:?} in lane {lane}");
+                assert_eq!(shear.slipping.bits() >> lane & 1 == 1, force.slipping, "{cap:?} in lane {lane}");
+            }
+        }
     }
 
     #[test]
-    fn absent_stages_take_no_room() {
-        assert_eq!(size_of::<<Frictionless as Tangential<Plane>>::History>(), 0);
-        assert_eq!(size_of::<<Frictionless as Tangential<Plane>>::Rotation>(), 0);
+    fn absent_stages_remember_nothing() {
+        assert_eq!(<Frictionless as Tangential<Plane>>::NUMBERS, 0);
+        assert_eq!(<Coulomb<Turned> as Tangential<Plane>>::NUMBERS, 1);
     }
 }

@@ -1,0 +1,309 @@
+//! Vectors and spins of numbers, one or several at a time: what contact laws compute with, in the plane and in space.
+
+use grainbench_lanes::{Number, Quad};
+use grainbench_scene::space::{Plane, Solid, Space};
+use nalgebra::Vector3;
+use std::fmt::Debug;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// Components of a vector, a spin or a tangential displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Components<X, const D: usize>(pub(crate) [X; D]);
+
+/// What contact laws ask of a vector, a spin or a tangential displacement.
+pub(crate) trait Linear<X: Number>:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<X, Output = Self> + Neg<Output = Self>
+{
+    /// How many numbers it has.
+    const COUNT: usize;
+    /// Scalar product.
+    fn dot(self, other: Self) -> X;
+    /// `yes` where it is so, else `no`.
+    #[must_use]
+    fn choose(mask: X::Mask, yes: Self, no: Self) -> Self;
+    /// The first numbers of a row.
+    fn read(row: &[X]) -> Self;
+    /// Writes its numbers to the first of a row.
+    fn write(self, row: &mut [X]);
+}
+
+/// An operator on components.
+macro_rules! operator {
+    ($Operator:ident, $operator:ident) => {
+        impl<X: Number, const D: usize> $Operator for Components<X, D> {
+            type Output = Self;
+            #[inline(always)]
+            fn $operator(mut self, other: Self) -> Self {
+                for axis in 0..D {
+                    self.0[axis] = self.0[axis].$operator(other.0[axis]);
+                }
+                self
+            }
+        }
+    };
+}
+
+operator!(Add, add);
+operator!(Sub, sub);
+
+impl<X: Number, const D: usize> Mul<X> for Components<X, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(mut self, by: X) -> Self {
+        for axis in 0..D {
+            self.0[axis] = self.0[axis] * by;
+        }
+        self
+    }
+}
+
+impl<X: Number, const D: usize> Neg for Components<X, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(mut self) -> Self {
+        for axis in 0..D {
+            self.0[axis] = -self.0[axis];
+        }
+        self
+    }
+}
+
+impl<X: Number, const D: usize> Linear<X> for Components<X, D> {
+    const COUNT: usize = D;
+
+    #[inline(always)]
+    fn dot(self, other: Self) -> X {
+        let mut sum = self.0[0] * other.0[0];
+        for axis in 1..D {
+            sum = sum + self.0[axis] * other.0[axis];
+        }
+        sum
+    }
+    #[inline(always)]
+    fn choose(mask: X::Mask, mut yes: Self, no: Self) -> Self {
+        for axis in 0..D {
+            yes.0[axis] = X::choose(mask, yes.0[axis], no.0[axis]);
+        }
+        yes
+    }
+    #[inline(always)]
+    fn read(row: &[X]) -> Self {
+        let mut components = [row[0]; D];
+        components.copy_from_slice(&row[..D]);
+        Self(components)
+    }
+    #[inline(always)]
+    fn write(self, row: &mut [X]) {
+        row[..D].copy_from_slice(&self.0);
+    }
+}
+
+/// A space for vectors of any numbers, and how a grain lies in memory in it.
+///
+/// The unit normal `e` of a contact points from the first grain to the second. In the plane the tangential direction
+/// is `t = (e₂, −e₁)`, the clockwise perpendicular (Cundall & Strack 1979, eq. 10), and a tangential quantity is the
+/// scalar along it, so that it turns with the contact. In space it is a vector perpendicular to `e`.
+///
+/// A grain's quads are place (x, y, z, radius), velocity (v, inverse mass), spin (ω) and the sums of forces and torques. In
+/// the plane the angle stands for z, the spin for its velocity and the torque for its force, and there are no others.
+pub(crate) trait Geometry: Space {
+    /// Vector of this space.
+    type Vectors<X: Number>: Linear<X>;
+    /// Spin: a scalar about z, or a vector.
+    type Spins<X: Number>: Linear<X>;
+    /// Tangential quantity: a scalar along `t`, or a vector.
+    type Tangents<X: Number>: Linear<X>;
+
+    /// The vector that a quad holds.
+    fn vector<X: Number>(quad: [X; 4]) -> Self::Vectors<X>;
+    /// The spin of a grain, from the quads of its velocity and of its spin.
+    fn spin<X: Number>(movement: [X; 4], turning: [X; 4]) -> Self::Spins<X>;
+    /// The quads of a force and a torque, `zero` where nothing stands.
+    fn load<X: Number>(force: Self::Vectors<X>, torque: Self::Spins<X>, zero: X) -> [[X; 4]; 2];
+    /// A spin or torque with one component, in the plane, or three.
+    fn as_spin<X: Number>(vector: [X; 3]) -> Self::Spins<X>;
+    /// A vector in three dimensions, `zero` out of the plane.
+    fn whole<X: Number>(vector: Self::Vectors<X>, zero: X) -> [X; 3];
+    /// Torque of a force at an arm.
+    fn torque_of<X: Number>(arm: Self::Vectors<X>, force: Self::Vectors<X>) -> Self::Spins<X>;
+    /// Slip velocity along the tangent where two surfaces touch: `velocity` is that of the first centre relative to the
+    /// second and `rolling` is ω₁a₁ + ω₂a₂ with torque arms a.
+    fn slip<X: Number>(
+        velocity: Self::Vectors<X>,
+        rolling: Self::Spins<X>,
+        normal: Self::Vectors<X>,
+    ) -> Self::Tangents<X>;
+    /// A vector's part along the tangent.
+    fn tangential<X: Number>(vector: Self::Vectors<X>, normal: Self::Vectors<X>) -> Self::Tangents<X>;
+    /// A tangential quantity as a vector.
+    fn along<X: Number>(tangent: Self::Tangents<X>, normal: Self::Vectors<X>) -> Self::Vectors<X>;
+    /// A relative spin without its part along the normal, which is twisting and not rolling; in the plane all of it
+    /// rolls.
+    fn rolled<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> Self::Spins<X>;
+
+    /// The vector of a quad, in three dimensions.
+    #[inline(always)]
+    fn vector_in_space(quad: &Quad) -> Vector3<f64> {
+        let [x, y, z, _] = quad.0;
+        Vector3::new(x, y, if Self::DIMENSION == 3 { z } else { 0.0 })
+    }
+    /// Puts a vector of this space into the first components of a quad.
+    #[inline(always)]
+    fn put(vector: Vector3<f64>, quad: &mut Quad) {
+        quad.0[..Self::DIMENSION].copy_from_slice(&vector.as_slice()[..Self::DIMENSION]);
+    }
+    /// A vector of this space.
+    #[inline(always)]
+    fn vector_of(vector: Vector3<f64>) -> Self::Vectors<f64> {
+        Self::vector([vector.x, vector.y, vector.z, 0.0])
+    }
+}
+
+impl Geometry for Plane {
+    type Vectors<X: Number> = Components<X, 2>;
+    type Spins<X: Number> = Components<X, 1>;
+    type Tangents<X: Number> = Components<X, 1>;
+
+    #[inline(always)]
+    fn vector<X: Number>([x, y, _, _]: [X; 4]) -> Components<X, 2> {
+        Components([x, y])
+    }
+    #[inline(always)]
+    fn spin<X: Number>(movement: [X; 4], _turning: [X; 4]) -> Components<X, 1> {
+        Components([movement[2]])
+    }
+    #[inline(always)]
+    fn load<X: Number>(
+        Components([x, y]): Components<X, 2>,
+        Components([torque]): Components<X, 1>,
+        zero: X,
+    ) -> [[X; 4]; 2] {
+        [[x, y, torque, zero], [zero; 4]]
+    }
+    #[inline(always)]
+    fn as_spin<X: Number>([_, _, z]: [X; 3]) -> Components<X, 1> {
+        Components([z])
+    }
+    #[inline(always)]
+    fn whole<X: Number>(Components([x, y]): Components<X, 2>, zero: X) -> [X; 3] {
+        [x, y, zero]
+    }
+    #[inline(always)]
+    fn torque_of<X: Number>(
+        Components(arm): Components<X, 2>,
+        Components(force): Components<X, 2>,
+    ) -> Components<X, 1> {
+        Components([arm[0] * force[1] - arm[1] * force[0]])
+    }
+    #[inline(always)]
+    fn slip<X: Number>(
+        velocity: Components<X, 2>,
+        Components([rolling]): Components<X, 1>,
+        normal: Components<X, 2>,
+    ) -> Components<X, 1> {
+        let Components([slip]) = Self::tangential(velocity, normal);
+        Components([slip - rolling])
+    }
+    #[inline(always)]
+    fn tangential<X: Number>(
+        Components(vector): Components<X, 2>,
+        Components(normal): Components<X, 2>,
+    ) -> Components<X, 1> {
+        Components([vector[0] * normal[1] - vector[1] * normal[0]])
+    }
+    #[inline(always)]
+    fn along<X: Number>(
+        Components([tangent]): Components<X, 1>,
+        Components([x, y]): Components<X, 2>,
+    ) -> Components<X, 2> {
+        Components([tangent * y, -(tangent * x)])
+    }
+    #[inline(always)]
+    fn rolled<X: Number>(spin: Components<X, 1>, _normal: Components<X, 2>) -> Components<X, 1> {
+        spin
+    }
+}
+
+/// a × b.
+#[inline(always)]
+fn cross<X: Number>(Components(a): Components<X, 3>, Components(b): Components<X, 3>) -> Components<X, 3> {
+    Components([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+}
+
+impl Geometry for Solid {
+    type Vectors<X: Number> = Components<X, 3>;
+    type Spins<X: Number> = Components<X, 3>;
+    type Tangents<X: Number> = Components<X, 3>;
+
+    #[inline(always)]
+    fn vector<X: Number>([x, y, z, _]: [X; 4]) -> Components<X, 3> {
+        Components([x, y, z])
+    }
+    #[inline(always)]
+    fn spin<X: Number>(_movement: [X; 4], [x, y, z, _]: [X; 4]) -> Components<X, 3> {
+        Components([x, y, z])
+    }
+    #[inline(always)]
+    fn load<X: Number>(
+        Components([x, y, z]): Components<X, 3>,
+        Components([a, b, c]): Components<X, 3>,
+        zero: X,
+    ) -> [[X; 4]; 2] {
+        [[x, y, z, zero], [a, b, c, zero]]
+    }
+    #[inline(always)]
+    fn as_spin<X: Number>(vector: [X; 3]) -> Components<X, 3> {
+        Components(vector)
+    }
+    #[inline(always)]
+    fn whole<X: Number>(Components(vector): Components<X, 3>, _zero: X) -> [X; 3] {
+        vector
+    }
+    #[inline(always)]
+    fn torque_of<X: Number>(arm: Components<X, 3>, force: Components<X, 3>) -> Components<X, 3> {
+        cross(arm, force)
+    }
+    #[inline(always)]
+    fn slip<X: Number>(
+        velocity: Components<X, 3>,
+        rolling: Components<X, 3>,
+        normal: Components<X, 3>,
+    ) -> Components<X, 3> {
+        Self::tangential(velocity, normal) + cross(rolling, normal)
+    }
+    #[inline(always)]
+    fn tangential<X: Number>(vector: Components<X, 3>, normal: Components<X, 3>) -> Components<X, 3> {
+        vector - normal * vector.dot(normal)
+    }
+    #[inline(always)]
+    fn along<X: Number>(tangent: Components<X, 3>, _normal: Components<X, 3>) -> Components<X, 3> {
+        tangent
+    }
+    #[inline(always)]
+    fn rolled<X: Number>(spin: Components<X, 3>, normal: Components<X, 3>) -> Components<X, 3> {
+        Self::tangential(spin, normal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both spaces give the same slip, force and torque for the same contact in the plane.
+    #[test]
+    fn plane_agrees_with_solid() {
+        let (angle, velocity, rolling, tangent) = (0.7_f64, [0.3, -1.1], 2.5, -0.4);
+        let [x, y] = [angle.cos(), angle.sin()];
+        let flat = |vector: [f64; 2]| Components([vector[0], vector[1], 0.0]);
+        let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15);
+
+        let slip = Plane::slip(Components(velocity), Components([rolling]), Components([x, y]));
+        let full = Solid::slip(flat(velocity), Components([0.0, 0.0, rolling]), flat([x, y]));
+        assert!(near(Plane::whole(Plane::along(slip, Components([x, y])), 0.0), full.0));
+
+        let force = Plane::along(Components([tangent]), Components([x, y]));
+        let Components([torque]) = Plane::torque_of(Components([x, y]), force);
+        assert!(near([0.0, 0.0, torque], Solid::torque_of(flat([x, y]), flat(force.0)).0));
+        assert!(near(Solid::rolled(flat([x, y]), flat([x, y])).0, [0.0; 3]));
+    }
+}

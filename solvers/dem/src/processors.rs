@@ -1,0 +1,140 @@
+//! Loops over pairs are compiled once for every path of the processor; what they compute is the same, and what is known
+//! by hand of one contact holds on each.
+
+use crate::convention::Convention;
+use crate::geometry::Geometry;
+use crate::simulation::Simulated;
+use crate::solver::{plane, solid};
+use grainbench_lanes::Processor;
+use grainbench_scene::contact_law::{ContactLaw, Springs};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::source::SceneSource;
+use grainbench_scene::space::Space;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Grains of two materials in a box with periodic faces and a floor, some of which touch at the start and some meet later.
+fn scene(dimension: usize) -> Scene {
+    let vector = |x: f64, y: f64, z: f64| {
+        let all = [x, y, z];
+        format!("[{}]", all[..dimension].iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", "))
+    };
+    let normal = if dimension == 2 { vector(0.0, 1.0, 0.0) } else { vector(0.0, 0.0, 1.0) };
+    let periodic = if dimension == 2 { "[true, false]" } else { "[true, true, false]" };
+    let mut text = format!(
+        "title = 'grains'\ndimension = {dimension}\nduration = 1.0\ngravity = {}\nlargest_initial_overlap = 0.5\n\
+         domain = {{ low = {}, high = {}, periodic = {periodic} }}\n\
+         materials.m.density = 1000.0\nmaterials.n.density = 700.0\n\
+         [walls.w]\nmaterial = 'm'\nplane = {{ point = {}, normal = {normal} }}\n",
+        vector(1.0, -2.0, -3.0),
+        vector(0.0, 0.0, 0.0),
+        vector(6.0, 6.0, 6.0),
+        vector(0.0, 0.0, 0.0),
+    );
+    for pair in [["m", "m"], ["m", "n"], ["n", "n"]] {
+        let _ = writeln!(text, "[contacts.{}{}]\nbetween = {pair:?}\nnormal_stiffness = 1.0e6", pair[0], pair[1]);
+    }
+    for number in 0..if dimension == 2 { 36_i32 } else { 72 } {
+        let [i, j, k] = [number % 6, number / 6 % 6, number / 36].map(f64::from);
+        let odd = f64::from(number * 7 % 11) / 11.0;
+        let _ = writeln!(
+            text,
+            "[grains.g{number}]\nmaterial = '{}'\nradius = {}\nposition = {}\nvelocity = {}\nspin = {}",
+            if number % 3 == 0 { 'n' } else { 'm' },
+            0.45 + 0.1 * odd,
+            vector(0.5 + i + 0.02 * odd, 0.48 + 0.97 * j, 0.5 + k),
+            vector(2.0 * odd - 1.0, 1.0 - 3.0 * odd, odd),
+            if dimension == 2 { format!("{odd:?}") } else { vector(odd, -odd, 0.5) },
+        );
+    }
+    let source = SceneSource::from_text("grains", Path::new(""), &text);
+    source.scene(&|_| Err("no data files here".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// State after some steps, and what was seen at the end, as text.
+fn state<S: Geometry>(scene: &Scene, simulation: impl Fn(&Scene) -> Simulated<S>, path: Processor) -> String {
+    let mut simulation = simulation(scene);
+    simulation.processor = path;
+    simulation.take_cycles(300).unwrap_or_else(|error| panic!("{error:?}"));
+    let touched: u32 = simulation.neighbours.near.touches.iter().map(|bits| bits.count_ones()).sum();
+    let across: u32 = simulation.neighbours.across.touches.iter().map(|bits| bits.count_ones()).sum();
+    assert!(touched == 0 || (touched > 10 && across > 0), "{touched} pairs touch, {across} across a face");
+    format!("{:?} {:?} {:?}", simulation.grains, simulation.neighbours, simulation.seen)
+}
+
+/// Laws with every combination of effects, some of which only one of the materials has.
+fn laws() -> Vec<(String, ContactLaw, ContactLaw)> {
+    let mut laws = Vec::new();
+    for effects in 0..16_u32 {
+        let [friction, rolling, damping, hertz] = [0, 1, 2, 3].map(|bit| effects >> bit & 1 == 1);
+        let on = |yes: bool, value: f64| if yes { value } else { 0.0 };
+        let law = |friction: bool, rolling: bool, damping: bool| ContactLaw {
+            springs: if hertz {
+                Springs::Hertz { effective_modulus: 1e7, effective_shear_modulus: 6e6 }
+            } else {
+                Springs::Linear { normal: 1e6, tangential: 6e5 }
+            },
+            friction: on(friction, 0.3),
+            cohesion: on(friction, 20.0),
+            normal_damping: on(damping, 3.0),
+            tangential_damping: on(damping && friction, 2.0),
+            damping_ratio: on(damping, 0.1),
+            rolling_friction: on(rolling && friction, 0.1),
+            rolling_damping: on(rolling && friction, 0.2),
+            ..ContactLaw::default()
+        };
+        let name = format!("friction {friction}, rolling {rolling}, damping {damping}, Hertz {hertz}");
+        laws.push((name, law(friction, rolling, damping), law(friction, false, false)));
+    }
+    laws
+}
+
+fn same_on_all<S: Geometry>(simulated: fn(&Scene, &Convention) -> Simulated<S>) {
+    let mut scene = scene(<S as Space>::DIMENSION);
+    for (name, law, other) in laws() {
+        for (number, each) in scene.laws.iter_mut().flatten().enumerate() {
+            *each = if number % 2 == 0 { law } else { other };
+        }
+        for convention in Convention::ALL {
+            let of = |path| state(&scene, |scene| simulated(scene, &convention), path);
+            let expected = of(Processor::Portable);
+            for path in Processor::all() {
+                assert!(of(path) == expected, "{}, {name}: {}", convention.name, path.name());
+            }
+        }
+    }
+}
+
+fn simulated<S: Geometry>(
+    scene: &Scene,
+    convention: &Convention,
+    forces: Box<dyn crate::forces::Forces<S>>,
+) -> Simulated<S> {
+    let options = crate::contact::Options::of(convention);
+    Simulated::new(scene, forces, options, 2e-4).unwrap_or_else(|error| panic!("{error:?}"))
+}
+
+#[test]
+fn runs_leave_the_same_bits_on_all_paths_in_the_plane() {
+    same_on_all(|scene, convention| simulated(scene, convention, plane(scene, convention)));
+}
+
+#[test]
+fn runs_leave_the_same_bits_on_all_paths_in_space() {
+    same_on_all(|scene, convention| simulated(scene, convention, solid(scene)));
+}
+
+/// Grains that are moved while they are at hand end where they do when every cycle is taken by itself.
+#[test]
+fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
+    let mut scene = scene(3);
+    for (name, law, _) in laws() {
+        scene.change_laws(|each| *each = law);
+        let end = |at_once: u64| {
+            let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene));
+            (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
+            format!("{:?} {:?}", simulation.grains, simulation.neighbours.near.memory)
+        };
+        assert!(end(60) == end(1), "{name}");
+    }
+}

@@ -1,0 +1,151 @@
+//! The pairs that touch, picked from those that are listed: what laws are computed for, as many at a time as registers
+//! hold.
+
+use crate::geometry::{Geometry, Linear};
+use crate::grains::Grains;
+use crate::laws::{gathered, places};
+use crate::neighbours::Pairs;
+use grainbench_lanes::{Kernel, Lanes, Number, Processor, WIDEST};
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// Listed pairs that are looked at before the forces of those that touch are found: so few that their grains are still at
+/// hand, and so many that little is lost at the end. A multiple of eight.
+const BLOCK: usize = 2048;
+
+/// The blocks of so many listed pairs.
+pub(crate) fn blocks(pairs: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..pairs).step_by(BLOCK).map(move |from| from..(from + BLOCK).min(pairs))
+}
+
+/// Pairs that touch, in the order of the list.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Touching {
+    /// How many.
+    pub(crate) count: usize,
+    /// Slot of the first grain of each, its row in the list. Filled up beyond the last so that a register can be.
+    pub(crate) first: Vec<u32>,
+    /// Slot of the second grain of each.
+    pub(crate) second: Vec<u32>,
+    /// Number of each in the list, only where the list has shifts.
+    pub(crate) pair: Vec<u32>,
+    /// What each remembers: its place in the memory of the list, the first, which is nothing, for a new contact.
+    pub(crate) remembered: Vec<u32>,
+    /// Contacts of the blocks before that touched when they were looked at last, and that touch now.
+    before: [usize; 2],
+}
+
+impl Touching {
+    /// Finds those of a block of listed pairs that touch; the block follows the last, or is the first.
+    pub(crate) fn find<S: Geometry>(
+        &mut self,
+        processor: Processor,
+        grains: &Grains<S>,
+        pairs: &mut Pairs,
+        block: Range<usize>,
+    ) {
+        for all in [&mut self.first, &mut self.second, &mut self.pair, &mut self.remembered] {
+            all.resize(BLOCK + 2 * WIDEST, 0);
+        }
+        if block.start == 0 {
+            self.before = [0, 0];
+        } else {
+            self.before[1] += self.count;
+        }
+        processor.run(Find::<S> { grains, pairs, block, touching: self, space: PhantomData });
+        for all in [&mut self.first, &mut self.second, &mut self.pair, &mut self.remembered] {
+            let last = self.count.checked_sub(1).map_or(0, |last| all[last]);
+            all[self.count..self.count + WIDEST].fill(last);
+        }
+    }
+
+    /// Place in the memory of the list where what the first of the block remembers is kept.
+    pub(crate) fn kept_from(&self) -> usize {
+        1 + self.before[1]
+    }
+}
+
+/// The loop over listed pairs.
+struct Find<'a, S: Geometry> {
+    grains: &'a Grains<S>,
+    pairs: &'a mut Pairs,
+    block: Range<usize>,
+    touching: &'a mut Touching,
+    space: PhantomData<S>,
+}
+
+impl<S: Geometry> Kernel for Find<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { grains, pairs, block, touching, space: _ } = self;
+        let Pairs { row, partner, shift, touches, .. } = pairs;
+        let place = &grains.place[..];
+        let Touching { count, first, second, pair, remembered, before } = touching;
+        let mut had = before[0];
+        *count = 0;
+        for from in block.clone().step_by(WIDEST) {
+            let (ones, others) = (eight(row, from), eight(partner, from));
+            let mut numbers = [0_u32; WIDEST];
+            count_up(&mut numbers, from);
+            let mut near = 0;
+            for lane in (0..WIDEST).step_by(L::WIDTH) {
+                let one = gathered(lanes, place, &places(lanes, &ones[lane..], place.len()));
+                let other = gathered(lanes, place, &places(lanes, &others[lane..], place.len()));
+                let mut between = S::vector(other) - S::vector(one);
+                if !shift.is_empty() {
+                    between =
+                        between - S::vector(gathered(lanes, shift, &places(lanes, &numbers[lane..], shift.len())));
+                }
+                let reach = one[3] + other[3];
+                near |= between.dot(between).below(reach * reach).bits() << lane;
+            }
+            near &= ALL >> (WIDEST - (block.end - from).min(WIDEST));
+            first[*count..*count + WIDEST].copy_from_slice(&lanes.pack(&ones, near));
+            second[*count..*count + WIDEST].copy_from_slice(&lanes.pack(&others, near));
+            if !shift.is_empty() {
+                pair[*count..*count + WIDEST].copy_from_slice(&lanes.pack(&numbers, near));
+            }
+            if let Some(touches) = touches.get_mut(from / WIDEST) {
+                let touched = u32::from(std::mem::replace(touches, near as u8));
+                let remembered = &mut remembered[*count..*count + WIDEST];
+                if touched == near {
+                    count_up(remembered, 1 + had);
+                } else {
+                    let mut numbers = [0; WIDEST];
+                    let mut place = 1 + had as u32;
+                    for (lane, at) in numbers.iter_mut().enumerate() {
+                        if touched >> lane & 1 == 1 {
+                            *at = place;
+                            place += 1;
+                        }
+                    }
+                    remembered.copy_from_slice(&lanes.pack(&numbers, near));
+                }
+                had += touched.count_ones() as usize;
+            }
+            *count += near.count_ones() as usize;
+        }
+        before[0] = had;
+    }
+}
+
+/// Whole numbers from one on.
+#[inline(always)]
+fn count_up(numbers: &mut [u32], from: usize) {
+    for (lane, number) in numbers.iter_mut().enumerate() {
+        *number = (from + lane) as u32;
+    }
+}
+
+/// Eight bits.
+const ALL: u32 = 255;
+
+/// Eight whole numbers of a row, from a place on.
+#[inline(always)]
+fn eight(of: &[u32], from: usize) -> [u32; WIDEST] {
+    let mut eight = [0; WIDEST];
+    eight.copy_from_slice(&of[from..from + WIDEST]);
+    eight
+}
