@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example photoelastic_packing FOLDER VARIANT …` prepares the packing of each variant of the
 //! case, by its name, leaves it in FOLDER as a LAMMPS data file and prints the variant for the scene file: where the
-//! walls start and how fast they go. Nothing is chosen by the answer: stage A and the growth of F_V to stage B are
-//! imposed, and F_H/F_V at stage B is what comes out.
+//! walls start and how fast they go. Packings that FOLDER has already, as the case's own folder has `start-1.data.gz`, are
+//! taken as they are, and only the motion of their walls is found. Nothing is chosen by the answer: stage A and the growth of
+//! F_V to stage B are imposed, and F_H/F_V at stage B is what comes out.
 
 mod prepare;
 mod search;
@@ -85,6 +86,13 @@ fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn E
     Ok(scene)
 }
 
+/// A variant as the case has it, with its packing.
+fn as_kept(variant: &str) -> Result<Scene, Box<dyn Error>> {
+    let case = registry::by_name("photoelastic-packing").ok_or("the case is gone")?;
+    let source = if variant == PLAIN { case.source() } else { case.source().variant(variant) };
+    Ok(source.scene(&read_grains)?)
+}
+
 /// A variant with its walls as the scene file has them.
 fn print(variant: &str, data: &str, scene: &Scene) {
     println!("[variants.{variant}]\ngrains.disc.file.path = \"{data}\"");
@@ -126,12 +134,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let prefix = if variant.starts_with("fifty") { "fifty" } else { "start" };
         let name = format!("{prefix}-{}.data", seed(&variant));
         let path = Path::new(&folder).join(&name);
-        if !prepared.contains_key(&name) {
+        let kept = Path::new(&folder).join(format!("{name}.gz")).is_file();
+        if !kept && !prepared.contains_key(&name) {
             let packing = rounded(prepare::prepare(loose(&variant)?)?);
             std::fs::write(&path, data(&packing))?;
             prepared.insert(name.clone(), packing);
         }
-        let scene = scene(&variant, &prepared[&name], &path)?;
+        let scene = if kept { as_kept(&variant)? } else { scene(&variant, &prepared[&name], &path)? };
         let search = Search::new(&scene)?;
         let fraction = walls::fraction(&scene);
         match search.impose() {
