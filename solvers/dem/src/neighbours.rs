@@ -1,8 +1,8 @@
 //! The neighbour list: pairs that may touch, with a skin, built anew only when something has moved by half of the skin.
 //!
-//! The list has a row for each grain, and each pair is in it once. What a contact remembers stands beside its pair.
-//! Pairs across a periodic face have a list of their own, with their shift, so that the loop over the others knows
-//! nothing of periodic axes.
+//! The list has a row for each grain, and each pair is in it once. What contacts remember stands beside it, in the order of
+//! those that touch. Pairs across a periodic face have a list of their own, with their shift, so that the loop over the
+//! others knows nothing of periodic axes.
 
 use crate::cells::Cells;
 use crate::contact::chain::Layout;
@@ -84,6 +84,10 @@ impl Pairs {
         rows && in_order
             && start.last().is_some_and(|&last| last as usize == count)
             && row.len() == partner.len()
+            && start
+                .windows(2)
+                .zip(0..)
+                .all(|(ends, number)| row[ends[0] as usize..ends[1] as usize].iter().all(|&row| row == number))
             && (shift.is_empty() || shift.len() == partner.len())
             && touches.len() == remembers(0, count.div_ceil(WIDEST))
             && [memory[0].len(), memory[1].len()] == [remembers(0, 1 + touched), remembers(4, 1 + touched)]
@@ -416,6 +420,9 @@ mod tests {
         assert!(!of(&other, 2));
         assert!(!of(&Pairs { start: vec![0, 2, 1], ..pairs.clone() }, 2));
         assert!(!of(&Pairs { start: vec![0, 1, 2], ..pairs.clone() }, 2));
+        let mut other = pairs.clone();
+        other.row[0] = 1;
+        assert!(!of(&other, 2));
         assert!(!of(&Pairs { touches: Vec::new(), ..pairs.clone() }, 2));
         assert!(!of(&Pairs { touches: vec![1], ..pairs.clone() }, 2));
         assert!(!of(&Pairs { memory: Default::default(), ..pairs.clone() }, 2));
