@@ -151,6 +151,7 @@ fn no_hash_map_string_or_allocation_in_hot_loops() {
         "motion.rs",
         "forces.rs",
         "laws.rs",
+        "pairs.rs",
         "touching.rs",
     ];
     let mut files: Vec<PathBuf> = apart.map(|name| source.join(name)).into();
@@ -177,7 +178,9 @@ fn no_hash_map_string_or_allocation_in_hot_loops() {
         ("simulation.rs", "evaluate_forces"),
         ("motion.rs", "drift<"),
         ("touching.rs", "run<"),
-        ("forces.rs", "run<"),
+        ("pairs.rs", "run<"),
+        ("pairs.rs", "pair<"),
+        ("pairs.rs", "add<"),
         ("forces.rs", "at_wall"),
         ("laws.rs", "gather<"),
         ("laws.rs", "places<"),

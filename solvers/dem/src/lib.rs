@@ -12,7 +12,7 @@
 //! [`convention`].
 //!
 //! One cycle is written in `simulation`, its motion in `motion`. The pairs that touch are picked from the list in
-//! `touching`, and the loops over contacts stand in `forces`: these alone are compiled for each combination of effects
+//! `touching`, and the loops over contacts stand in `forces` and `pairs`: these alone are compiled for each combination of effects
 //! (`contact`), picked in [`solver`], and for each path of the processor, with the same bits on all.
 
 mod accounts;
@@ -27,6 +27,7 @@ mod laws;
 mod motion;
 mod neighbours;
 mod observe;
+mod pairs;
 #[cfg(test)]
 mod processors;
 mod simulation;

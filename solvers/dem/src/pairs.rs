@@ -1,0 +1,243 @@
+//! The loop over pairs that touch, as many at a time as registers hold.
+
+use crate::contact::chain::Answer;
+use crate::contact::normal::Normal;
+use crate::contact::pair::Pair;
+use crate::contact::rolling::Rolling;
+use crate::contact::seen::Seen;
+use crate::contact::tangential::Tangential;
+use crate::contact::{MEMORY, Memory};
+use crate::forces::Terms;
+use crate::geometry::Geometry;
+use crate::grains::Grains;
+use crate::laws::{Constants, gathered, places};
+use crate::neighbours::Pairs;
+use crate::touching::Touching;
+use grainbench_lanes::{Kernel, Lanes, Quad, WIDEST, Wide};
+use grainbench_scene::record::Partner;
+use std::marker::PhantomData;
+
+/// The loop over pairs that touch.
+pub(crate) struct OfPairs<'a, S: Geometry, N, T, R> {
+    terms: Terms<'a>,
+    touching: &'a Touching,
+    grains: Read<'a>,
+    sums: Sums<'a>,
+    memory: [Remembered<'a>; 2],
+    id: &'a [u32],
+    seen: Option<&'a mut Vec<Seen>>,
+    chain: PhantomData<(S, N, T, R)>,
+}
+
+/// What is read of grains and of the list. The tables of grains have one length: a place in one of them is a place in all.
+struct Read<'a> {
+    place: &'a [Quad],
+    movement: &'a [Quad],
+    turning: &'a [Quad],
+    inverse_inertia: &'a [f64],
+    material: &'a [u16],
+    shift: &'a [Quad],
+}
+
+/// What is added up of grains.
+struct Sums<'a> {
+    load: &'a mut [Quad],
+    torque: &'a mut [Quad],
+}
+
+/// Four numbers that contacts remember, and where the next are kept.
+struct Remembered<'a> {
+    last: &'a [Quad],
+    next: &'a mut [Quad],
+}
+
+/// Slots of the grains of as many pairs as a register holds.
+struct Slots {
+    first: [usize; WIDEST],
+    second: [usize; WIDEST],
+}
+
+impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S, N, T, R> {
+    /// Numbers that are remembered.
+    const NUMBERS: usize = T::NUMBERS + R::NUMBERS;
+
+    /// The loop over these pairs.
+    pub(crate) fn new(
+        terms: Terms<'a>,
+        grains: &'a mut Grains<S>,
+        pairs: &'a mut Pairs,
+        touching: &'a Touching,
+        seen: Option<&'a mut Vec<Seen>>,
+    ) -> Self {
+        let kept = touching.kept_from()..touching.kept_from() + touching.count;
+        pairs.make_room(kept.end);
+        let Pairs { shift, memory: [low, high], next: [low_next, high_next], .. } = pairs;
+        let Grains { place, movement, turning, load, torque, inverse_inertia, material, id, .. } = grains;
+        let remembered = |last: &'a [Quad], next: &'a mut [Quad]| Remembered {
+            last,
+            next: next.get_mut(kept.clone()).unwrap_or_default(),
+        };
+        Self {
+            terms,
+            touching,
+            grains: Read { place, movement, turning, inverse_inertia, material, shift },
+            sums: Sums { load, torque },
+            memory: [remembered(low, low_next), remembered(high, high_next)],
+            id,
+            seen,
+            chain: PhantomData,
+        }
+    }
+
+    /// The grains of some pairs, made ready for the chain of stages.
+    #[inline(always)]
+    fn pair<'l, L: Lanes>(
+        &self,
+        lanes: L,
+        slots: &Slots,
+        from: usize,
+        law: &'l Constants<Wide<L>>,
+    ) -> Pair<'l, S, Wide<L>> {
+        let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
+        let Read { place, movement, turning, inverse_inertia: inertia, shift, .. } = self.grains;
+        let at = [gathered(lanes, place, first), gathered(lanes, place, second)];
+        let moves = [gathered(lanes, movement, first), gathered(lanes, movement, second)];
+        let mut between = S::vector(at[1]) - S::vector(at[0]);
+        if !shift.is_empty() {
+            let pair = places(lanes, &self.touching.pair[from..], shift.len());
+            between = between - S::vector(gathered(lanes, shift, &pair));
+        }
+        let mut spins = None;
+        if T::ACTIVE {
+            let mut turns = [[zero; 4]; 2];
+            if S::DIMENSION == 3 {
+                turns = [gathered(lanes, turning, first), gathered(lanes, turning, second)];
+            }
+            spins = Some([S::spin(moves[0], turns[0]), S::spin(moves[1], turns[1])]);
+        }
+        let mut inverse_inertia = [zero; 2];
+        if R::ACTIVE {
+            for (inverse, slots) in inverse_inertia.iter_mut().zip([first, second]) {
+                let mut each = [0.0; WIDEST];
+                for lane in 0..L::WIDTH {
+                    each[lane] = inertia[slots[lane]];
+                }
+                *inverse = Wide::load(lanes, &each);
+            }
+        }
+        Pair {
+            law,
+            between,
+            radii: [at[0][3], at[1][3]],
+            velocity: S::vector(moves[0]) - S::vector(moves[1]),
+            inverse_masses: [moves[0][3], moves[1][3]],
+            spins,
+            inverse_inertia,
+        }
+    }
+
+    /// What some contacts remember.
+    #[inline(always)]
+    fn remembered<L: Lanes>(&self, lanes: L, from: usize) -> Memory<Wide<L>> {
+        let mut memory = [Wide::splat(lanes, 0.0); MEMORY];
+        for (quad, Remembered { last, .. }) in self.memory.iter().enumerate() {
+            if Self::NUMBERS > 4 * quad {
+                let at = places(lanes, &self.touching.remembered[from..], last.len());
+                memory[4 * quad..4 * quad + 4].copy_from_slice(&gathered(lanes, last, &at));
+            }
+        }
+        memory
+    }
+
+    /// Keeps what so many contacts remember from now on.
+    #[inline(always)]
+    fn remember<L: Lanes>(&mut self, lanes: L, memory: &Memory<Wide<L>>, from: usize, count: usize) {
+        for (quad, Remembered { next, .. }) in self.memory.iter_mut().enumerate() {
+            if Self::NUMBERS > 4 * quad {
+                let of = 4 * quad;
+                let quads = spread(lanes, [memory[of], memory[of + 1], memory[of + 2], memory[of + 3]]);
+                next[from..from + count].copy_from_slice(&quads[..count]);
+            }
+        }
+    }
+
+    /// Adds the forces and torques of so many contacts, one after the other.
+    #[inline(always)]
+    fn add<L: Lanes>(&mut self, lanes: L, answer: &Answer<S, Wide<L>>, slots: &Slots, count: usize) {
+        let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
+        let Sums { load, torque } = &mut self.sums;
+        let [one, on_one] = S::load(answer.force, answer.torques[0], zero);
+        let [other, on_other] = S::load(-answer.force, answer.torques[1], zero);
+        let one = spread(lanes, one);
+        if S::DIMENSION == 2 && T::ACTIVE {
+            let other = spread(lanes, other);
+            for lane in 0..count {
+                load[first[lane]].add(&one[lane]);
+                load[second[lane]].add(&other[lane]);
+            }
+        } else {
+            for lane in 0..count {
+                load[first[lane]].add(&one[lane]);
+                load[second[lane]].subtract(&one[lane]);
+            }
+        }
+        if S::DIMENSION == 3 && T::ACTIVE {
+            let [on_one, on_other] = [spread(lanes, on_one), spread(lanes, on_other)];
+            for lane in 0..count {
+                torque[first[lane]].add(&on_one[lane]);
+                torque[second[lane]].add(&on_other[lane]);
+            }
+        }
+    }
+}
+
+impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel for OfPairs<'_, S, N, T, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) {
+        let grains = self.grains.place.len();
+        let turning = if T::ACTIVE && S::DIMENSION == 3 { grains } else { 0 };
+        // Said here, so that it is looked at once and not for every contact.
+        self.grains.movement = &self.grains.movement[..grains];
+        self.grains.material = &self.grains.material[..grains];
+        self.grains.turning = &self.grains.turning[..turning];
+        self.sums = Sums { load: &mut self.sums.load[..grains], torque: &mut self.sums.torque[..turning] };
+        let (laws, touching) = (self.terms.laws, self.touching);
+        let evaluation = self.terms.evaluation(L::WIDTH == 1 && self.seen.is_some());
+        let mut law = laws.gather(lanes, &[0; WIDEST]);
+        for from in (0..touching.count).step_by(L::WIDTH) {
+            let slots = Slots {
+                first: places(lanes, &touching.first[from..], grains),
+                second: places(lanes, &touching.second[from..], grains),
+            };
+            if !laws.is_one() {
+                let mut numbers = [0; WIDEST];
+                for lane in 0..L::WIDTH {
+                    let [one, other] = [slots.first[lane], slots.second[lane]].map(|slot| self.grains.material[slot]);
+                    numbers[lane] = laws.number(one, other);
+                }
+                law = laws.gather(lanes, &numbers);
+            }
+            let mut memory = self.remembered(lanes, from);
+            let answer = self.pair(lanes, &slots, from, &law).respond::<N, T, R>(evaluation, &mut memory);
+            let count = (touching.count - from).min(L::WIDTH);
+            self.add(lanes, &answer, &slots, count);
+            self.remember(lanes, &memory, from, count);
+            if evaluation.record
+                && let Some(seen) = &mut self.seen
+            {
+                let (one, other) = (slots.first[0], slots.second[0]);
+                let place = &self.grains.place[one];
+                let partner = Partner::Grain(self.id[other] + 1);
+                seen.push(Seen::new(&answer, self.id[one] + 1, partner, S::vector_in_space(place), place.0[3]));
+            }
+        }
+    }
+}
+
+/// A quad for each lane.
+#[inline(always)]
+fn spread<L: Lanes>(lanes: L, [a, b, c, d]: [Wide<L>; 4]) -> [Quad; WIDEST] {
+    lanes.quads([a.register(), b.register(), c.register(), d.register()])
+}
