@@ -212,11 +212,10 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel for OfPairs
                 second: places(lanes, &touching.second[from..], grains),
             };
             if !laws.is_one() {
-                let mut numbers = [0; WIDEST];
-                for lane in 0..L::WIDTH {
+                let numbers = std::array::from_fn(|lane| {
                     let [one, other] = [slots.first[lane], slots.second[lane]].map(|slot| self.grains.material[slot]);
-                    numbers[lane] = laws.number(one, other);
-                }
+                    laws.number(one, other)
+                });
                 law = laws.gather(lanes, &numbers);
             }
             let mut memory = self.remembered(lanes, from);
