@@ -13,6 +13,7 @@ use grainbench::mpm::solver::Mpm;
 use grainbench::reports::plot;
 use grainbench::scene::solver::{Resolution, Solver};
 use grainbench::scene::source::SceneSource;
+use grainbench::studies::race::Race;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -69,11 +70,18 @@ fn conventions_table() -> String {
     table
 }
 
+/// What the race printed that is kept: `grainbench race` on a quiet machine leaves another `race.json`.
+fn race_table() -> String {
+    let kept = std::fs::read_to_string(root("benches/race/race.json")).unwrap();
+    serde_json::from_str::<Race>(&kept).unwrap().table().trim_end().to_owned()
+}
+
 #[test]
 fn tables_are_generated() {
     let readme = std::fs::read_to_string(root("README.md")).unwrap();
     let readme = with_generated(&readme, "cases", &cases_table());
     let readme = with_generated(&readme, "settings", &settings_table());
+    let readme = with_generated(&readme, "race", &race_table());
     expect_file("README.md", &with_generated(&readme, "conventions", &conventions_table()));
 }
 

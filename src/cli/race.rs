@@ -4,20 +4,25 @@ use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::subject;
+use grainbench::cases::registry::read_grains;
 use grainbench::cases::solvers;
-use grainbench::reports::{Provenance, StagedDir};
+use grainbench::reports::StagedDir;
 use grainbench::scene::solver::{Resolution, Solver};
+use grainbench::scene::source::SceneSource;
 use grainbench::studies::Follow;
-use grainbench::studies::race::{Heat, Racer, Track, apart, heat, spread};
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
-use std::fmt::Write;
-use std::path::PathBuf;
+use grainbench::studies::race::{Heat, Race, Racer, Track, heat};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Scenes that are run where none is named: dense in the plane and in space, sparse, and few grains.
-const TRACKS: [&str; 4] = ["plane-shear", "settled-column", "cooling-gas", "nine-discs/kappa-1"];
+/// Scenes that are run where none is named: dense in the plane and in space, sparse, with Hertz contacts, and few grains.
+const TRACKS: [&str; 6] = ["plane-shear", "cooling-gas", "nine-discs/kappa-1", "discs-400", "spheres", "hertz"];
+/// Those that are no case.
+const SCENES: [(&str, &str); 3] = [
+    ("discs-400", include_str!("../../benches/race/discs-400.toml")),
+    ("spheres", include_str!("../../benches/race/spheres.toml")),
+    ("hertz", include_str!("../../benches/race/hertz.toml")),
+];
 /// Our solver in the convention of a program, and the program.
 const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];
 /// Particle-steps of a long run, unless steps are asked for: some seconds of any program.
@@ -25,10 +30,16 @@ const WORK: u64 = 20_000_000;
 /// Most steps of one: of few grains what a step costs by itself is felt early.
 const MOST_STEPS: u64 = 600_000;
 
+/// Most steps of a short one, at whose end kinetic energies are compared: further on collisions have made much of the last bit.
+const MOST_TO_COMPARE: u64 = 1000;
+
 /// What the command takes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Scenes of grains, by case or file.
+    ///
+    /// Where none is named: plane-shear, cooling-gas, nine-discs/kappa-1, and three that are no case, discs-400, spheres and
+    /// hertz.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     tracks: Vec<String>,
     /// Laps of each racer on each scene.
@@ -53,13 +64,6 @@ fn steps(text: &str) -> Result<[u64; 2], String> {
         (Ok(short), Ok(long)) if 0 < short && short < long => Ok([short, long]),
         _ => Err(expected()),
     }
-}
-
-/// What is kept of a race.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct Race {
-    provenance: Provenance,
-    heats: Vec<Heat>,
 }
 
 /// Runs the race and leaves its table.
@@ -92,7 +96,7 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
     let has_run = heats.iter().flat_map(|heat| &heat.results).any(|raced| !raced.rates.is_empty());
     let options = vec![format!("rounds {}", arguments.rounds)];
     let race = Race { provenance: provenance(options, start.elapsed().as_secs_f64()), heats };
-    let table = table(&race);
+    let table = race.table();
     let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
     let json = serde_json::to_string_pretty(&race).map_err(Fault::input)?;
     out.write("race.json", json + "\n").map_err(Fault::writing)?;
@@ -105,7 +109,10 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
 
 /// A scene that grains on springs can run, at the step that its case takes for them.
 fn track(name: &str, steps: Option<[u64; 2]>) -> Result<Track, Fault> {
-    let (scene, case) = subject::scene(name, &[])?;
+    let (scene, case) = match SCENES.iter().find(|(known, _)| *known == name) {
+        Some((known, text)) => (SceneSource::from_text(known, Path::new(""), text).scene(&read_grains)?, None),
+        None => subject::scene(name, &[])?,
+    };
     if scene.grains.is_empty() {
         return Err(Fault::input(format!("expected a scene with grains, found none in `{name}`")));
     }
@@ -115,7 +122,12 @@ fn track(name: &str, steps: Option<[u64; 2]>) -> Result<Track, Fault> {
         _ => Resolution::CriticalFraction(0.1),
     };
     let long = (WORK / scene.grains.len() as u64).clamp(60, MOST_STEPS);
-    Ok(Track { name: name.to_owned(), scene, resolution, steps: steps.unwrap_or([long / 6, long]) })
+    Ok(Track {
+        name: name.to_owned(),
+        scene,
+        resolution,
+        steps: steps.unwrap_or([(long / 6).min(MOST_TO_COMPARE), long]),
+    })
 }
 
 struct Laps(Progress);
@@ -127,43 +139,4 @@ impl Follow for Laps {
     fn done(&mut self, _reused: bool) {
         self.0.advance();
     }
-}
-
-/// The race as a table: medians of the laps with their least and largest.
-fn table(race: &Race) -> String {
-    let shown = |values: &[f64], digits: usize| {
-        spread(values).map_or_else(
-            || "–".to_owned(),
-            |[least, middle, largest]| format!("{middle:.digits$} [{least:.digits$}..{largest:.digits$}]"),
-        )
-    };
-    let mut text =
-        "Million particle-steps in a second of processor time, of a long run less that of a short one; racers \
-                    took turns, and ratios are of the same round. Median [least..largest].\n\n\
-                    | scene | grains | steps | racer | rate | over the program | kinetic energy apart |\n\
-                    |---|---|---|---|---|---|---|\n"
-            .to_owned();
-    for heat in &race.heats {
-        for raced in &heat.results {
-            let [short, long] = heat.steps;
-            let (rate, ratio, off) = match &raced.absent {
-                Some(reason) => (reason.replace('|', "¦"), String::new(), String::new()),
-                None if raced.solver == raced.against => (shown(&raced.rates, 2), String::new(), String::new()),
-                None => {
-                    let off = apart(heat, raced).map_or_else(|| "–".to_owned(), |off| format!("{off:.0e}"));
-                    (shown(&raced.rates, 2), shown(&raced.ratios, 2), off)
-                }
-            };
-            let (track, grains, solver) = (&heat.track, heat.grains, &raced.solver);
-            let _ =
-                writeln!(text, "| `{track}` | {grains} | {short}, {long} | `{solver}` | {rate} | {ratio} | {off} |");
-        }
-    }
-    let programs = race.heats.iter().flat_map(|heat| &heat.results).filter(|raced| raced.solver == raced.against);
-    let versions: BTreeSet<&str> = programs.filter_map(|raced| raced.version.as_deref()).collect();
-    let Provenance { version, commit, date, machine, .. } = &race.provenance;
-    let ours = format!("grainbench {version} ({commit})");
-    let all: Vec<&str> = [ours.as_str()].into_iter().chain(versions).chain([date.as_str(), machine]).collect();
-    let _ = writeln!(text, "\n{}.", all.join("; "));
-    text
 }

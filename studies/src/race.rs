@@ -7,9 +7,12 @@
 
 use crate::Follow;
 use crate::clock::cpu_seconds;
+use grainbench_reports::Provenance;
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
 
 /// A lap that takes less processor time (s) tells noise: it is the difference of two times.
 const SHORTEST: f64 = 0.05;
@@ -65,6 +68,59 @@ pub struct Raced {
     pub kinetic_energy: Option<f64>,
     /// Why it took no part.
     pub absent: Option<String>,
+}
+
+/// What is kept of a race.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Race {
+    /// Where and when.
+    pub provenance: Provenance,
+    /// Scene by scene.
+    pub heats: Vec<Heat>,
+}
+
+impl Race {
+    /// The race as a table: medians of the laps with their least and largest.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let shown = |values: &[f64], digits: usize| {
+            spread(values).map_or_else(
+                || "–".to_owned(),
+                |[least, middle, largest]| format!("{middle:.digits$} [{least:.digits$}..{largest:.digits$}]"),
+            )
+        };
+        let mut text =
+            "Million particle-steps in a second of processor time, of a long run less that of a short one; racers \
+                        took turns, and ratios are of the same round. Median [least..largest].\n\n\
+                        | scene | grains | steps | racer | rate | over the program | kinetic energy apart |\n\
+                        |---|---|---|---|---|---|---|\n"
+                .to_owned();
+        for heat in &self.heats {
+            for raced in &heat.results {
+                let [short, long] = heat.steps;
+                let (rate, ratio, off) = match &raced.absent {
+                    Some(reason) => (reason.replace('|', "¦"), String::new(), String::new()),
+                    None if raced.solver == raced.against => (shown(&raced.rates, 2), String::new(), String::new()),
+                    None => {
+                        let off = apart(heat, raced).map_or_else(|| "–".to_owned(), |off| format!("{off:.0e}"));
+                        (shown(&raced.rates, 2), shown(&raced.ratios, 2), off)
+                    }
+                };
+                let (track, grains, solver) = (&heat.track, heat.grains, &raced.solver);
+                let _ = writeln!(
+                    text,
+                    "| `{track}` | {grains} | {short}, {long} | `{solver}` | {rate} | {ratio} | {off} |"
+                );
+            }
+        }
+        let programs = self.heats.iter().flat_map(|heat| &heat.results).filter(|raced| raced.solver == raced.against);
+        let versions: BTreeSet<&str> = programs.filter_map(|raced| raced.version.as_deref()).collect();
+        let Provenance { version, commit, date, machine, .. } = &self.provenance;
+        let ours = format!("grainbench {version} ({commit})");
+        let all: Vec<&str> = [ours.as_str()].into_iter().chain(versions).chain([date.as_str(), machine]).collect();
+        let _ = writeln!(text, "\n{}.", all.join("; "));
+        text
+    }
 }
 
 /// Smallest, middle and largest of some values; none of none.
