@@ -3,7 +3,7 @@
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::scene::record::{Cost, Record};
-use grainbench::scene::solver::Resolution;
+use grainbench::scene::solver::{Resolution, Threads};
 
 /// A record without its times. Debug output tells every bit of a number but the sign of a NaN, and there are none.
 fn bits(mut record: Record) -> String {
@@ -29,13 +29,65 @@ fn a_rerun_gives_the_same_bits() {
                 _ => Resolution::CriticalFraction(0.05),
             };
             // A run that breaks must break alike.
-            let run = || solver.run(&scene, &resolution, &mut ()).map(bits);
+            let run = |threads| solver.run(&scene, &resolution, &mut Threads(threads)).map(bits);
             let (first, second) = std::thread::scope(|scope| {
-                let beside = scope.spawn(run);
-                (run(), beside.join().unwrap())
+                let beside = scope.spawn(|| run(3));
+                (run(1), beside.join().unwrap())
             });
-            assert!(first == second, "{} with {} differs from its rerun", case.name, solver.name());
+            assert!(first == second, "{} with {} differs from its rerun on three threads", case.name, solver.name());
         }
+    }
+}
+
+/// Sixteen hundred discs that fall on one another and roll over a periodic face.
+const MANY: &str = "title = 't'\ndimension = 2\nduration = 2.0\ngravity = { magnitude = 9.8, slope_deg = 20.0 }\n\
+                    domain = { low = [0.0, 0.0], high = [30.0, 60.0], periodic = [true, false] }\n\
+                    materials.m = { density = 1000.0 }\n\
+                    contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, \
+                    friction = 0.5, restitution = 0.5 }\n\
+                    [grains.g]\nmaterial = 'm'\nrandom = { count = 1600, radius_range = [0.3, 0.5], speed = 5.0, seed = 3 }\n\
+                    [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+                    [probes]\nall.system = true\n";
+
+/// Two blocks that swing, one held and one that falls onto a slope beside it, with the energy budget.
+const BLOCKS: &str = "title = 't'\ndimension = 2\nduration = 0.5\nreference_length = 1.0\ngravity = [0.5, -2.0]\n\
+                      materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }\n\
+                      contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e3, \
+                      tangential_stiffness = 1.0e3, friction = 0.3 }\n\
+                      [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [3.0, 2.0] }\nfixed = ['x-low']\n\
+                      wave = { amplitude = 0.4 }\n\
+                      [bodies.c]\nmaterial = 'm'\nbox = { low = [4.0, 0.05], high = [6.0, 2.0] }\n\
+                      [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, -0.01], normal = [0.0, 1.0] }\n\
+                      [probes]\nall.system = true\n";
+
+/// How many threads share a run is in nothing that it leaves: series, snapshots, contacts and checkpoints, and what one began
+/// another can end.
+#[test]
+fn threads_leave_no_trace() {
+    for (scene, solver) in [(MANY, "dem"), (BLOCKS, "mpm"), (BLOCKS, "mpm:no-slip"), (BLOCKS, "mpm+usf")] {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("s.toml"), scene).unwrap();
+        let left = |threads: &str, more: &[&str]| {
+            let out = std::process::Command::new(env!("CARGO_BIN_EXE_grainbench"))
+                .args([
+                    "simulate", "s.toml", "--solver", solver, "--cells", "14", "--write", "dump,vtk", "--out", "out",
+                ])
+                .args(["--checkpoint-every", "60", "--checkpoint", "c", "--threads", threads])
+                .args(more)
+                .current_dir(directory.path())
+                .output()
+                .unwrap();
+            assert!(out.status.success(), "{solver}: {}", String::from_utf8_lossy(&out.stderr));
+            let read = |name: &str| std::fs::read(directory.path().join(name)).unwrap();
+            [read("out/series.csv"), read("out/snapshots.dump"), read("c")]
+        };
+        let expected = left("1", &[]);
+        std::fs::rename(directory.path().join("c"), directory.path().join("of-one")).unwrap();
+        for threads in ["2", "3"] {
+            assert!(left(threads, &[]) == expected, "{solver}, {threads} threads");
+            assert!(left(threads, &["--restart", "of-one"]) == expected, "{solver}, {threads} threads go on");
+        }
+        assert!(left("1", &["--restart", "c"]) == expected, "{solver}, one goes on");
     }
 }
 

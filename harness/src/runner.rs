@@ -12,7 +12,7 @@ use crate::uncertainty::{Estimate, of_finest};
 use crate::verdict::{Control, Outcome, Verdict};
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Defect, Method, Resolution, RunError, Solver};
+use grainbench_scene::solver::{Defect, Method, Resolution, RunError, Solver, Threads};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
@@ -33,6 +33,8 @@ pub struct Runner {
     live: bool,
     /// Whether figures may take as long as the finest levels do.
     thorough: bool,
+    /// Threads of a run.
+    threads: usize,
     /// Runs of scenes as the case means them, by [`Run::key`].
     runs: Mutex<Runs>,
     /// Every run of a scene, right or wrong, by solver and resolution: claims that lead to the same scene share it.
@@ -52,7 +54,7 @@ impl Runner {
     #[must_use]
     pub fn new(case: &'static Case, solvers: Arc<dyn Solvers>) -> Self {
         let (runs, done) = (Mutex::default(), Mutex::default());
-        Self { case, solvers, stranger: None, live: false, thorough: false, runs, done }
+        Self { case, solvers, stranger: None, live: false, thorough: false, threads: 1, runs, done }
     }
 
     /// A runner that puts one solver in the place of every solver that the claims name. It is given their resolutions,
@@ -72,6 +74,12 @@ impl Runner {
     #[must_use]
     pub fn thorough(self, thorough: bool) -> Self {
         Self { thorough, ..self }
+    }
+
+    /// The runner whose runs take so many threads each.
+    #[must_use]
+    pub fn threads(self, threads: usize) -> Self {
+        Self { threads, ..self }
     }
 
     /// Whether figures may take as long as the finest levels do.
@@ -212,7 +220,7 @@ impl Runner {
             Some(defect) => self.solvers.with_defect(by.solver, defect),
         };
         let solver = solver.ok_or_else(|| self.unusable(run, "there is no such solver".to_owned()))?;
-        solver.run(scene, by.resolution, &mut ()).map(Arc::new)
+        solver.run(scene, by.resolution, &mut Threads(self.threads)).map(Arc::new)
     }
 
     /// The scene of a run as the case means it.

@@ -3,6 +3,7 @@
 mod check;
 mod checkpoint;
 mod compare;
+mod cores;
 mod cost;
 mod deck;
 mod effects;

@@ -1,5 +1,6 @@
 //! What ran, where and when.
 
+use super::cores::cores;
 use grainbench::lanes::Processor;
 use grainbench::reports::Provenance;
 use std::fs;
@@ -19,7 +20,7 @@ pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance 
 
 /// Processor, cores, operating system, and what of the processor our solvers use.
 fn machine() -> String {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cores = cores();
     let plural = if cores == 1 { "" } else { "s" };
     format!("{}, {cores} core{plural}, {}, loops for {}", processor(), system(), Processor::new().name())
 }

@@ -1,5 +1,6 @@
 //! `grainbench run`: judge the gates of cases and write the report.
 
+use super::cores::{MOST_THREADS, share};
 use super::exit::{self, Fault, Outcome, RED, check_writable, print};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
@@ -18,7 +19,6 @@ use grainbench::scene::solver::RunError;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// What the command takes.
@@ -55,6 +55,9 @@ pub(crate) struct Options {
     /// Leave out the negative controls.
     #[arg(long)]
     no_controls: bool,
+    /// Threads of each run; as many runs at once as the machine has cores for. The bits do not depend on it.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    threads: u16,
 }
 
 /// Runs the named cases, all when none is named.
@@ -64,7 +67,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let start = Instant::now();
     let thorough = options.levels.iter().any(|level| level == "all");
     let interrupt = Interrupt::listen();
-    let (mut sections, left) = judge(&selected, !options.no_controls, options.live, thorough, &interrupt);
+    let (mut sections, left) = judge(&selected, options, thorough, &interrupt);
     // What every solver owes belongs to the whole registry, and not to a case.
     if cases.is_empty() && (options.levels.is_empty() || thorough) && left == 0 {
         sections.extend(conformance(&options.solver));
@@ -89,12 +92,17 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
 fn conformance(named: &[String]) -> Option<Section> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let solvers: Vec<_> = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name())).collect();
-    let judged: Vec<_> = std::thread::scope(|scope| {
-        let at_work: Vec<_> =
-            solvers.iter().map(|(solver, terms)| scope.spawn(|| conformance::judge(&**solver, terms))).collect();
-        at_work.into_iter().filter_map(|work| work.join().ok()).collect()
-    });
-    let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
+    let judged: Vec<_> = solvers.iter().map(|_| OnceLock::new()).collect();
+    share(
+        solvers.len(),
+        1,
+        || true,
+        |number| {
+            let (solver, terms) = &solvers[number];
+            judged[number].get_or_init(|| conformance::judge(&**solver, terms));
+        },
+    );
+    let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().filter_map(OnceLock::into_inner).unzip();
     (!solvers.is_empty()).then(|| Section {
         name: "conformance".to_owned(),
         title: "What every solver owes".to_owned(),
@@ -173,31 +181,13 @@ enum Task {
 }
 
 /// Sections of what was done, and how many checks were left out because somebody asked to end.
-fn judge(
-    selected: &[Selected],
-    with_controls: bool,
-    live: bool,
-    thorough: bool,
-    interrupt: &Interrupt,
-) -> (Vec<Section>, usize) {
-    let work: Vec<Work<'_>> = selected.iter().map(|selected| Work::new(selected, live, thorough)).collect();
-    let tasks = tasks(selected, with_controls);
+fn judge(selected: &[Selected], options: &Options, thorough: bool, interrupt: &Interrupt) -> (Vec<Section>, usize) {
+    let threads = usize::from(options.threads);
+    let work: Vec<Work<'_>> = selected.iter().map(|selected| Work::new(selected, options, thorough)).collect();
+    let tasks = tasks(selected, !options.no_controls);
     let progress = Progress::new(tasks.len() as u64, "checks");
-    let next = AtomicUsize::new(0);
-    let take = || if interrupt.is_asked() { None } else { tasks.get(next.fetch_add(1, Ordering::Relaxed)) };
-    // Plain threads: gates wait for runs that they share, and a pool that lends a waiting thread to another gate
-    // could let a run wait for itself.
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from).min(tasks.len()) {
-            scope.spawn(|| {
-                while let Some(task) = take() {
-                    do_task(&work, task, &progress);
-                }
-            });
-        }
-    });
+    let left = share(tasks.len(), threads, || !interrupt.is_asked(), |piece| do_task(&work, &tasks[piece], &progress));
     drop(progress);
-    let left = tasks.len() - next.into_inner().min(tasks.len());
     (work.into_iter().map(Work::section).collect(), left)
 }
 
@@ -239,10 +229,11 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
 }
 
 impl<'a> Work<'a> {
-    fn new(selected: &'a Selected, live: bool, thorough: bool) -> Self {
+    fn new(selected: &'a Selected, options: &Options, thorough: bool) -> Self {
+        let runner = registry::runner(selected.case).live(options.live).thorough(thorough);
         Self {
             selected,
-            runner: registry::runner(selected.case).live(live).thorough(thorough),
+            runner: runner.threads(usize::from(options.threads)),
             verdicts: selected.claims.iter().map(|_| OnceLock::new()).collect(),
             controls: selected.claims.iter().map(|_| OnceLock::new()).collect(),
             figures: OnceLock::new(),

@@ -1,6 +1,7 @@
 //! `grainbench simulate`: one scene, one solver, one record.
 
 use super::checkpoint::{self, Store};
+use super::cores::{MOST_THREADS, cores};
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
@@ -70,6 +71,10 @@ pub(crate) struct Arguments {
     /// Take a time step of the critical one or above.
     #[arg(long)]
     allow_unstable: bool,
+    /// Threads of `dem` and `mpm`; all that the machine has where none are named. The record does not depend on it in any
+    /// bit.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    threads: Option<u16>,
     /// Leave a checkpoint here every so many steps, each in the place of the one before.
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
@@ -169,8 +174,19 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     }
     let grains = scene.grains.len();
     let interrupt = Interrupt::listen();
-    let mut watcher =
-        Watcher { grains, method, critical, header, progress: None, store, snapshots, remains: None, interrupt };
+    let threads = arguments.threads.map_or_else(cores, usize::from);
+    let mut watcher = Watcher {
+        threads,
+        grains,
+        method,
+        critical,
+        header,
+        progress: None,
+        store,
+        snapshots,
+        remains: None,
+        interrupt,
+    };
     let record = match &from {
         None => solver.run(&scene, &resolution, &mut watcher),
         Some(checkpoint) => solver.restart(&scene, &resolution, checkpoint, &mut watcher),
@@ -308,6 +324,7 @@ fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>
 
 /// Tells people what runs, once the solver has taken it up, and how far it is.
 struct Watcher {
+    threads: usize,
     grains: usize,
     method: Option<Method>,
     critical: f64,
@@ -357,6 +374,10 @@ impl Watch for Watcher {
                 print(&format!("{header}time step  {time_step:.6e} s, {of_critical}\nsteps      {steps}{estimate}\n"));
         }
         self.progress = Some(Progress::new(steps, "steps"));
+    }
+
+    fn threads(&self) -> usize {
+        self.threads
     }
 
     fn progress(&mut self, done: u64, total: u64) {

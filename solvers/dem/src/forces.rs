@@ -12,9 +12,9 @@ use crate::contact::seen::Seen;
 use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Options};
 use crate::geometry::Geometry;
-use crate::grains::Grains;
+use crate::grains::{Grains, Read, Sums};
 use crate::laws::Laws;
-use crate::neighbours::Pairs;
+use crate::listed::Pairs;
 use crate::pairs::OfPairs;
 use crate::touching::Touching;
 use crate::walls::MovingWall;
@@ -40,13 +40,14 @@ impl<'a> Terms<'a> {
 }
 
 /// The loops over contacts, whatever laws they were compiled for.
-pub(crate) trait Forces<S: Geometry>: Send {
-    /// Adds the forces and torques of the pairs that touch. Where `seen` is given every contact is kept in it.
+pub(crate) trait Forces<S: Geometry>: Send + Sync {
+    /// Adds the forces and torques of the pairs that touch to the sums that are there. Where `seen` is given every contact in
+    /// whose first grain's row they are is kept in it.
     fn of_pairs(
         &self,
         processor: Processor,
         terms: Terms<'_>,
-        grains: &mut Grains<S>,
+        grains: (Read<'_>, Sums<'_>),
         pairs: &mut Pairs,
         touching: &Touching,
         seen: Option<&mut Vec<Seen>>,
@@ -82,7 +83,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         &self,
         processor: Processor,
         terms: Terms<'_>,
-        grains: &mut Grains<S>,
+        grains: (Read<'_>, Sums<'_>),
         pairs: &mut Pairs,
         touching: &Touching,
         seen: Option<&mut Vec<Seen>>,

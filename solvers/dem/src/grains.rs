@@ -5,7 +5,7 @@
 //! needs takes no memory and is not computed with.
 
 use crate::geometry::Geometry;
-use grainbench_lanes::Quad;
+use grainbench_lanes::{Quad, take_off};
 use grainbench_scene::scene::{Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -173,6 +173,77 @@ impl<S: Geometry> Grains<S> {
         for (slot, &id) in self.id.iter().enumerate() {
             self.slot[id as usize] = slot as u32;
         }
+    }
+}
+
+/// What the loops over pairs read of grains. The tables have one length: a place in one of them is a place in all.
+#[derive(Clone, Copy)]
+pub(crate) struct Read<'a> {
+    pub(crate) place: &'a [Quad],
+    pub(crate) movement: &'a [Quad],
+    pub(crate) turning: &'a [Quad],
+    pub(crate) inverse_inertia: &'a [f64],
+    pub(crate) material: &'a [u16],
+    pub(crate) id: &'a [u32],
+}
+
+/// What is added up of grains in slots that follow one another.
+pub(crate) struct Sums<'a> {
+    /// The first of the slots.
+    pub(crate) first: usize,
+    pub(crate) load: &'a mut [Quad],
+    pub(crate) torque: &'a mut [Quad],
+}
+
+impl<'a> Sums<'a> {
+    /// The same, for a while.
+    pub(crate) fn lent(&mut self) -> Sums<'_> {
+        Sums { first: self.first, load: self.load, torque: self.torque }
+    }
+
+    /// Whether a slot is one of these.
+    #[inline(always)]
+    pub(crate) fn holds(&self, slot: usize) -> bool {
+        slot.wrapping_sub(self.first) < self.load.len()
+    }
+
+    /// Adds to the force on a grain, if its slot is one of these.
+    #[inline(always)]
+    pub(crate) fn add_load(&mut self, slot: usize, load: &Quad) {
+        if let Some(sum) = self.load.get_mut(slot.wrapping_sub(self.first)) {
+            sum.add(load);
+        }
+    }
+
+    /// Subtracts from the force on a grain, if its slot is one of these.
+    #[inline(always)]
+    pub(crate) fn subtract_load(&mut self, slot: usize, load: &Quad) {
+        if let Some(sum) = self.load.get_mut(slot.wrapping_sub(self.first)) {
+            sum.subtract(load);
+        }
+    }
+
+    /// Adds to the torque on a grain, if its slot is one of these.
+    #[inline(always)]
+    pub(crate) fn add_torque(&mut self, slot: usize, torque: &Quad) {
+        if let Some(sum) = self.torque.get_mut(slot.wrapping_sub(self.first)) {
+            sum.add(torque);
+        }
+    }
+
+    /// Takes off the sums of the first grains, so many.
+    pub(crate) fn take_off(&mut self, count: usize) -> Self {
+        let first = self.first;
+        self.first += count;
+        Self { first, load: take_off(&mut self.load, count), torque: take_off(&mut self.torque, count) }
+    }
+}
+
+impl<S: Geometry> Grains<S> {
+    /// What is read of the grains, and what is added up.
+    pub(crate) fn parts(&mut self) -> (Read<'_>, Sums<'_>) {
+        let Self { place, movement, turning, load, torque, inverse_inertia, material, id, .. } = self;
+        (Read { place, movement, turning, inverse_inertia, material, id }, Sums { first: 0, load, torque })
     }
 }
 

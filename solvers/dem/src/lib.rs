@@ -12,8 +12,9 @@
 //! [`convention`].
 //!
 //! One cycle is written in `simulation`, its motion in `motion`. The pairs that touch are picked from the list in
-//! `touching`, and the loops over contacts stand in `forces` and `pairs`: these alone are compiled for each combination of effects
-//! (`contact`), picked in [`solver`], and for each path of the processor, with the same bits on all.
+//! `touching`, and the loops over contacts stand in `forces` and `pairs`: these alone are compiled for each combination of
+//! effects (`contact`), picked in [`solver`], and for each path of the processor. Threads have a `share` of the list each. The
+//! bits are the same on all.
 
 mod accounts;
 mod cells;
@@ -24,12 +25,14 @@ mod forces;
 mod geometry;
 mod grains;
 mod laws;
+mod listed;
 mod motion;
 mod neighbours;
 mod observe;
 mod pairs;
 #[cfg(test)]
 mod processors;
+mod share;
 mod simulation;
 pub mod solver;
 pub mod stability;

@@ -8,7 +8,7 @@
 
 use crate::geometry::Geometry;
 use crate::grains::Grains;
-use grainbench_lanes::Quad;
+use grainbench_lanes::{Quad, take_off};
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -59,31 +59,92 @@ pub(crate) struct Motion {
     pub(crate) time_step: f64,
 }
 
+/// What motion reads and writes of grains.
+pub(crate) struct Moving<'a> {
+    place: &'a mut [Quad],
+    movement: &'a mut [Quad],
+    turning: &'a mut [Quad],
+    load: &'a mut [Quad],
+    torque: &'a mut [Quad],
+    inverse_inertia: &'a [f64],
+}
+
+impl<'a> Moving<'a> {
+    /// Of the grains in these slots.
+    pub(crate) fn of<S: Geometry>(grains: &'a mut Grains<S>, slots: Range<usize>) -> Self {
+        let Grains { place, movement, turning, load, torque, inverse_inertia, .. } = grains;
+        Self {
+            place: &mut place[slots.clone()],
+            movement: &mut movement[slots.clone()],
+            turning: turning.get_mut(slots.clone()).unwrap_or_default(),
+            load: &mut load[slots.clone()],
+            torque: torque.get_mut(slots.clone()).unwrap_or_default(),
+            inverse_inertia: inverse_inertia.get(slots).unwrap_or_default(),
+        }
+    }
+
+    /// Takes off the first grains, so many.
+    pub(crate) fn take_off(&mut self, count: usize) -> Self {
+        let (inertia, others) = self.inverse_inertia.split_at(count.min(self.inverse_inertia.len()));
+        self.inverse_inertia = others;
+        Self {
+            place: take_off(&mut self.place, count),
+            movement: take_off(&mut self.movement, count),
+            turning: take_off(&mut self.turning, count),
+            load: take_off(&mut self.load, count),
+            torque: take_off(&mut self.torque, count),
+            inverse_inertia: inertia,
+        }
+    }
+}
+
 impl Motion {
-    /// Moves the grains in these slots over one step, by the forces on them, and sets those to zero. Gives the speed of the
-    /// fastest, squared (m²/s²), infinite where one is not a number.
-    pub(crate) fn advance<S: Geometry>(&self, grains: &mut Grains<S>, slots: Range<usize>) -> f64 {
+    /// Moves grains over one step, by the forces on them, and sets those to zero. Gives the speed of the fastest, squared
+    /// (m²/s²), infinite where one is not a number.
+    pub(crate) fn advance<S: Geometry>(&self, grains: Moving<'_>) -> f64 {
         match (self.global_damping == 0.0, self.gravity == Vector3::zeros()) {
-            (true, true) => self.drift::<S, NoDrag, false>(grains, slots),
-            (true, false) => self.drift::<S, NoDrag, true>(grains, slots),
-            (false, true) => self.drift::<S, MassProportional, false>(grains, slots),
-            (false, false) => self.drift::<S, MassProportional, true>(grains, slots),
+            (true, true) => self.drift::<S, NoDrag, false>(grains),
+            (true, false) => self.drift::<S, NoDrag, true>(grains),
+            (false, true) => self.drift::<S, MassProportional, false>(grains),
+            (false, false) => self.drift::<S, MassProportional, true>(grains),
         }
     }
 
     /// The same, compiled for one kind of damping, with gravity or without. In the plane the angle moves with the
     /// spin as a position does with its velocity.
-    fn drift<S: Geometry, D: Drag, const GRAVITY: bool>(&self, grains: &mut Grains<S>, slots: Range<usize>) -> f64 {
+    fn drift<S: Geometry, D: Drag, const GRAVITY: bool>(&self, grains: Moving<'_>) -> f64 {
+        let (keep, gain) = D::factors(self.global_damping, self.time_step);
+        let Moving { place, movement, turning, load, torque, inverse_inertia } = grains;
+        let linear = place.iter_mut().zip(movement).zip(load).map(|((place, movement), load)| [place, movement, load]);
+        let fastest = if S::DIMENSION == 2 && !inverse_inertia.is_empty() {
+            self.drift_along::<S, D, GRAVITY>(linear, inverse_inertia.iter().copied())
+        } else {
+            self.drift_along::<S, D, GRAVITY>(linear, std::iter::repeat(0.0))
+        };
+        // Nothing is left of this loop in the plane, and where grains do not rotate.
+        for ((Quad(spin), torque), inverse_inertia) in turning.iter_mut().zip(torque).zip(inverse_inertia) {
+            for (spin, torque) in spin.iter_mut().take(3).zip(torque.0) {
+                *spin = D::keep(*spin, keep) + torque * inverse_inertia * gain;
+            }
+            *torque = Quad::default();
+        }
+        fastest
+    }
+
+    /// Velocities and positions of it, in the plane spins and angles too, with the inverse moments of inertia (1/(kg m²)).
+    #[inline(always)]
+    fn drift_along<'a, S: Geometry, D: Drag, const GRAVITY: bool>(
+        &self,
+        grains: impl Iterator<Item = [&'a mut Quad; 3]>,
+        inverse_inertia: impl Iterator<Item = f64>,
+    ) -> f64 {
         let (keep, gain) = D::factors(self.global_damping, self.time_step);
         let (gravity, time_step) = ([self.gravity.x, self.gravity.y, self.gravity.z], self.time_step);
         let (mut fastest, mut total) = (0.0, 0.0);
-        let Grains { place, movement, turning, load, torque, inverse_inertia, .. } = grains;
-        let mut inertia = inverse_inertia.get(slots.clone()).unwrap_or_default().iter();
-        let linear = place[slots.clone()].iter_mut().zip(&mut movement[slots.clone()]).zip(&mut load[slots.clone()]);
-        for ((Quad(place), Quad(movement)), load) in linear {
+        for ([Quad(place), Quad(movement), load], inverse_inertia) in grains.zip(inverse_inertia) {
             let mut inverse = [movement[3]; 3];
             if S::DIMENSION == 2 {
-                inverse[2] = inertia.next().copied().unwrap_or_default();
+                inverse[2] = inverse_inertia;
             }
             let mut squared = 0.0;
             for axis in 0..3 {
@@ -100,16 +161,6 @@ impl Motion {
             *load = Quad::default();
             fastest = if squared > fastest { squared } else { fastest };
             total += squared;
-        }
-        // Nothing is left of this loop in the plane, and where grains do not rotate.
-        let turning = turning.get_mut(slots.clone()).unwrap_or_default();
-        let torque = torque.get_mut(slots.clone()).unwrap_or_default();
-        let inertia = inverse_inertia.get(slots).unwrap_or_default();
-        for ((Quad(spin), torque), inverse_inertia) in turning.iter_mut().zip(torque).zip(inertia) {
-            for (spin, torque) in spin.iter_mut().take(3).zip(torque.0) {
-                *spin = D::keep(*spin, keep) + torque * inverse_inertia * gain;
-            }
-            *torque = Quad::default();
         }
         // What is not a number is no larger than another, but it stays in a sum.
         if f64::is_finite(total) { fastest } else { f64::INFINITY }

@@ -2,161 +2,25 @@
 //!
 //! The list has a row for each grain, and each pair is in it once. What contacts remember stands beside it, in the order of
 //! those that touch. Pairs across a periodic face have a list of their own, with their shift, so that the loop over the
-//! others knows nothing of periodic axes.
+//! others knows nothing of periodic axes. Threads have a share of the rows each ([`crate::share`]).
 
 use crate::cells::Cells;
 use crate::contact::chain::Layout;
 use crate::geometry::{Geometry, Linear};
 use crate::grains::Grains;
-use grainbench_lanes::{Quad, WIDEST};
+use crate::listed::Pairs;
+use crate::share::{Share, rows_of};
+use grainbench_lanes::{Quad, Team};
 use grainbench_scene::scene::Domain;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
-
-/// Pairs of grains, in rows: a row holds the partners of one grain. Partners, rows and shifts are filled up beyond the last
-/// pair, so that registers can be.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Pairs {
-    /// Number of the first pair of every row, and of all pairs at the end.
-    pub(crate) start: Vec<u32>,
-    /// Slot of the first grain of each pair: its row.
-    pub(crate) row: Vec<u32>,
-    /// Slot of the partner of each pair.
-    pub(crate) partner: Vec<u32>,
-    /// Shift of each pair across a periodic face: what is added to the position of the first grain (m). Empty where none is.
-    pub(crate) shift: Vec<Quad>,
-    /// Whether each pair touched when it was looked at last, as bits, the first of eight lowest. Empty where nothing is
-    /// remembered.
-    pub(crate) touches: Vec<u8>,
-    /// What the contacts of those that touched remember, in their order, after nothing: four numbers and four more. Empty
-    /// where so many are not remembered.
-    pub(crate) memory: [Vec<Quad>; 2],
-    /// Room for what they remember next, with no more in it than that.
-    #[serde(skip)]
-    pub(crate) next: [Vec<Quad>; 2],
-}
-
-impl Pairs {
-    fn empty() -> Self {
-        Self {
-            start: vec![0],
-            row: vec![0; WIDEST],
-            partner: vec![0; WIDEST],
-            shift: Vec::new(),
-            touches: Vec::new(),
-            memory: Default::default(),
-            next: Default::default(),
-        }
-    }
-
-    /// Number of pairs.
-    pub(crate) fn len(&self) -> usize {
-        self.partner.len() - WIDEST
-    }
-
-    /// Lists what `partners` gives of each row, with room for what the contacts remember.
-    fn list(grains: usize, layout: Layout, mut partners: impl FnMut(usize, &mut Vec<u32>, &mut Vec<Quad>)) -> Self {
-        let mut pairs = Self { partner: Vec::new(), row: Vec::new(), ..Self::empty() };
-        for row in 0..grains {
-            partners(row, &mut pairs.partner, &mut pairs.shift);
-            pairs.row.resize(pairs.partner.len(), row as u32);
-            pairs.start.push(pairs.partner.len() as u32);
-        }
-        let count = pairs.partner.len();
-        pairs.touches = vec![0; if layout.numbers > 0 { count.div_ceil(WIDEST) } else { 0 }];
-        pairs.memory = [0, 4].map(|from| vec![Quad::default(); usize::from(layout.numbers > from)]);
-        pairs.partner.resize(count + WIDEST, 0);
-        pairs.row.resize(count + WIDEST, 0);
-        if !pairs.shift.is_empty() {
-            pairs.shift.resize(count + WIDEST, Quad::default());
-        }
-        pairs
-    }
-
-    /// Whether these are pairs of so many grains: rows that follow one another, and for each pair what it must have.
-    fn is_of(&self, grains: usize, layout: Layout) -> bool {
-        let Self { start, row, partner, shift, touches, memory, next: _ } = self;
-        let Some(count) = partner.len().checked_sub(WIDEST) else { return false };
-        let rows = start.len() == grains + 1 || start == &[0];
-        let in_order = start.first() == Some(&0) && start.is_sorted();
-        let touched = touches.iter().map(|bits| bits.count_ones() as usize).sum::<usize>();
-        let remembers = |from: usize, count: usize| if layout.numbers > from && *start != [0] { count } else { 0 };
-        rows && in_order
-            && start.last().is_some_and(|&last| last as usize == count)
-            && row.len() == partner.len()
-            && start
-                .windows(2)
-                .zip(0..)
-                .all(|(ends, number)| row[ends[0] as usize..ends[1] as usize].iter().all(|&row| row == number))
-            && (shift.is_empty() || shift.len() == partner.len())
-            && touches.len() == remembers(0, count.div_ceil(WIDEST))
-            && [memory[0].len(), memory[1].len()] == [remembers(0, 1 + touched), remembers(4, 1 + touched)]
-            && row.iter().chain(partner).all(|&slot| (slot as usize) < grains)
-    }
-
-    /// Number of a pair in the list.
-    fn find(&self, row: u32, partner: u32) -> Option<usize> {
-        let row = row as usize;
-        let range = *self.start.get(row)? as usize..*self.start.get(row + 1)? as usize;
-        let at = self.partner[range.clone()].iter().position(|&other| other == partner)?;
-        Some(range.start + at)
-    }
-
-    /// Place in the memory of every pair that touched when it was looked at last, zero of the others.
-    fn places(&self) -> Vec<u32> {
-        let mut touched = 0;
-        let place = |pair: usize| {
-            let touches = self.touches.get(pair / WIDEST).is_some_and(|bits| bits >> (pair % WIDEST) & 1 == 1);
-            touched += u32::from(touches);
-            if touches { touched } else { 0 }
-        };
-        (0..self.len()).map(place).collect()
-    }
-
-    /// Remembers of the next pair `at` what another list does in a place of its memory; with the roles of first and second
-    /// grain exchanged if `exchanged` is given.
-    fn take(&mut self, at: usize, other: &Self, place: u32, exchanged: Option<&Layout>) {
-        self.touches[at / WIDEST] |= 1 << (at % WIDEST);
-        for (number, (mine, other)) in self.memory.iter_mut().zip(&other.memory).enumerate() {
-            if let Some(mut quad) = other.get(place as usize).copied() {
-                if let Some(layout) = exchanged {
-                    (0..4).for_each(|part| quad.0[part] *= layout.exchanged[4 * number + part]);
-                }
-                mine.push(quad);
-            }
-        }
-    }
-
-    /// Room for what a block of pairs remembers from a place on.
-    pub(crate) fn make_room(&mut self, places: usize) {
-        for (memory, next) in self.memory.iter().zip(&mut self.next) {
-            if !memory.is_empty() && next.len() < places {
-                next.resize(places, Quad::default());
-            }
-        }
-    }
-
-    /// What was written as next, of so many contacts, is what is remembered.
-    pub(crate) fn remember(&mut self, contacts: usize) {
-        for (memory, next) in self.memory.iter_mut().zip(&mut self.next).filter(|(memory, _)| !memory.is_empty()) {
-            std::mem::swap(memory, next);
-            memory.truncate(1 + contacts);
-            memory.resize(1 + contacts, Quad::default());
-        }
-    }
-
-    fn forget(&mut self) {
-        self.memory.iter_mut().for_each(|memory| memory.fill(Quad::default()));
-    }
-}
+use std::ops::Range;
 
 /// The neighbour list.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Neighbours {
-    /// Pairs that are near in the domain itself.
-    pub(crate) near: Pairs,
-    /// Pairs that are near across a periodic face.
-    pub(crate) across: Pairs,
+    /// Shares of the rows, in their order: one where a run has one thread, and in a checkpoint.
+    pub(crate) shares: Vec<Share>,
     /// Positions of the grains when the list was built (m).
     pub(crate) reference: Vec<Quad>,
     /// Skin: pairs are listed whose surfaces are nearer than this (m).
@@ -166,21 +30,31 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Whether this is a list of so many grains.
+    /// Whether this is the whole list of so many grains.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
-        let Self { near, across, reference, .. } = self;
-        let known = reference.len() == grains || reference.is_empty();
-        let shifted = across.shift.len() == across.partner.len() || across.len() == 0;
-        known && shifted && near.shift.is_empty() && near.is_of(grains, layout) && across.is_of(grains, layout)
+        let known = self.reference.len() == grains || self.reference.is_empty();
+        known && matches!(&self.shares[..], [whole] if whole.is_of(grains, layout))
     }
 
+    /// No list yet.
     pub(crate) fn new(skin: f64) -> Self {
-        Self { near: Pairs::empty(), across: Pairs::empty(), reference: Vec::new(), skin, builds: 0 }
+        Self { shares: Vec::new(), reference: Vec::new(), skin, builds: 0 }
     }
 
-    /// Wraps the positions into the domain, sorts the grains and lists the pairs anew. Contacts go on remembering.
+    /// The same list in so many shares.
+    pub(crate) fn in_shares(&self, count: usize) -> Self {
+        let Self { reference, skin, builds, .. } = self;
+        let rows = rows_of(reference.len(), count);
+        let shares = rows.into_iter().map(|rows| Share::reaching(&self.shares, rows)).collect();
+        Self { shares, reference: reference.clone(), skin: *skin, builds: *builds }
+    }
+
+    /// Wraps the positions into the domain, sorts the grains and lists the pairs anew, in so many shares. Contacts go on
+    /// remembering.
     pub(crate) fn rebuild<S: Geometry>(
         &mut self,
+        team: &Team,
+        count: usize,
         grains: &mut Grains<S>,
         domain: Option<&Domain>,
         largest: f64,
@@ -196,29 +70,25 @@ impl Neighbours {
         let (cells, order) = Cells::sort::<S>(&grains.place, reach);
         grains.reorder(&order);
 
-        let near = near_pairs::<S>(&grains.place, &cells, self.skin, layout);
         let shifts = domain.map(half_of_the_shifts).unwrap_or_default();
-        let across = pairs_across::<S>(&grains.place, &cells, self.skin, reach, &shifts, layout);
-        let old = [std::mem::replace(&mut self.near, near), std::mem::replace(&mut self.across, across)];
-        if layout.numbers > 0 && self.builds > 0 {
-            let places = old.each_ref().map(Pairs::places);
-            for pairs in [&mut self.near, &mut self.across] {
-                for at in 0..pairs.len() {
-                    let (a, b) = (order[pairs.row[at] as usize], order[pairs.partner[at] as usize]);
-                    let found = |a, b| {
-                        let mut lists = old.iter().zip(&places);
-                        lists.find_map(|(old, places)| old.find(a, b).map(|from| (old, places[from])))
-                    };
-                    let (found, exchanged) = match found(a, b) {
-                        Some(found) => (Some(found), None),
-                        None => (found(b, a), Some(&layout)),
-                    };
-                    if let Some((old, place)) = found.filter(|&(_, place)| place > 0) {
-                        pairs.take(at, old, place, exchanged);
-                    }
-                }
-            }
+        let mut old = std::mem::take(&mut self.shares);
+        if layout.numbers == 0 {
+            old.clear();
         }
+        team.each(old.iter_mut(), |_, share| share.find_places());
+        let mut shares: Vec<Share> = rows_of(grains.len(), count).into_iter().map(Share::new).collect();
+        team.each(shares.iter_mut(), |_, share| {
+            share.near = near_pairs::<S>(&grains.place, &cells, self.skin, share.rows.clone(), layout);
+            share.across =
+                pairs_across::<S>(&grains.place, &cells, [self.skin, reach], &shifts, share.rows.clone(), layout);
+            share.take_over(&old, &order, &layout);
+        });
+        if shares.len() > 1 {
+            let mut complete: Vec<Share> = shares.iter().map(|share| Share::new(share.rows.clone())).collect();
+            team.each(complete.iter_mut(), |_, share| *share = Share::reaching(&shares, share.rows.clone()));
+            shares = complete;
+        }
+        self.shares = shares;
         self.reference.clone_from(&grains.place);
         self.builds += 1;
     }
@@ -235,8 +105,7 @@ impl Neighbours {
 
     /// Forgets what every contact remembers.
     pub(crate) fn forget(&mut self) {
-        self.near.forget();
-        self.across.forget();
+        self.shares.iter_mut().for_each(Share::forget);
     }
 }
 
@@ -259,9 +128,10 @@ fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
     between.dot(between) < reach * reach
 }
 
-/// Every pair that is near in the domain itself, once: each grain with those after it in its own cells and in the next.
-fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, layout: Layout) -> Pairs {
-    Pairs::list(place.len(), layout, |slot, partners, _| {
+/// Every pair of some rows that is near in the domain itself, once: each grain with those after it in its own cells and in
+/// the next.
+fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range<usize>, layout: Layout) -> Pairs {
+    Pairs::list(rows, layout, |slot, partners, _| {
         let grain = &place[slot];
         let [i, j, k] = cells.coordinates(S::vector_in_space(grain));
         let (left, right) = (i.saturating_sub(1), (i + 1).min(cells.count[0] - 1));
@@ -301,20 +171,20 @@ fn half_of_the_shifts(domain: &Domain) -> Vec<Vector3<f64>> {
     shifts
 }
 
-/// Every pair that is near across a periodic face, once, with its shift (m).
+/// Every pair of some rows that is near across a periodic face, once, with its shift (m).
 fn pairs_across<S: Geometry>(
     place: &[Quad],
     cells: &Cells,
-    skin: f64,
-    reach: f64,
+    [skin, reach]: [f64; 2],
     shifts: &[Vector3<f64>],
+    rows: Range<usize>,
     layout: Layout,
 ) -> Pairs {
     if shifts.is_empty() {
         return Pairs::empty();
     }
     let (low, high) = bounds::<S>(place);
-    Pairs::list(place.len(), layout, |slot, partners, shift_of| {
+    Pairs::list(rows, layout, |slot, partners, shift_of| {
         for shift in shifts {
             let image = S::vector_in_space(&place[slot]) + shift;
             if (0..S::DIMENSION).any(|axis| image[axis] < low[axis] - reach || image[axis] > high[axis] + reach) {
@@ -363,16 +233,16 @@ mod tests {
         (0..count).map(|_| Vector3::new(next(), next(), if dimension == 3 { next() } else { 0.0 })).collect()
     }
 
-    fn agrees_with_all_pairs<S: Geometry>(periodic: [bool; 3]) {
+    fn agrees_with_all_pairs<S: Geometry>(periodic: [bool; 3], shares: usize) {
         let (size, radius, skin) = (10.0, 0.5, 0.3);
         let points = scatter(300, S::DIMENSION, size);
         let domain = Domain { low: Vector3::zeros(), high: Vector3::repeat(size), periodic };
         let mut grains = Grains::<S>::at(&points, radius);
         let mut neighbours = Neighbours::new(skin);
-        neighbours.rebuild(&mut grains, Some(&domain), radius, NOTHING);
+        neighbours.rebuild(&Team::new(1), shares, &mut grains, Some(&domain), radius, NOTHING);
         let mut listed = BTreeSet::new();
-        for pairs in [&neighbours.near, &neighbours.across] {
-            for at in 0..pairs.len() {
+        for pairs in neighbours.shares.iter().flat_map(|share| [&share.near, &share.across]) {
+            for at in pairs.own() {
                 let (a, b) = (grains.id[pairs.row[at] as usize], grains.id[pairs.partner[at] as usize]);
                 assert!(listed.insert((a.min(b), a.max(b))), "pair {a} {b} listed twice");
             }
@@ -396,36 +266,13 @@ mod tests {
 
     #[test]
     fn lists_every_near_pair_once() {
-        agrees_with_all_pairs::<Plane>([false; 3]);
-        agrees_with_all_pairs::<Plane>([true, false, false]);
-        agrees_with_all_pairs::<Plane>([true, true, false]);
-        agrees_with_all_pairs::<Solid>([false; 3]);
-        agrees_with_all_pairs::<Solid>([false, true, false]);
-        agrees_with_all_pairs::<Solid>([true; 3]);
-    }
-
-    /// What a checkpoint may hold that some other program wrote.
-    #[test]
-    fn lists_of_other_grains_are_told() {
-        let layout = Layout { numbers: 1, ..NOTHING };
-        let pairs = Pairs::list(2, layout, |row, partners, _| {
-            if row == 0 {
-                partners.push(1)
-            }
-        });
-        let of = |pairs: &Pairs, grains: usize| pairs.is_of(grains, layout);
-        assert!(of(&pairs, 2) && of(&Pairs::empty(), 2) && !of(&pairs, 1) && !of(&pairs, 3));
-        let mut other = pairs.clone();
-        other.partner[0] = 2;
-        assert!(!of(&other, 2));
-        assert!(!of(&Pairs { start: vec![0, 2, 1], ..pairs.clone() }, 2));
-        assert!(!of(&Pairs { start: vec![0, 1, 2], ..pairs.clone() }, 2));
-        let mut other = pairs.clone();
-        other.row[0] = 1;
-        assert!(!of(&other, 2));
-        assert!(!of(&Pairs { touches: Vec::new(), ..pairs.clone() }, 2));
-        assert!(!of(&Pairs { touches: vec![1], ..pairs.clone() }, 2));
-        assert!(!of(&Pairs { memory: Default::default(), ..pairs.clone() }, 2));
-        assert!(!of(&Pairs { row: vec![0], ..pairs }, 2));
+        for shares in [1, 4] {
+            agrees_with_all_pairs::<Plane>([false; 3], shares);
+            agrees_with_all_pairs::<Plane>([true, false, false], shares);
+            agrees_with_all_pairs::<Plane>([true, true, false], shares);
+            agrees_with_all_pairs::<Solid>([false; 3], shares);
+            agrees_with_all_pairs::<Solid>([false, true, false], shares);
+            agrees_with_all_pairs::<Solid>([true; 3], shares);
+        }
     }
 }

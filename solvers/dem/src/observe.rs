@@ -17,11 +17,10 @@ pub(crate) fn look<S: Geometry>(simulation: &Simulated<S>) -> Look {
             (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
         }
     }
-    let elastic_energy = simulation.seen.iter().map(|seen| seen.elastic_energy).sum();
+    let elastic_energy = simulation.seen().map(|seen| seen.elastic_energy).sum();
     let budget = simulation.accounting.then(|| simulation.accounts.budget(scene, &grains, elastic_energy));
     let mut contacts: Vec<ContactState> = simulation
-        .seen
-        .iter()
+        .seen()
         .map(|seen| ContactState {
             grain: seen.grain,
             partner: seen.partner,

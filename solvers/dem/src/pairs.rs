@@ -9,9 +9,9 @@ use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Memory};
 use crate::forces::Terms;
 use crate::geometry::Geometry;
-use crate::grains::Grains;
+use crate::grains::{Read, Sums};
 use crate::laws::{Constants, gathered, places};
-use crate::neighbours::Pairs;
+use crate::listed::Pairs;
 use crate::touching::Touching;
 use grainbench_lanes::{Kernel, Lanes, Quad, WIDEST, Wide};
 use grainbench_scene::record::Partner;
@@ -23,26 +23,10 @@ pub(crate) struct OfPairs<'a, S: Geometry, N, T, R> {
     touching: &'a Touching,
     grains: Read<'a>,
     sums: Sums<'a>,
+    shift: &'a [Quad],
     memory: [Remembered<'a>; 2],
-    id: &'a [u32],
     seen: Option<&'a mut Vec<Seen>>,
     chain: PhantomData<(S, N, T, R)>,
-}
-
-/// What is read of grains and of the list. The tables of grains have one length: a place in one of them is a place in all.
-struct Read<'a> {
-    place: &'a [Quad],
-    movement: &'a [Quad],
-    turning: &'a [Quad],
-    inverse_inertia: &'a [f64],
-    material: &'a [u16],
-    shift: &'a [Quad],
-}
-
-/// What is added up of grains.
-struct Sums<'a> {
-    load: &'a mut [Quad],
-    torque: &'a mut [Quad],
 }
 
 /// Four numbers that contacts remember, and where the next are kept.
@@ -64,7 +48,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
     /// The loop over these pairs.
     pub(crate) fn new(
         terms: Terms<'a>,
-        grains: &'a mut Grains<S>,
+        (grains, sums): (Read<'a>, Sums<'a>),
         pairs: &'a mut Pairs,
         touching: &'a Touching,
         seen: Option<&'a mut Vec<Seen>>,
@@ -72,7 +56,6 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         let kept = touching.kept_from()..touching.kept_from() + touching.count;
         pairs.make_room(kept.end);
         let Pairs { shift, memory: [low, high], next: [low_next, high_next], .. } = pairs;
-        let Grains { place, movement, turning, load, torque, inverse_inertia, material, id, .. } = grains;
         let remembered = |last: &'a [Quad], next: &'a mut [Quad]| Remembered {
             last,
             next: next.get_mut(kept.clone()).unwrap_or_default(),
@@ -80,10 +63,10 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         Self {
             terms,
             touching,
-            grains: Read { place, movement, turning, inverse_inertia, material, shift },
-            sums: Sums { load, torque },
+            grains,
+            sums,
+            shift,
             memory: [remembered(low, low_next), remembered(high, high_next)],
-            id,
             seen,
             chain: PhantomData,
         }
@@ -99,7 +82,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         law: &'l Constants<Wide<L>>,
     ) -> Pair<'l, S, Wide<L>> {
         let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
-        let Read { place, movement, turning, inverse_inertia: inertia, shift, .. } = self.grains;
+        let (Read { place, movement, turning, inverse_inertia: inertia, .. }, shift) = (self.grains, self.shift);
         let at = [gathered(lanes, place, first), gathered(lanes, place, second)];
         let moves = [gathered(lanes, movement, first), gathered(lanes, movement, second)];
         let mut between = S::vector(at[1]) - S::vector(at[0]);
@@ -165,27 +148,27 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
     #[inline(always)]
     fn add<L: Lanes>(&mut self, lanes: L, answer: &Answer<S, Wide<L>>, slots: &Slots, count: usize) {
         let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
-        let Sums { load, torque } = &mut self.sums;
+        let sums = &mut self.sums;
         let [one, on_one] = S::load(answer.force, answer.torques[0], zero);
         let [other, on_other] = S::load(-answer.force, answer.torques[1], zero);
         let one = spread(lanes, one);
         if S::DIMENSION == 2 && T::ACTIVE {
             let other = spread(lanes, other);
             for lane in 0..count {
-                load[first[lane]].add(&one[lane]);
-                load[second[lane]].add(&other[lane]);
+                sums.add_load(first[lane], &one[lane]);
+                sums.add_load(second[lane], &other[lane]);
             }
         } else {
             for lane in 0..count {
-                load[first[lane]].add(&one[lane]);
-                load[second[lane]].subtract(&one[lane]);
+                sums.add_load(first[lane], &one[lane]);
+                sums.subtract_load(second[lane], &one[lane]);
             }
         }
         if S::DIMENSION == 3 && T::ACTIVE {
             let [on_one, on_other] = [spread(lanes, on_one), spread(lanes, on_other)];
             for lane in 0..count {
-                torque[first[lane]].add(&on_one[lane]);
-                torque[second[lane]].add(&on_other[lane]);
+                sums.add_torque(first[lane], &on_one[lane]);
+                sums.add_torque(second[lane], &on_other[lane]);
             }
         }
     }
@@ -202,7 +185,6 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel for OfPairs
         self.grains.movement = &self.grains.movement[..grains];
         self.grains.material = &self.grains.material[..grains];
         self.grains.turning = &self.grains.turning[..turning];
-        self.sums = Sums { load: &mut self.sums.load[..grains], torque: &mut self.sums.torque[..turning] };
         let (laws, touching) = (self.terms.laws, self.touching);
         let evaluation = self.terms.evaluation(L::WIDTH == 1 && self.seen.is_some());
         let mut law = laws.gather(lanes, &[0; WIDEST]);
@@ -225,11 +207,11 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel for OfPairs
             self.remember(lanes, &memory, from, count);
             if evaluation.record
                 && let Some(seen) = &mut self.seen
+                && self.sums.holds(slots.first[0])
             {
-                let (one, other) = (slots.first[0], slots.second[0]);
-                let place = &self.grains.place[one];
-                let partner = Partner::Grain(self.id[other] + 1);
-                seen.push(Seen::new(&answer, self.id[one] + 1, partner, S::vector_in_space(place), place.0[3]));
+                let (one, other, Read { place, id, .. }) = (slots.first[0], slots.second[0], self.grains);
+                let partner = Partner::Grain(id[other] + 1);
+                seen.push(Seen::new(&answer, id[one] + 1, partner, S::vector_in_space(&place[one]), place[one].0[3]));
             }
         }
     }

@@ -1,11 +1,11 @@
-//! Loops over pairs are compiled once for every path of the processor; what they compute is the same, and what is known
-//! by hand of one contact holds on each.
+//! Loops over pairs are compiled once for every path of the processor, and threads share them; what they compute is the
+//! same.
 
 use crate::convention::Convention;
 use crate::geometry::Geometry;
 use crate::simulation::Simulated;
 use crate::solver::{plane, solid};
-use grainbench_lanes::Processor;
+use grainbench_lanes::{Processor, Team};
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
@@ -52,14 +52,18 @@ fn scene(dimension: usize) -> Scene {
 }
 
 /// State after some steps, and what was seen at the end, as text.
-fn state<S: Geometry>(scene: &Scene, simulation: impl Fn(&Scene) -> Simulated<S>, path: Processor) -> String {
-    let mut simulation = simulation(scene);
+fn state<S: Geometry>(mut simulation: Simulated<S>, path: Processor) -> String {
     simulation.processor = path;
+    simulation.fewest_in_a_share = 5;
     simulation.take_cycles(300).unwrap_or_else(|error| panic!("{error:?}"));
-    let touched: u32 = simulation.neighbours.near.touches.iter().map(|bits| bits.count_ones()).sum();
-    let across: u32 = simulation.neighbours.across.touches.iter().map(|bits| bits.count_ones()).sum();
+    assert_eq!(simulation.neighbours.shares.len(), simulation.shares(), "lists were made anew on the way");
+    let listed = simulation.neighbours.in_shares(1);
+    let touched: u32 = listed.shares[0].near.touches.iter().map(|bits| bits.count_ones()).sum();
+    let across: u32 = listed.shares[0].across.touches.iter().map(|bits| bits.count_ones()).sum();
     assert!(touched == 0 || (touched > 10 && across > 0), "{touched} pairs touch, {across} across a face");
-    format!("{:?} {:?} {:?}", simulation.grains, simulation.neighbours, simulation.seen)
+    let seen: Vec<_> = simulation.seen().collect();
+    let counts = simulation.cost;
+    format!("{:?} {listed:?} {seen:?} {counts:?}", simulation.grains)
 }
 
 /// Laws with every combination of effects, some of which only one of the materials has.
@@ -89,17 +93,22 @@ fn laws() -> Vec<(String, ContactLaw, ContactLaw)> {
     laws
 }
 
-fn same_on_all<S: Geometry>(simulated: fn(&Scene, &Convention) -> Simulated<S>) {
+fn same_on_all<S: Geometry>(simulated: fn(&Scene, &Convention, Team) -> Simulated<S>) {
     let mut scene = scene(<S as Space>::DIMENSION);
+    let teams = [2, 3, 7].map(Team::new);
     for (name, law, other) in laws() {
         for (number, each) in scene.laws.iter_mut().flatten().enumerate() {
             *each = if number % 2 == 0 { law } else { other };
         }
         for convention in Convention::ALL {
-            let of = |path| state(&scene, |scene| simulated(scene, &convention), path);
-            let expected = of(Processor::Portable);
+            let of = |path, team: &Team| state(simulated(&scene, &convention, team.clone()), path);
+            let expected = of(Processor::Portable, &Team::default());
             for path in Processor::all() {
-                assert!(of(path) == expected, "{}, {name}: {}", convention.name, path.name());
+                assert!(of(path, &Team::default()) == expected, "{}, {name}: {}", convention.name, path.name());
+            }
+            for team in &teams {
+                let threads = team.members();
+                assert!(of(Processor::best(), team) == expected, "{}, {name}: {threads} threads", convention.name);
             }
         }
     }
@@ -109,19 +118,20 @@ fn simulated<S: Geometry>(
     scene: &Scene,
     convention: &Convention,
     forces: Box<dyn crate::forces::Forces<S>>,
+    team: Team,
 ) -> Simulated<S> {
     let options = crate::contact::Options::of(convention);
-    Simulated::new(scene, forces, options, 2e-4).unwrap_or_else(|error| panic!("{error:?}"))
+    Simulated::new(scene, forces, options, 2e-4, team).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 #[test]
-fn runs_leave_the_same_bits_on_all_paths_in_the_plane() {
-    same_on_all(|scene, convention| simulated(scene, convention, plane(scene, convention)));
+fn runs_leave_the_same_bits_on_all_paths_and_threads_in_the_plane() {
+    same_on_all(|scene, convention, team| simulated(scene, convention, plane(scene, convention), team));
 }
 
 #[test]
-fn runs_leave_the_same_bits_on_all_paths_in_space() {
-    same_on_all(|scene, convention| simulated(scene, convention, solid(scene)));
+fn runs_leave_the_same_bits_on_all_paths_and_threads_in_space() {
+    same_on_all(|scene, convention, team| simulated(scene, convention, solid(scene), team));
 }
 
 /// Grains that are moved while they are at hand end where they do when every cycle is taken by itself.
@@ -131,9 +141,9 @@ fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
     for (name, law, _) in laws() {
         scene.change_laws(|each| *each = law);
         let end = |at_once: u64| {
-            let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene));
+            let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene), Team::default());
             (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
-            format!("{:?} {:?}", simulation.grains, simulation.neighbours.near.memory)
+            format!("{:?} {:?}", simulation.grains, simulation.neighbours.shares[0].near.memory)
         };
         assert!(end(60) == end(1), "{name}");
     }

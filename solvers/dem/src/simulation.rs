@@ -10,12 +10,12 @@ use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
 use crate::grains::Grains;
 use crate::laws::Laws;
-use crate::motion::Motion;
+use crate::motion::{Motion, Moving};
 use crate::neighbours::Neighbours;
+use crate::share::{Evaluation, FEWEST, Share};
 use crate::stability::stable_fraction;
-use crate::touching::{Touching, blocks};
 use crate::walls::{MovingWall, NearWall};
-use grainbench_lanes::Processor;
+use grainbench_lanes::{Processor, Team};
 use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Broken, Cause, Subject};
@@ -34,14 +34,17 @@ pub(crate) struct Simulated<S: Geometry> {
     pub(crate) motion: Motion,
     pub(crate) grains: Grains<S>,
     pub(crate) neighbours: Neighbours,
-    touching: Touching,
     pub(crate) walls: Vec<MovingWall>,
     /// The loops over contacts, compiled for the laws of the scene.
     pub(crate) forces: Box<dyn Forces<S>>,
     /// The path through them.
     pub(crate) processor: Processor,
-    /// Every contact of the last force evaluation, if it was recorded.
-    pub(crate) seen: Vec<Seen>,
+    /// The threads of the run.
+    team: Team,
+    /// Fewest grains in a share.
+    pub(crate) fewest_in_a_share: usize,
+    /// Every contact with a wall in the last force evaluation, if it was recorded.
+    seen_at_walls: Vec<Seen>,
     /// Largest radius of a grain (m).
     largest_radius: f64,
     /// Critical time step 2√(m_min/k_max) of the scene (s).
@@ -69,6 +72,7 @@ impl<S: Geometry> Simulated<S> {
         forces: Box<dyn Forces<S>>,
         options: Options,
         time_step: f64,
+        team: Team,
     ) -> Result<Self, Box<Broken>> {
         let largest_radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
         let mean_radius = scene.grains.iter().map(|grain| grain.radius).sum::<f64>() / scene.grains.len() as f64;
@@ -79,10 +83,11 @@ impl<S: Geometry> Simulated<S> {
             grains: Grains::new(scene, forces.turn()),
             neighbours: Neighbours::new(SKIN * mean_radius),
             walls: scene.walls.iter().map(MovingWall::new).collect(),
-            touching: Touching::default(),
             forces,
             processor: Processor::new(),
-            seen: Vec::new(),
+            team,
+            fewest_in_a_share: FEWEST,
+            seen_at_walls: Vec::new(),
             motion: Motion { gravity, global_damping: scene.global_damping, time_step },
             largest_radius,
             critical: scene.critical_time_step(),
@@ -110,8 +115,24 @@ impl<S: Geometry> Simulated<S> {
         Ok(simulation)
     }
 
+    /// Shares that the list is in: as many as there are threads, if there are grains enough.
+    pub(crate) fn shares(&self) -> usize {
+        self.team.members().min(self.grains.len() / self.fewest_in_a_share).max(1)
+    }
+
+    /// Every contact of the last force evaluation, if it was recorded: with walls, across periodic faces, and others.
+    pub(crate) fn seen(&self) -> impl Iterator<Item = &Seen> {
+        let of = |list: usize| self.neighbours.shares.iter().flat_map(move |share| share.seen()[list]);
+        self.seen_at_walls.iter().chain(of(0)).chain(of(1))
+    }
+
     /// Takes `steps` cycles.
     pub(crate) fn take_cycles(&mut self, steps: u64) -> Result<(), Box<Broken>> {
+        let team = self.team.clone();
+        team.lead(|| self.cycles(steps))
+    }
+
+    fn cycles(&mut self, steps: u64) -> Result<(), Box<Broken>> {
         // Where nothing is done between finding forces and moving by them, grains are moved while they are at hand.
         let at_once = !self.accounting && self.scene.driven.is_empty();
         let mut has_moved = false;
@@ -130,9 +151,7 @@ impl<S: Geometry> Simulated<S> {
         let half_skin = 0.5 * self.neighbours.skin;
         if !has_moved {
             self.shield_driven();
-            let all = 0..self.grains.len();
-            let fastest = self.motion.advance(&mut self.grains, all);
-            self.travel(fastest);
+            self.move_grains();
         }
         self.drive(self.motion.time_step);
         self.step += 1;
@@ -157,41 +176,46 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
+    /// Moves all grains over one step, by the forces on them.
+    fn move_grains(&mut self) {
+        let Self { motion, grains, neighbours, team, .. } = self;
+        let all = 0..grains.len();
+        let mut left = Moving::of(grains, all);
+        let parts = neighbours.shares.iter().map(|share| left.take_off(share.rows.len()));
+        let fastest = team.fold(parts, |_, part| motion.advance::<S>(part), 0.0, f64::max);
+        self.travel(fastest);
+    }
+
     /// Finds the forces and torques at all contacts; springs are stretched by what slipped and rolled in `elapsed` (s).
     fn evaluate_forces(&mut self, record: bool, elapsed: f64, move_on: bool) {
-        let Self { laws, options, motion, grains, neighbours, touching, walls, forces, processor, seen, cost, .. } =
-            self;
+        let Self {
+            laws, options, motion, grains, neighbours, walls, forces, processor, seen_at_walls, cost, team, ..
+        } = self;
         let terms = Terms { laws, options, elapsed };
         if record {
-            seen.clear();
+            seen_at_walls.clear();
         }
         for (number, wall) in walls.iter_mut().enumerate() {
             cost.pair_tests += wall.near.len() as u64;
-            let seen = record.then_some(&mut *seen);
+            let seen = record.then_some(&mut *seen_at_walls);
             cost.contact_evaluations += forces.at_wall(terms, grains, wall, number as u16, seen);
         }
-        let (mut moved, mut fastest) = (0, 0.0_f64);
-        for pairs in [&mut neighbours.across, &mut neighbours.near] {
-            let is_last = pairs.shift.is_empty();
-            let mut contacts = 0;
-            for block in blocks(pairs.len()) {
-                // All pairs of the grains in the rows before the next have been looked at.
-                let done = if block.end < pairs.len() { pairs.row[block.end] as usize } else { moved };
-                touching.find(*processor, grains, pairs, block);
-                contacts += touching.count;
-                forces.of_pairs(*processor, terms, grains, pairs, touching, record.then_some(&mut *seen));
-                if move_on && is_last {
-                    fastest = fastest.max(motion.advance(grains, moved..done));
-                    moved = done;
-                }
+        cost.pair_tests += neighbours.shares.iter().map(|share| share.pairs() as u64).sum::<u64>();
+        let evaluation = Evaluation { forces: &**forces, processor: *processor, terms, record };
+        if let [whole] = &mut neighbours.shares[..] {
+            let (contacts, fastest) = evaluate_and_move(whole, &evaluation, grains, move_on.then_some(&*motion));
+            cost.contact_evaluations += contacts;
+            if move_on {
+                self.travel(fastest);
             }
-            pairs.remember(contacts);
-            cost.pair_tests += pairs.len() as u64;
-            cost.contact_evaluations += contacts as u64;
+            return;
         }
+        let (read, mut left) = grains.parts();
+        let parts = neighbours.shares.iter_mut().map(|share| (left.take_off(share.rows.len()), share));
+        let evaluate = |_, (sums, share): (_, &mut Share)| share.evaluate(&evaluation, read, sums);
+        cost.contact_evaluations += team.fold(parts, evaluate, 0, |sum, contacts| sum + contacts);
         if move_on {
-            fastest = fastest.max(motion.advance(grains, moved..grains.len()));
-            self.travel(fastest);
+            self.move_grains();
         }
     }
 
@@ -240,7 +264,7 @@ impl<S: Geometry> Simulated<S> {
             velocities: velocities.collect(),
             gravity: self.scene.gravity,
             free_mass: self.free_mass,
-            friction: self.seen.iter().map(|seen| seen.rubbed).sum(),
+            friction: self.seen().map(|seen| seen.rubbed).sum(),
             time_step: self.motion.time_step,
         });
     }
@@ -263,7 +287,9 @@ impl<S: Geometry> Simulated<S> {
             .map(|wall| wall.near.iter().map(|&(slot, memory)| (self.grains.id[slot as usize], memory)).collect())
             .collect();
         let layout = self.forces.layout();
-        self.neighbours.rebuild(&mut self.grains, domain.as_ref(), self.largest_radius, layout);
+        let shares = self.shares();
+        let Self { neighbours, grains, team, largest_radius, .. } = self;
+        neighbours.rebuild(team, shares, grains, domain.as_ref(), *largest_radius, layout);
         let mut remembered = vec![[0.0; MEMORY]; self.grains.len()];
         self.extent = 0.0;
         for (wall, before) in self.walls.iter_mut().zip(&by_wall) {
@@ -327,4 +353,33 @@ impl<S: Geometry> Simulated<S> {
             advice,
         })
     }
+}
+
+/// Finds the forces of all pairs, and moves the grains while they are at hand, if they are to be moved. Gives the number of
+/// contacts and the speed of the fastest grain, squared (m²/s²).
+fn evaluate_and_move<S: Geometry>(
+    whole: &mut Share,
+    evaluation: &Evaluation<'_, S>,
+    grains: &mut Grains<S>,
+    motion: Option<&Motion>,
+) -> (u64, f64) {
+    let [mut across, mut near] = whole.lists();
+    for block in across.blocks() {
+        let (read, sums) = grains.parts();
+        across.evaluate(evaluation, read, sums, block);
+    }
+    let (mut moved, mut fastest) = (0, 0.0_f64);
+    for block in near.blocks() {
+        let (read, sums) = grains.parts();
+        near.evaluate(evaluation, read, sums, block.clone());
+        if let (Some(motion), Some(row)) = (motion, near.row_after(&block)) {
+            fastest = fastest.max(motion.advance::<S>(Moving::of(grains, moved..row)));
+            moved = row;
+        }
+    }
+    if let Some(motion) = motion {
+        let left = moved..grains.len();
+        fastest = fastest.max(motion.advance::<S>(Moving::of(grains, left)));
+    }
+    (across.end() + near.end(), fastest)
 }

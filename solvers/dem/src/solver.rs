@@ -8,8 +8,10 @@ use crate::convention::{Convention, History};
 use crate::edge::Simulation;
 use crate::forces::{Chain, Forces};
 use crate::geometry::Geometry;
+use crate::share::FEWEST;
 use crate::simulation::Simulated;
 use crate::stability::damped_step;
+use grainbench_lanes::Team;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
@@ -50,10 +52,19 @@ impl Dem {
     /// # Errors
     /// When the scene cannot be expressed or is broken from the start.
     pub fn start(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, RunError> {
+        self.start_on(scene, time_step, 1)
+    }
+
+    /// The same, on so many threads at most.
+    ///
+    /// # Errors
+    /// When the scene cannot be expressed or is broken from the start.
+    pub fn start_on(&self, scene: &Scene, time_step: f64, threads: usize) -> Result<Box<dyn Simulation>, RunError> {
         self.refuse(scene)?;
+        let team = Team::new(threads.min(scene.grains.len() / FEWEST));
         let simulation: Result<Box<dyn Simulation>, Box<Broken>> = match scene.dimension {
-            Dimension::Two => self.start_with(scene, plane(scene, &self.convention), time_step),
-            Dimension::Three => self.start_with(scene, solid(scene), time_step),
+            Dimension::Two => self.start_with(scene, plane(scene, &self.convention), time_step, team),
+            Dimension::Three => self.start_with(scene, solid(scene), time_step, team),
         };
         simulation.map_err(RunError::Broken)
     }
@@ -63,8 +74,9 @@ impl Dem {
         scene: &Scene,
         forces: Box<dyn Forces<S>>,
         time_step: f64,
+        team: Team,
     ) -> Result<Box<dyn Simulation>, Box<Broken>> {
-        Ok(Box::new(Simulated::new(scene, forces, Options::of(&self.convention), time_step)?))
+        Ok(Box::new(Simulated::new(scene, forces, Options::of(&self.convention), time_step, team)?))
     }
 
     /// The run that a checkpoint belongs to.
@@ -142,7 +154,7 @@ impl Dem {
         self.refuse(scene)?;
         let (time_step, steps) = self.steps(scene, resolution)?;
         self.refuse_lagging_dashpots(scene, time_step)?;
-        let mut simulation = self.start(scene, time_step)?;
+        let mut simulation = self.start_on(scene, time_step, watch.threads())?;
         let identity = self.identity(scene, time_step, steps, simulation.layout());
         let resumed = from.map(|checkpoint| simulation.recall(&identity, checkpoint)).transpose()?;
         let mut running = Running { simulation, identity, defect: self.defect };

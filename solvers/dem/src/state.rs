@@ -32,7 +32,7 @@ impl<S: Geometry> Simulated<S> {
     pub(crate) fn kept(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
         let state = State::<S> {
             grains: self.grains.clone(),
-            neighbours: self.neighbours.clone(),
+            neighbours: self.neighbours.in_shares(1),
             walls: self.walls.iter().map(|wall| wall.memory()).collect(),
             step: self.step,
             extent: self.extent,
@@ -59,7 +59,7 @@ impl<S: Geometry> Simulated<S> {
             return Err(CheckpointError::Damaged("it has other grains, pairs or walls".to_owned()));
         }
         self.grains = state.grains;
-        self.neighbours = state.neighbours;
+        self.neighbours = state.neighbours.in_shares(self.shares());
         self.walls.iter_mut().zip(state.walls).for_each(|(wall, memory)| wall.recall(memory));
         self.step = state.step;
         // Not stored: it is found anew.

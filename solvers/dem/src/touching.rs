@@ -2,10 +2,9 @@
 //! hold.
 
 use crate::geometry::{Geometry, Linear};
-use crate::grains::Grains;
 use crate::laws::{gathered, places};
-use crate::neighbours::Pairs;
-use grainbench_lanes::{Kernel, Lanes, Number, Processor, WIDEST};
+use crate::listed::Pairs;
+use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, WIDEST};
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -40,7 +39,7 @@ impl Touching {
     pub(crate) fn find<S: Geometry>(
         &mut self,
         processor: Processor,
-        grains: &Grains<S>,
+        place: &[Quad],
         pairs: &mut Pairs,
         block: Range<usize>,
     ) {
@@ -52,7 +51,7 @@ impl Touching {
         } else {
             self.before[1] += self.count;
         }
-        processor.run(Find::<S> { grains, pairs, block, touching: self, space: PhantomData });
+        processor.run(Find::<S> { place, pairs, block, touching: self, space: PhantomData });
         for all in [&mut self.first, &mut self.second, &mut self.pair, &mut self.remembered] {
             let last = self.count.checked_sub(1).map_or(0, |last| all[last]);
             all[self.count..self.count + WIDEST].fill(last);
@@ -67,7 +66,7 @@ impl Touching {
 
 /// The loop over listed pairs.
 struct Find<'a, S: Geometry> {
-    grains: &'a Grains<S>,
+    place: &'a [Quad],
     pairs: &'a mut Pairs,
     block: Range<usize>,
     touching: &'a mut Touching,
@@ -79,9 +78,8 @@ impl<S: Geometry> Kernel for Find<'_, S> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { grains, pairs, block, touching, space: _ } = self;
+        let Self { place, pairs, block, touching, space: _ } = self;
         let Pairs { row, partner, shift, touches, .. } = pairs;
-        let place = &grains.place[..];
         let Touching { count, first, second, pair, remembered, before } = touching;
         let mut had = before[0];
         *count = 0;

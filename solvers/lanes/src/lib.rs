@@ -5,6 +5,8 @@
 //! all processors. So nothing is fused, and no loop is left to the compiler to reorder. [`logarithm`] is here for the same
 //! reason: that of a system's library depends on the processor.
 //!
+//! And the threads of one run stand here ([`Team`]): who computes what never shows in the numbers either.
+//!
 //! Whatever computes with lanes is inlined into the loop that is compiled for the processor. Closures may not be, and
 //! then every operation is a call: there are none, but those that only look something up.
 
@@ -17,11 +19,13 @@ mod number;
 mod portable;
 mod processor;
 mod single;
+mod team;
 
 pub use number::{Number, Wide};
 pub use portable::Portable;
 pub use processor::{FourKernel, Kernel, PROCESSOR, Processor};
 pub use single::Single;
+pub use team::{Team, take_off};
 
 use serde::{Deserialize, Serialize};
 

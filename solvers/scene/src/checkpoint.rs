@@ -13,7 +13,7 @@ use thiserror::Error;
 /// What a checkpoint begins with, before the number of its format.
 const MAGIC: &[u8] = b"grainbench checkpoint ";
 /// The format that this program writes: to be raised whenever anything that is stored changes its meaning or its place.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 /// Length of the longest first line that a format of ours could have.
 const LONGEST_LINE: usize = MAGIC.len() + 11;
 
@@ -272,8 +272,8 @@ mod tests {
         assert_eq!(Checkpoint::from_bytes(&[0; 100]), Err(CheckpointError::Foreign));
         let older = [b"grainbench checkpoint 1\n".as_slice(), &bytes()[24..]].concat();
         assert_eq!(Checkpoint::from_bytes(&older), Err(CheckpointError::Older { found: 1 }));
-        let newer = [b"grainbench checkpoint 3\n".as_slice(), &bytes()[24..]].concat();
-        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found: 3 }));
+        let newer = [b"grainbench checkpoint 4\n".as_slice(), &bytes()[24..]].concat();
+        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found: 4 }));
     }
 
     #[test]

@@ -414,6 +414,11 @@ fn last_words(lines: &[String]) -> String {
 pub trait Watch {
     /// Called once, before the first step, with the time step (s) and the number of steps.
     fn begin(&mut self, _time_step: f64, _steps: u64) {}
+    /// Threads that the run may take, of solvers that share their work among threads; asked for once. The record does not
+    /// depend on it in any bit.
+    fn threads(&self) -> usize {
+        1
+    }
     /// Called now and then with the number of steps done and to do.
     fn progress(&mut self, done: u64, total: u64);
     /// Steps from one checkpoint to the next; asked for once, after [`Watch::begin`]. None when no checkpoint is
@@ -446,6 +451,16 @@ pub trait Watch {
 
 /// Nobody watches.
 impl Watch for () {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+}
+
+/// Nobody watches, and the run may take so many threads.
+pub struct Threads(pub usize);
+
+impl Watch for Threads {
+    fn threads(&self) -> usize {
+        self.0
+    }
     fn progress(&mut self, _done: u64, _total: u64) {}
 }
 

@@ -15,7 +15,7 @@ pub(crate) struct NormalForce<X> {
 }
 
 /// The normal stage.
-pub(crate) trait Normal: Copy + Send + 'static {
+pub(crate) trait Normal: Copy + Send + Sync + 'static {
     /// Whether dashpots act at contacts, along the tangent too.
     const DAMPED: bool;
     /// Whether the stage reads the effective radius.

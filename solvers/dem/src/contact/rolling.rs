@@ -6,7 +6,7 @@ use crate::geometry::{Geometry, Linear};
 use grainbench_lanes::Number;
 
 /// The rolling stage.
-pub(crate) trait Rolling<S: Geometry>: Copy + Send + 'static {
+pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
     /// Whether there is a moment at all.
     const ACTIVE: bool;
     /// Numbers that a contact remembers from step to step. With the roles of first and second grain exchanged they have the

@@ -21,7 +21,7 @@ pub(crate) struct Shear<S: Geometry, X: Number> {
 }
 
 /// The tangential stage.
-pub(crate) trait Tangential<S: Geometry>: Copy + Send + 'static {
+pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
     /// Whether there is a tangential force at all.
     const ACTIVE: bool;
     /// Numbers that a contact remembers from step to step, first in its memory: the stretch of its tangential spring (m).
@@ -186,7 +186,7 @@ impl<X: Number> Bound<X> {
 }
 
 /// How the stretch of a tangential spring is carried along with a contact that turns.
-pub(crate) trait Carrying<S: Geometry>: Copy + Debug + Send + 'static {
+pub(crate) trait Carrying<S: Geometry>: Copy + Debug + Send + Sync + 'static {
     /// Numbers that are remembered of the stretch.
     const NUMBERS: usize;
     /// What they are multiplied by when the roles of first and second grain are exchanged.
