@@ -165,7 +165,6 @@ pub(crate) fn seed<S: Space>(
                 part: Part {
                     points: first.0..points.len(),
                     window: crate::grid::Window::default(),
-                    runs: 0..0,
                     runs_in_order: 0,
                     half,
                     cell_mass: blank.density * lattice.cell[..S::DIMENSION].iter().product::<f64>(),

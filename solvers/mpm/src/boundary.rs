@@ -5,6 +5,7 @@ use crate::driven::Driven;
 use crate::grid::Lattice;
 use crate::held::Held;
 use crate::nodes::Grid;
+use crate::state::State;
 use crate::walls::RigidPlane;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
@@ -40,10 +41,10 @@ impl<S: Space> Boundary<S> {
     }
 
     /// Projected momenta become velocities that held sides and driven bodies allow.
-    pub(crate) fn hold_projected(&self, bodies: &[Body], grid: &mut Grid<S>) {
-        self.held.fold_projected::<S>(bodies, &mut grid.projected);
-        grid.divide_projected();
-        self.held.hold_projected::<S>(bodies, &mut grid.projected);
+    pub(crate) fn hold_projected(&self, state: &State<S>, grid: &mut Grid<S>) {
+        self.held.fold_projected::<S>(&state.bodies, &mut grid.projected);
+        grid.divide_projected(state);
+        self.held.hold_projected::<S>(&state.bodies, &mut grid.projected);
         self.driven.hold_projected(&mut grid.projected, &grid.nodes);
     }
 }

@@ -13,22 +13,24 @@
 
 use crate::basis::{Basis, with_basis};
 use crate::damping::Damping;
-use crate::grid::{Lattice, Node};
-use crate::nodes::Grid;
+use crate::grid::{Lattice, Node, Stencil};
+use crate::nodes::{Grid, Own};
 use crate::options;
-use crate::patch::{Copies, Patch};
-use crate::points::Points;
+use crate::patch::{Copies, Patch, Summed};
+use crate::points::{Lent, Points};
 use crate::runs::{Ground, Run};
 use crate::scatter::{Shown, weighted};
 use crate::scheme::Scheme;
+use crate::share::Share;
 use crate::state::State;
 use crate::transfer::{Apic, Flip, Part, Spin, Transfer};
-use grainbench_lanes::{FourKernel, FourLanes, Number, Wide};
+use grainbench_lanes::{FourKernel, FourLanes, Number, Wide, take_off};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 
-/// Points take velocities and the way that they go from the nodes, body by body.
+/// Points take velocities and the way that they go from the nodes; and, for MUSL, bring momentum with their new velocities to
+/// the nodes once more: in the same loop to nodes that no share before reaches, then to the others.
 pub(crate) fn gather<S: Space>(
     scheme: &Scheme,
     Damping { keep, .. }: Damping,
@@ -36,36 +38,72 @@ pub(crate) fn gather<S: Space>(
     grid: &mut Grid<S>,
 ) {
     let Grid { lattice, nodes, projected, .. } = grid;
-    let State { bodies, points, runs, .. } = state;
+    let State { bodies, points, shares, team, .. } = state;
     let Scheme { setting, time_step, processor } = *scheme;
-    macro_rules! gather {
-        ($B:ty, $T:ty, $transfer:expr, $part:expr, $project:literal) => {{
-            let (transfer, part, basis) = ($transfer, $part, PhantomData::<$B>);
-            let runs = &runs[part.runs.clone()];
-            let gather: Gather<'_, S, $B, $T, $project> =
-                Gather { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, basis };
-            processor.run_by_four(gather);
-        }};
-        ($B:ty, $T:ty, $transfer:expr, $part:expr) => {
-            if scheme.is_projected() {
-                gather!($B, $T, $transfer, $part, true)
-            } else {
-                gather!($B, $T, $transfer, $part, false)
+    let (mut left, mut left_projected) = (points.lent(), &mut projected[..]);
+    let parts = shares.iter().map(|share| {
+        let projected = take_off(&mut left_projected, share.nodes.len());
+        (left.take_off(share.points.len()), &mut projected[share.alone_from - share.nodes.start..])
+    });
+    team.each(parts, |number, (mut points, projected)| {
+        macro_rules! gather {
+            ($B:ty, $T:ty, $transfer:expr, $part:expr, $runs:expr, $project:literal) => {{
+                let (transfer, part, runs, basis) = ($transfer, $part, $runs, PhantomData::<$B>);
+                let (points, projected) = (&mut points, Summed::new(shares[number].alone_from, projected));
+                let gather: Gather<'_, '_, S, $B, $T, $project> =
+                    Gather { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, basis };
+                processor.run_by_four(gather);
+            }};
+            ($B:ty, $T:ty, $transfer:expr, $part:expr, $runs:expr) => {
+                if scheme.is_projected() {
+                    gather!($B, $T, $transfer, $part, $runs, true)
+                } else {
+                    gather!($B, $T, $transfer, $part, $runs, false)
+                }
+            };
+        }
+        for (body, runs) in shares[number].parts(bodies) {
+            with_basis!(setting.basis, B => match setting.transfer {
+                options::Transfer::Flip { pic } => gather!(B, Flip, Flip { pic }, &body.part, runs),
+                options::Transfer::Apic => gather!(B, Apic, Apic, &body.part, runs),
+                options::Transfer::Spin => gather!(B, Spin, Spin, &body.part, runs),
+            });
+        }
+    });
+    if scheme.is_projected() && state.shares.len() > 1 {
+        project_others(scheme, state, grid);
+    }
+}
+
+/// Points bring momentum to those nodes of a share that points of shares before reach too; and those of shares after it to all
+/// that they reach.
+fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S>) {
+    let Scheme { setting, processor, .. } = *scheme;
+    let State { points, shares, team, .. } = state;
+    let lattice = grid.lattice;
+    team.each(grid.parts(shares), |number, Own { projected, .. }| {
+        let Share { nodes, alone_from, .. } = &shares[number];
+        for (other, body, runs) in state.reaching(nodes) {
+            let ground = Ground::new(&lattice, &body.part, runs, points);
+            let end = if other > number { projected.len() } else { alone_from - nodes.start };
+            let projected = Summed::new(nodes.start, &mut projected[..end]);
+            macro_rules! project {
+                ($B:ty, $T:ty) => {
+                    processor.run_by_four(Project::<S, $B, $T> { ground, points, projected, how: PhantomData })
+                };
             }
-        };
-    }
-    for body in bodies.iter() {
-        with_basis!(setting.basis, B => match setting.transfer {
-            options::Transfer::Flip { pic } => gather!(B, Flip, Flip { pic }, &body.part),
-            options::Transfer::Apic => gather!(B, Apic, Apic, &body.part),
-            options::Transfer::Spin => gather!(B, Spin, Spin, &body.part),
-        });
-    }
+            with_basis!(setting.basis, B => match setting.transfer {
+                options::Transfer::Flip { .. } => project!(B, Flip),
+                options::Transfer::Apic => project!(B, Apic),
+                options::Transfer::Spin => project!(B, Spin),
+            });
+        }
+    });
 }
 
 /// Velocity and next position of a body's points from its nodes; and, with `PROJECT`, the momentum of the points with
 /// their new velocity back to the nodes (MUSL).
-struct Gather<'a, S: Space, B, T, const PROJECT: bool> {
+struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool> {
     lattice: &'a Lattice,
     part: &'a Part,
     runs: &'a [Run],
@@ -73,26 +111,28 @@ struct Gather<'a, S: Space, B, T, const PROJECT: bool> {
     time_step: f64,
     /// What damping leaves of a velocity in a step.
     keep: f64,
-    points: &'a mut Points<S>,
+    points: &'a mut Lent<'b, S>,
     nodes: &'a [Node<S>],
-    projected: &'a mut [S::Vector],
+    projected: Summed<'a, S::Vector>,
     basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> FourKernel for Gather<'_, S, B, T, PROJECT> {
+impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> FourKernel for Gather<'_, '_, S, B, T, PROJECT> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, .. } = self;
+        let Self { lattice, part, runs, transfer, time_step, keep, points, nodes, mut projected, .. } = self;
         let zero = Wide::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         let mut projected_copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in runs {
             let (seen, patch) = part.window.seen::<S, B, _>(run.base, nodes, &mut copies);
-            let (reached, _) = part.window.reached::<S, B, _>(run.base, projected, &mut projected_copies);
+            let mut reached = None;
+            if PROJECT {
+                reached = projected.reached::<S, B>(&part.window, run.base, &mut projected_copies);
+            }
             for batch in run.batches() {
-                let Points { position, deformation, .. } = points;
-                let ground = Ground::<S> { lattice, part, runs, deformation, position };
-                let stencil = ground.stencil::<B, L>(lanes, run, batch);
+                let stencil = Ground::lent(lattice, part, runs, points).stencil::<B, L>(lanes, run, batch);
+                let batch = batch.counted_from(points.first);
                 let [values, _] = stencil.along_x();
                 let affine = stencil.affine_along_x();
                 let (mut around, mut change, mut made) = ([zero; 3], [zero; 3], [[zero; 3]; 3]);
@@ -122,48 +162,90 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> FourKernel for Gather
                         }
                     }
                 }
-                let before = batch.vectors::<S, L>(lanes, &points.velocity);
-                let position = batch.vectors::<S, L>(lanes, &points.position);
+                let before = batch.vectors::<S, L>(lanes, points.velocity);
+                let position = batch.vectors::<S, L>(lanes, points.position);
                 let (mut velocity, mut next) = (before, position);
                 for axis in 0..S::DIMENSION {
                     velocity[axis] = transfer.taken(before[axis] * keep, around[axis], change[axis]);
                     next[axis] = position[axis] + around[axis] * time_step;
                 }
-                batch.write_vectors::<S, L>(velocity, &mut points.velocity);
-                batch.write_vectors::<S, L>(next, &mut points.next);
+                batch.write_vectors::<S, L>(velocity, points.velocity);
+                batch.write_vectors::<S, L>(next, points.next);
                 let mut affine = [[zero; 3]; 3];
                 if T::AFFINE {
-                    let mut before = batch.matrices::<S, L>(lanes, &points.affine);
+                    let mut before = batch.matrices::<S, L>(lanes, points.affine);
                     for row in before.iter_mut().take(S::DIMENSION) {
                         for part in row.iter_mut().take(S::DIMENSION) {
                             *part = *part * keep;
                         }
                     }
                     affine = T::carried::<S, _>(before, made, &stencil);
-                    batch.write_matrices::<S, L>(affine, &mut points.affine);
+                    batch.write_matrices::<S, L>(affine, points.affine);
                 }
-                if PROJECT {
+                if PROJECT && let Some((reached, patch)) = &mut reached {
                     let shown = Shown::new::<S, T>(&lattice.cell, &stencil, velocity, affine);
-                    let mass = batch.amounts(lanes, &points.mass);
-                    let masses = Wide::scaled(values, mass);
-                    for row in 0..Patch::rows::<S, B>() {
-                        let across = stencil.across::<S, B>(row);
-                        let masses = Wide::scaled(masses, across.value);
-                        let mut momenta = [[zero; 3]; 3];
-                        for (component, momenta) in momenta.iter_mut().enumerate().take(S::DIMENSION) {
-                            let velocities = shown.row::<S, B, T>(row, component);
-                            for (node, momentum) in momenta.iter_mut().enumerate().take(B::WIDTH) {
-                                *momentum = masses[node] * velocities[node];
-                            }
-                        }
-                        give::<S, B, L>(momenta, &mut reached[patch.row::<S, B>(row)]);
-                    }
+                    let mass = batch.amounts(lanes, points.mass);
+                    bring::<S, B, T, L>(&shown, &stencil, mass, reached, *patch);
                 }
             }
             if PROJECT {
-                part.window.put_back::<S, B, _>(run.base, projected, &projected_copies);
+                projected.put_back::<S, B>(&part.window, run.base, &projected_copies);
             }
         }
+    }
+}
+
+/// Momentum of a body's points to its nodes.
+struct Project<'a, S: Space, B, T> {
+    ground: Ground<'a, S>,
+    points: &'a Points<S>,
+    projected: Summed<'a, S::Vector>,
+    how: PhantomData<(B, T)>,
+}
+
+impl<S: Space, B: Basis, T: Transfer> FourKernel for Project<'_, S, B, T> {
+    #[inline(always)]
+    fn run<L: FourLanes>(self, lanes: L) {
+        let Self { ground, points, mut projected, .. } = self;
+        let zero = Wide::splat(lanes, 0.0);
+        let mut copies: Copies<S::Vector> = [S::ORIGIN; _];
+        for run in ground.runs {
+            let window = &ground.part.window;
+            let Some((mut reached, patch)) = projected.reached::<S, B>(window, run.base, &mut copies) else { continue };
+            for batch in run.batches() {
+                let stencil = ground.stencil::<B, L>(lanes, run, batch);
+                let velocity = batch.vectors::<S, L>(lanes, &points.velocity);
+                let affine = if T::AFFINE { batch.matrices::<S, L>(lanes, &points.affine) } else { [[zero; 3]; 3] };
+                let shown = Shown::new::<S, T>(&ground.lattice.cell, &stencil, velocity, affine);
+                bring::<S, B, T, L>(&shown, &stencil, batch.amounts(lanes, &points.mass), &mut reached, patch);
+            }
+            projected.put_back::<S, B>(window, run.base, &copies);
+        }
+    }
+}
+
+/// Adds momentum of four points with the velocities that they show to the nodes.
+#[inline(always)]
+fn bring<S: Space, B: Basis, T: Transfer, L: FourLanes>(
+    shown: &Shown<Wide<L>>,
+    stencil: &Stencil<Wide<L>>,
+    mass: Wide<L>,
+    reached: &mut Summed<'_, S::Vector>,
+    patch: Patch,
+) {
+    let zero = mass.like(0.0);
+    let masses = Wide::scaled(stencil.along_x()[0], mass);
+    for row in 0..Patch::rows::<S, B>() {
+        let Some(reached) = reached.row(patch.row::<S, B>(row)) else { continue };
+        let masses = Wide::scaled(masses, stencil.across::<S, B>(row).value);
+        let mut momenta = [[zero; 3]; 3];
+        for (component, momenta) in momenta.iter_mut().enumerate().take(S::DIMENSION) {
+            let velocities = shown.row::<S, B, T>(row, component);
+            for (node, momentum) in momenta.iter_mut().enumerate().take(B::WIDTH) {
+                *momentum = masses[node] * velocities[node];
+            }
+        }
+        give::<S, B, L>(momenta, reached);
     }
 }
 

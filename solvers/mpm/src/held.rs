@@ -119,25 +119,33 @@ impl Side {
         S::restrict(kept)
     }
 
-    fn each_on(&self, window: &Window, mut visit: impl FnMut(usize)) {
-        for place in 0..window.len() {
-            let node = window.node(place);
-            if node[self.axis] == self.node {
-                visit(window.start + place);
-            }
-        }
+    fn each_on(&self, window: &Window, visit: impl FnMut(usize)) {
+        let on = self.node - window.low[self.axis];
+        self.each_between(window, on, on + 1, visit);
     }
 
     /// Visits the nodes beyond the side with the nodes they mirror, where both are in the window.
     fn each_beyond(&self, window: &Window, mut visit: impl FnMut(usize, usize)) {
-        for place in 0..window.len() {
-            let node = window.node(place);
-            let away = (node[self.axis] - self.node) * self.inward;
-            let mut image = node;
-            image[self.axis] = 2 * self.node - node[self.axis];
-            let inside = image[self.axis] - window.low[self.axis];
-            if away < 0 && (0..window.size[self.axis]).contains(&inside) {
-                visit(window.start + place, window.slot(image));
+        let (on, size) = (self.node - window.low[self.axis], window.size[self.axis]);
+        let (from, to) = if self.inward > 0 { (0, on) } else { (on + 1, size) };
+        // What is as far within the side must be in the window too.
+        let (from, to) = (from.max(2 * on + 1 - size), to.min(2 * on + 1));
+        self.each_between(window, from, to, |beyond| {
+            let mut image = window.node(beyond - window.start);
+            image[self.axis] = 2 * self.node - image[self.axis];
+            visit(beyond, window.slot(image));
+        });
+    }
+
+    /// Visits the nodes of a window that lie from one place along the axis of the side to before another, in their order.
+    fn each_between(&self, window: &Window, from: i32, to: i32, mut visit: impl FnMut(usize)) {
+        let [mut low, mut high] = [[0; 3], window.size];
+        (low[self.axis], high[self.axis]) = (from.max(0), to.min(window.size[self.axis]));
+        for z in low[2]..high[2] {
+            for y in low[1]..high[1] {
+                for x in low[0]..high[0] {
+                    visit(window.start + ((z * window.size[1] + y) * window.size[0] + x) as usize);
+                }
             }
         }
     }

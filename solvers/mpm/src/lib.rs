@@ -47,6 +47,7 @@ mod runs;
 mod scatter;
 mod scheme;
 pub mod seed;
+mod share;
 mod simulation;
 pub mod solver;
 mod start;

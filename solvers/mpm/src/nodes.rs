@@ -3,6 +3,9 @@
 use crate::bodies::Body;
 use crate::damping::Damping;
 use crate::grid::{Lattice, Node, Window};
+use crate::share::Share;
+use crate::state::State;
+use grainbench_lanes::take_off;
 use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
@@ -32,7 +35,22 @@ pub(crate) struct Grid<S: Space> {
     pub(crate) used: usize,
 }
 
+/// What a share has of the grid: nodes that follow each other.
+pub(crate) struct Own<'a, S: Space> {
+    pub(crate) nodes: &'a mut [Node<S>],
+    pub(crate) projected: &'a mut [S::Vector],
+}
+
 impl<S: Space> Grid<S> {
+    /// What each share has of it.
+    pub(crate) fn parts(&mut self, shares: &[Share<S>]) -> impl Iterator<Item = Own<'_, S>> {
+        let (mut nodes, mut projected) = (&mut self.nodes[..], &mut self.projected[..]);
+        shares.iter().map(move |share| {
+            let count = share.nodes.len();
+            Own { nodes: take_off(&mut nodes, count), projected: take_off(&mut projected, count) }
+        })
+    }
+
     pub(crate) const fn new(lattice: Lattice) -> Self {
         Self { lattice, nodes: Vec::new(), projected: Vec::new(), most: Vec::new(), used: 0 }
     }
@@ -42,7 +60,7 @@ impl<S: Space> Grid<S> {
         self.used * (size_of::<Node<S>>() + size_of::<S::Vector>() + size_of::<f64>())
     }
 
-    /// Gives every field its window, and empties the nodes.
+    /// Gives every field its window.
     ///
     /// # Errors
     /// With a body that reaches farther than a grid can, and why.
@@ -76,34 +94,35 @@ impl<S: Space> Grid<S> {
             self.projected.resize(start + start / 4, S::ORIGIN);
             self.most.resize(start + start / 4, 0.0);
         }
-        self.nodes[..start].fill(Node::EMPTY);
-        self.projected[..start].fill(S::ORIGIN);
         Ok(())
     }
 
     /// Momenta and forces of the nodes become velocities after the step, v ← keep v + gain (f/m + g), beside those
     /// before it; how many nodes have mass. See [`Damping`] for keep and gain.
-    pub(crate) fn step(&mut self, gravity: S::Vector, Damping { keep, gain }: Damping) -> u64 {
-        let mut stepped = 0;
-        for node in &mut self.nodes[..self.used] {
-            if node.mass > 0.0 {
-                stepped += 1;
-                let inverse = 1.0 / node.mass;
-                let before = node.velocity * inverse;
-                node.velocity = before * keep + (node.change * inverse + gravity) * gain;
-                node.change = before;
-            } else {
-                (node.velocity, node.change) = (S::ORIGIN, S::ORIGIN);
+    pub(crate) fn step(&mut self, state: &State<S>, gravity: S::Vector, Damping { keep, gain }: Damping) -> u64 {
+        let step = |_, own: Own<'_, S>| {
+            let mut stepped = 0;
+            for node in own.nodes {
+                if node.mass > 0.0 {
+                    stepped += 1;
+                    let inverse = 1.0 / node.mass;
+                    let before = node.velocity * inverse;
+                    node.velocity = before * keep + (node.change * inverse + gravity) * gain;
+                    node.change = before;
+                } else {
+                    (node.velocity, node.change) = (S::ORIGIN, S::ORIGIN);
+                }
             }
-        }
-        stepped
+            stepped
+        };
+        state.team.fold(self.parts(&state.shares), step, 0, |sum, stepped| sum + stepped)
     }
 
     /// What changed in the step but for damping, once velocities are final.
-    pub(crate) fn find_changes(&mut self, Damping { keep, .. }: Damping) {
-        for node in &mut self.nodes[..self.used] {
-            node.change = node.velocity - node.change * keep;
-        }
+    pub(crate) fn find_changes(&mut self, state: &State<S>, Damping { keep, .. }: Damping) {
+        state.team.each(self.parts(&state.shares), |_, own| {
+            own.nodes.iter_mut().for_each(|node| node.change = node.velocity - node.change * keep);
+        });
     }
 
     /// For stresses that come first: momenta of the nodes as the points bring them.
@@ -114,9 +133,11 @@ impl<S: Space> Grid<S> {
     }
 
     /// Projected momenta become velocities.
-    pub(crate) fn divide_projected(&mut self) {
-        for (projected, node) in self.projected[..self.used].iter_mut().zip(self.nodes.iter()) {
-            *projected = if node.mass > 0.0 { *projected * (1.0 / node.mass) } else { S::ORIGIN };
-        }
+    pub(crate) fn divide_projected(&mut self, state: &State<S>) {
+        state.team.each(self.parts(&state.shares), |_, own| {
+            for (projected, node) in own.projected.iter_mut().zip(own.nodes) {
+                *projected = if node.mass > 0.0 { *projected * (1.0 / node.mass) } else { S::ORIGIN };
+            }
+        });
     }
 }

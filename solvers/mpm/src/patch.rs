@@ -56,29 +56,12 @@ impl Window {
         }
     }
 
-    /// The same, to be changed and then put back.
-    #[inline(always)]
-    pub(crate) fn reached<'a, S: Space, B: Basis, T: Copy>(
-        &self,
-        base: [i32; 3],
-        nodes: &'a mut [T],
-        copies: &'a mut Copies<T>,
-    ) -> (&'a mut [T], Patch) {
-        match self.patch::<S, B>(base) {
-            Some(patch) => (nodes, patch),
-            None => {
-                self.copy::<S, B, T>(base, nodes, copies);
-                (copies, Patch::COPIES)
-            }
-        }
-    }
-
-    /// Puts copies of nodes back, where they are.
-    #[inline(always)]
-    pub(crate) fn put_back<S: Space, B: Basis, T: Copy>(&self, base: [i32; 3], nodes: &mut [T], copies: &Copies<T>) {
-        if self.patch::<S, B>(base).is_none() {
-            self.paste::<S, B, T>(base, nodes, copies);
-        }
+    /// A place after all nodes that reach a point, of which `base` is the first: the end of a row.
+    pub(crate) fn end_of<S: Space, B: Basis>(&self, base: [i32; 3]) -> usize {
+        let slowest = S::DIMENSION - 1;
+        let layer = self.len() / self.size[slowest] as usize;
+        let end = self.along(slowest, base[slowest]) + B::WIDTH;
+        self.start + layer * end.min(self.size[slowest] as usize)
     }
 
     /// Where the nodes are, unless a period cuts through them.
@@ -107,9 +90,78 @@ impl Window {
     fn copy<S: Space, B: Basis, T: Copy>(&self, base: [i32; 3], nodes: &[T], copies: &mut Copies<T>) {
         self.places::<S, B>(base).for_each(|(slot, copy)| copies[copy] = nodes[slot]);
     }
+}
+
+/// Nodes that follow each other in whole rows, which a thread adds to.
+pub(crate) struct Summed<'a, T> {
+    /// Place of the first among those of all fields.
+    first: usize,
+    nodes: &'a mut [T],
+}
+
+impl<'a, T: Copy> Summed<'a, T> {
+    /// These nodes, the first of which has this place.
+    pub(crate) const fn new(first: usize, nodes: &'a mut [T]) -> Self {
+        Self { first, nodes }
+    }
+
+    /// The same, for a while.
+    pub(crate) fn lent(&mut self) -> Summed<'_, T> {
+        Summed { first: self.first, nodes: self.nodes }
+    }
+
+    /// A row of them, if it is one of these.
+    #[inline(always)]
+    pub(crate) fn row(&mut self, row: Range<usize>) -> Option<&mut [T]> {
+        let start = row.start.wrapping_sub(self.first);
+        self.nodes.get_mut(start..start.wrapping_add(row.end - row.start))
+    }
+
+    /// Those nodes among them that reach a point, of which `base` is the first, to be added to and then put back; none where
+    /// no node that reaches it is among them.
+    #[inline(always)]
+    pub(crate) fn reached<'b, S: Space, B: Basis>(
+        &'b mut self,
+        window: &Window,
+        base: [i32; 3],
+        copies: &'b mut Copies<T>,
+    ) -> Option<(Summed<'b, T>, Patch)> {
+        match window.patch::<S, B>(base) {
+            Some(patch) => {
+                let last = patch.row::<S, B>(Patch::rows::<S, B>() - 1).end;
+                let is_reached = last > self.first && patch.first < self.first + self.nodes.len();
+                is_reached.then_some((Summed { first: self.first, nodes: self.nodes }, patch))
+            }
+            None => {
+                self.copy::<S, B>(window, base, copies);
+                Some((Summed { first: 0, nodes: copies }, Patch::COPIES))
+            }
+        }
+    }
+
+    /// Puts copies of nodes back, where they are.
+    #[inline(always)]
+    pub(crate) fn put_back<S: Space, B: Basis>(&mut self, window: &Window, base: [i32; 3], copies: &Copies<T>) {
+        if window.patch::<S, B>(base).is_none() {
+            self.paste::<S, B>(window, base, copies);
+        }
+    }
 
     #[cold]
-    fn paste<S: Space, B: Basis, T: Copy>(&self, base: [i32; 3], nodes: &mut [T], copies: &Copies<T>) {
-        self.places::<S, B>(base).for_each(|(slot, copy)| nodes[slot] = copies[copy]);
+    fn copy<S: Space, B: Basis>(&self, window: &Window, base: [i32; 3], copies: &mut Copies<T>) {
+        for (slot, copy) in window.places::<S, B>(base) {
+            if let Some(&node) = self.nodes.get(slot.wrapping_sub(self.first)) {
+                copies[copy] = node;
+            }
+        }
+    }
+
+    #[cold]
+    fn paste<S: Space, B: Basis>(&mut self, window: &Window, base: [i32; 3], copies: &Copies<T>) {
+        for (slot, copy) in window.places::<S, B>(base) {
+            if let Some(node) = self.nodes.get_mut(slot.wrapping_sub(self.first)) {
+                *node = copies[copy];
+            }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Material points: structure of arrays, grouped by body and kept in cell order within a body.
 
+use grainbench_lanes::take_off;
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -165,6 +166,66 @@ impl<S: Space> Points<S> {
         }
         if !self.plastic_strain.is_empty() {
             reorder(&mut self.plastic_strain[range], &order, start);
+        }
+    }
+}
+
+/// Points that follow each other, lent to a thread.
+pub(crate) struct Lent<'a, S: Space> {
+    /// Number of the first.
+    pub(crate) first: usize,
+    pub(crate) position: &'a mut [S::Vector],
+    pub(crate) next: &'a mut [S::Vector],
+    pub(crate) velocity: &'a mut [S::Vector],
+    pub(crate) affine: &'a mut [S::Matrix],
+    pub(crate) mass: &'a [f64],
+    pub(crate) reference_volume: &'a [f64],
+    pub(crate) volume: &'a mut [f64],
+    pub(crate) deformation: &'a mut [S::Matrix],
+    pub(crate) stress: &'a mut [S::Symmetric],
+    pub(crate) plastic_strain: &'a mut [f64],
+}
+
+impl<S: Space> Lent<'_, S> {
+    /// Takes off the first, so many.
+    pub(crate) fn take_off(&mut self, count: usize) -> Self {
+        let first = self.first;
+        self.first += count;
+        let (mass, others) = self.mass.split_at(count);
+        self.mass = others;
+        let (reference_volume, others) = self.reference_volume.split_at(count);
+        self.reference_volume = others;
+        Self {
+            first,
+            position: take_off(&mut self.position, count),
+            next: take_off(&mut self.next, count),
+            velocity: take_off(&mut self.velocity, count),
+            affine: take_off(&mut self.affine, count),
+            mass,
+            reference_volume,
+            volume: take_off(&mut self.volume, count),
+            deformation: take_off(&mut self.deformation, count),
+            stress: take_off(&mut self.stress, count),
+            plastic_strain: take_off(&mut self.plastic_strain, count),
+        }
+    }
+}
+
+impl<S: Space> Points<S> {
+    /// All of them, lent.
+    pub(crate) fn lent(&mut self) -> Lent<'_, S> {
+        Lent {
+            first: 0,
+            position: &mut self.position,
+            next: &mut self.next,
+            velocity: &mut self.velocity,
+            affine: &mut self.affine,
+            mass: &self.mass,
+            reference_volume: &self.reference_volume,
+            volume: &mut self.volume,
+            deformation: &mut self.deformation,
+            stress: &mut self.stress,
+            plastic_strain: &mut self.plastic_strain,
         }
     }
 }

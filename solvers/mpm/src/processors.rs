@@ -1,13 +1,13 @@
-//! Loops over points are compiled once for every processor; what they compute is the same.
+//! Loops over points are compiled once for every processor, and threads share them; what they compute is the same.
 
-use crate::options::{Basis, Setting, Transfer};
+use crate::options::{Basis, Setting, StressUpdate, Transfer};
 use crate::trial::prepared;
-use grainbench_lanes::Processor;
+use grainbench_lanes::{Processor, Team};
 use grainbench_scene::space::{Plane, Solid, Space};
 
 /// State of the points, as text, after some steps of a round body that spins, flies across the faces of a periodic
 /// domain and shares nodes with its image.
-fn state<S: Space>(processor: Processor, basis: Basis, transfer: Transfer) -> String {
+fn state<S: Space>(processor: Processor, threads: usize, setting: Setting) -> String {
     let (dimension, axes, spin) = if S::DIMENSION == 2 { (2, 2, "0.3") } else { (3, 3, "[0.3, 0.1, -0.2]") };
     let vector = |value: &str| format!("[{}]", vec![value; axes].join(", "));
     let text = format!(
@@ -21,22 +21,31 @@ fn state<S: Space>(processor: Processor, basis: Basis, transfer: Transfer) -> St
         vector("0.1"),
         vector("0.7"),
     );
-    let setting = Setting { basis, transfer, ..Setting::BEST };
     let (mut simulation, steps) = prepared::<S>(setting, &text, 3.0, 2);
     simulation.scheme.processor = processor;
+    simulation.state.set_team(Team::new(threads));
     simulation.begin().expect("it starts");
     simulation.advance(steps).expect("it holds together");
     format!("{:?}", simulation.state.points)
 }
 
 #[test]
-fn runs_leave_the_same_bits_on_all_processors() {
-    for basis in [Basis::Linear, Basis::Quadratic, Basis::Gimp] {
+fn runs_leave_the_same_bits_on_all_processors_and_threads() {
+    let updates = [StressUpdate::First, StressUpdate::Last, StressUpdate::ModifiedLast];
+    for (basis, stress_update) in [Basis::Linear, Basis::Quadratic, Basis::Gimp].into_iter().zip(updates) {
         for transfer in [Transfer::Flip { pic: 0.1 }, Transfer::Apic, Transfer::Spin] {
-            let flat = |processor| state::<Plane>(processor, basis, transfer);
-            assert!(flat(Processor::Portable) == flat(Processor::best()), "{basis}, {transfer} in the plane");
-            let full = |processor| state::<Solid>(processor, basis, transfer);
-            assert!(full(Processor::Portable) == full(Processor::best()), "{basis}, {transfer} in space");
+            for setting in [
+                Setting { basis, transfer, ..Setting::BEST },
+                Setting { basis, transfer, stress_update, ..Setting::BEST },
+            ] {
+                let flat = state::<Plane>(Processor::best(), 1, setting);
+                let full = state::<Solid>(Processor::best(), 1, setting);
+                for (processor, threads) in [(Processor::Portable, 1), (Processor::best(), 2), (Processor::best(), 5)] {
+                    let on = format!("{}, {threads} threads: {:?}", processor.name(), setting.words());
+                    assert!(state::<Plane>(processor, threads, setting) == flat, "{on} in the plane");
+                    assert!(state::<Solid>(processor, threads, setting) == full, "{on} in space");
+                }
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Stencil};
-use crate::points::Points;
+use crate::points::{Lent, Points};
 use crate::transfer::Part;
 use grainbench_lanes::{FourLanes, LANES, Number, Wide};
 use grainbench_scene::space::Space;
@@ -69,6 +69,8 @@ pub(crate) struct Ground<'a, S: Space> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
     pub(crate) runs: &'a [Run],
+    /// Number of the first point of which the following are given.
+    pub(crate) first: usize,
     pub(crate) deformation: &'a [S::Matrix],
     pub(crate) position: &'a [S::Vector],
 }
@@ -76,12 +78,19 @@ pub(crate) struct Ground<'a, S: Space> {
 impl<'a, S: Space> Ground<'a, S> {
     #[inline(always)]
     pub(crate) fn new(lattice: &'a Lattice, part: &'a Part, runs: &'a [Run], points: &'a Points<S>) -> Self {
-        Self { lattice, part, runs, deformation: &points.deformation, position: &points.position }
+        Self { lattice, part, runs, first: 0, deformation: &points.deformation, position: &points.position }
+    }
+
+    /// Of points that are lent.
+    #[inline(always)]
+    pub(crate) fn lent(lattice: &'a Lattice, part: &'a Part, runs: &'a [Run], points: &'a Lent<'_, S>) -> Self {
+        Self { lattice, part, runs, first: points.first, deformation: points.deformation, position: points.position }
     }
 
     /// The nodes around a batch of a run.
     #[inline(always)]
     pub(crate) fn stencil<B: Basis, L: FourLanes>(&self, lanes: L, run: &Run, batch: Batch) -> Stencil<Wide<L>> {
+        let batch = batch.counted_from(self.first);
         let position = batch.spread_vectors::<S, L>(lanes, self.position);
         let mut half = [Wide::splat(lanes, self.part.half); 3];
         if B::EXTENDED {

@@ -11,9 +11,9 @@
 use crate::basis::{Basis, with_basis};
 use crate::contact::grip;
 use crate::grid::{Node, Stencil};
-use crate::nodes::Grid;
+use crate::nodes::{Grid, Own};
 use crate::options;
-use crate::patch::{Copies, Patch};
+use crate::patch::{Copies, Patch, Summed};
 use crate::points::Points;
 use crate::runs::Ground;
 use crate::scheme::Scheme;
@@ -24,24 +24,31 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 
-/// Points bring mass, momentum and internal force to the nodes, body by body: what a body has is in the cache only
-/// while it is worked on.
-pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &mut State<S>, grid: &mut Grid<S>) {
-    let Grid { lattice, nodes, most, .. } = grid;
+/// Points bring mass, momentum and internal force to the nodes, which are emptied before; and where surfaces are gripped it is
+/// told what nodes bear.
+pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S>, grips: bool) {
     let Scheme { setting, processor, .. } = scheme;
-    state.runs.clear();
-    for place in 0..state.bodies.len() {
-        state.find_runs(place, setting.basis, lattice);
-        let State { bodies, points, runs, .. } = state;
-        let part = &bodies[place].part;
-        let ground = Ground::new(lattice, part, &runs[part.runs.clone()], points);
-        with_basis!(setting.basis, B => match setting.transfer {
-            options::Transfer::Flip { .. } => processor.run_by_four(Scatter::<S, B, Flip>::new(ground, points, nodes)),
-            options::Transfer::Apic => processor.run_by_four(Scatter::<S, B, Apic>::new(ground, points, nodes)),
-            options::Transfer::Spin => processor.run_by_four(Scatter::<S, B, Spin>::new(ground, points, nodes)),
-        });
-        let window = part.window.slots();
-        grip::bear(&nodes[window.clone()], part.cell_mass, &mut most[window]);
+    let State { bodies, points, shares, team, .. } = state;
+    let lattice = grid.lattice;
+    team.each(grid.parts(shares), |number, Own { nodes, projected }| {
+        nodes.fill(Node::EMPTY);
+        projected.fill(S::ORIGIN);
+        let mut nodes = Summed::new(shares[number].nodes.start, nodes);
+        for (_, body, runs) in state.reaching(&shares[number].nodes) {
+            let ground = Ground::new(&lattice, &body.part, runs, points);
+            let nodes = nodes.lent();
+            with_basis!(setting.basis, B => match setting.transfer {
+                options::Transfer::Flip { .. } => processor.run_by_four(Scatter::<S, B, Flip>::new(ground, points, nodes)),
+                options::Transfer::Apic => processor.run_by_four(Scatter::<S, B, Apic>::new(ground, points, nodes)),
+                options::Transfer::Spin => processor.run_by_four(Scatter::<S, B, Spin>::new(ground, points, nodes)),
+            });
+        }
+    });
+    if grips {
+        for body in bodies {
+            let window = body.part.window.slots();
+            grip::bear(&grid.nodes[window.clone()], body.part.cell_mass, &mut grid.most[window]);
+        }
     }
 }
 
@@ -100,12 +107,12 @@ impl<N: Number> Shown<N> {
 struct Scatter<'a, S: Space, B, T> {
     ground: Ground<'a, S>,
     points: &'a Points<S>,
-    nodes: &'a mut [Node<S>],
+    nodes: Summed<'a, Node<S>>,
     how: PhantomData<(B, T)>,
 }
 
 impl<'a, S: Space, B: Basis, T: Transfer> Scatter<'a, S, B, T> {
-    const fn new(ground: Ground<'a, S>, points: &'a Points<S>, nodes: &'a mut [Node<S>]) -> Self {
+    const fn new(ground: Ground<'a, S>, points: &'a Points<S>, nodes: Summed<'a, Node<S>>) -> Self {
         Self { ground, points, nodes, how: PhantomData }
     }
 }
@@ -113,12 +120,12 @@ impl<'a, S: Space, B: Basis, T: Transfer> Scatter<'a, S, B, T> {
 impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { ground, points, nodes, .. } = self;
+        let Self { ground, points, mut nodes, .. } = self;
         let zero = Wide::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         for run in ground.runs {
             let window = &ground.part.window;
-            let (reached, patch) = window.reached::<S, B, _>(run.base, nodes, &mut copies);
+            let Some((mut reached, patch)) = nodes.reached::<S, B>(window, run.base, &mut copies) else { continue };
             for batch in run.batches() {
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let velocity = batch.vectors::<S, L>(lanes, &points.velocity);
@@ -133,6 +140,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
                     *row = Wide::scaled(*row, volume);
                 }
                 for row in 0..Patch::rows::<S, B>() {
+                    let Some(reached) = reached.row(patch.row::<S, B>(row)) else { continue };
                     let across = stencil.across::<S, B>(row);
                     let masses = Wide::scaled(masses, across.value);
                     let mut brought = [[zero; 2 * LANES]; 3];
@@ -151,10 +159,10 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
                             brought[node][1 + S::DIMENSION + component] = slopes[node] * along + values[node] * rest;
                         }
                     }
-                    give::<S, B, L>(brought, &mut reached[patch.row::<S, B>(row)]);
+                    give::<S, B, L>(brought, reached);
                 }
             }
-            window.put_back::<S, B, _>(run.base, nodes, &copies);
+            nodes.put_back::<S, B>(window, run.base, &copies);
         }
     }
 }

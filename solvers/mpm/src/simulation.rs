@@ -13,14 +13,16 @@ use crate::damping::Damping;
 use crate::failure::Failure;
 use crate::gather::gather;
 use crate::grid::Lattice;
-use crate::ledger::{Flow, Tally};
+use crate::ledger::Tally;
 use crate::nodes::{Grid, Velocities};
 use crate::options::Setting;
+use crate::points::Lent;
 use crate::scatter::scatter;
 use crate::scheme::{Scheme, Surroundings};
+use crate::share::{FEWEST, Share, Way, cut_nodes};
 use crate::state::State;
 use crate::{stress, transfer};
-use grainbench_lanes::Processor;
+use grainbench_lanes::{Processor, Team};
 use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Broken;
@@ -53,16 +55,17 @@ impl<S: Space> Simulation<S> {
         setting: Setting,
         lattice: Lattice,
         per_cell: u32,
-        time_step: f64,
-        critical: f64,
+        [time_step, critical]: [f64; 2],
+        threads: usize,
     ) -> Self {
         let (bodies, points, tracers) = seed::<S>(scene, &setting, &lattice, per_cell);
+        let team = Team::new(threads.min(points.len() / FEWEST));
         Self {
             scheme: Scheme { setting, time_step, processor: Processor::new() },
             surroundings: Surroundings { gravity: S::restrict(scene.gravity), damping: scene.global_damping },
             boundary: Boundary::new(scene, &bodies, &lattice),
             contacts: Contacts::new(scene, setting.contact, tracers),
-            state: State::new(bodies, points),
+            state: State::new(bodies, points, team),
             grid: Grid::new(lattice),
             scene: scene.clone(),
             accounts: None,
@@ -79,7 +82,8 @@ impl<S: Space> Simulation<S> {
     /// # Errors
     /// When they reach farther than a grid can, or break while they settle.
     pub(crate) fn begin(&mut self) -> Result<(), Box<Broken>> {
-        self.settle()?;
+        let team = self.state.team.clone();
+        team.lead(|| self.settle())?;
         self.set_moving();
         self.open_accounts();
         Ok(())
@@ -96,10 +100,8 @@ impl<S: Space> Simulation<S> {
     /// # Errors
     /// When a point's state breaks.
     pub(crate) fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>> {
-        for left in (0..steps).rev() {
-            self.cycle(left == 0)?;
-        }
-        Ok(())
+        let team = self.state.team.clone();
+        team.lead(|| (0..steps).rev().try_for_each(|left| self.cycle(left == 0)))
     }
 
     /// One cycle.
@@ -121,7 +123,7 @@ impl<S: Space> Simulation<S> {
         let time = self.step as f64 * self.scheme.time_step;
         self.boundary.move_walls(time, self.scheme.time_step, self.settling);
         self.place_windows()?;
-        scatter(&self.scheme, &mut self.state, &mut self.grid);
+        self.scatter();
         if record {
             self.state.before.copy_from_slice(&self.state.points.velocity);
         }
@@ -142,11 +144,19 @@ impl<S: Space> Simulation<S> {
         state.bytes() + grid.bytes() + contacts.bytes() + accounts.as_ref().map_or(0, Accounts::bytes)
     }
 
-    /// Gives every field its window, and empties the nodes.
+    /// Gives every field its window.
     fn place_windows(&mut self) -> Result<(), Failure> {
         let Self { scheme, state, grid, .. } = self;
         let placed = grid.place_windows(&mut state.bodies, scheme.has_one_field());
         placed.map_err(|(place, cause)| state.failure(place, state.bodies[place].part.points.start, cause))
+    }
+
+    /// Gives every thread its share, and takes the points to the nodes.
+    fn scatter(&mut self) {
+        let Self { scheme, state, grid, contacts, .. } = self;
+        state.find_runs(scheme.setting.basis, &grid.lattice);
+        cut_nodes(&mut state.shares, &state.bodies, grid.used, scheme.has_one_field());
+        scatter(scheme, state, grid, contacts.tracers.len() > 0);
     }
 
     /// Begins the step for driven bodies and contacts.
@@ -167,11 +177,9 @@ impl<S: Space> Simulation<S> {
     fn stress_first(&mut self) -> Result<(), Failure> {
         self.grid.project();
         self.finish_projection();
-        let mut flow = Flow::default();
         let Self { scheme, state, grid, accounts, .. } = self;
-        for place in 0..state.bodies.len() {
-            stress::follow(scheme, state, place, (grid, Velocities::Projected), &mut flow, accounts.is_some())?;
-        }
+        let stay = |_: &mut Share<S>, _: &mut Lent<'_, S>| Way::default();
+        let (flow, _) = stress::follow(scheme, state, (grid, Velocities::Projected), accounts.is_some(), stay)?;
         if let Some(accounts) = accounts {
             accounts.add_flow(flow);
         }
@@ -187,7 +195,7 @@ impl<S: Space> Simulation<S> {
     /// Projected momenta become velocities that contacts, held sides and driven bodies allow.
     fn finish_projection(&mut self) {
         let Self { scheme, state, grid, boundary, contacts, .. } = self;
-        boundary.hold_projected(&state.bodies, grid);
+        boundary.hold_projected(state, grid);
         contacts.meet_projected(scheme, state, grid, boundary);
     }
 
@@ -228,11 +236,11 @@ impl<S: Space> Simulation<S> {
     fn step_nodes(&mut self) {
         let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, cost, .. } = self;
         let damping = Damping::over(surroundings.damping, scheme.time_step);
-        cost.node_updates += grid.step(surroundings.gravity, damping);
+        cost.node_updates += grid.step(state, surroundings.gravity, damping);
         boundary.held.hold(&state.bodies, &mut grid.nodes);
         boundary.driven.hold(&mut grid.nodes, scheme.time_step);
         contacts.meet_stepped(scheme, state, grid, boundary, accounts.as_mut());
-        grid.find_changes(damping);
+        grid.find_changes(state, damping);
     }
 
     /// Points take velocities and the way that they go from the nodes, driven ones from what drives them.
@@ -259,23 +267,22 @@ impl<S: Space> Simulation<S> {
     fn move_on(&mut self, velocities: Velocities) -> Result<(), Failure> {
         let Self { scheme, state, grid, contacts, accounts, .. } = self;
         let cell = grid.lattice.shortest(S::DIMENSION);
-        let mut flow = Flow::default();
-        let (mut farthest, mut lost) = (0.0_f64, false);
         for place in 0..state.bodies.len() {
-            if !scheme.has_stress_first() {
-                stress::follow(scheme, state, place, (grid, velocities), &mut flow, accounts.is_some())?;
-            }
             contacts.move_tracers(scheme, state, place, grid, velocities);
-            let squared = state.move_points(place);
-            lost |= squared.is_nan();
-            farthest = farthest.max(squared);
-            state.find_bounds(place, &contacts.tracers.position);
         }
-        if lost || farthest.sqrt() > cell {
+        let way = if scheme.has_stress_first() {
+            state.move_points()
+        } else {
+            let counts = accounts.is_some();
+            let (flow, way) = stress::follow(scheme, state, (grid, velocities), counts, Share::move_points)?;
+            if let Some(accounts) = accounts {
+                accounts.add_flow(flow);
+            }
+            way
+        };
+        state.gather_bounds(&contacts.tracers.position);
+        if way.is_lost || way.squared.sqrt() > cell {
             return Err(state.ran_away(scheme.time_step, cell));
-        }
-        if let Some(accounts) = accounts.as_mut().filter(|_| !scheme.has_stress_first()) {
-            accounts.add_flow(flow);
         }
         Ok(())
     }

@@ -140,7 +140,8 @@ impl Mpm {
         watch: &mut dyn Watch,
     ) -> Result<Driven, RunError> {
         let &Plan { lattice, points, time_step, steps, critical } = plan;
-        let mut simulation = Simulation::<S>::new(scene, self.setting, lattice, points, time_step, critical);
+        let mut simulation =
+            Simulation::<S>::new(scene, self.setting, lattice, points, [time_step, critical], watch.threads());
         let solver = format!("{} at {resolution} ({})", self.name(), self.setting.words().join(", "));
         let identity = RunIdentity::new(solver, scene, time_step, steps, std::any::type_name::<Simulation<S>>());
         let resumed = from.map(|checkpoint| simulation.recall(&identity, checkpoint)).transpose()?;

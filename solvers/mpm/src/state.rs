@@ -6,7 +6,9 @@ use crate::failure::Failure;
 use crate::grid::{Lattice, Stencil};
 use crate::options::Basis;
 use crate::points::Points;
-use crate::runs::{self, LONGEST, Run};
+use crate::runs::Run;
+use crate::share::{self, NO_BOX, Piece, Share, Way, enclose};
+use grainbench_lanes::Team;
 use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
@@ -23,62 +25,108 @@ pub(crate) struct State<S: Space> {
     /// Velocities of the points a step before those of the last look (m/s): velocities are half a step behind
     /// positions.
     pub(crate) before: Vec<S::Vector>,
-    /// Runs of points in the step under way.
-    pub(crate) runs: Vec<Run>,
-    /// Velocity gradients of the points at hand (1/s).
-    pub(crate) gradients: Vec<S::Matrix>,
+    /// The shares of the threads.
+    pub(crate) shares: Vec<Share<S>>,
+    /// The threads of the run.
+    pub(crate) team: Team,
 }
 
 impl<S: Space> State<S> {
-    pub(crate) fn new(bodies: Vec<Body>, points: Points<S>) -> Self {
-        Self { bodies, points, before: Vec::new(), runs: Vec::new(), gradients: vec![S::NO_GRADIENT; LONGEST] }
+    pub(crate) fn new(bodies: Vec<Body>, points: Points<S>, team: Team) -> Self {
+        let shares = vec![Share::new(); team.members()];
+        Self { bodies, points, before: Vec::new(), shares, team }
+    }
+
+    /// Has other threads share the work.
+    #[cfg(test)]
+    pub(crate) fn set_team(&mut self, team: Team) {
+        (self.shares, self.team) = (vec![Share::new(); team.members()], team);
     }
 
     /// Memory that is in use (B).
     pub(crate) fn bytes(&self) -> usize {
-        self.points.bytes() + size_of_val(&*self.before) + size_of_val(&*self.runs) + size_of_val(&*self.bodies)
+        let runs: usize = self.shares.iter().map(|share| size_of_val(&*share.runs)).sum();
+        self.points.bytes() + size_of_val(&*self.before) + runs + size_of_val(&*self.bodies)
     }
 
-    /// Finds the points of a body that reach the same nodes. Where they no longer follow each other they are put in the
-    /// order of their cells.
-    pub(crate) fn find_runs(&mut self, place: usize, basis: Basis, lattice: &Lattice) {
-        let Self { bodies, points, runs, .. } = self;
-        let part = &mut bodies[place].part;
+    /// Gives each share its points and finds their runs. Where the points of a body no longer follow each other they are put
+    /// in the order of their cells.
+    pub(crate) fn find_runs(&mut self, basis: Basis, lattice: &Lattice) {
         with_basis!(basis, B => {
-            part.runs = runs::find::<S, B>(lattice, part.points.clone(), points, runs);
-            if part.runs.len() > part.runs_in_order + part.runs_in_order / DISORDER {
+            self.share_points::<B>(lattice);
+            let mut found = vec![0; self.bodies.len()];
+            for piece in self.shares.iter().flat_map(|share| &share.pieces) {
+                found[piece.body] += piece.runs.len();
+            }
+            let Self { bodies, points, .. } = self;
+            let is_out_of_order = |&place: &usize| {
+                let in_order = bodies[place].part.runs_in_order;
+                found[place] > in_order + in_order / DISORDER
+            };
+            let out_of_order: Vec<usize> = (0..bodies.len()).filter(is_out_of_order).collect();
+            for &place in &out_of_order {
+                let part = &bodies[place].part;
                 points.sort(part.points.clone(), |position| part.window.slot(lattice.first::<S, B>(position)));
-                runs.truncate(part.runs.start);
-                part.runs = runs::find::<S, B>(lattice, part.points.clone(), points, runs);
-                part.runs_in_order = part.runs.len();
+            }
+            if !out_of_order.is_empty() {
+                self.share_points::<B>(lattice);
+            }
+            for &place in &out_of_order {
+                let pieces = self.shares.iter().flat_map(|share| &share.pieces);
+                let runs = pieces.filter(|piece| piece.body == place).map(|piece| piece.runs.len()).sum();
+                self.bodies[place].part.runs_in_order = runs;
             }
         });
     }
 
-    /// Puts the points of a body where they are next; the square of the farthest way that one goes (m²), not a number
-    /// if one is lost.
-    pub(crate) fn move_points(&mut self, place: usize) -> f64 {
-        let Self { bodies, points, .. } = self;
-        let range = bodies[place].part.points.clone();
-        let (mut farthest, mut lost) = (0.0_f64, false);
-        for (position, next) in points.position[range.clone()].iter_mut().zip(&points.next[range]) {
-            let way = *next - *position;
-            let squared = S::dot(way, way);
-            lost |= squared.is_nan();
-            farthest = farthest.max(squared);
-            *position = *next;
-        }
-        if lost { f64::NAN } else { farthest }
+    fn share_points<B: crate::basis::Basis>(&mut self, lattice: &Lattice) {
+        let Self { bodies, points, shares, team, .. } = self;
+        share::cut_points::<S, B>(shares, lattice, bodies, points);
+        team.each(shares.iter_mut(), |_, share| share.find_runs::<B>(lattice, bodies, points));
+    }
+
+    /// Runs with their bodies, whose windows have some of these nodes, with the number of the share that they are in; all runs of
+    /// a body in their order.
+    pub(crate) fn reaching(&self, nodes: &Range<usize>) -> impl Iterator<Item = (usize, &Body, &[Run])> {
+        let Self { bodies, shares, .. } = self;
+        let all = shares.iter().enumerate();
+        let all = all.flat_map(|(number, share)| share.parts(bodies).map(move |(body, runs)| (number, body, runs)));
+        all.filter(|(_, body, _)| {
+            let slots = body.part.window.slots();
+            slots.start < nodes.end && nodes.start < slots.end
+        })
+    }
+
+    /// Puts the points where they are next.
+    pub(crate) fn move_points(&mut self) -> Way {
+        let Self { points, shares, team, .. } = self;
+        let mut left = points.lent();
+        let parts = shares.iter_mut().map(|share| (left.take_off(share.points.len()), share));
+        team.fold(parts, |_, (mut points, share)| share.move_points(&mut points), Way::default(), Way::farther)
     }
 
     /// The box around a body, of whose tracers the positions are given.
     pub(crate) fn find_bounds(&mut self, place: usize, tracers: &[S::Vector]) {
         let Self { bodies, points, .. } = self;
         let body = &mut bodies[place];
-        let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        let around = enclose::<S>(none, &points.position[body.part.points.clone()]);
-        let bounds = enclose::<S>(around, &tracers[body.tracers.clone()]);
-        body.bounds = bounds.map(|[x, y, z]| S::embed(S::restrict(Vector3::new(x, y, z))));
+        let around = enclose::<S>(NO_BOX, &points.position[body.part.points.clone()]);
+        body.bounds = in_space::<S>(enclose::<S>(around, &tracers[body.tracers.clone()]));
+    }
+
+    /// The same, where shares have put boxes around their points.
+    pub(crate) fn gather_bounds(&mut self, tracers: &[S::Vector]) {
+        let Self { bodies, shares, .. } = self;
+        let mut around = vec![NO_BOX; bodies.len()];
+        for Piece { body, bounds: [low, high], .. } in shares.iter().flat_map(|share| &share.pieces) {
+            let around = &mut around[*body];
+            for axis in 0..S::DIMENSION {
+                around[0][axis] = around[0][axis].min(low[axis]);
+                around[1][axis] = around[1][axis].max(high[axis]);
+            }
+        }
+        for (body, around) in bodies.iter_mut().zip(around) {
+            body.bounds = in_space::<S>(enclose::<S>(around, &tracers[body.tracers.clone()]));
+        }
     }
 
     /// The boxes around all bodies.
@@ -138,14 +186,7 @@ impl<S: Space> State<S> {
     }
 }
 
-/// The box around positions and another box.
-fn enclose<S: Space>([mut low, mut high]: [[f64; 3]; 2], positions: &[S::Vector]) -> [[f64; 3]; 2] {
-    for &position in positions {
-        for axis in 0..S::DIMENSION {
-            let at = S::component(position, axis);
-            low[axis] = if at < low[axis] { at } else { low[axis] };
-            high[axis] = if at > high[axis] { at } else { high[axis] };
-        }
-    }
-    [low, high]
+/// A box in space, flat in the plane.
+fn in_space<S: Space>(bounds: [[f64; 3]; 2]) -> [Vector3<f64>; 2] {
+    bounds.map(|[x, y, z]| S::embed(S::restrict(Vector3::new(x, y, z))))
 }

@@ -9,9 +9,10 @@ use crate::ledger::Flow;
 use crate::material::{Law, PlasticStrain};
 use crate::nodes::{Grid, Velocities};
 use crate::options::Transfer;
-use crate::points::Points;
+use crate::points::Lent;
 use crate::runs::{self, Ground};
 use crate::scheme::Scheme;
+use crate::share::{Share, Way};
 use crate::state::State;
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::solver::Cause;
@@ -36,28 +37,59 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
     full
 }
 
-/// Velocity gradients, then deformation and stress of the points of a body; what they tell the budget is added to
-/// `flow` if it `counts`.
+/// Velocity gradients, then deformation and stress of the points, with `then` what comes next for those of a share. What they
+/// tell the budget, if it `counts`, and the farthest of what `then` gives.
 ///
 /// # Errors
 /// With the first point that broke.
 pub(crate) fn follow<S: Space>(
     scheme: &Scheme,
     state: &mut State<S>,
-    place: usize,
-    (grid, velocities): (&Grid<S>, Velocities),
-    flow: &mut Flow,
+    grid: (&Grid<S>, Velocities),
     counts: bool,
-) -> Result<(), Failure> {
+    then: impl Fn(&mut Share<S>, &mut Lent<'_, S>) -> Way + Sync,
+) -> Result<(Flow, Way), Failure> {
+    let State { bodies, points, shares, team, .. } = state;
+    let mut left = points.lent();
+    let parts = shares.iter_mut().map(|share| (left.take_off(share.points.len()), share));
+    let follow = |_, (mut points, share): (Lent<'_, S>, &mut Share<S>)| {
+        share.failure = None;
+        share.flows.clear();
+        for number in 0..share.pieces.len() {
+            follow_piece(scheme, share, number, bodies, &mut points, grid, counts);
+        }
+        then(share, &mut points)
+    };
+    let way = team.fold(parts, follow, Way::default(), Way::farther);
+    if let Some(failure) = shares.iter_mut().find_map(|share| share.failure.take()) {
+        return Err(failure);
+    }
+    let mut flow = Flow::default();
+    for part in shares.iter().flat_map(|share| &share.flows) {
+        flow.taken += part.taken;
+        flow.plastic += part.plastic;
+    }
+    Ok((flow, way))
+}
+
+/// The same of a piece of a share.
+fn follow_piece<S: Space>(
+    scheme: &Scheme,
+    share: &mut Share<S>,
+    number: usize,
+    bodies: &[Body],
+    points: &mut Lent<'_, S>,
+    (grid, velocities): (&Grid<S>, Velocities),
+    counts: bool,
+) {
     let Grid { lattice, nodes, projected, .. } = grid;
     let Scheme { setting, time_step, processor } = *scheme;
-    let State { bodies, points, runs, gradients, .. } = state;
-    let spins = setting.transfer == Transfer::Spin;
-    let Body { part, law, .. } = &bodies[place];
-    let mut failure = None;
-    for runs in runs::in_groups(&runs[part.runs.clone()]) {
-        let range = runs[0].start..runs[runs.len() - 1].end;
-        let ground = Ground::new(lattice, part, runs, points);
+    let Share { runs, pieces, gradients, flows, failure, .. } = share;
+    let (spins, piece) = (setting.transfer == Transfer::Spin, &pieces[number]);
+    let Body { part, law, owner, .. } = &bodies[piece.body];
+    let mut broken = None;
+    for runs in runs::in_groups(&runs[piece.runs.clone()]) {
+        let ground = Ground::lent(lattice, part, runs, points);
         with_basis!(setting.basis, B => match velocities {
             Velocities::Stepped => {
                 let velocity = |node: &Node<S>| node.velocity;
@@ -68,15 +100,27 @@ pub(crate) fn follow<S: Space>(
                 processor.run_by_four(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
             }
         });
+        let first = runs[0].start;
+        let whole = first..runs[runs.len() - 1].end;
         macro_rules! update {
-            ($law:ident, $count:literal) => {{
-                let (law, failure) = ($law, &mut failure);
-                let update: Update<'_, S, _, $count> =
+            ($law:ident, $count:literal, $range:expr, $flow:expr) => {{
+                let (law, range, flow, failure): (_, Range<usize>, _, _) = ($law, $range, $flow, &mut broken);
+                let gradients = &gradients[range.start - first..range.end - first];
+                let update: Update<'_, '_, S, _, $count> =
                     Update { law, range, gradients, time_step, spins, points, flow, failure };
                 processor.run_by_four(update);
             }};
             ($law:ident) => {
-                if counts { update!($law, true) } else { update!($law, false) }
+                if counts {
+                    // Run by run, for these do not depend on the shares.
+                    for run in runs {
+                        let mut flow = Flow::default();
+                        update!($law, true, run.start..run.end, &mut flow);
+                        flows.push(flow);
+                    }
+                } else {
+                    update!($law, false, whole, &mut Flow::default())
+                }
             };
         }
         match *law {
@@ -85,9 +129,11 @@ pub(crate) fn follow<S: Space>(
             Material::VonMises(law) => update!(law),
         }
     }
-    match failure {
-        None => Ok(()),
-        Some(BrokenPoint { point, cause }) => Err(state.failure(place, point, cause)),
+    if let Some(BrokenPoint { point, cause }) = broken
+        && failure.is_none()
+    {
+        let position = S::embed(points.position[point - points.first]);
+        *failure = Some(Failure { owner: *owner, position, cause });
     }
 }
 
@@ -97,26 +143,28 @@ pub(crate) fn follow<S: Space>(
 ///
 /// Where points carry `spins` of their own, one that flows takes on that of the velocities around it: what it shared
 /// its spin with has moved on, and spins that nothing answers to grow until a grain of a few cells flies apart.
-struct Update<'a, S: Space, L, const COUNT: bool> {
+struct Update<'a, 'b, S: Space, L, const COUNT: bool> {
     law: L,
     range: Range<usize>,
     gradients: &'a [S::Matrix],
     time_step: f64,
     spins: bool,
-    points: &'a mut Points<S>,
+    points: &'a mut Lent<'b, S>,
     flow: &'a mut Flow,
     /// The first point that broke, if any did.
     failure: &'a mut Option<BrokenPoint>,
 }
 
-impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, S, L, COUNT> {
+impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, COUNT> {
     #[inline(always)]
     fn run<R: FourLanes>(self, _: R) {
         let Self { law, range, gradients, time_step, spins, points, flow, failure } = self;
+        let first = points.first;
         let affines = &mut points.affine;
+        let range = range.start - first..range.end - first;
         let deformations = &mut points.deformation[range.clone()];
         let stresses = &mut points.stress[range.clone()];
-        let plastic_strains = L::PlasticStrain::those_of(&mut points.plastic_strain, range.clone());
+        let plastic_strains = L::PlasticStrain::those_of(points.plastic_strain, range.clone());
         let volumes = points.volume[range.clone()].iter_mut().zip(&points.reference_volume[range.clone()]);
         let states = deformations.iter_mut().zip(stresses).zip(volumes);
         for (place, ((at, gradient), ((deformation, stress), (volume, reference)))) in
@@ -126,7 +174,7 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, S, L, COUNT>
             *deformation = *deformation + increment * *deformation;
             let volume_ratio = S::determinant(*deformation);
             if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
-                *failure = Some(BrokenPoint { point: at, cause: cause::<S>(increment, volume_ratio) });
+                *failure = Some(BrokenPoint { point: first + at, cause: cause::<S>(increment, volume_ratio) });
             }
             let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
             let before = (*volume, plastic_strain.value());

@@ -113,9 +113,7 @@ pub(crate) struct Part {
     pub(crate) points: Range<usize>,
     /// Where their field keeps its nodes.
     pub(crate) window: Window,
-    /// Which runs they make in the step under way.
-    pub(crate) runs: Range<usize>,
-    /// How many there were when the points were last put in order.
+    /// How many runs there were when the points were last put in order.
     pub(crate) runs_in_order: usize,
     /// Half the extent of a point (cells), for GIMP.
     pub(crate) half: f64,

@@ -16,5 +16,5 @@ pub(crate) fn prepared<S: Space>(setting: Setting, text: &str, cells: f64, point
     let solver = Mpm { setting, ..Mpm::BEST };
     let plan = solver.plan(&scene, &Resolution::grid(cells, points)).expect("the resolution is right");
     let Plan { lattice, points, time_step, critical, steps } = plan;
-    (Simulation::new(&scene, setting, lattice, points, time_step, critical), steps)
+    (Simulation::new(&scene, setting, lattice, points, [time_step, critical], 1), steps)
 }
