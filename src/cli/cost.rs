@@ -11,6 +11,7 @@ use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, wr
 use grainbench::studies::Follow;
 use grainbench::studies::cost::against::compare;
 use grainbench::studies::cost::run::{Meter, Wanted};
+use grainbench::studies::cost::step;
 use grainbench::studies::result_cache::ResultCache;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,6 +29,9 @@ pub(crate) struct Arguments {
     /// Points that take more than twenty seconds too.
     #[arg(long, alias = "rungs", value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
     levels: String,
+    /// Measure too what a step costs, piece by piece; so it is where no case is named.
+    #[arg(long)]
+    prices: bool,
     /// Measure every point anew, also those that were finished before.
     #[arg(long)]
     fresh: bool,
@@ -41,6 +45,9 @@ pub(crate) struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// Laps of what a step costs.
+const ROUNDS: u32 = 5;
 
 /// Measures and writes the report, after every quantity as far as it is.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
@@ -56,8 +63,12 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         return Err(Fault::input("expected at least one point, found none of the cases and solvers named"));
     }
     let start = Instant::now();
-    let mut follower = Follower::new(pieces as u64, "points");
+    let prices = arguments.prices || arguments.cases.is_empty();
+    let mut follower = Follower::new(pieces as u64 + if prices { step::pieces(ROUNDS) } else { 0 }, "points");
     let mut study = Study::new(provenance(words(arguments), 0.0));
+    if prices {
+        study.model = Some(step::measure(&solvers::Registry, ROUNDS, &mut follower).map_err(Fault::input)?);
+    }
     for (at, subject) in subjects.iter().enumerate() {
         let diagram = meter.diagram(subject, &mut follower).map_err(Fault::writing)?;
         if diagram.points.is_empty() {

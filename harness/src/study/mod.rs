@@ -4,3 +4,4 @@
 pub mod ledger;
 pub mod point;
 pub mod stability;
+pub mod step;

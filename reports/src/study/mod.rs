@@ -4,12 +4,14 @@ pub mod cost;
 pub mod effects;
 mod page;
 pub mod stability;
+mod step;
 mod store;
 
 use crate::report::Provenance;
 use grainbench_harness::study::ledger::Entry;
 use grainbench_harness::study::point::{Change, Diagram};
 use grainbench_harness::study::stability::{Hard, Limit};
+use grainbench_harness::study::step::Model;
 use serde::{Deserialize, Serialize};
 
 pub use store::{STUDY_FILE, load_study, points_of, study_json, write_study};
@@ -22,6 +24,9 @@ pub struct Study {
     /// What accuracy costs, quantity by quantity.
     #[serde(default)]
     pub diagrams: Vec<Diagram>,
+    /// What a step costs, piece by piece.
+    #[serde(default)]
+    pub model: Option<Model>,
     /// What changed since another session.
     #[serde(default)]
     pub changes: Vec<Change>,
@@ -46,6 +51,7 @@ impl Study {
         Self {
             provenance,
             diagrams: Vec::new(),
+            model: None,
             changes: Vec::new(),
             against: None,
             limits: Vec::new(),

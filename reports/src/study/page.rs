@@ -1,6 +1,6 @@
 //! The page of a study.
 
-use super::{Study, cost, effects, stability};
+use super::{Study, cost, effects, stability, step};
 use crate::number;
 use crate::page::{provenance, scrolling, shell, slug, unique};
 use crate::plot::{self, DrawError};
@@ -66,6 +66,7 @@ fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
             h3 { "Which solver for which scene at 1 %" }
             (which(study))
             @for scatter in &scatters { (scatter) }
+            @if let Some(model) = &study.model { (step::render(model)) }
         }
     })
 }

@@ -9,6 +9,7 @@ use grainbench_harness::figure::Figure;
 use grainbench_harness::study::ledger::Entry;
 use grainbench_harness::study::point::Point;
 use grainbench_harness::study::stability::{Hard, Limit};
+use grainbench_harness::study::step::Model;
 use grainbench_harness::verdict::{Control, Verdict};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -28,6 +29,8 @@ struct Results<'a> {
     points: Vec<&'a Point>,
     stability: Stability<'a>,
     effects: &'a [Entry],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    prices: Option<&'a Model>,
 }
 
 /// What stays stable.
@@ -49,6 +52,7 @@ pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
         points: study.diagrams.iter().flat_map(|diagram| &diagram.points).collect(),
         stability: Stability { limits: &study.limits, hard: &study.hard },
         effects: &study.ledger,
+        prices: study.model.as_ref(),
     };
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }

@@ -17,6 +17,7 @@ mod avx512;
 pub mod logarithm;
 mod number;
 mod portable;
+pub mod probe;
 mod processor;
 mod single;
 mod team;

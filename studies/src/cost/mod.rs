@@ -1,5 +1,6 @@
-//! What accuracy costs: each solver over its knobs, error against time.
+//! What accuracy costs: each solver over its knobs, error against time; and what a step costs.
 
 pub mod against;
 pub mod knobs;
 pub mod run;
+pub mod step;

@@ -1,0 +1,78 @@
+//! What a step costs, as a table: prices beside what the machine does at most in the same time.
+
+use crate::number;
+use crate::page::scrolling;
+use grainbench_harness::study::step::{Model, Price, middle};
+use maud::{Markup, html};
+
+/// The table with its words.
+pub(crate) fn render(model: &Model) -> Markup {
+    let [streamed, computed] = [&model.probe.streamed, &model.probe.computed].map(|laps| middle(laps));
+    let table = html! {
+        table.cases {
+            thead {
+                tr {
+                    th scope="col" { "Piece of work" }
+                    th scope="col" { "Time in a step (ns)" }
+                    th scope="col" { "least to largest" }
+                    th scope="col" { "Streamed in that time (B)" }
+                    th scope="col" { "Computed in that time" }
+                }
+            }
+            tbody {
+                @for price in &model.prices {
+                    @let time = middle(&price.nanoseconds);
+                    tr {
+                        th scope="row" { (price.solver) ", " (price.piece) span.title { (price.found) } }
+                        td { (number::significant(time, 3)) }
+                        td { (spread(price)) }
+                        td { (number::significant(time * streamed, 3)) }
+                        td { (number::significant(time * computed, 3)) }
+                    }
+                }
+            }
+        }
+    };
+    html! {
+        h3 { "What a step costs, piece by piece" }
+        p {
+            "Processor time of one thread, of long runs less short ones, for one piece of work in one step: a step of "
+            "grains takes as long as its grains, listed pairs and contacts together, and now and then its list, which is not "
+            "counted here. Beside it stands what this machine does "
+            "at most in that time: " (number::significant(streamed, 3)) " B/ns read from and written to memory that no "
+            "cache holds, and " (number::significant(computed, 3)) " multiplications and additions a nanosecond in "
+            "registers. The state of a disc that rotates is 104 B, of a sphere 168 B, of a material point in the plane 156 to "
+            "196 B: what is near those numbers waits for memory, and what is far above them computes or waits for itself."
+        }
+        (scrolling("What a step costs", &table))
+    }
+}
+
+/// The least and the largest of the laps.
+fn spread(price: &Price) -> String {
+    let least = price.nanoseconds.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = price.nanoseconds.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    format!("{} to {}", number::significant(least, 3), number::significant(largest, 3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_harness::study::step::Probe;
+
+    /// In 8 ns a machine that streams 30 B and computes 50 numbers in one does 240 B and 400 numbers.
+    #[test]
+    fn a_price_stands_beside_what_the_machine_does() {
+        let price = Price {
+            solver: "dem".to_owned(),
+            piece: "contact".to_owned(),
+            found: "discs".to_owned(),
+            nanoseconds: vec![9.0, 7.5, 8.0],
+        };
+        let probe = Probe { streamed: vec![30.0], computed: vec![50.0] };
+        let page = render(&Model { prices: vec![price], probe }).into_string();
+        for cell in ["<td>8</td>", "<td>7.5 to 9</td>", "<td>240</td>", "<td>400</td>"] {
+            assert!(page.contains(cell), "{cell} is not in {page}");
+        }
+    }
+}

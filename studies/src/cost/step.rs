@@ -1,0 +1,272 @@
+//! What a step costs, piece of work by piece of work: the cost model.
+//!
+//! Grains on springs stand on a square or cubic lattice without an edge, at rest. In turn they are too far apart for the list,
+//! near enough to be listed, and in contact; of these three the time of a step is `g`, `g + p·pairs` and
+//! `g + p·pairs + c·contacts` for each grain, with the counts that the run tells. Of a block of material points there are four
+//! points in a cell and sixteen: `t = a·points + b·nodes` in both. A lap is a long run less a short one, in processor time, and
+//! all are run in turn.
+
+use crate::Follow;
+use crate::clock::cpu_seconds;
+use grainbench_harness::solvers::Solvers;
+use grainbench_harness::study::step::{Model, Price, Probe};
+use grainbench_lanes::{Processor, Quad, probe};
+use grainbench_scene::error::SceneError;
+use grainbench_scene::record::Cost;
+use grainbench_scene::scene::{Duration, Sampling, Scene};
+use grainbench_scene::solver::{Resolution, RunError, Solver};
+use grainbench_scene::source::SceneSource;
+use std::hint::black_box;
+use std::path::Path;
+
+/// Steps of the short and of the long run, of grains and of a block.
+const STEPS: [[u64; 2]; 2] = [[20, 1620], [20, 320]];
+/// Quads that are streamed: 64 MB twice, more than caches hold.
+const STREAMED: usize = 2 << 20;
+/// How often registers are multiplied and added to in a lap.
+const COMPUTED: u64 = 2_000_000;
+
+/// Distances of neighbours over the diameter: out of the list's reach, within it, and in contact. The list reaches a tenth of
+/// a diameter beyond contact.
+const SPACINGS: [f64; 3] = [1.3, 1.05, 0.9999];
+
+/// Scenes and steps of a family that is solved for its prices.
+struct Family {
+    solver: &'static str,
+    /// Its pieces, the first of which is in every scene.
+    pieces: &'static [(&'static str, &'static str)],
+    scenes: Vec<(Scene, Resolution)>,
+    /// How many of each piece there are for each particle-step, by what the run counted.
+    counts: fn(&Cost) -> Vec<f64>,
+}
+
+/// Pieces that [`measure`] tells its follower of.
+#[must_use]
+pub fn pieces(rounds: u32) -> u64 {
+    u64::from(rounds) * (2 * SPACINGS.len() as u64 + 2 + 1)
+}
+
+/// Measures the prices in so many rounds, and the machine between them.
+///
+/// # Errors
+/// When a solver cannot run its scene.
+pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl Follow) -> Result<Model, RunError> {
+    let families =
+        families().map_err(|error| RunError::Resolution { solver: "dem".to_owned(), reason: error.to_string() })?;
+    let mut probe = Probe { streamed: Vec::new(), computed: Vec::new() };
+    let mut prices: Vec<Price> = Vec::new();
+    for family in &families {
+        prices.extend(family.pieces.iter().map(|(piece, found)| Price {
+            solver: family.solver.to_owned(),
+            piece: (*piece).to_owned(),
+            found: (*found).to_owned(),
+            nanoseconds: Vec::new(),
+        }));
+    }
+    for round in 1..=rounds {
+        let mut at = 0;
+        for family in &families {
+            let unknown =
+                || RunError::Resolution { solver: family.solver.to_owned(), reason: "no such solver".to_owned() };
+            let solver = solvers.find(family.solver).ok_or_else(unknown)?;
+            let mut rows = Vec::new();
+            for (scene, resolution) in &family.scenes {
+                follow.now(&format!("{}, lap {round} of {rounds}", scene.title));
+                rows.push(lap(&*solver, scene, resolution, family.counts)?);
+                follow.done(false);
+            }
+            for (price, value) in prices[at..].iter_mut().zip(solved(rows)) {
+                price.nanoseconds.push(value);
+            }
+            at += family.pieces.len();
+        }
+        follow.now(&format!("memory and registers, lap {round} of {rounds}"));
+        probe.streamed.push(streamed());
+        probe.computed.push(computed());
+        follow.done(false);
+    }
+    Ok(Model { prices, probe })
+}
+
+/// How many of each piece a particle-step has, and what it takes (ns).
+fn lap(
+    solver: &dyn Solver,
+    scene: &Scene,
+    resolution: &Resolution,
+    counts: fn(&Cost) -> Vec<f64>,
+) -> Result<(Vec<f64>, f64), RunError> {
+    let run = |steps: u64| -> Result<(Cost, f64), RunError> {
+        let scene = for_steps(scene, resolution, steps);
+        let begun = cpu_seconds();
+        let cost = solver.run(&scene, resolution, &mut ())?.cost;
+        Ok((cost, cpu_seconds() - begun))
+    };
+    let steps = STEPS[usize::from(matches!(resolution, Resolution::Grid { .. }))];
+    let [(short, before), (long, after)] = [run(steps[0])?, run(steps[1])?];
+    Ok((counts(&long), 1e9 * (after - before) / (long.particle_steps - short.particle_steps) as f64))
+}
+
+/// A scene for so many steps, looked at only where it begins and ends.
+fn for_steps(scene: &Scene, resolution: &Resolution, steps: u64) -> Scene {
+    let duration = match (resolution, scene.duration) {
+        // Methods with a grid are told a time: there the scene lasts for about a step.
+        (Resolution::Grid { .. }, Duration::Seconds(step)) => Duration::Seconds(step * steps as f64),
+        _ => Duration::Cycles(steps),
+    };
+    let sampling = match duration {
+        Duration::Seconds(time) => Sampling::Seconds(time),
+        Duration::Cycles(steps) => Sampling::Cycles(steps),
+    };
+    Scene { duration, sampling, snapshots: 0, ..scene.clone() }
+}
+
+/// Prices from as many rows of counts and times as there are pieces, by elimination: each row has a piece that those before it
+/// do not have, or has it in another share.
+fn solved(mut rows: Vec<(Vec<f64>, f64)>) -> Vec<f64> {
+    let count = rows.len();
+    for pivot in 0..count {
+        let (row, time) = rows[pivot].clone();
+        for (other, (counts, spent)) in rows.iter_mut().enumerate() {
+            if other != pivot {
+                let times = counts[pivot] / row[pivot];
+                counts.iter_mut().zip(&row).for_each(|(count, of)| *count -= times * of);
+                *spent -= times * time;
+            }
+        }
+    }
+    rows.into_iter().enumerate().map(|(pivot, (counts, time))| time / counts[pivot]).collect()
+}
+
+/// Bytes in a nanosecond.
+fn streamed() -> f64 {
+    let (mut to, from) = (vec![Quad([1.0; 4]); STREAMED], vec![Quad([2.0; 4]); STREAMED]);
+    let begun = cpu_seconds();
+    for _ in 0..4 {
+        probe::stream(black_box(&mut to), black_box(&from));
+    }
+    4.0 * (STREAMED * probe::BYTES_OF_A_QUAD) as f64 / (1e9 * (cpu_seconds() - begun))
+}
+
+/// Operations in a nanosecond.
+fn computed() -> f64 {
+    let begun = cpu_seconds();
+    let (operations, sum) = probe::compute(Processor::new(), black_box(COMPUTED));
+    black_box(sum);
+    operations as f64 / (1e9 * (cpu_seconds() - begun))
+}
+
+/// Grains in the plane and in space, and a block.
+fn families() -> Result<Vec<Family>, SceneError> {
+    const OF_GRAINS: fn(&Cost) -> Vec<f64> = |cost| {
+        let each = |count: Option<u64>| count.unwrap_or(0) as f64 / cost.particle_steps as f64;
+        vec![1.0, each(cost.pair_tests), each(cost.contact_evaluations)]
+    };
+    const OF_POINTS: fn(&Cost) -> Vec<f64> =
+        |cost| vec![1.0, cost.node_updates.unwrap_or(0) as f64 / cost.particle_steps as f64];
+    let grains = |dimension: usize| -> Result<Vec<(Scene, Resolution)>, SceneError> {
+        SPACINGS.iter().map(|&spacing| Ok((lattice(dimension, spacing)?, Resolution::CriticalFraction(0.1)))).collect()
+    };
+    let block =
+        |points: u32| -> Result<(Scene, Resolution), SceneError> { Ok((block()?, Resolution::grid(60.0, points))) };
+    Ok(vec![
+        Family {
+            solver: "dem",
+            pieces: &[
+                ("grain in the plane", "discs out of reach of each other"),
+                ("listed pair in the plane", "discs near each other"),
+                ("contact in the plane", "discs that touch, with friction and a dashpot"),
+            ],
+            scenes: grains(2)?,
+            counts: OF_GRAINS,
+        },
+        Family {
+            solver: "dem",
+            pieces: &[
+                ("grain in space", "spheres out of reach of each other"),
+                ("listed pair in space", "spheres near each other"),
+                ("contact in space", "spheres that touch, with friction and a dashpot"),
+            ],
+            scenes: grains(3)?,
+            counts: OF_GRAINS,
+        },
+        Family {
+            solver: "mpm",
+            pieces: &[
+                ("material point in the plane", "a block with four points in a cell and with sixteen"),
+                ("node in the plane", "a block with four points in a cell and with sixteen"),
+            ],
+            scenes: vec![block(2)?, block(4)?],
+            counts: OF_POINTS,
+        },
+    ])
+}
+
+/// Grains at rest, so many diameters (1 m) apart, in a periodic domain so that they stay so.
+fn lattice(dimension: usize, spacing: f64) -> Result<Scene, SceneError> {
+    let count = if dimension == 2 { 100 } else { 25 };
+    let all = |value: String| vec![value; dimension].join(", ");
+    scene(
+        &format!("lattice of {dimension} dimensions, {spacing} diameters apart"),
+        &format!(
+            "dimension = {dimension}\nduration = 1.0\nmaterials.m.density = 1.0\n\
+             contacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0e5, tangential_stiffness = 5.0e4, friction = 0.5, \
+             normal_damping = 1.0 }}\n\
+             domain = {{ low = [{}], high = [{}], periodic = [{}] }}\n\
+             [grains.g]\nmaterial = 'm'\nradius = 0.5\n\
+             lattice = {{ origin = [{}], spacing = [{}], count = [{}] }}\n",
+            all("0.0".to_owned()),
+            all(format!("{:?}", f64::from(count) * spacing)),
+            all("true".to_owned()),
+            all("0.5".to_owned()),
+            all(format!("{spacing:?}")),
+            all(count.to_string()),
+        ),
+    )
+}
+
+/// A square block that swings, for a duration of a step.
+fn block() -> Result<Scene, SceneError> {
+    // A wave goes 11.6 m in a second: through .35 of a cell of 1/60 m.
+    scene(
+        "block",
+        "dimension = 2\nduration = 5.0e-4\nreference_length = 1.0\n\
+         materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }\n\
+         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\nwave = { amplitude = 0.1 }\n",
+    )
+}
+
+fn scene(title: &str, text: &str) -> Result<Scene, SceneError> {
+    let text = format!("title = '{title}'\n{text}[output]\nevery = 1.0\n");
+    SceneSource::from_text(title, Path::new(""), &text).scene(&|_| Err("there are no files here".to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grain of 20 ns, a pair of 3 ns and a contact of 15 ns.
+    #[test]
+    fn prices_are_found_from_times_and_counts() {
+        let row = |counts: [f64; 3]| (counts.to_vec(), 20.0 * counts[0] + 3.0 * counts[1] + 15.0 * counts[2]);
+        let found = solved(vec![row([1.0, 0.0, 0.0]), row([1.0, 2.0, 0.0]), row([1.0, 3.0, 1.9])]);
+        for (found, expected) in found.into_iter().zip([20.0, 3.0, 15.0]) {
+            assert!((found - expected).abs() < 1e-12 * expected, "{found} for {expected}");
+        }
+    }
+
+    /// The lattices are what they are said to be: without pairs, with pairs that do not touch, and with pairs that do.
+    #[test]
+    fn lattices_have_what_is_counted() {
+        use grainbench_dem::{convention::Convention, solver::Dem};
+        for dimension in [2, 3] {
+            let counted = SPACINGS.map(|spacing| {
+                let mut simulation =
+                    Dem::new(Convention::DEFAULT).start(&lattice(dimension, spacing).unwrap(), 1e-5).unwrap();
+                simulation.advance(3).unwrap();
+                let counts = simulation.counts();
+                [counts.pair_tests > 0, counts.contact_evaluations > 0]
+            });
+            assert_eq!(counted, [[false, false], [true, false], [true, true]]);
+        }
+    }
+}
