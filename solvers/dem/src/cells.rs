@@ -59,10 +59,24 @@ impl Cells {
 
     /// Cell coordinates of a point, the nearest cell's when it lies outside.
     pub(crate) fn coordinates(&self, position: Vector3<f64>) -> [usize; 3] {
-        [0, 1, 2].map(|axis| {
-            let along = ((position[axis] - self.low[axis]) / self.width[axis]).floor();
-            (along.max(0.0) as usize).min(self.count[axis] - 1)
-        })
+        let mut coordinates = [0; 3];
+        for (axis, coordinate) in coordinates.iter_mut().enumerate() {
+            // A whole number of it is what stands before the point, and zero below zero.
+            let along = (position[axis] - self.low[axis]) / self.width[axis];
+            *coordinate = (along as usize).min(self.count[axis] - 1);
+        }
+        coordinates
+    }
+
+    /// The cell of a slot.
+    pub(crate) fn of(&self, slot: usize) -> usize {
+        self.start.partition_point(|&start| start as usize <= slot) - 1
+    }
+
+    /// Cell coordinates of a cell.
+    pub(crate) fn place(&self, cell: usize) -> [usize; 3] {
+        let [along, across, _] = self.count;
+        [cell % along, cell / along % across, cell / (along * across)]
     }
 
     fn index(&self, position: Vector3<f64>) -> usize {

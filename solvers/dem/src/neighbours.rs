@@ -114,7 +114,10 @@ pub(crate) fn wrapped(mut position: Vector3<f64>, domain: &Domain, dimension: us
     for axis in 0..dimension {
         if domain.periodic[axis] {
             let length = domain.high[axis] - domain.low[axis];
-            position[axis] -= length * ((position[axis] - domain.low[axis]) / length).floor();
+            let along = (position[axis] - domain.low[axis]) / length;
+            if !(0.0..1.0).contains(&along) {
+                position[axis] -= length * along.floor();
+            }
         }
     }
     position
@@ -131,16 +134,25 @@ fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
 /// Every pair of some rows that is near in the domain itself, once: each grain with those after it in its own cells and in
 /// the next.
 fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range<usize>, layout: Layout) -> Pairs {
+    let mut cell = cells.of(rows.start);
+    let mut at = cells.place(cell);
     Pairs::list(rows, layout, |slot, partners, _| {
         let grain = &place[slot];
-        let [i, j, k] = cells.coordinates(S::vector_in_space(grain));
+        while cells.start[cell + 1] as usize <= slot {
+            cell += 1;
+            at = cells.place(cell);
+        }
+        let [i, j, k] = at;
         let (left, right) = (i.saturating_sub(1), (i + 1).min(cells.count[0] - 1));
-        let mut scan = |range: std::ops::Range<usize>| {
+        let mut scan = |range: Range<usize>| {
+            // Which are near cannot be foretold: each is written down, and those that are not are written over.
+            let mut count = partners.len();
+            partners.resize(count + range.len(), 0);
             for other in range {
-                if is_near::<S>(grain, &place[other], skin) {
-                    partners.push(other as u32);
-                }
+                partners[count] = other as u32;
+                count += usize::from(is_near::<S>(grain, &place[other], skin));
             }
+            partners.truncate(count);
         };
         scan(slot + 1..cells.row(i, right, j, k).end);
         if j + 1 < cells.count[1] {
