@@ -43,6 +43,22 @@ pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estima
     Some(Estimate { first: mean(&first), second: mean(&second), half_width })
 }
 
+/// Smallest, middle and largest of some values; none of none.
+#[must_use]
+pub fn range(values: &[f64]) -> Option<[f64; 3]> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (first, last) = (sorted.first()?, sorted.last()?);
+    let middle = 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]);
+    Some([*first, middle, *last])
+}
+
+/// The middle of some values; not a number of none.
+#[must_use]
+pub fn median(values: &[f64]) -> f64 {
+    range(values).map_or(f64::NAN, |[_, middle, _]| middle)
+}
+
 /// Half of the interval that the difference of two more values of a kind lies in, from some independent ones: t s √2
 /// with their standard deviation s. None where there are too few, or all are one.
 #[must_use]
@@ -82,6 +98,14 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
+
+    #[test]
+    fn the_middle_and_the_ends() {
+        assert_eq!(range(&[3.0, 1.0, 2.0]), Some([1.0, 2.0, 3.0]));
+        assert_eq!(range(&[4.0, 1.0, 2.0, 3.0]), Some([1.0, 2.5, 4.0]));
+        assert_eq!(range(&[]), None);
+        assert!(median(&[4.0, 1.0, 2.0, 3.0]) == 2.5 && median(&[]).is_nan());
+    }
 
     /// Numbers that look drawn by lot, between −0.5 and 0.5.
     fn noise(seed: u64) -> impl Iterator<Item = f64> {

@@ -7,6 +7,7 @@
 
 use crate::Follow;
 use crate::clock::cpu_seconds;
+use grainbench_harness::statistics::range;
 use grainbench_reports::Provenance;
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver};
@@ -84,7 +85,7 @@ impl Race {
     #[must_use]
     pub fn table(&self) -> String {
         let shown = |values: &[f64], digits: usize| {
-            spread(values).map_or_else(
+            range(values).map_or_else(
                 || "–".to_owned(),
                 |[least, middle, largest]| format!("{middle:.digits$} [{least:.digits$}..{largest:.digits$}]"),
             )
@@ -121,16 +122,6 @@ impl Race {
         let _ = writeln!(text, "\n{}.", all.join("; "));
         text
     }
-}
-
-/// Smallest, middle and largest of some values; none of none.
-#[must_use]
-pub fn spread(values: &[f64]) -> Option<[f64; 3]> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let (first, last) = (sorted.first()?, sorted.last()?);
-    let middle = 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]);
-    Some([*first, middle, *last])
 }
 
 /// The scene for so many steps, with nothing to be told of it but the energy at its end.
@@ -206,16 +197,4 @@ pub fn apart(heat: &Heat, raced: &Raced) -> Option<f64> {
     let other = heat.results.iter().find(|other| other.solver == raced.against)?;
     let (ours, theirs) = (raced.kinetic_energy?, other.kinetic_energy?);
     Some((ours - theirs).abs() / theirs.abs())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_middle_and_the_ends() {
-        assert_eq!(spread(&[3.0, 1.0, 2.0]), Some([1.0, 2.0, 3.0]));
-        assert_eq!(spread(&[4.0, 1.0, 2.0, 3.0]), Some([1.0, 2.5, 4.0]));
-        assert_eq!(spread(&[]), None);
-    }
 }

@@ -32,14 +32,3 @@ pub struct Model {
     /// The machine.
     pub probe: Probe,
 }
-
-/// The middle of some values; not a number of none.
-#[must_use]
-pub fn middle(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    match sorted.len() {
-        0 => f64::NAN,
-        count => 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]),
-    }
-}

@@ -32,8 +32,7 @@ pub(crate) struct Neighbours {
 impl Neighbours {
     /// Whether this is the whole list of so many grains.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
-        let known = self.reference.len() == grains || self.reference.is_empty();
-        known && matches!(&self.shares[..], [whole] if whole.is_of(grains, layout))
+        self.reference.len() == grains && matches!(&self.shares[..], [whole] if whole.is_of(grains, layout))
     }
 
     /// No list yet.

@@ -56,14 +56,11 @@ impl Processor {
     /// Every path that this processor has, the best last.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        #[allow(unused_mut, reason = "other processors have none but the first")]
-        let mut all = vec![Self::Portable];
         #[cfg(target_arch = "x86_64")]
-        {
-            all.extend(pulp::x86::V3::try_new().map(Self::Avx2));
-            all.extend(pulp::x86::V4::try_new().map(Self::Avx512));
-        }
-        all
+        let wider = [pulp::x86::V3::try_new().map(Self::Avx2), pulp::x86::V4::try_new().map(Self::Avx512)];
+        #[cfg(not(target_arch = "x86_64"))]
+        let wider = [None];
+        std::iter::once(Self::Portable).chain(wider.into_iter().flatten()).collect()
     }
 
     /// The path that the environment forces.

@@ -14,6 +14,7 @@
 //! (where memory happened to lie, what else ran) has been seen to move all points of a case by 6 % more than 3s in 36
 //! pairs of sessions.
 
+use grainbench_harness::statistics::median;
 use grainbench_harness::study::point::{Change, Point, Standing};
 use std::collections::BTreeMap;
 
@@ -86,8 +87,8 @@ impl Middle {
     /// Of at least one number. The error is taken from the median distance to the median, so that a few numbers far
     /// away do not count; of a single number nothing is known, and it is zero.
     fn of(values: &[f64]) -> Self {
-        let value = median(values.to_vec());
-        let distance = median(values.iter().map(|other| (other - value).abs()).collect());
+        let value = median(values);
+        let distance = median(&values.iter().map(|other| (other - value).abs()).collect::<Vec<_>>());
         Self { value, error: 1.2533 * 1.4826 * distance / (values.len() as f64).sqrt() }
     }
 
@@ -97,11 +98,6 @@ impl Middle {
         let times: Vec<f64> = times.filter(|time| time.is_finite()).collect();
         (!times.is_empty()).then(|| Self::of(&times))
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    0.5 * (values[(values.len() - 1) / 2] + values[values.len() / 2])
 }
 
 /// What can be said of the times of a solver in a case, if anything.

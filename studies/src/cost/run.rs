@@ -6,6 +6,7 @@ use crate::result_cache::ResultCache;
 use crate::{Follow, identity};
 use grainbench_harness::run::{Change, Done};
 use grainbench_harness::solvers::Solvers;
+use grainbench_harness::statistics::range;
 use grainbench_harness::study::point::{Counts, Diagram, Point, Standing, Timing};
 use grainbench_harness::subject::Subject;
 use grainbench_reports::WriteError;
@@ -276,26 +277,19 @@ fn first(subject: &Subject, task: &Task) -> Point {
 
 /// Medians and spread of the repetitions.
 fn summarise(point: &mut Point) {
-    let sorted = |of: fn(&Timing) -> f64| {
-        let mut times: Vec<f64> = point.repetitions.iter().map(of).collect();
-        times.sort_by(f64::total_cmp);
-        times
-    };
-    let walls = sorted(|timing| timing.wall);
-    point.wall_seconds = median(&walls);
-    point.start_up_seconds = median(&sorted(|timing| timing.start_up));
+    let range_of = |of: fn(&Timing) -> f64| range(&point.repetitions.iter().map(of).collect::<Vec<_>>());
+    let median_of = |of: fn(&Timing) -> f64| range_of(of).map(|[_, median, _]| median);
+    let (walls, cpu_seconds, start_up) =
+        (range_of(|timing| timing.wall), median_of(|timing| timing.cpu), median_of(|timing| timing.start_up));
+    point.wall_seconds = walls.map(|[_, median, _]| median);
+    point.start_up_seconds = start_up;
     // Of a program it is the difference of two times, which tells nothing where both are mostly start-up.
     let told = |cpu: &f64| *cpu >= 0.1 * point.start_up_seconds.unwrap_or(0.0);
-    point.cpu_seconds = median(&sorted(|timing| timing.cpu)).filter(told);
-    point.wall_spread = match (walls.first(), walls.last(), median(&walls)) {
-        (Some(first), Some(last), Some(median)) if walls.len() > 1 && median > 0.0 => Some((last - first) / median),
+    point.cpu_seconds = cpu_seconds.filter(told);
+    point.wall_spread = match walls {
+        Some([first, median, last]) if point.repetitions.len() > 1 && median > 0.0 => Some((last - first) / median),
         _ => None,
     };
-}
-
-/// The middle of sorted numbers.
-fn median(sorted: &[f64]) -> Option<f64> {
-    (!sorted.is_empty()).then(|| 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]))
 }
 
 /// Marks where finer resolutions no longer make the error smaller: the last two of a sequence, if they differ by less
