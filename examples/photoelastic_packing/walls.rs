@@ -69,13 +69,15 @@ pub(crate) fn watch(
     let (time_step, _) = RUNG.steps(scene)?;
     let mut simulation = Dem::new(Convention::CUNDALL_STRACK).start(scene, time_step)?;
     let (steps, stride) = ((time / time_step).round() as u64, (every / time_step).round().max(1.0) as u64);
+    let mut snapshot = simulation.look().snapshot;
     while simulation.step() < steps {
         simulation.advance(stride.min(steps - simulation.step()))?;
-        if !go_on(&simulation.look().snapshot) {
+        snapshot = simulation.look().snapshot;
+        if !go_on(&snapshot) {
             break;
         }
     }
-    Ok(simulation.look().snapshot)
+    Ok(snapshot)
 }
 
 /// Runs for a time (s).

@@ -26,7 +26,7 @@ mod sample;
 
 pub use headline::Headline;
 pub use manifest::refuse_mixed;
-pub use parts::SnapshotStore;
+pub use parts::{End, SnapshotStore};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use scratch::sweep;

@@ -8,7 +8,7 @@ use super::progress::Progress;
 use grainbench::cases::registry::read_grains;
 use grainbench::cases::solvers;
 use grainbench::reports::export::{self, Format};
-use grainbench::reports::{SnapshotStore, StagedDir, number};
+use grainbench::reports::{End, SnapshotStore, StagedDir, number};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
 use grainbench::scene::record::{Cost, Provenance, Record, Remains, Series, Snapshot};
@@ -102,6 +102,13 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+impl Arguments {
+    /// Whether it was said that snapshots are not to be written.
+    fn asks_for_no_snapshots(&self) -> bool {
+        self.write.as_ref().is_some_and(|asked| asked.iter().all(|format| format.format().is_none()))
+    }
+}
+
 /// Formats of snapshots, as they are asked for.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Written {
@@ -169,6 +176,9 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         Some(store) => SnapshotStore::for_checkpoint(&store.path),
         None => SnapshotStore::for_output(&arguments.out),
     };
+    if arguments.asks_for_no_snapshots() {
+        snapshots = snapshots.in_short();
+    }
     if let (Some(path), Some(checkpoint)) = (&arguments.restart, &from) {
         snapshots = snapshots.resume(path, checkpoint.output()).map_err(Fault::writing)?;
     }
@@ -204,9 +214,8 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
     export::write_run(&record, &mut snapshots, &formats, &mut out).map_err(Fault::writing)?;
     out.commit().map_err(Fault::writing)?;
-    let end = snapshots.last().map_err(Fault::input)?;
     if arguments.json {
-        print_json(&Summary::of(&record, &snapshots, end.as_ref(), arguments))?;
+        print_json(&Summary::of(&record, &snapshots, arguments))?;
     } else {
         print(&footer(&record, &snapshots, &formats, arguments))?;
     }
@@ -418,49 +427,19 @@ impl Watch for Watcher {
 struct Summary<'a> {
     provenance: &'a Provenance,
     cost: &'a Cost,
-    end: Option<End>,
+    end: Option<&'a End>,
     snapshots: u64,
     out: String,
 }
 
-/// The last snapshot in short.
-#[derive(Serialize)]
-struct End {
-    step: u64,
-    time: f64,
-    grains: usize,
-    contacts: Option<usize>,
-    slipping_contacts: Option<usize>,
-    kinetic_energy: f64,
-    fastest: f64,
-}
-
 impl<'a> Summary<'a> {
-    fn of(record: &'a Record, snapshots: &SnapshotStore, end: Option<&Snapshot>, arguments: &Arguments) -> Self {
+    fn of(record: &'a Record, snapshots: &'a SnapshotStore, arguments: &Arguments) -> Self {
         Self {
             provenance: &record.provenance,
             cost: &record.cost,
-            end: end.map(End::of),
+            end: snapshots.end(),
             snapshots: snapshots.len(),
             out: arguments.out.display().to_string(),
-        }
-    }
-}
-
-impl End {
-    fn of(snapshot: &Snapshot) -> Self {
-        let grains = &snapshot.grains;
-        Self {
-            step: snapshot.step,
-            time: snapshot.time,
-            grains: grains.len(),
-            contacts: snapshot.contacts.as_ref().map(Vec::len),
-            slipping_contacts: snapshot
-                .contacts
-                .as_ref()
-                .map(|contacts| contacts.iter().filter(|contact| contact.slipping).count()),
-            kinetic_energy: grains.iter().map(|grain| 0.5 * grain.mass * grain.velocity.norm_squared()).sum(),
-            fastest: grains.iter().map(|grain| grain.velocity.norm()).fold(0.0, f64::max),
         }
     }
 }

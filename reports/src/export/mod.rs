@@ -81,8 +81,7 @@ pub fn write_remains(
 ) -> Result<(), WriteError> {
     snapshots.settle()?;
     let at = |source| WriteError::new(out.target().join(BROKEN_FILE), source);
-    let last = snapshots.last().map_err(at)?;
-    let (step, time) = last.map_or((0, 0.0), |last| (last.step, last.time));
+    let (step, time) = snapshots.end().map_or((0, 0.0), |end| (end.step, end.time));
     let text = serde_json::to_string_pretty(&Broken { error, step, time }).map_err(|error| at(error.into()))?;
     out.write(BROKEN_FILE, text + "\n")?;
     write_series(series, out)?;

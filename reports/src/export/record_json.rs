@@ -9,7 +9,7 @@ use serde::ser::{Error, SerializeSeq};
 use serde::{Serialize, Serializer};
 
 use crate::export::BROKEN_FILE;
-use crate::parts::{READABLE, SnapshotStore, rows_of};
+use crate::parts::{READABLE, SnapshotStore};
 use crate::store::{LoadError, parse};
 
 /// Name of the file.
@@ -42,7 +42,7 @@ impl Serialize for Stored<'_> {
         let mut all = serializer.serialize_seq(None)?;
         if self.0.rows() <= READABLE {
             self.0.each(S::Error::custom, |snapshot| all.serialize_element(snapshot))?;
-        } else if let Some(last) = self.0.last().map_err(S::Error::custom)?.filter(|last| rows_of(last) <= READABLE) {
+        } else if let Some(last) = self.0.readable_end().map_err(S::Error::custom)? {
             all.serialize_element(&last)?;
         }
         all.end()

@@ -4,10 +4,11 @@
 //! and what was not told is null.
 
 mod columns;
+mod end;
 mod part;
 mod rows;
 mod store;
 mod table;
 
-pub(crate) use part::rows_of;
+pub use end::End;
 pub use store::{READABLE, SnapshotStore, StoreError};

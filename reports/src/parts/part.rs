@@ -123,23 +123,23 @@ impl OpenPart {
 
     /// Adds snapshots, the first of which is the `first` of the run.
     pub(super) fn add(&mut self, first: u64, snapshots: &[Snapshot]) -> io::Result<()> {
-        fn rows<'s, R: 's>(
+        fn rows<'s, R, I: Iterator<Item = R> + 's>(
             first: u64,
             snapshots: &'s [Snapshot],
-            of: impl Fn(&'s Snapshot) -> Vec<R> + 's,
+            of: impl Fn(&'s Snapshot) -> I + 's,
         ) -> impl Iterator<Item = Stepped<R>> + 's {
             (first..).zip(snapshots).flat_map(move |(number, snapshot)| {
                 let (step, time) = (snapshot.step, snapshot.time);
-                of(snapshot).into_iter().map(move |row| Stepped { snapshot: number, step, time, row })
+                of(snapshot).map(move |row| Stepped { snapshot: number, step, time, row })
             })
         }
         let directory = self.directory.path().join("part");
-        self.frames.add(&directory, rows(first, snapshots, |of| vec![Frame::of(of)]))?;
-        self.grains.add(&directory, rows(first, snapshots, |of| of.grains.clone()))?;
-        self.contacts.add(&directory, rows(first, snapshots, |of| of.told_contacts().to_vec()))?;
-        self.walls.add(&directory, rows(first, snapshots, |of| of.walls.clone()))?;
-        self.bodies.add(&directory, rows(first, snapshots, |of| of.bodies.clone()))?;
-        self.points.add(&directory, rows(first, snapshots, |of| of.points.clone()))?;
+        self.frames.add(&directory, rows(first, snapshots, |of| std::iter::once(Frame::of(of))))?;
+        self.grains.add(&directory, rows(first, snapshots, |of| of.grains.iter().copied()))?;
+        self.contacts.add(&directory, rows(first, snapshots, |of| of.told_contacts().iter().copied()))?;
+        self.walls.add(&directory, rows(first, snapshots, |of| of.walls.iter().cloned()))?;
+        self.bodies.add(&directory, rows(first, snapshots, |of| of.bodies.iter().cloned()))?;
+        self.points.add(&directory, rows(first, snapshots, |of| of.points.iter().copied()))?;
         self.rows += snapshots.iter().map(rows_of).sum::<u64>();
         Ok(())
     }

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 use thiserror::Error;
 
+use super::end::End;
 use super::part::{OpenPart, PartReader, Seal, files, rows_of};
 use crate::scratch::{sweep, temporary_in};
 use crate::write::{WriteError, parent_of};
@@ -38,6 +39,11 @@ pub enum StoreError {
         /// What stands there.
         found: &'static str,
     },
+    /// The run that left the checkpoint was to keep no snapshots.
+    #[error(
+        "expected a checkpoint with the snapshots before it, found that of a run that wrote none: continue with none"
+    )]
+    LeftOut,
     /// What the checkpoint says of snapshots cannot be read.
     #[error("the checkpoint is damaged: {0}")]
     Damaged(String),
@@ -62,6 +68,12 @@ pub struct SnapshotStore {
     snapshots: u64,
     /// Rows of grains, contacts and points, those on disk too.
     rows: u64,
+    /// The last one, and its rows.
+    end: Option<(End, u64)>,
+    /// Whether nobody wants more of a run that is not [`READABLE`] than its last state, and that only if it is.
+    in_short: bool,
+    /// Whether snapshots were left out for that.
+    left_out: bool,
 }
 
 /// What a checkpoint keeps of the snapshots before it: those that waited, and where the others are.
@@ -70,6 +82,9 @@ struct Kept {
     waiting: Vec<Snapshot>,
     closed: Vec<Seal>,
     snapshots: u64,
+    end: Option<(End, u64)>,
+    rows: u64,
+    left_out: bool,
 }
 
 impl SnapshotStore {
@@ -87,7 +102,25 @@ impl SnapshotStore {
     }
 
     fn at(place: Place) -> Self {
-        Self { place, waiting: Vec::new(), waiting_bytes: 0, open: None, closed: Vec::new(), snapshots: 0, rows: 0 }
+        Self {
+            place,
+            waiting: Vec::new(),
+            waiting_bytes: 0,
+            open: None,
+            closed: Vec::new(),
+            snapshots: 0,
+            rows: 0,
+            end: None,
+            in_short: false,
+            left_out: false,
+        }
+    }
+
+    /// The same for a run whose snapshots are not wanted in any format: of one that is not [`READABLE`] the last is kept, if
+    /// that is.
+    #[must_use]
+    pub fn in_short(self) -> Self {
+        Self { in_short: true, ..self }
     }
 
     /// Takes up what a checkpoint kept (see [`SnapshotStore::keep`]): its parts are linked or copied from where they stand.
@@ -96,6 +129,10 @@ impl SnapshotStore {
     /// When a part is gone or changed, or cannot be brought here.
     pub fn resume(mut self, checkpoint: &Path, kept: &[u8]) -> Result<Self, StoreError> {
         let kept: Kept = postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
+        if kept.left_out && !self.in_short {
+            return Err(StoreError::LeftOut);
+        }
+        self.left_out = kept.left_out;
         let source = parts_of(checkpoint);
         for seal in &kept.closed {
             let from = source.join(&seal.name);
@@ -116,8 +153,9 @@ impl SnapshotStore {
             }
         }
         self.waiting_bytes = kept.waiting.iter().map(bytes).sum();
-        self.rows = kept.closed.iter().map(|seal| seal.rows).chain(kept.waiting.iter().map(rows_of)).sum();
+        self.rows = kept.rows;
         (self.waiting, self.closed, self.snapshots) = (kept.waiting, kept.closed, kept.snapshots);
+        self.end = kept.end;
         Ok(self)
     }
 
@@ -126,11 +164,20 @@ impl SnapshotStore {
     /// # Errors
     /// When the disk refuses.
     pub fn add(&mut self, snapshot: Snapshot) -> Result<(), WriteError> {
-        self.rows += rows_of(&snapshot);
+        let rows = rows_of(&snapshot);
+        self.rows += rows;
         self.snapshots += 1;
+        self.end = Some((End::of(&snapshot), rows));
+        if self.in_short && self.rows > READABLE {
+            self.waiting.clear();
+            (self.waiting_bytes, self.left_out) = (0, true);
+            if rows > READABLE {
+                return Ok(());
+            }
+        }
         self.waiting_bytes += bytes(&snapshot);
         self.waiting.push(snapshot);
-        if self.waiting_bytes < WAITING {
+        if self.waiting_bytes < WAITING || self.in_short {
             return Ok(());
         }
         self.spill().map_err(|source| WriteError::new(self.shown(), source))
@@ -142,8 +189,9 @@ impl SnapshotStore {
     /// When the disk refuses.
     pub fn keep(&mut self) -> Result<Vec<u8>, WriteError> {
         self.settle()?;
-        let Self { waiting, closed, snapshots, .. } = self;
-        let kept = Kept { waiting: waiting.clone(), closed: closed.clone(), snapshots: *snapshots };
+        let &mut Self { ref waiting, ref closed, snapshots, ref end, rows, left_out, .. } = self;
+        let kept =
+            Kept { waiting: waiting.clone(), closed: closed.clone(), snapshots, end: end.clone(), rows, left_out };
         postcard::to_allocvec(&kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
     }
 
@@ -212,11 +260,20 @@ impl SnapshotStore {
         self.waiting.iter().try_for_each(look)
     }
 
-    /// The last snapshot that is settled.
+    /// The last snapshot in short.
+    #[must_use]
+    pub fn end(&self) -> Option<&End> {
+        self.end.as_ref().map(|(end, _)| end)
+    }
+
+    /// The last snapshot that is settled, if it is [`READABLE`].
     ///
     /// # Errors
     /// When its part cannot be read.
-    pub fn last(&self) -> io::Result<Option<Snapshot>> {
+    pub fn readable_end(&self) -> io::Result<Option<Snapshot>> {
+        if self.end.as_ref().is_some_and(|&(_, rows)| rows > READABLE) {
+            return Ok(None);
+        }
         let mut last = self.waiting.last().cloned();
         if let (None, Some(seal)) = (&last, self.closed.last()) {
             let mut reader = PartReader::open(&self.place_of(seal))?;
@@ -390,7 +447,7 @@ mod tests {
         store.settle().unwrap();
         assert!(store.closed.len() > 2 && store.len() == 40, "{:?}", store.closed);
         assert_eq!(format!("{:?}", all(&store)), format!("{snapshots:?}"));
-        assert_eq!(store.last().unwrap().as_ref(), snapshots.last());
+        assert_eq!(store.readable_end().unwrap().as_ref(), snapshots.last());
         drop(store);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "scratch goes with the store");
     }
@@ -437,6 +494,26 @@ mod tests {
         assert!(matches!(again(), Err(StoreError::Lost { .. })), "changed");
         fs::remove_dir_all(&part).unwrap();
         assert!(matches!(again(), Err(StoreError::Lost { .. })), "gone");
+    }
+
+    #[test]
+    fn what_nobody_wants_is_not_kept_and_cannot_be_asked_for_later() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoint = folder.path().join("run.checkpoint");
+        let many = Snapshot { grains: vec![sample::snapshot().grains[0]; 150_000], ..sample::snapshot() };
+        let mut store = SnapshotStore::for_checkpoint(&checkpoint).in_short();
+        for step in 0..3 {
+            store.add(Snapshot { step, ..many.clone() }).unwrap();
+        }
+        assert_eq!((all(&store).len(), store.len(), store.end().unwrap().step), (1, 3, 2));
+        assert_eq!(store.readable_end().unwrap().unwrap().step, 2);
+        let kept = store.keep().unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing goes to disk");
+        let again = || SnapshotStore::for_checkpoint(&checkpoint);
+        assert!(matches!(again().resume(&checkpoint, &kept), Err(StoreError::LeftOut)));
+        let resumed = again().in_short().resume(&checkpoint, &kept).unwrap();
+        assert_eq!((resumed.len(), resumed.rows(), resumed.end()), (3, store.rows(), store.end()));
+        assert!(resumed.rows() > 2 * READABLE);
     }
 
     #[test]

@@ -32,8 +32,9 @@ pub trait Simulation: Send {
     fn counts(&self) -> Counts;
     /// Cycles taken.
     fn step(&self) -> u64;
-    /// The state at this step: grains, contacts, walls and energies.
-    fn look(&self) -> Look;
+    /// The state at this step: grains, contacts, walls and energies. The contacts are taken away: whoever looks again at the
+    /// same step is told none.
+    fn look(&mut self) -> Look;
 }
 
 impl<S: Geometry> Simulation for Simulated<S> {
@@ -65,7 +66,7 @@ impl<S: Geometry> Simulation for Simulated<S> {
         self.step
     }
 
-    fn look(&self) -> Look {
+    fn look(&mut self) -> Look {
         crate::observe::look(self)
     }
 }

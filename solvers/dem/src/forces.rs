@@ -8,7 +8,6 @@ use crate::contact::at_wall::AtWall;
 use crate::contact::chain::{Evaluation, Layout};
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
-use crate::contact::seen::Seen;
 use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Options};
 use crate::geometry::Geometry;
@@ -16,6 +15,7 @@ use crate::grains::{Grains, Read, Sums};
 use crate::laws::Laws;
 use crate::listed::Pairs;
 use crate::pairs::OfPairs;
+use crate::seen::Seen;
 use crate::touching::Touching;
 use crate::walls::MovingWall;
 use grainbench_lanes::{Kernel, Processor, Quad, Single};
@@ -50,7 +50,7 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
         grains: (Read<'_>, Sums<'_>),
         pairs: &mut Pairs,
         touching: &Touching,
-        seen: Option<&mut Vec<Seen>>,
+        seen: Option<&mut Seen>,
     );
     /// Adds the forces and torques at a wall, finds the force on it and how many grains touch it.
     fn at_wall(
@@ -59,7 +59,7 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
         grains: &mut Grains<S>,
         wall: &mut MovingWall,
         number: u16,
-        seen: Option<&mut Vec<Seen>>,
+        seen: Option<&mut Seen>,
     ) -> u64;
     /// What a contact remembers.
     fn layout(&self) -> Layout;
@@ -86,7 +86,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         grains: (Read<'_>, Sums<'_>),
         pairs: &mut Pairs,
         touching: &Touching,
-        seen: Option<&mut Vec<Seen>>,
+        seen: Option<&mut Seen>,
     ) {
         let one_by_one = seen.is_some();
         let of_pairs = OfPairs::<S, N, T, R>::new(terms, grains, pairs, touching, seen);
@@ -103,7 +103,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         grains: &mut Grains<S>,
         wall: &mut MovingWall,
         number: u16,
-        mut seen: Option<&mut Vec<Seen>>,
+        mut seen: Option<&mut Seen>,
     ) -> u64 {
         let mut near = std::mem::take(&mut wall.near);
         wall.force = Default::default();
@@ -137,7 +137,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
             (0..3).for_each(|axis| wall.force[axis] -= force[axis]);
             if let Some(seen) = &mut seen {
                 let (id, partner) = (grains.id[slot] + 1, Partner::Wall(number));
-                seen.push(Seen::new(&answer, id, partner, position, radius));
+                seen.add(&answer, id, partner, position, radius);
             }
         }
         wall.near = near;

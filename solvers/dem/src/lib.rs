@@ -32,6 +32,7 @@ mod observe;
 mod pairs;
 #[cfg(test)]
 mod processors;
+mod seen;
 mod share;
 mod simulation;
 pub mod solver;

@@ -190,6 +190,7 @@ impl Pairs {
     pub(crate) fn make_room(&mut self, places: usize) {
         for (memory, next) in self.memory.iter().zip(&mut self.next) {
             if !memory.is_empty() && next.len() < places {
+                reserve(next, places - next.len());
                 next.resize(places, Quad::default());
             }
         }
@@ -206,6 +207,13 @@ impl Pairs {
 
     pub(crate) fn forget(&mut self) {
         self.memory.iter_mut().for_each(|memory| memory.fill(Quad::default()));
+    }
+}
+
+/// Makes room for more: where it must grow, by an eighth at least, for there may be millions.
+pub(crate) fn reserve<T>(list: &mut Vec<T>, more: usize) {
+    if list.capacity() - list.len() < more {
+        list.reserve_exact(more.max(list.len() / 8));
     }
 }
 

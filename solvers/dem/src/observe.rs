@@ -4,35 +4,23 @@
 use crate::geometry::Geometry;
 use crate::neighbours::wrapped;
 use crate::simulation::Simulated;
-use grainbench_scene::record::{self, ContactState, GrainState, Look, Snapshot, WallState};
+use grainbench_scene::record::{self, GrainState, Look, Snapshot, WallState};
 use grainbench_scene::scene::Scene;
 use nalgebra::Vector3;
 
-/// The state at this step: grains, contacts, walls and energies.
-pub(crate) fn look<S: Geometry>(simulation: &Simulated<S>) -> Look {
-    let scene = &simulation.scene;
+/// The state at this step: grains, contacts, walls and energies. The contacts are taken away: whoever looks again at the same
+/// step is told none.
+pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
+    let contacts = simulation.take_contacts();
+    let (simulation, scene) = (&*simulation, &simulation.scene);
     let mut grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(simulation, id)).collect();
     for driven in &scene.driven {
         for &grain in &driven.grains {
             (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
         }
     }
-    let elastic_energy = simulation.seen().map(|seen| seen.elastic_energy).sum();
+    let elastic_energy = simulation.energies().map(|of| of.elastic).sum();
     let budget = simulation.accounting.then(|| simulation.accounts.budget(scene, &grains, elastic_energy));
-    let mut contacts: Vec<ContactState> = simulation
-        .seen()
-        .map(|seen| ContactState {
-            grain: seen.grain,
-            partner: seen.partner,
-            point: seen.point,
-            normal: seen.normal,
-            overlap: seen.overlap,
-            normal_force: seen.normal_force,
-            shear_force: seen.shear,
-            slipping: seen.slipping,
-        })
-        .collect();
-    contacts.sort_by_key(|contact| contact.grain);
     let walls = simulation
         .walls
         .iter()
@@ -47,7 +35,7 @@ pub(crate) fn look<S: Geometry>(simulation: &Simulated<S>) -> Look {
         bounds: record::bounds(scene, &grains),
         periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
         grains,
-        contacts: Some(contacts),
+        contacts,
         walls,
         bodies: Vec::new(),
         points: Vec::new(),

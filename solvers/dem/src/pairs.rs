@@ -4,7 +4,6 @@ use crate::contact::chain::Answer;
 use crate::contact::normal::Normal;
 use crate::contact::pair::Pair;
 use crate::contact::rolling::Rolling;
-use crate::contact::seen::Seen;
 use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Memory};
 use crate::forces::Terms;
@@ -12,6 +11,7 @@ use crate::geometry::Geometry;
 use crate::grains::{Read, Sums};
 use crate::laws::{Constants, gathered, places};
 use crate::listed::Pairs;
+use crate::seen::Seen;
 use crate::touching::Touching;
 use grainbench_lanes::{Kernel, Lanes, Quad, WIDEST, Wide};
 use grainbench_scene::record::Partner;
@@ -25,7 +25,7 @@ pub(crate) struct OfPairs<'a, S: Geometry, N, T, R> {
     sums: Sums<'a>,
     shift: &'a [Quad],
     memory: [Remembered<'a>; 2],
-    seen: Option<&'a mut Vec<Seen>>,
+    seen: Option<&'a mut Seen>,
     chain: PhantomData<(S, N, T, R)>,
 }
 
@@ -51,7 +51,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         (grains, sums): (Read<'a>, Sums<'a>),
         pairs: &'a mut Pairs,
         touching: &'a Touching,
-        seen: Option<&'a mut Vec<Seen>>,
+        seen: Option<&'a mut Seen>,
     ) -> Self {
         let kept = touching.kept_from()..touching.kept_from() + touching.count;
         pairs.make_room(kept.end);
@@ -211,7 +211,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel for OfPairs
             {
                 let (one, other, Read { place, id, .. }) = (slots.first[0], slots.second[0], self.grains);
                 let partner = Partner::Grain(id[other] + 1);
-                seen.push(Seen::new(&answer, id[one] + 1, partner, S::vector_in_space(&place[one]), place[one].0[3]));
+                seen.add(&answer, id[one] + 1, partner, S::vector_in_space(&place[one]), place[one].0[3]);
             }
         }
     }

@@ -61,9 +61,10 @@ fn state<S: Geometry>(mut simulation: Simulated<S>, path: Processor) -> String {
     let touched: u32 = listed.shares[0].near.touches.iter().map(|bits| bits.count_ones()).sum();
     let across: u32 = listed.shares[0].across.touches.iter().map(|bits| bits.count_ones()).sum();
     assert!(touched == 0 || (touched > 10 && across > 0), "{touched} pairs touch, {across} across a face");
-    let seen: Vec<_> = simulation.seen().collect();
-    let counts = simulation.cost;
-    format!("{:?} {listed:?} {seen:?} {counts:?}", simulation.grains)
+    let contacts = simulation.take_contacts();
+    let energies: Vec<_> = simulation.energies().collect();
+    assert!(contacts.as_ref().is_some_and(|contacts| contacts.len() == energies.len()));
+    format!("{:?} {listed:?} {contacts:?} {energies:?} {:?}", simulation.grains, simulation.cost)
 }
 
 /// Laws with every combination of effects, some of which only one of the materials has.

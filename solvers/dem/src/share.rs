@@ -4,11 +4,11 @@
 //! numbers, and the sums of a grain are taken in the order of the whole list: so the bits do not depend on how many share it.
 
 use crate::contact::chain::Layout;
-use crate::contact::seen::Seen;
 use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
 use crate::grains::{Read, Sums};
 use crate::listed::Pairs;
+use crate::seen::Seen;
 use crate::touching::{Touching, blocks};
 use grainbench_lanes::Processor;
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ struct Work {
     /// Pairs of a block that touch.
     touching: [Touching; 2],
     /// Contacts that were recorded, of pairs across a face and of the others.
-    seen: [Vec<Seen>; 2],
+    seen: [Seen; 2],
     /// Place in the memory of every pair across a face and of the others.
     places: [Vec<u32>; 2],
 }
@@ -129,8 +129,13 @@ impl Share {
     }
 
     /// What was recorded of pairs across a face, and of the others.
-    pub(crate) fn seen(&self) -> [&[Seen]; 2] {
-        self.work.seen.each_ref().map(|seen| &seen[..])
+    pub(crate) fn seen(&self) -> &[Seen; 2] {
+        &self.work.seen
+    }
+
+    /// The same, to be taken away.
+    pub(crate) fn seen_mut(&mut self) -> &mut [Seen; 2] {
+        &mut self.work.seen
     }
 
     /// The lists, in the order in which their forces are found: of pairs across a face, and of the others.
@@ -166,7 +171,7 @@ pub(crate) struct List<'a> {
     rows: Range<usize>,
     pairs: &'a mut Pairs,
     touching: &'a mut Touching,
-    seen: &'a mut Vec<Seen>,
+    seen: &'a mut Seen,
     /// Contacts so far, and those in rows of its own.
     touch: usize,
     own: u64,
@@ -196,6 +201,9 @@ impl List<'_> {
         } else {
             touching.first[..touching.count].iter().filter(|&&first| rows.contains(&(first as usize))).count() as u64
         };
+        if evaluation.record {
+            seen.make_room(touching.count);
+        }
         let seen = evaluation.record.then_some(&mut **seen);
         evaluation.forces.of_pairs(evaluation.processor, evaluation.terms, (grains, sums), pairs, touching, seen);
     }

@@ -4,7 +4,6 @@
 //! anew if it must ([`crate::neighbours`]), and finds the forces for the next ([`crate::forces`]).
 
 use crate::accounts::{Accounts, Step};
-use crate::contact::seen::Seen;
 use crate::contact::{MEMORY, Options};
 use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
@@ -12,11 +11,12 @@ use crate::grains::Grains;
 use crate::laws::Laws;
 use crate::motion::{Motion, Moving};
 use crate::neighbours::Neighbours;
+use crate::seen::{Energies, Seen};
 use crate::share::{Evaluation, FEWEST, Share};
 use crate::stability::stable_fraction;
 use crate::walls::{MovingWall, NearWall};
 use grainbench_lanes::{Processor, Team};
-use grainbench_scene::record::Counts;
+use grainbench_scene::record::{ContactState, Counts};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Broken, Cause, Subject};
 use nalgebra::Vector3;
@@ -44,7 +44,9 @@ pub(crate) struct Simulated<S: Geometry> {
     /// Fewest grains in a share.
     pub(crate) fewest_in_a_share: usize,
     /// Every contact with a wall in the last force evaluation, if it was recorded.
-    seen_at_walls: Vec<Seen>,
+    seen_at_walls: Seen,
+    /// Step of which contacts were recorded, if nobody has taken them away.
+    seen_at: Option<u64>,
     /// Largest radius of a grain (m).
     largest_radius: f64,
     /// Critical time step 2√(m_min/k_max) of the scene (s).
@@ -87,7 +89,8 @@ impl<S: Geometry> Simulated<S> {
             processor: Processor::new(),
             team,
             fewest_in_a_share: FEWEST,
-            seen_at_walls: Vec::new(),
+            seen_at_walls: Seen::default(),
+            seen_at: None,
             motion: Motion { gravity, global_damping: scene.global_damping, time_step },
             largest_radius,
             critical: scene.critical_time_step(),
@@ -120,10 +123,36 @@ impl<S: Geometry> Simulated<S> {
         self.team.members().min(self.grains.len() / self.fewest_in_a_share).max(1)
     }
 
-    /// Every contact of the last force evaluation, if it was recorded: with walls, across periodic faces, and others.
-    pub(crate) fn seen(&self) -> impl Iterator<Item = &Seen> {
-        let of = |list: usize| self.neighbours.shares.iter().flat_map(move |share| share.seen()[list]);
-        self.seen_at_walls.iter().chain(of(0)).chain(of(1))
+    /// What the contacts of the last force evaluation that was recorded do to the energy.
+    pub(crate) fn energies(&self) -> impl Iterator<Item = &Energies> {
+        let of = |list: usize| self.neighbours.shares.iter().flat_map(move |share| &share.seen()[list].energies);
+        self.seen_at_walls.energies.iter().chain(of(0)).chain(of(1))
+    }
+
+    /// Takes away the contacts of this step, in order of the id of their first grain; none where they were not recorded or
+    /// have been taken. Contacts of a grain with walls come first, then those across periodic faces.
+    pub(crate) fn take_contacts(&mut self) -> Option<Vec<ContactState>> {
+        self.seen_at.take().filter(|&at| at == self.step)?;
+        let [mut before, mut contacts] = [std::mem::take(&mut self.seen_at_walls.contacts), Vec::new()];
+        for share in &mut self.neighbours.shares {
+            before.append(&mut share.seen_mut()[0].contacts);
+        }
+        // What is largest is not copied: of one share the list itself is given.
+        for share in &mut self.neighbours.shares {
+            let mut others = std::mem::take(&mut share.seen_mut()[1].contacts);
+            if contacts.is_empty() {
+                contacts = others;
+            } else {
+                contacts.reserve_exact(others.len());
+                contacts.append(&mut others);
+            }
+        }
+        let first = before.len();
+        contacts.reserve_exact(first);
+        contacts.append(&mut before);
+        contacts.rotate_right(first);
+        contacts.sort_by_cached_key(|contact| contact.grain);
+        Some(contacts)
     }
 
     /// Takes `steps` cycles.
@@ -189,11 +218,25 @@ impl<S: Geometry> Simulated<S> {
     /// Finds the forces and torques at all contacts; springs are stretched by what slipped and rolled in `elapsed` (s).
     fn evaluate_forces(&mut self, record: bool, elapsed: f64, move_on: bool) {
         let Self {
-            laws, options, motion, grains, neighbours, walls, forces, processor, seen_at_walls, cost, team, ..
+            laws,
+            options,
+            motion,
+            grains,
+            neighbours,
+            walls,
+            forces,
+            processor,
+            seen_at_walls,
+            seen_at,
+            step,
+            cost,
+            team,
+            ..
         } = self;
         let terms = Terms { laws, options, elapsed };
         if record {
             seen_at_walls.clear();
+            *seen_at = Some(*step);
         }
         for (number, wall) in walls.iter_mut().enumerate() {
             cost.pair_tests += wall.near.len() as u64;
@@ -264,7 +307,7 @@ impl<S: Geometry> Simulated<S> {
             velocities: velocities.collect(),
             gravity: self.scene.gravity,
             free_mass: self.free_mass,
-            friction: self.seen().map(|seen| seen.rubbed).sum(),
+            friction: self.energies().map(|of| of.rubbed).sum(),
             time_step: self.motion.time_step,
         });
     }

@@ -12,7 +12,7 @@ use crate::share::FEWEST;
 use crate::simulation::Simulated;
 use crate::stability::damped_step;
 use grainbench_lanes::Team;
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Counts, Look, Provenance, Record};
@@ -80,9 +80,9 @@ impl Dem {
     }
 
     /// The run that a checkpoint belongs to.
-    fn identity(&self, scene: &Scene, time_step: f64, steps: u64, layout: &str) -> RunIdentity {
+    fn run_of<'a>(&self, scene: &'a Scene, time_step: f64, steps: u64, layout: &'static str) -> Run<'a> {
         let solver = format!("{} ({})", self.name(), self.convention.words().join(", "));
-        RunIdentity::new(solver, scene, time_step, steps, layout)
+        Run { solver, scene, time_step, steps, layout }
     }
 
     /// Refuses a scene that rigid grains on springs cannot express.
@@ -155,9 +155,9 @@ impl Dem {
         let (time_step, steps) = self.steps(scene, resolution)?;
         self.refuse_lagging_dashpots(scene, time_step)?;
         let mut simulation = self.start_on(scene, time_step, watch.threads())?;
-        let identity = self.identity(scene, time_step, steps, simulation.layout());
-        let resumed = from.map(|checkpoint| simulation.recall(&identity, checkpoint)).transpose()?;
-        let mut running = Running { simulation, identity, defect: self.defect };
+        let run = self.run_of(scene, time_step, steps, simulation.layout());
+        let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
+        let mut running = Running { simulation, run, defect: self.defect };
         let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
         let Driven { series, snapshots, cost } = course.drive(&mut running, watch)?;
         let critical = scene.critical_time_step();
@@ -212,13 +212,13 @@ fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn 
 }
 
 /// A simulation under way.
-struct Running {
+struct Running<'a> {
     simulation: Box<dyn Simulation>,
-    identity: RunIdentity,
+    run: Run<'a>,
     defect: Option<Defect>,
 }
 
-impl Stepper for Running {
+impl Stepper for Running<'_> {
     fn step(&self) -> u64 {
         self.simulation.step()
     }
@@ -245,7 +245,7 @@ impl Stepper for Running {
     }
 
     fn keep(&self, recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
-        self.simulation.keep(&self.identity, recorder).map(Some)
+        self.simulation.keep(&self.run.identity(), recorder).map(Some)
     }
 }
 

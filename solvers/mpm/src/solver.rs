@@ -5,7 +5,7 @@ use crate::limits;
 use crate::options::{Contact, Setting};
 use crate::simulation::Simulation;
 use grainbench_scene::body::{BlockShape, Hold};
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::memory;
@@ -143,10 +143,10 @@ impl Mpm {
         let mut simulation =
             Simulation::<S>::new(scene, self.setting, lattice, points, [time_step, critical], watch.threads());
         let solver = format!("{} at {resolution} ({})", self.name(), self.setting.words().join(", "));
-        let identity = RunIdentity::new(solver, scene, time_step, steps, std::any::type_name::<Simulation<S>>());
-        let resumed = from.map(|checkpoint| simulation.recall(&identity, checkpoint)).transpose()?;
+        let run = Run { solver, scene, time_step, steps, layout: std::any::type_name::<Simulation<S>>() };
+        let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
         let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
-        course.drive(&mut Running { simulation, identity }, watch)
+        course.drive(&mut Running { simulation, run }, watch)
     }
 
     /// Runs from the start or from a checkpoint to the end.
@@ -220,12 +220,12 @@ const SMALLEST: f64 = 0.5;
 const BETWEEN_SIDES: f64 = 1.5;
 
 /// A simulation under way.
-struct Running<S: Space> {
+struct Running<'a, S: Space> {
     simulation: Simulation<S>,
-    identity: RunIdentity,
+    run: Run<'a>,
 }
 
-impl<S: Space> Stepper for Running<S> {
+impl<S: Space> Stepper for Running<'_, S> {
     fn begin(&mut self) -> Result<(), RunError> {
         Ok(self.simulation.begin()?)
     }
@@ -247,7 +247,7 @@ impl<S: Space> Stepper for Running<S> {
     }
 
     fn keep(&self, recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
-        self.simulation.keep(&self.identity, recorder).map(Some)
+        self.simulation.keep(&self.run.identity(), recorder).map(Some)
     }
 }
 

@@ -8,12 +8,13 @@ use crate::scene::Scene;
 use crate::text::tamed;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use thiserror::Error;
 
 /// What a checkpoint begins with, before the number of its format.
 const MAGIC: &[u8] = b"grainbench checkpoint ";
 /// The format that this program writes: to be raised whenever anything that is stored changes its meaning or its place.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 /// Length of the longest first line that a format of ours could have.
 const LONGEST_LINE: usize = MAGIC.len() + 11;
 
@@ -83,15 +84,38 @@ pub struct RunIdentity {
     pub layout: String,
 }
 
-impl RunIdentity {
-    /// Of a run of `steps` steps of `time_step` (s).
-    #[must_use]
-    pub fn new(solver: String, scene: &Scene, time_step: f64, steps: u64, layout: &str) -> Self {
-        // Debug output tells every bit of a number.
-        let fingerprint = blake3::hash(format!("{scene:?}").as_bytes()).to_hex().to_string();
-        Self { solver, scene: scene.title.clone(), fingerprint, time_step, steps, layout: layout.to_owned() }
-    }
+/// What the identity of a run is taken from, when a checkpoint is.
+#[derive(Clone, Debug)]
+pub struct Run<'a> {
+    /// Solver and options, in words.
+    pub solver: String,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Time step (s).
+    pub time_step: f64,
+    /// Steps of the whole run.
+    pub steps: u64,
+    /// What the solver keeps, in words that change when it does.
+    pub layout: &'static str,
+}
 
+impl Run<'_> {
+    /// The run as its checkpoints name it.
+    #[must_use]
+    pub fn identity(&self) -> RunIdentity {
+        let &Self { ref solver, scene, time_step, steps, layout } = self;
+        RunIdentity {
+            solver: solver.clone(),
+            scene: scene.title.clone(),
+            fingerprint: fingerprint(scene).to_hex().to_string(),
+            time_step,
+            steps,
+            layout: layout.to_owned(),
+        }
+    }
+}
+
+impl RunIdentity {
     fn require(&self, found: &Self) -> Result<(), CheckpointError> {
         let other = |what, expected: &dyn ToString, found: &dyn ToString| {
             Err(CheckpointError::OtherRun { what, expected: expected.to_string(), found: found.to_string() })
@@ -116,6 +140,21 @@ impl RunIdentity {
         }
         Ok(())
     }
+}
+
+/// The hash of everything in a scene. Debug output tells every bit of a number.
+fn fingerprint(scene: &Scene) -> blake3::Hash {
+    struct Hashed(blake3::Hasher);
+    impl fmt::Write for Hashed {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            self.0.update(text.as_bytes());
+            Ok(())
+        }
+    }
+    let mut hashed = Hashed(blake3::Hasher::new());
+    // A hash takes any text.
+    let _ = fmt::write(&mut hashed, format_args!("{scene:?}"));
+    hashed.0.finalize()
 }
 
 /// The state of a run between two steps.
@@ -272,8 +311,8 @@ mod tests {
         assert_eq!(Checkpoint::from_bytes(&[0; 100]), Err(CheckpointError::Foreign));
         let older = [b"grainbench checkpoint 1\n".as_slice(), &bytes()[24..]].concat();
         assert_eq!(Checkpoint::from_bytes(&older), Err(CheckpointError::Older { found: 1 }));
-        let newer = [b"grainbench checkpoint 4\n".as_slice(), &bytes()[24..]].concat();
-        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found: 4 }));
+        let newer = [b"grainbench checkpoint 5\n".as_slice(), &bytes()[24..]].concat();
+        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found: 5 }));
     }
 
     #[test]

@@ -27,7 +27,8 @@ pub trait Stepper {
     /// When the simulation breaks.
     fn advance(&mut self, steps: u64) -> Result<(), RunError>;
 
-    /// The state after the last step; with all that a snapshot holds where one is due.
+    /// The state after the last step; with all that a snapshot holds where one is due. It is looked at once a step: who looks
+    /// again may be told no contacts.
     fn look(&mut self, snapshot: bool) -> Look;
 
     /// Counts so far; no times.
@@ -88,7 +89,14 @@ impl Course<'_> {
         };
         if let Err(error) = self.steps(begins, &mut recorder, stepper, watch) {
             let end = match error {
-                RunError::Interrupted { .. } => Some(stepper.look(true).snapshot),
+                RunError::Interrupted { .. } => {
+                    let look = stepper.look(true);
+                    // A run that is continued has the sample of its first step.
+                    if recorder.last_sample() != Some(look.snapshot.step) {
+                        recorder.sample(self.scene, &look);
+                    }
+                    Some(look.snapshot)
+                }
                 // The contacts of the last look are of an earlier step.
                 RunError::Broken(_) | RunError::NotFinite { .. } => {
                     Some(Snapshot { contacts: None, ..stepper.look(true).snapshot })
@@ -121,15 +129,15 @@ impl Course<'_> {
         let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
         loop {
             let now = stepper.step();
+            if now < self.steps && watch.is_over() {
+                return Err(RunError::Interrupted { time: now as f64 * self.time_step, step: now });
+            }
             if (begins || now > first) && recorder.is_due(now) {
                 self.take_down(stepper.look(recorder.is_snapshot(now)), recorder, watch)?;
             }
             watch.progress(now, self.steps);
             if now == self.steps {
                 return Ok(());
-            }
-            if watch.is_over() {
-                return Err(RunError::Interrupted { time: now as f64 * self.time_step, step: now });
             }
             if now > first
                 && now.is_multiple_of(between_checkpoints)

@@ -14,6 +14,7 @@ pub mod effects;
 pub mod error;
 pub mod file;
 pub mod generate;
+pub mod grains;
 pub mod manufactured;
 pub mod memory;
 pub mod motion;

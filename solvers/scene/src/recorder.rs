@@ -90,13 +90,23 @@ impl Recorder {
         sample.min(snapshot).min(self.steps)
     }
 
+    /// Takes down the sample of a step, if one is due.
+    pub fn sample(&mut self, scene: &Scene, look: &Look) {
+        if self.is_sample(look.snapshot.step) {
+            probe::sample(&mut self.series, scene, look);
+        }
+    }
+
     /// Takes down the sample that is due at the step of `look`; hands on the snapshot where one is due.
     pub fn take(&mut self, scene: &Scene, look: Look) -> Option<Snapshot> {
-        let step = look.snapshot.step;
-        if self.is_sample(step) {
-            probe::sample(&mut self.series, scene, &look);
-        }
-        self.is_snapshot(step).then_some(look.snapshot)
+        self.sample(scene, &look);
+        self.is_snapshot(look.snapshot.step).then_some(look.snapshot)
+    }
+
+    /// Step of the last sample.
+    #[must_use]
+    pub fn last_sample(&self) -> Option<u64> {
+        self.series.step.last().copied()
     }
 
     /// Keeps a snapshot in the record.

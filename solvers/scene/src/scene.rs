@@ -4,6 +4,7 @@ pub use crate::body::Block;
 use crate::body::{Deformable, Start};
 use crate::contact_law::ContactLaw;
 use crate::file::GrainShape;
+use crate::grains::Grains;
 use crate::motion::{Displacement, Motion};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
@@ -246,7 +247,7 @@ pub struct Scene {
     /// What deformable materials are made of, in the order of `materials`; none where the scene does not say.
     pub deformable: Vec<Option<Deformable>>,
     /// Grains; the id of a grain is its place here plus one.
-    pub grains: Vec<Grain>,
+    pub grains: Grains,
     /// Deformable bodies that are no grains.
     pub bodies: Vec<Block>,
     /// How deformable bodies start.

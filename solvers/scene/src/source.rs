@@ -49,8 +49,11 @@ impl SceneSource {
         let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
         let source = Self { name, directory, text, variant: None, overrides: Vec::new() };
         // A slip in a variant that nobody asked for today is one all the same.
-        for variant in source.variants()? {
-            source.clone().variant(&variant).scene_file()?;
+        let table = source.parse()?;
+        let mut varied = source.clone();
+        for variant in variant_names(&table) {
+            varied.variant = Some(variant);
+            varied.scene_file_of(&table)?;
         }
         Ok(source)
     }
@@ -86,8 +89,7 @@ impl SceneSource {
     /// # Errors
     /// When the text is not TOML.
     pub fn variants(&self) -> Result<Vec<String>, SceneError> {
-        let table = self.parse()?;
-        Ok(variant_tables(&table).map(|tables| tables.keys().cloned().collect()).unwrap_or_default())
+        Ok(variant_names(&self.parse()?))
     }
 
     /// The file with its variant and overrides laid over it.
@@ -95,17 +97,23 @@ impl SceneSource {
     /// # Errors
     /// When the text is not TOML, the variant is unknown, or a key is unknown, missing or of the wrong type.
     pub fn scene_file(&self) -> Result<SceneFile, SceneError> {
-        let mut table = self.parse()?;
+        self.scene_file_of(&self.parse()?)
+    }
+
+    /// The same of the text as a table.
+    fn scene_file_of(&self, text: &toml::Table) -> Result<SceneFile, SceneError> {
+        let plain = text.iter().filter(|(key, _)| *key != "variants");
+        let mut table: toml::Table = plain.map(|(key, value)| (key.clone(), value.clone())).collect();
         if let Some(variant) = &self.variant {
-            let overlay = variant_tables(&table).and_then(|tables| tables.get(variant)).cloned();
+            let overlay = variant_tables(text).and_then(|tables| tables.get(variant));
             match overlay {
-                Some(toml::Value::Table(overlay)) => merge(&mut table, overlay),
+                Some(toml::Value::Table(overlay)) => merge(&mut table, overlay.clone()),
                 Some(other) => {
                     let key = format!("variants.{variant}");
                     return Err(self.error(&key, "a table of overrides", other.type_str(), None));
                 }
                 None => {
-                    let names = self.variants()?;
+                    let names = variant_names(text);
                     let help = did_you_mean(variant, names.iter().map(String::as_str));
                     return Err(self.error(
                         "variants",
@@ -269,6 +277,10 @@ fn shortened(text: &str) -> String {
 /// Whether `key` is `set` or lies below it.
 fn within(key: &str, set: &str) -> bool {
     key.strip_prefix(set).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+fn variant_names(table: &toml::Table) -> Vec<String> {
+    variant_tables(table).map(|tables| tables.keys().cloned().collect()).unwrap_or_default()
 }
 
 fn variant_tables(table: &toml::Table) -> Option<&toml::Table> {

@@ -9,7 +9,6 @@ pub(crate) mod chain;
 pub(crate) mod normal;
 pub(crate) mod pair;
 pub(crate) mod rolling;
-pub(crate) mod seen;
 pub(crate) mod tangential;
 
 use crate::convention::{CapNormal, Convention, CoulombCap, History, Tension, TorqueArm, WallRolling};

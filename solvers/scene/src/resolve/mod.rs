@@ -120,7 +120,7 @@ impl Resolver<'_> {
             deformable,
             start: self.start(gravity)?,
             reference_length: self.reference_length(&grains, &bodies)?,
-            grains,
+            grains: grains.into(),
             bodies,
             walls,
             driven,
