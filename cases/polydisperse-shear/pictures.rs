@@ -2,7 +2,7 @@
 
 use super::measures::at;
 use super::{CHAINS, FRAMES, springs, yielding};
-use grainbench_fields::coarse_picture::{self, Mean};
+use grainbench_fields::element_picture;
 use grainbench_fields::picture::{Shot, film, pictures};
 use grainbench_fields::quantity::Quantity;
 use grainbench_harness::force_plot::force_plot;
@@ -125,21 +125,21 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
 /// Means over cells, the same for points and for grains, at half of the way.
 fn coarse(slabs: &[Slab]) -> Vec<Figure> {
     const SHEAR: f64 = 0.5;
-    let shots: Vec<coarse_picture::Shot<'_>> = slabs
+    let shots: Vec<element_picture::Shot<'_>> = slabs
         .iter()
         .filter_map(|(words, done)| Some(((*words).to_owned(), at(done, SHEAR).ok()?, done.scene.as_ref())))
         .collect();
-    let figure = |name: &str, title: &str, caption: &str, mean: Mean, range: (f64, f64)| {
+    let figure = |name: &str, title: &str, caption: &str, quantity: &str, range: (f64, f64)| {
         let caption = format!(
             "{caption} Means over squares of 200 µm at 50 % shear, of material points or of grains and their \
              contacts; white where there are too few."
         );
-        Figure::field(name, title, &caption, coarse_picture::pictures(mean, &shots, CELL, range))
+        Figure::field(name, title, &caption, element_picture::pictures(quantity, &shots, CELL, range))
     };
     vec![
-        figure("coarse-pressure", "Pressure", "Chains of force carry it from side to side.", Mean::Pressure, PRESSURES),
-        figure("coarse-shear", "Rate of shear", "Where the slab flows.", Mean::ShearRate, SHEAR_RATES),
-        figure("coarse-packing", "Packing fraction", "Where the slab has opened.", Mean::PackingFraction, (0.7, 0.95)),
+        figure("coarse-pressure", "Pressure", "Chains of force carry it from side to side.", "pressure", PRESSURES),
+        figure("coarse-shear", "Rate of shear", "Where the slab flows.", "shear_rate", SHEAR_RATES),
+        figure("coarse-packing", "Packing fraction", "Where the slab has opened.", "packing_fraction", (0.7, 0.95)),
     ]
 }
 

@@ -3,12 +3,24 @@
 //! Material points carry fields and grains carry contact forces; here both become the same quantities at the same
 //! places.
 
-pub mod coarse;
-pub mod coarse_picture;
+pub mod average;
+pub mod column;
+pub mod contact_stress;
+pub mod course;
 pub mod disc;
+pub mod element;
+pub mod element_picture;
+pub mod grid;
+pub mod kind;
+pub mod mask;
+pub mod motion;
 pub mod overlap;
+pub mod packing;
 pub mod paint;
 pub mod picture;
 pub mod points;
 pub mod profile;
 pub mod quantity;
+pub mod tensor;
+pub mod tracers;
+pub mod trails;

@@ -47,6 +47,7 @@ pub fn film(
     let panels = shots.iter().zip(&paintings).map(|(shot, paintings)| Panel {
         title: title(shot, view),
         frames: paintings.iter().map(|painting| of_few_levels(painting.raster(range), times.len())).collect(),
+        own: None,
     });
     let (label, unit) = quantity.label();
     Field {
@@ -120,7 +121,7 @@ fn own_range<'a>(quantity: Quantity, paintings: impl Iterator<Item = &'a Paintin
 }
 
 /// A number of two digits that is not below `value`; one where there is nothing to show.
-fn two_digits(value: f64) -> f64 {
+pub(crate) fn two_digits(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 1.0;
     }

@@ -1,6 +1,6 @@
 //! Finding the material points around a place of the plane.
 
-use crate::coarse::inside;
+use crate::grid::inside;
 use grainbench_scene::record::{Owner, PointState, Snapshot};
 use nalgebra::Vector3;
 

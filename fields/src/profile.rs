@@ -1,6 +1,6 @@
 //! Profiles: means over slices of a plane scene, as experiments on shear bands draw them.
 
-use crate::coarse::inside;
+use crate::grid::inside;
 use crate::overlap::disc_in_box;
 use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;

@@ -119,9 +119,12 @@ pub struct Panel {
     pub title: String,
     /// Frames in the order of the times of the field; all of one size.
     pub frames: Vec<Raster>,
+    /// Values of its lowest and its highest level and their unit, where it does not share those of the field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own: Option<((f64, f64), String)>,
 }
 
-/// A field over the plane, in panels beside one another that share colours and scale.
+/// A field over the plane, in panels beside one another that share colours, and a scale unless they have their own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Field {
     /// Quantity, such as `σ₁ − σ₂`.

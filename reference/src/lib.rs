@@ -5,6 +5,7 @@
 
 pub mod comparison;
 pub mod deck;
+pub mod grain_dump;
 pub mod live;
 pub mod observer;
 pub mod outputs;

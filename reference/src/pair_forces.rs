@@ -32,8 +32,8 @@ pub(crate) struct PairForces {
 }
 
 /// Names of the components of the force, and of the part that may stand apart.
-const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
-const TANGENTIAL: [&str; 3] = ["tangential_x", "tangential_y", "tangential_z"];
+pub(crate) const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
+pub(crate) const TANGENTIAL: [&str; 3] = ["tangential_x", "tangential_y", "tangential_z"];
 
 impl PairForces {
     /// Those of a scene whose grains have these ids in the dump, in the order of the scene.

@@ -1,5 +1,6 @@
 //! Plots, pages and result files, made from records and verdicts only: no solver is needed to redo them.
 
+pub mod elements;
 pub mod export;
 pub mod headline;
 pub mod junit;
@@ -26,7 +27,7 @@ mod sample;
 
 pub use headline::Headline;
 pub use manifest::refuse_mixed;
-pub use parts::{End, SnapshotStore};
+pub use parts::{End, SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use scratch::sweep;

@@ -16,6 +16,23 @@ use std::path::Path;
 /// When the disk refuses or a figure cannot be drawn.
 pub fn write_pictures(dir: &Path, records: &[&Record], figures: &[Figure]) -> Result<(), SaveError> {
     let mut out = StagedDir::new(dir)?;
+    let title = records.first().map_or("pictures", |record| record.provenance.scene.as_str());
+    let leads: Vec<String> = records.iter().map(|record| words(&record.provenance)).collect();
+    write_page(&mut out, title, &leads, figures)?;
+    out.commit_beside()?;
+    Ok(())
+}
+
+/// Adds `index.html`, with a title, some paragraphs and figures, and the figures by themselves.
+///
+/// # Errors
+/// When the disk refuses or a figure cannot be drawn.
+pub(crate) fn write_page(
+    out: &mut StagedDir,
+    title: &str,
+    leads: &[String],
+    figures: &[Figure],
+) -> Result<(), SaveError> {
     let mut names = BTreeSet::new();
     let mut drawn = Vec::new();
     for figure in figures {
@@ -27,13 +44,12 @@ pub fn write_pictures(dir: &Path, records: &[&Record], figures: &[Figure]) -> Re
         }
         drawn.push((name, svg, figure));
     }
-    let title = records.first().map_or("pictures", |record| record.provenance.scene.as_str());
     let body = html! {
         main {
             header {
                 p.kicker { "grainbench" }
                 h1 { (title) }
-                @for record in records { p.lead { (words(&record.provenance)) } }
+                @for lead in leads { p.lead { (lead) } }
             }
             @for (name, svg, figure) in &drawn {
                 figure id=(name) {
@@ -46,7 +62,6 @@ pub fn write_pictures(dir: &Path, records: &[&Record], figures: &[Figure]) -> Re
         }
     };
     out.write("index.html", shell(&format!("grainbench · {title}"), &body))?;
-    out.commit_beside()?;
     Ok(())
 }
 

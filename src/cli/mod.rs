@@ -8,6 +8,7 @@ mod cost;
 mod deck;
 mod effects;
 mod exit;
+mod fields;
 mod interrupt;
 mod list;
 mod progress;
@@ -52,6 +53,8 @@ enum Command {
     Deck(deck::Arguments),
     /// Judge what any program left of a case: dumps of LAMMPS' kind, or a CSV table.
     Check(check::Arguments),
+    /// Read grains or material points as a continuum, cell by cell: packing, stress, friction, rate of shear.
+    Fields(fields::Arguments),
     /// Compare two outputs, column by column.
     Compare(compare::Arguments),
     /// Measure what accuracy costs: error against time, each solver over its knobs.
@@ -84,6 +87,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Simulate(arguments)) => simulate::simulate(&arguments),
         Some(Command::Deck(arguments)) => deck::deck(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Fields(arguments)) => fields::fields(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Stability(arguments)) => stability::stability(&arguments),

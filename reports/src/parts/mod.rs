@@ -5,10 +5,12 @@
 
 mod columns;
 mod end;
+mod folder;
 mod part;
 mod rows;
 mod store;
 mod table;
 
 pub use end::End;
+pub use folder::each_snapshot;
 pub use store::{READABLE, SnapshotStore, StoreError};

@@ -23,6 +23,8 @@ const COLOURS: f64 = 124.0;
 const TALLEST: f64 = 560.0;
 const TALLEST_ROW: f64 = 300.0;
 const FOOT: f64 = 46.0;
+/// Below panels that have scales of their own.
+const BARS: f64 = 72.0;
 /// Below a film, for its clock.
 const CLOCK: f64 = 50.0;
 /// Panels of a film stand side by side in one image, this many pixels apart; its clock runs below as high.
@@ -42,7 +44,8 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let across = if is_film { count } else { per_row(count, size) };
     let rows = count.div_ceil(across);
     let head = if field.panels.iter().any(|panel| !panel.title.is_empty()) { HEAD } else { 0.0 };
-    let room = WIDTH - 2.0 * MARGIN - COLOURS;
+    let each_its_own = field.panels.iter().any(|panel| panel.own.is_some());
+    let room = WIDTH - 2.0 * MARGIN - if each_its_own { 0.0 } else { COLOURS };
     let widest = (room - GAP * (across - 1) as f64) / across as f64;
     let scale =
         (widest / f64::from(size.0)).min(TALLEST.max(TALLEST_ROW * rows as f64) / rows as f64 / f64::from(size.1));
@@ -63,7 +66,8 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
         field.panels.iter().enumerate().map(still).collect::<io::Result<_>>()?
     };
     let foot = bottom + if is_film { 2.0 * SEAM as f64 * scale } else { 0.0 };
-    let height = foot + if is_film { CLOCK } else { 0.0 } + FOOT;
+    let bars = foot + if is_film { CLOCK } else { 0.0 };
+    let height = bars + if each_its_own { BARS } else { 0.0 } + FOOT;
     Ok(html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
             aria-label=(title) font-family=(FONTS) {
@@ -85,7 +89,15 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
             }
             @if is_film { (clock(field, full, foot)) }
             (scale_bar(field.pixel / scale, panel.0, height - FOOT + 24.0))
-            (colour_bar(field, MARGIN + full + 30.0, TOP + head, (panel.1 * rows as f64).clamp(120.0, 320.0)))
+            @if each_its_own {
+                @for (at, panel_of) in field.panels.iter().enumerate() {
+                    @if let Some((range, unit)) = &panel_of.own {
+                        (level_bar(field.shades, *range, unit, [corner(at).0, bars + 14.0], panel.0 - 16.0))
+                    }
+                }
+            } @else {
+                (colour_bar(field, MARGIN + full + 30.0, TOP + head, (panel.1 * rows as f64).clamp(120.0, 320.0)))
+            }
         }
     }
     .into_string())
@@ -225,6 +237,33 @@ fn colour_bar(field: &Field, x: f64, y: f64, height: f64) -> Markup {
     }
 }
 
+/// Colours with their values, lying under a panel.
+fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 2], width: f64) -> Markup {
+    const STEPS: u8 = 48;
+    let (factor, unit) = with_prefix(low.abs().max(high.abs()), unit);
+    let scale = Scale::fit([low / factor, high / factor].into_iter(), false, 0.0, 3);
+    let step = width / f64::from(STEPS);
+    html! {
+        g font-size="13" fill="#222" {
+            @for at in 0..STEPS {
+                @let level = LOW + (f64::from(HIGH - LOW) * (f64::from(at) + 0.5) / f64::from(STEPS)) as u8;
+                @let [red, green, blue] = colour(shades, level);
+                rect x=(px(x + step * f64::from(at))) y=(px(y)) width=(px(step + 0.8)) height="12"
+                    fill=(format!("#{red:02x}{green:02x}{blue:02x}")) {}
+            }
+            rect x=(px(x)) y=(px(y)) width=(px(width)) height="12" fill="none" stroke="#777" stroke-width=".8" {}
+            @for tick in scale.ticks() {
+                @let at = x + width * scale.position(tick.value);
+                @let label = tick.label.unwrap_or_default();
+                @let anchor = if at < x + 4.0 { "start" } else { "middle" };
+                line x1=(px(at)) y1=(px(y + 12.0)) x2=(px(at)) y2=(px(y + 17.0)) stroke="#222" {}
+                text x=(px(at)) y=(px(y + 30.0)) text-anchor=(anchor) { (label) }
+            }
+            @if unit != "1" { text x=(px(x + 0.5 * width)) y=(px(y + 46.0)) text-anchor="middle" { (unit) } }
+        }
+    }
+}
+
 /// A length that one can read, with `unit` metres to the unit of the drawing.
 fn scale_bar(unit: f64, room: f64, y: f64) -> Markup {
     let longest = 0.4 * room * unit;
@@ -285,6 +324,7 @@ mod tests {
         let panel = |at: usize| Panel {
             title: format!("panel <{at}>"),
             frames: (0..frames).map(|frame| raster(1 + (frame + 100 * at) as u8)).collect(),
+            own: None,
         };
         Field {
             label: "σ₁ − σ₂".to_owned(),

@@ -1,0 +1,97 @@
+//! What is told of an element, column by column: one list for tables, image data, means and pictures.
+
+use crate::element::Element;
+
+/// What quantities need to know beside the element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grains {
+    /// Mean diameter d (m) and density ρ (kg/m³; kg/m² of discs), where they are known.
+    pub mean: Option<(f64, f64)>,
+    /// Plane in which the turn from the stress's axes to those of D is told: two axes, 0 is x.
+    pub plane: [usize; 2],
+}
+
+/// A quantity of an element.
+pub struct Column {
+    /// Its name, as a table calls it.
+    pub name: &'static str,
+    /// What it is, in words.
+    pub words: &'static str,
+    /// Its SI unit in space, `1` for a pure number.
+    pub unit: &'static str,
+    /// Its value; none where it is not known.
+    pub of: fn(&Element, &Grains) -> Option<f64>,
+}
+
+/// Component of the velocity.
+macro_rules! velocity {
+    ($axis:literal) => {
+        |element, _| Some(element.motion.velocity?[$axis])
+    };
+}
+
+/// Component of the velocity gradient.
+macro_rules! gradient {
+    ($row:literal, $column:literal) => {
+        |element, _| Some(element.motion.gradient?[($row, $column)])
+    };
+}
+
+/// Component of the stress.
+macro_rules! stress {
+    ($row:literal, $column:literal) => {
+        |element, _| element.stress.map(|stress| 0.5 * (stress[($row, $column)] + stress[($column, $row)]))
+    };
+}
+
+const fn column(
+    name: &'static str,
+    words: &'static str,
+    unit: &'static str,
+    of: fn(&Element, &Grains) -> Option<f64>,
+) -> Column {
+    Column { name, words, unit, of }
+}
+
+/// Every quantity of an element.
+pub const COLUMNS: [Column; 30] = [
+    column("packing_fraction", "packing fraction φ", "1", |element, _| Some(element.packing_fraction)),
+    column("sine_of_friction", "sin φ of friction", "1", |element, _| element.sine_of_friction()),
+    column("drucker_prager", "Drucker and Prager's |T₀|/(√2 p)", "1", |element, _| element.drucker_prager()),
+    column("shear_rate", "rate of shear |D₀|", "1/s", |element, _| element.shear_rate()),
+    column("inertial_number", "inertial number |I₀|", "1", |element, grains| {
+        let (diameter, density) = grains.mean?;
+        element.inertial_number(diameter, density)
+    }),
+    column("pressure", "pressure p", "Pa", |element, _| element.pressure()),
+    column("speed", "speed |v⁰|", "m/s", |element, _| element.motion.velocity.map(|velocity| velocity.norm())),
+    column("residual_velocity", "velocity |v′| beside the fit", "m/s", |element, _| element.motion.residual),
+    column("angle_of_largest", "angle between the axes of largest T and D", "deg", |element, grains| {
+        element.coaxiality(grains.plane).map(|of| of.largest)
+    }),
+    column("angle_of_smallest", "angle between the axes of smallest T and D", "deg", |element, grains| {
+        element.coaxiality(grains.plane).map(|of| of.smallest)
+    }),
+    column("turn_in_plane", "turn from T to D in the plane", "deg", |element, grains| {
+        element.coaxiality(grains.plane)?.in_plane
+    }),
+    column("velocity_x", "mean velocity along x", "m/s", velocity!(0)),
+    column("velocity_y", "mean velocity along y", "m/s", velocity!(1)),
+    column("velocity_z", "mean velocity along z", "m/s", velocity!(2)),
+    column("stress_xx", "stress T_xx", "Pa", stress!(0, 0)),
+    column("stress_yy", "stress T_yy", "Pa", stress!(1, 1)),
+    column("stress_zz", "stress T_zz", "Pa", stress!(2, 2)),
+    column("stress_xy", "stress T_xy, symmetric part", "Pa", stress!(0, 1)),
+    column("stress_yz", "stress T_yz, symmetric part", "Pa", stress!(1, 2)),
+    column("stress_xz", "stress T_xz, symmetric part", "Pa", stress!(0, 2)),
+    column("gradient_xx", "∂v_x/∂x", "1/s", gradient!(0, 0)),
+    column("gradient_xy", "∂v_x/∂y", "1/s", gradient!(0, 1)),
+    column("gradient_xz", "∂v_x/∂z", "1/s", gradient!(0, 2)),
+    column("gradient_yx", "∂v_y/∂x", "1/s", gradient!(1, 0)),
+    column("gradient_yy", "∂v_y/∂y", "1/s", gradient!(1, 1)),
+    column("gradient_yz", "∂v_y/∂z", "1/s", gradient!(1, 2)),
+    column("gradient_zx", "∂v_z/∂x", "1/s", gradient!(2, 0)),
+    column("gradient_zy", "∂v_z/∂y", "1/s", gradient!(2, 1)),
+    column("gradient_zz", "∂v_z/∂z", "1/s", gradient!(2, 2)),
+    column("members", "grains or points whose centre is there", "1", |element, _| Some(element.motion.members as f64)),
+];

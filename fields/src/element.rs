@@ -1,0 +1,164 @@
+//! Granular elements: what the cells of a grid hold, the same for grains and for material points (Rycroft, Kamrin and Bazant
+//! 2009, §3).
+
+use crate::contact_stress::contact_stress;
+use crate::grid::Grid;
+use crate::kind::Kind;
+use crate::motion::{Motion, motion, movers};
+use crate::packing::packing_fraction;
+use crate::tensor;
+use grainbench_scene::record::Snapshot;
+use nalgebra::{Matrix3, Vector3};
+
+/// What a cell holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element {
+    /// Part of the cell that is filled.
+    pub packing_fraction: f64,
+    /// T (Pa), compression negative; none where contacts were not told.
+    pub stress: Option<Matrix3<f64>>,
+    /// Mean velocity and its gradient.
+    pub motion: Motion,
+    /// Number of axes.
+    pub dimension: usize,
+}
+
+impl Element {
+    /// p (Pa).
+    #[must_use]
+    pub fn pressure(&self) -> Option<f64> {
+        self.stress.map(|stress| tensor::pressure(&stress, self.dimension))
+    }
+
+    /// sin φ of Mohr and Coulomb; none without pressure.
+    #[must_use]
+    pub fn sine_of_friction(&self) -> Option<f64> {
+        self.under_pressure().map(|stress| tensor::sine_of_friction(&stress, self.dimension))
+    }
+
+    /// Drucker and Prager's ratio; none without pressure.
+    #[must_use]
+    pub fn drucker_prager(&self) -> Option<f64> {
+        self.under_pressure().map(|stress| tensor::drucker_prager(&stress, self.dimension))
+    }
+
+    fn under_pressure(&self) -> Option<Matrix3<f64>> {
+        self.stress.filter(|stress| tensor::pressure(stress, self.dimension) > 0.0)
+    }
+
+    /// |D₀| (1/s): Frobenius' norm of the deviator of D = (L + Lᵀ)/2.
+    #[must_use]
+    pub fn shear_rate(&self) -> Option<f64> {
+        let rate = self.motion.gradient?.symmetric_part();
+        Some(tensor::deviator(&rate, self.dimension).norm())
+    }
+
+    /// |I₀| = |D₀| d √(ρ/p) for grains of a diameter d (m) and density ρ (kg/m³); none without pressure. (With the rate γ̇ of a
+    /// simple shear |D₀| = γ̇/√2, so that the usual I is √2 |I₀|.)
+    #[must_use]
+    pub fn inertial_number(&self, diameter: f64, density: f64) -> Option<f64> {
+        let pressure = self.pressure().filter(|&pressure| pressure > 0.0)?;
+        Some(self.shear_rate()? * diameter * (density / pressure).sqrt())
+    }
+
+    /// How the axes of the stress and of D lie to one another, with the turn in the plane of two axes.
+    #[must_use]
+    pub fn coaxiality(&self, plane: [usize; 2]) -> Option<tensor::Coaxiality> {
+        tensor::coaxiality(&self.stress?, &self.motion.gradient?.symmetric_part(), self.dimension, plane)
+    }
+}
+
+/// The cells of a grid over a snapshot, in the order of [`Grid::place`]: of material points where there are some, else of
+/// grains.
+#[must_use]
+pub fn elements(snapshot: &Snapshot, kind: Kind, grid: &Grid) -> Vec<Element> {
+    elements_moving(snapshot, motion(&movers(snapshot), kind.dimension(), grid), kind, grid)
+}
+
+/// The same with a motion that was found otherwise, such as between two snapshots.
+#[must_use]
+pub fn elements_moving(snapshot: &Snapshot, motion: Vec<Motion>, kind: Kind, grid: &Grid) -> Vec<Element> {
+    let dimension = kind.dimension();
+    let stress = contact_stress(snapshot, dimension, grid);
+    let filled = packing_fraction(snapshot, kind, grid);
+    let element = |(cell, (motion, packing_fraction)): (usize, (Motion, f64))| Element {
+        packing_fraction,
+        stress: stress.as_ref().map(|stress| stress[cell]),
+        motion,
+        dimension,
+    };
+    motion.into_iter().zip(filled).enumerate().map(element).collect()
+}
+
+/// Mean diameter (m) and mean density (kg/m³; kg/m² of discs) of the grains of a snapshot, each grain as much as any other;
+/// none of a snapshot without grains.
+#[must_use]
+pub fn mean_grain(snapshot: &Snapshot, kind: Kind) -> Option<(f64, f64)> {
+    let grains = &snapshot.grains;
+    let volume = |radius: f64| match kind {
+        Kind::Discs => std::f64::consts::PI * radius * radius,
+        Kind::Spheres => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+    };
+    let sum = |(diameter, density): (f64, f64), (more, of): (f64, f64)| (diameter + more, density + of);
+    let each = grains.iter().map(|grain| (2.0 * grain.radius, grain.mass / volume(grain.radius)));
+    let (diameter, density) = each.fold((0.0, 0.0), sum);
+    let count = grains.len() as f64;
+    (count > 0.0).then_some((diameter / count, density / count))
+}
+
+/// The sum of x⊗F over all cells, ΣV T (J): what no choice of the grid changes, so long as it holds all centres.
+#[must_use]
+pub fn whole_stress(elements: &[Element], grid: &Grid) -> Option<Matrix3<f64>> {
+    let of = |element: &Element| element.stress.map(|stress| stress * grid.volume());
+    elements.iter().map(of).sum()
+}
+
+/// Mean velocity at a place (m/s), linear between the middles of cells that hold something.
+#[must_use]
+pub fn velocity_at(
+    elements: &[Element],
+    grid: &Grid,
+    periodic: [bool; 3],
+    place: Vector3<f64>,
+) -> Option<Vector3<f64>> {
+    interpolated(grid, periodic, place, |cell| elements[cell].motion.velocity)
+}
+
+/// A quantity of cells at a place, linear between their middles; of the cells around that have it.
+#[must_use]
+pub fn interpolated<T>(
+    grid: &Grid,
+    periodic: [bool; 3],
+    place: Vector3<f64>,
+    of: impl Fn(usize) -> Option<T>,
+) -> Option<T>
+where
+    T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
+{
+    let mut lower = [0_i64; 3];
+    let mut part = [0.0; 3];
+    for axis in 0..3 {
+        let along = (place[axis] - grid.low[axis]) / grid.cell[axis] - 0.5;
+        (lower[axis], part[axis]) = (along.floor() as i64, along - along.floor());
+    }
+    let (mut sum, mut weights): (Option<T>, f64) = (None, 0.0);
+    for corner in 0..8_usize {
+        let (mut at, mut weight) = ([0; 3], 1.0);
+        for axis in 0..3 {
+            let upper = corner >> axis & 1 == 1;
+            weight *= if upper { part[axis] } else { 1.0 - part[axis] };
+            let count = grid.count[axis] as i64;
+            let number = lower[axis] + i64::from(upper);
+            // Beyond the outermost middles the outermost cell counts.
+            at[axis] = if periodic[axis] { number.rem_euclid(count) } else { number.clamp(0, count - 1) } as usize;
+        }
+        let Some(value) = of(grid.place(at)).filter(|_| weight > 0.0) else { continue };
+        weights += weight;
+        let more = value * weight;
+        sum = Some(match sum {
+            Some(sum) => sum + more,
+            None => more,
+        });
+    }
+    sum.map(|sum| sum * (1.0 / weights))
+}

@@ -1,0 +1,145 @@
+//! Masks: which cells are left out of a mean, and why. Every number over cells says which of them were.
+
+use crate::element::Element;
+use crate::grid::Grid;
+use nalgebra::Vector3;
+
+/// Why a cell is left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Masked {
+    /// Too few grains are in it.
+    pub few: bool,
+    /// It is at the free surface: it, or the cell above it, is filled less than a bulk is.
+    pub surface: bool,
+    /// It is at a side of the grid that is not periodic.
+    pub wall: bool,
+    /// It is near an orifice.
+    pub orifice: bool,
+}
+
+impl Masked {
+    /// Whether it is left out at all.
+    #[must_use]
+    pub const fn any(self) -> bool {
+        self.few || self.surface || self.wall || self.orifice
+    }
+
+    /// The reasons in words, joined by `+`; empty where there is none.
+    #[must_use]
+    pub fn words(self) -> String {
+        let reasons = [(self.few, "few"), (self.surface, "surface"), (self.wall, "wall"), (self.orifice, "orifice")];
+        let named: Vec<&str> = reasons.into_iter().filter_map(|(is, word)| is.then_some(word)).collect();
+        named.join("+")
+    }
+}
+
+/// What is left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Masks {
+    /// Fewest grains or points in a cell.
+    pub fewest: usize,
+    /// Packing fraction below which a cell is not of the bulk.
+    pub surface: f64,
+    /// The axis along which up is, and whether up is towards its high end.
+    pub up: (usize, bool),
+    /// Which axes are periodic.
+    pub periodic: [bool; 3],
+    /// Number of axes.
+    pub dimension: usize,
+    /// An orifice.
+    pub orifice: Option<Orifice>,
+}
+
+/// Where an orifice is, and how far around it cells are left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orifice {
+    /// Its middle along each axis (m); along an axis without one it is long, as a slit is.
+    pub middle: [Option<f64>; 3],
+    /// Distance from it to the middle of a cell within which cells are left out (m).
+    pub reach: f64,
+}
+
+impl Orifice {
+    /// Distance from a place (m).
+    fn distance(&self, place: Vector3<f64>) -> f64 {
+        let along = |axis: usize| self.middle[axis].map_or(0.0, |middle| place[axis] - middle);
+        Vector3::from_fn(|axis, _| along(axis)).norm()
+    }
+}
+
+impl Masks {
+    /// Which of the cells of a snapshot are left out.
+    #[must_use]
+    pub fn of(&self, elements: &[Element], grid: &Grid) -> Vec<Masked> {
+        let (up, high) = self.up;
+        let bulk = |cell: usize| elements[cell].packing_fraction >= self.surface;
+        let above = |at: [usize; 3]| {
+            let mut over = at;
+            over[up] = if high { at[up] + 1 } else { at[up].wrapping_sub(1) };
+            (over[up] < grid.count[up]).then(|| grid.place(over))
+        };
+        let of = |cell: usize| {
+            let at = grid.at(cell);
+            let at_side = |axis: usize| at[axis] == 0 || at[axis] + 1 == grid.count[axis];
+            let top = if high { at[up] + 1 == grid.count[up] } else { at[up] == 0 };
+            Masked {
+                few: elements[cell].motion.members < self.fewest,
+                surface: !bulk(cell) || above(at).is_some_and(|over| !bulk(over)),
+                // The upper end of the grid is no wall: what ends there is a surface, or a lid that presses.
+                wall: (0..self.dimension).any(|axis| !self.periodic[axis] && at_side(axis) && !(axis == up && top)),
+                orifice: self.orifice.is_some_and(|orifice| orifice.distance(grid.middle(cell)) < orifice.reach),
+            }
+        };
+        (0..grid.cells()).map(of).collect()
+    }
+
+    /// The masks in words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let mut words = format!(
+            "without cells of fewer than {} members, at the surface (packing fraction below {} there or above), at sides",
+            self.fewest, self.surface
+        );
+        if let Some(orifice) = self.orifice {
+            words += &format!(", within {} m of the orifice", orifice.reach);
+        }
+        words
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::Motion;
+
+    #[test]
+    fn each_reason_is_told_apart() {
+        let grid = Grid { low: Vector3::zeros(), cell: Vector3::new(1.0, 1.0, 1.0), count: [5, 1, 5] };
+        let motion = Motion { members: 4, velocity: None, gradient: None, residual: None };
+        let filled = |packing_fraction: f64| Element { packing_fraction, stress: None, motion, dimension: 3 };
+        let mut elements = vec![filled(0.6); 25];
+        for x in 0..5 {
+            elements[grid.place([x, 0, 4])] = filled(0.1);
+        }
+        elements[grid.place([2, 0, 2])].motion.members = 1;
+        let orifice = Orifice { middle: [Some(2.5), None, Some(0.0)], reach: 2.0 };
+        let masks = Masks {
+            fewest: 2,
+            surface: 0.4,
+            up: (2, true),
+            periodic: [false, true, false],
+            dimension: 3,
+            orifice: Some(orifice),
+        };
+        let masked = masks.of(&elements, &grid);
+        let words = |x: usize, z: usize| masked[grid.place([x, 0, z])].words();
+        assert_eq!(words(1, 2), "");
+        assert_eq!([words(2, 2), words(1, 3), words(0, 2)], ["few", "surface", "wall"]);
+        assert_eq!([words(2, 0), words(2, 1), words(2, 4)], ["wall+orifice", "orifice", "surface"]);
+        // Upside down the other end is the surface.
+        let masks = Masks { up: (2, false), orifice: None, ..masks };
+        let masked = masks.of(&elements, &grid);
+        assert_eq!(masked[grid.place([2, 0, 0])].words(), "");
+        assert_eq!(masked[grid.place([2, 0, 4])].words(), "surface+wall");
+    }
+}

@@ -1,0 +1,139 @@
+//! Motion of a cell: mean velocity, its gradient, and what is left of the velocities of single grains beside these.
+//!
+//! ```text
+//! v = v⁰ + L (x − x̄)      least squares over the centres of the grains in the cell; over material points by volume
+//! |v′|² = (1/n) Σ |v_i − v⁰ − L (x_i − x̄)|²
+//! ```
+
+use crate::grid::{Grid, inside};
+use grainbench_scene::record::{GrainState, Snapshot};
+use nalgebra::{Matrix3, Vector3};
+
+/// Where something is, how fast, and what it counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mover {
+    /// Position (m).
+    pub position: Vector3<f64>,
+    /// Velocity (m/s).
+    pub velocity: Vector3<f64>,
+    /// One for a grain, its volume for a material point.
+    pub weight: f64,
+}
+
+/// Motion of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Grains or material points whose centre is in the cell.
+    pub members: usize,
+    /// Mean velocity v⁰ (m/s); none of an empty cell.
+    pub velocity: Option<Vector3<f64>>,
+    /// L (1/s), L_ij = ∂v_i/∂x_j; none where too few centres are in the cell, or all in one line.
+    pub gradient: Option<Matrix3<f64>>,
+    /// |v′| (m/s), the root of the mean square of what the fit leaves; none where L is.
+    pub residual: Option<f64>,
+}
+
+/// Grains, or material points where there are some, with the velocities that they have.
+#[must_use]
+pub fn movers(snapshot: &Snapshot) -> Vec<Mover> {
+    if snapshot.points.is_empty() {
+        let mover = |grain: &GrainState| Mover { position: grain.position, velocity: grain.velocity, weight: 1.0 };
+        snapshot.grains.iter().map(mover).collect()
+    } else {
+        let of_points = snapshot.points.iter().map(|point| Mover {
+            position: inside(snapshot, point.position),
+            velocity: point.velocity,
+            weight: point.volume,
+        });
+        of_points.collect()
+    }
+}
+
+/// Grains at their places in the later of two snapshots, with their mean velocities in between, (x − x′)/Δt, the short way
+/// round across periodic sides: no grain may pass half the domain between two. Grains that one of them has not are left out.
+#[must_use]
+pub fn movers_between(before: &Snapshot, after: &Snapshot) -> Vec<Mover> {
+    let elapsed = after.time - before.time;
+    let length = after.bounds.1 - after.bounds.0;
+    // Grains stand in order of id.
+    let earlier = |id: u32| before.grains.binary_search_by_key(&id, |grain| grain.id).ok().map(|at| &before.grains[at]);
+    let mover = |grain: &GrainState| {
+        let mut step = grain.position - earlier(grain.id)?.position;
+        for axis in (0..3).filter(|&axis| after.periodic[axis]) {
+            step[axis] -= (step[axis] / length[axis]).round() * length[axis];
+        }
+        Some(Mover { position: grain.position, velocity: step / elapsed, weight: 1.0 })
+    };
+    after.grains.iter().filter_map(mover).collect()
+}
+
+/// Sums over a cell, about its middle.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    members: usize,
+    weight: f64,
+    place: Vector3<f64>,
+    velocity: Vector3<f64>,
+    /// Σ w x⊗x and Σ w v⊗x.
+    spread: Matrix3<f64>,
+    carried: Matrix3<f64>,
+}
+
+impl Sums {
+    fn add(&mut self, weight: f64, place: Vector3<f64>, velocity: Vector3<f64>) {
+        self.members += 1;
+        self.weight += weight;
+        self.place += place * weight;
+        self.velocity += velocity * weight;
+        self.spread += place * place.transpose() * weight;
+        self.carried += velocity * place.transpose() * weight;
+    }
+
+    fn gradient(&self, dimension: usize, cell: Vector3<f64>) -> Option<Matrix3<f64>> {
+        if self.members <= dimension {
+            return None;
+        }
+        let mut spread = self.spread - self.place * self.place.transpose() / self.weight;
+        let carried = self.carried - self.velocity * self.place.transpose() / self.weight;
+        if dimension == 2 {
+            spread.m33 = self.weight;
+        }
+        // Centres in a line (a plane) leave one direction open: rounding must not choose.
+        let size: f64 = (0..dimension).map(|axis| self.weight * cell[axis] * cell[axis]).product();
+        let size = if dimension == 2 { size * self.weight } else { size };
+        if spread.determinant() < 1e-12 * size {
+            return None;
+        }
+        spread.try_inverse().map(|inverse| carried * inverse)
+    }
+}
+
+/// The motion of every cell.
+#[must_use]
+pub fn motion(movers: &[Mover], dimension: usize, grid: &Grid) -> Vec<Motion> {
+    let mut sums = vec![Sums::default(); grid.cells()];
+    let homes: Vec<Option<usize>> = movers.iter().map(|mover| grid.find(mover.position)).collect();
+    for (mover, home) in movers.iter().zip(&homes) {
+        if let Some(cell) = *home {
+            sums[cell].add(mover.weight, mover.position - grid.middle(cell), mover.velocity);
+        }
+    }
+    let gradients: Vec<_> = sums.iter().map(|sums| sums.gradient(dimension, grid.cell)).collect();
+    let mut left = vec![0.0; grid.cells()];
+    for (mover, home) in movers.iter().zip(&homes) {
+        if let Some(cell) = *home
+            && let Some(gradient) = gradients[cell]
+        {
+            let Sums { weight, place, velocity, .. } = sums[cell];
+            let arm = mover.position - grid.middle(cell) - place / weight;
+            left[cell] += mover.weight * (mover.velocity - velocity / weight - gradient * arm).norm_squared();
+        }
+    }
+    let of = |cell: usize| Motion {
+        members: sums[cell].members,
+        velocity: (sums[cell].members > 0).then(|| sums[cell].velocity / sums[cell].weight),
+        gradient: gradients[cell],
+        residual: gradients[cell].map(|_| (left[cell] / sums[cell].weight).sqrt()),
+    };
+    (0..grid.cells()).map(of).collect()
+}

@@ -1,0 +1,136 @@
+//! Tracers: elements that deform and move with the flow (Rycroft, Kamrin and Bazant 2009, §5).
+//!
+//! A tracer stands at the middle of a box of grains that are labelled at the start. It is carried by the mean velocity of the
+//! grains, and its deformation is what best takes the labelled grains from where they were to where they are:
+//!
+//! ```text
+//! x = F x₀ + a                        least squares over the labelled grains that are still there
+//! F = R U,   E = ln U,   |E| = √(E:E)  polar decomposition and Hencky's strain
+//! ```
+
+use crate::element::{Element, velocity_at};
+use crate::grid::Grid;
+use grainbench_scene::record::Snapshot;
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+/// One tracer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tracer {
+    /// Where it is (m).
+    pub position: Vector3<f64>,
+    /// Ids of its grains, in order, with where each was at the start (m).
+    labelled: Vec<(u32, Vector3<f64>)>,
+    lost: bool,
+}
+
+/// Tracers in the middles of the cells of a grid, with the grains that are in these cells.
+#[must_use]
+pub fn tracers(snapshot: &Snapshot, grid: &Grid) -> Vec<Tracer> {
+    let mut labelled = vec![Vec::new(); grid.cells()];
+    for grain in &snapshot.grains {
+        if let Some(cell) = grid.find(grain.position) {
+            labelled[cell].push((grain.id, grain.position));
+        }
+    }
+    let tracer = |(cell, labelled)| Tracer { position: grid.middle(cell), labelled, lost: false };
+    labelled.into_iter().enumerate().filter(|(_, labelled)| !labelled.is_empty()).map(tracer).collect()
+}
+
+impl Tracer {
+    /// Number of grains that were labelled.
+    #[must_use]
+    pub fn members(&self) -> usize {
+        self.labelled.len()
+    }
+
+    /// Whether nothing was around to move it.
+    #[must_use]
+    pub const fn is_lost(&self) -> bool {
+        self.lost
+    }
+
+    /// Carries it for a time (s) by the mean velocity of elements, by the midpoint rule. Where nothing moves it, it is lost.
+    pub fn carry(&mut self, elements: &[Element], grid: &Grid, periodic: [bool; 3], time: f64) {
+        let at = |place: Vector3<f64>| velocity_at(elements, grid, periodic, place);
+        let velocity = at(self.position).and_then(|first| at(self.position + first * (0.5 * time)));
+        match velocity {
+            Some(velocity) => self.position += velocity * time,
+            None => self.lost = true,
+        }
+    }
+
+    /// F, from the labelled grains that are still there; none where they are too few or in one plane. Across periodic sides
+    /// every grain is taken where it is nearest to where it began, beside the tracer's first grain.
+    #[must_use]
+    pub fn deformation(&self, snapshot: &Snapshot, dimension: usize) -> Option<Matrix3<f64>> {
+        let length = snapshot.bounds.1 - snapshot.bounds.0;
+        let grains = &snapshot.grains;
+        let now = |id: u32| grains.binary_search_by_key(&id, |grain| grain.id).ok().map(|at| grains[at].position);
+        let moved = |&(id, before): &(u32, Vector3<f64>)| {
+            let mut step = now(id)? - before;
+            for axis in (0..3).filter(|&axis| snapshot.periodic[axis]) {
+                step[axis] -= (step[axis] / length[axis]).round() * length[axis];
+            }
+            Some((before, before + step))
+        };
+        let pairs: Vec<(Vector3<f64>, Vector3<f64>)> = self.labelled.iter().filter_map(moved).collect();
+        if pairs.len() <= dimension {
+            return None;
+        }
+        let count = pairs.len() as f64;
+        let sum = pairs.iter().fold((Vector3::zeros(), Vector3::zeros()), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
+        let (before, after): (Vector3<f64>, Vector3<f64>) = (sum.0 / count, sum.1 / count);
+        let (mut spread, mut carried) = (Matrix3::zeros(), Matrix3::zeros());
+        for &(from, to) in &pairs {
+            spread += (from - before) * (from - before).transpose();
+            carried += (to - after) * (from - before).transpose();
+        }
+        if dimension == 2 {
+            (spread.m33, carried.m33) = (count, count);
+        }
+        let size: f64 = (0..dimension).map(|axis| spread[(axis, axis)]).product();
+        let size = if dimension == 2 { size * count } else { size };
+        if spread.determinant() <= 1e-9 * size {
+            return None;
+        }
+        spread.try_inverse().map(|inverse| carried * inverse)
+    }
+}
+
+/// Hencky's strain E = ln U of F = R U; none of a deformation that turns space inside out.
+#[must_use]
+pub fn hencky(deformation: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    if deformation.determinant() <= 0.0 {
+        return None;
+    }
+    let eigen = SymmetricEigen::new(deformation.transpose() * deformation);
+    let logarithms = eigen.eigenvalues.map(|square| 0.5 * square.ln());
+    Some(eigen.eigenvectors * Matrix3::from_diagonal(&logarithms) * eigen.eigenvectors.transpose())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Rotation3;
+
+    fn size(deformation: Matrix3<f64>) -> f64 {
+        hencky(&deformation).unwrap().norm()
+    }
+
+    #[test]
+    fn strains_that_are_known() {
+        let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.0).into_inner();
+        for amount in [0.01, 0.3, 1.0_f64] {
+            let stretch = Matrix3::from_diagonal(&Vector3::new(amount.exp(), 1.0, (-amount).exp()));
+            assert!((size(turn * stretch) - 2.0_f64.sqrt() * amount).abs() < 1e-12);
+        }
+        for (shear, known) in [(0.5_f64, 0.349_97), (1.0, 0.680_54), (2.0, 1.246_45)] {
+            let mut simple = Matrix3::identity();
+            simple.m13 = shear;
+            let exact = 2.0_f64.sqrt() * (0.5 * shear).asinh();
+            assert!((size(turn * simple) - exact).abs() < 1e-12 && (exact - known).abs() < 1e-5);
+        }
+        assert!(size(turn) < 1e-12);
+        assert_eq!(hencky(&-Matrix3::identity()), None);
+    }
+}

@@ -1,0 +1,263 @@
+//! Snapshots from dumps of grains of which there is no scene: what the columns say, and what must be said beside them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use grainbench_scene::record::{ContactState, GrainState, Partner, Snapshot};
+use nalgebra::Vector3;
+
+use crate::observer::Names;
+use crate::pair_forces::{FORCE, TANGENTIAL};
+use crate::read::dump::DumpReader;
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
+
+/// What a dump may leave open.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Beside {
+    /// What the files call their columns.
+    pub names: Names,
+    /// Radius of every grain (m), where there is neither a column `radius` nor `diameter`.
+    pub radius: Option<f64>,
+    /// Density of every grain (kg/m³; kg/m² of discs), where there is neither a column `mass` nor `density`.
+    pub density: Option<f64>,
+    /// Time of a step (s), where the file does not tell the time.
+    pub time_step: Option<f64>,
+    /// Whether grains are discs in the plane.
+    pub plane: bool,
+}
+
+/// Dumps of grains, one after the other, with dumps of their contacts beside them.
+pub struct GrainDump {
+    grains: DumpReader<'static>,
+    contacts: Option<(DumpReader<'static>, String)>,
+    file: String,
+    beside: Beside,
+    rows: DumpSnapshot,
+    entries: DumpSnapshot,
+}
+
+/// Where the columns of a dump are.
+struct Columns {
+    id: usize,
+    kind: Option<usize>,
+    position: [Coordinate; 3],
+    velocity: Option<[Option<usize>; 3]>,
+    /// Radius, and what it is multiplied by.
+    radius: Option<(usize, f64)>,
+    mass: Option<usize>,
+    density: Option<usize>,
+}
+
+impl GrainDump {
+    /// Opens a dump of grains, and a dump of their contacts, at the same steps, where there is one.
+    ///
+    /// # Errors
+    /// When one of them cannot be opened.
+    pub fn open(path: &Path, contacts: Option<&Path>, beside: Beside) -> Result<Self, ReadError> {
+        let open = |path: &Path| DumpReader::open(path);
+        let named = |path: &Path| Ok((open(path)?, path.to_string_lossy().into_owned()));
+        Ok(Self {
+            grains: open(path)?,
+            contacts: contacts.map(named).transpose()?,
+            file: path.to_string_lossy().into_owned(),
+            beside,
+            rows: DumpSnapshot::default(),
+            entries: DumpSnapshot::default(),
+        })
+    }
+
+    /// The next snapshot; none at the end of the dump of grains.
+    ///
+    /// # Errors
+    /// When a file breaks off or holds something else, lacks what is needed, or contacts are of other steps or grains.
+    pub fn read(&mut self) -> Result<Option<Snapshot>, ReadError> {
+        if !self.grains.read(&mut self.rows)? {
+            return Ok(None);
+        }
+        if self.rows.kind != DumpKind::Atoms {
+            let expected = "a dump of grains, `ITEM: ATOMS` (one of contacts goes beside it)";
+            return Err(ReadError::at(&self.file, self.rows.first_line, expected, "entries"));
+        }
+        let columns = self.columns()?;
+        let mut grains: Vec<GrainState> =
+            (0..self.rows.rows()).map(|row| self.grain(row, &columns)).collect::<Result<_, _>>()?;
+        grains.sort_by_key(|grain| grain.id);
+        let (low, high) = self.rows.bounds;
+        let mut bounds = (Vector3::from(low), Vector3::from(high));
+        if self.beside.plane {
+            (bounds.0.z, bounds.1.z) = (-0.5, 0.5);
+        }
+        let time = self.rows.time.or_else(|| Some(self.rows.step as f64 * self.beside.time_step?));
+        let mut snapshot = Snapshot {
+            step: self.rows.step,
+            time: time.unwrap_or(f64::NAN),
+            bounds,
+            periodic: self.rows.periodic,
+            grains,
+            contacts: None,
+            walls: Vec::new(),
+            bodies: Vec::new(),
+            points: Vec::new(),
+        };
+        if self.contacts.is_some() {
+            snapshot.contacts = Some(self.contacts_of(&snapshot)?);
+        }
+        Ok(Some(snapshot))
+    }
+
+    fn missing(file: &str, snapshot: &DumpSnapshot, what: &str) -> ReadError {
+        let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
+        ReadError::at(file, snapshot.first_line.saturating_sub(1), what, quoted(&have.join(" ")))
+    }
+
+    fn columns(&self) -> Result<Columns, ReadError> {
+        let Self { rows, beside, file, .. } = self;
+        let column = |name: &str| rows.column(beside.names.of(name));
+        let missing = |what: &str| Self::missing(file, rows, what);
+        let coordinate = |axis: usize| {
+            let name = ["x", "y", "z"][axis];
+            let found = match beside.names.of(name) {
+                theirs if theirs == name => rows.coordinate(axis),
+                theirs => rows.coordinate_named(theirs, axis),
+            };
+            found.ok_or_else(|| missing(&format!("a column `{name}`, `{name}u`, `{name}s` or `{name}su`")))
+        };
+        let radius = column("radius").map(|at| (at, 1.0)).or_else(|| column("diameter").map(|at| (at, 0.5)));
+        if radius.is_none() && beside.radius.is_none() {
+            return Err(missing("a column `radius` or `diameter`, or `--radius` beside the file"));
+        }
+        let velocity = ["vx", "vy", "vz"].map(column);
+        Ok(Columns {
+            id: column("id").ok_or_else(|| missing("a column `id`"))?,
+            kind: column("type"),
+            position: [coordinate(0)?, coordinate(1)?, coordinate(2)?],
+            velocity: (velocity[0].is_some() && velocity[1].is_some()).then_some(velocity),
+            radius,
+            mass: column("mass"),
+            density: column("density"),
+        })
+    }
+
+    fn grain(&self, row: usize, columns: &Columns) -> Result<GrainState, ReadError> {
+        let numbers = self.rows.row(row);
+        let fault = |expected: &str, found: f64| {
+            Err(ReadError::at(&self.file, self.rows.first_line + row as u64, expected, found.to_string()))
+        };
+        let id = numbers[columns.id];
+        if !(1.0..=f64::from(u32::MAX)).contains(&id) {
+            return fault("an id from 1 to 4294967295", id);
+        }
+        let radius =
+            columns.radius.map_or_else(|| self.beside.radius.unwrap_or(f64::NAN), |(at, factor)| factor * numbers[at]);
+        if !(radius > 0.0 && radius.is_finite()) {
+            return fault("a radius above zero", radius);
+        }
+        let volume = if self.beside.plane {
+            std::f64::consts::PI * radius * radius
+        } else {
+            4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
+        };
+        let density = columns.density.map(|at| numbers[at]).or(self.beside.density);
+        let mass = columns.mass.map(|at| numbers[at]).or_else(|| density.map(|density| density * volume));
+        let mut position = Vector3::from(columns.position.map(|coordinate| coordinate.of(numbers)));
+        if self.beside.plane {
+            position.z = 0.0;
+        }
+        let velocity = columns
+            .velocity
+            .map_or(Vector3::repeat(f64::NAN), |axes| Vector3::from(axes.map(|at| at.map_or(0.0, |at| numbers[at]))));
+        Ok(GrainState {
+            id: id as u32,
+            material: columns.kind.map_or(0, |at| numbers[at].clamp(1.0, 65_535.0) as u16 - 1),
+            radius,
+            // What is not told is no number.
+            mass: mass.unwrap_or(f64::NAN),
+            position,
+            velocity,
+            spin: Vector3::repeat(f64::NAN),
+            angle: None,
+            force: None,
+            torque: None,
+            plastic_strain: 0.0,
+        })
+    }
+
+    /// The contacts between the grains of a snapshot.
+    fn contacts_of(&mut self, snapshot: &Snapshot) -> Result<Vec<ContactState>, ReadError> {
+        let Some((reader, file)) = &mut self.contacts else { return Ok(Vec::new()) };
+        let (step, entries) = (snapshot.step, &mut self.entries);
+        // Contacts may be told at more steps than grains are.
+        while entries.columns.is_empty() || entries.step < step {
+            if !reader.read(entries)? {
+                let expected = format!("the contacts of step {step}");
+                return Err(ReadError::at(file, entries.first_line, expected, "the end of the file"));
+            }
+        }
+        if entries.step != step {
+            let expected = format!("the contacts of step {step}");
+            return Err(ReadError::at(file, entries.first_line, expected, format!("those of step {}", entries.step)));
+        }
+        let column = |name: &str| entries.column(self.beside.names.of(name));
+        let (Some(first), Some(second)) = (column("id1"), column("id2")) else {
+            return Err(Self::missing(file, entries, "columns `id1` and `id2` (`--map id1=…,id2=…` names them)"));
+        };
+        let force = FORCE.map(column);
+        if force[0].is_none() || force[1].is_none() {
+            return Err(Self::missing(file, entries, "columns `force_x`, `force_y`, `force_z` (`--map force_x=…`)"));
+        }
+        let parts = [force, TANGENTIAL.map(column)];
+        let place: BTreeMap<u32, usize> =
+            snapshot.grains.iter().enumerate().map(|(at, grain)| (grain.id, at)).collect();
+        let (mut contacts, mut seen) = (Vec::new(), BTreeSet::new());
+        for row in 0..entries.rows() {
+            let numbers = entries.row(row);
+            let find = |at: usize| {
+                let known = place.get(&(numbers[at] as u32)).copied();
+                known.ok_or_else(|| {
+                    let (line, found) = (entries.first_line + row as u64, numbers[at].to_string());
+                    ReadError::at(file, line, format!("the id of a grain of step {step}"), found)
+                })
+            };
+            let (one, other) = (find(first)?, find(second)?);
+            // A list may have a pair twice, once from either side: that is one contact.
+            if one == other || !seen.insert((one.min(other), one.max(other))) {
+                continue;
+            }
+            let mut force = Vector3::zeros();
+            for part in &parts {
+                for (axis, column) in part.iter().enumerate() {
+                    force[axis] += column.map_or(0.0, |column| numbers[column]);
+                }
+            }
+            contacts.push(contact(snapshot, one, other, force));
+        }
+        contacts.sort_by_key(|contact: &ContactState| contact.grain);
+        Ok(contacts)
+    }
+}
+
+/// The contact of two grains, by place, with the force on the first (N).
+fn contact(snapshot: &Snapshot, one: usize, other: usize, force: Vector3<f64>) -> ContactState {
+    let (first, second) = (&snapshot.grains[one], &snapshot.grains[other]);
+    let length = snapshot.bounds.1 - snapshot.bounds.0;
+    let mut between = second.position - first.position;
+    for axis in (0..3).filter(|&axis| snapshot.periodic[axis]) {
+        between[axis] -= (between[axis] / length[axis]).round() * length[axis];
+    }
+    let distance = between.norm();
+    let normal = between.try_normalize(0.0).unwrap_or_else(Vector3::x);
+    let overlap = first.radius + second.radius - distance;
+    let normal_force = -force.dot(&normal);
+    ContactState {
+        grain: first.id,
+        partner: Partner::Grain(second.id),
+        point: first.position + normal * (first.radius - 0.5 * overlap),
+        normal,
+        overlap,
+        normal_force,
+        shear_force: force + normal * normal_force,
+        // Nobody prints it.
+        slipping: false,
+    }
+}

@@ -1,0 +1,38 @@
+//! Elements as VTK image data (XML, ASCII), which ParaView and VisIt open: a value a cell.
+
+use grainbench_fields::column::COLUMNS;
+use grainbench_fields::course::{Course, Frame};
+use std::io::{self, Write};
+
+/// Writes the elements of a frame. What is not known is NaN; `masked` is 1 where a cell is left out of means.
+pub(super) fn write(course: &Course, frame: &Frame, mut out: impl Write) -> io::Result<()> {
+    let grid = &course.grid;
+    let [across, deep, up] = grid.count;
+    let extent = format!("0 {across} 0 {deep} 0 {up}");
+    let vector = |of: [f64; 3]| format!("{:?} {:?} {:?}", of[0], of[1], of[2]);
+    writeln!(out, "<?xml version=\"1.0\"?>")?;
+    writeln!(out, "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">")?;
+    let (origin, spacing) = (vector(grid.low.into()), vector(grid.cell.into()));
+    writeln!(out, "<ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" Spacing=\"{spacing}\">")?;
+    writeln!(
+        out,
+        "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
+    )?;
+    writeln!(out, "{:?}\n</DataArray>\n</FieldData>", frame.time)?;
+    writeln!(out, "<Piece Extent=\"{extent}\">\n<CellData Scalars=\"packing_fraction\">")?;
+    for column in &COLUMNS {
+        writeln!(out, "<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">", column.name)?;
+        for cell in 0..grid.cells() {
+            match course.value(column, frame, cell) {
+                Some(value) => writeln!(out, "{value:?}")?,
+                None => writeln!(out, "nan")?,
+            }
+        }
+        writeln!(out, "</DataArray>")?;
+    }
+    writeln!(out, "<DataArray type=\"UInt8\" Name=\"masked\" format=\"ascii\">")?;
+    for masked in &frame.masked {
+        writeln!(out, "{}", u8::from(masked.any()))?;
+    }
+    writeln!(out, "</DataArray>\n</CellData>\n</Piece>\n</ImageData>\n</VTKFile>")
+}

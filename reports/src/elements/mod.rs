@@ -1,0 +1,66 @@
+//! Granular elements as files: tables, image data for ParaView, a summary and pictures.
+
+mod image_data;
+mod summary;
+mod tables;
+
+pub use summary::{Over, Summary};
+
+use crate::number;
+use crate::pictures::write_page;
+use crate::staged::StagedDir;
+use crate::store::SaveError;
+use grainbench_fields::course::Course;
+use grainbench_fields::element_picture::film;
+use grainbench_harness::figure::Figure;
+use std::path::Path;
+
+/// What is drawn, by the names of columns.
+const DRAWN: [&str; 4] = ["speed", "sine_of_friction", "packing_fraction", "shear_rate"];
+
+/// Writes `elements.csv` (a row an element and frame), `means.csv` (a row a cell), `tracers.csv` where tracers
+/// were asked for, `summary.json`, `elements/` with image data
+/// a frame and a collection of them, and, of a sheet of cells, `index.html` with pictures or films, all of them or none.
+///
+/// # Errors
+/// When the disk refuses or a figure cannot be drawn.
+pub fn write_elements(dir: &Path, course: &Course, summary: &Summary) -> Result<(), SaveError> {
+    let mut out = StagedDir::new(dir)?;
+    out.write_with("elements.csv", |file| tables::write_elements(course, file))?;
+    out.write_with("means.csv", |file| tables::write_means(course, summary.blocks, file))?;
+    if let Some(trails) = &course.trails {
+        out.write_with("tracers.csv", |file| tables::write_trails(course, trails, file))?;
+    }
+    let text = serde_json::to_string_pretty(summary)
+        .map_err(|error| SaveError::Encode { file: "summary.json", reason: error.to_string() })?;
+    out.write("summary.json", text + "\n")?;
+    let mut files = Vec::new();
+    for (number, frame) in course.frames.iter().enumerate() {
+        let name = format!("elements-{number:06}.vti");
+        out.write_with(format!("elements/{name}"), |file| image_data::write(course, frame, file))?;
+        files.push((frame.time, name));
+    }
+    out.write("elements/elements.pvd", crate::export::vtk::collection(&files))?;
+    if let Some(field) = film(course, &DRAWN) {
+        let caption = format!(
+            "Velocity, friction, packing fraction and rate of shear, {}. Cells of too few grains are left blank; of each \
+             quantity the highest fiftieth stands at the end of its scale.",
+            summary.velocity
+        );
+        let title = format!("Granular elements, {}", cells(summary));
+        write_page(
+            &mut out,
+            &summary.source,
+            &[summary.words()],
+            &[Figure::field("elements", &title, &caption, field)],
+        )?;
+    }
+    out.commit()?;
+    Ok(())
+}
+
+/// The size of the cells in words.
+fn cells(summary: &Summary) -> String {
+    let [x, y, z] = summary.cell.map(|size| number::significant(size, 3));
+    format!("cells of {x} × {y} × {z} m")
+}

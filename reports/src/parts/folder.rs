@@ -1,0 +1,42 @@
+//! The snapshots that `simulate` left in a directory, one after the other.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use grainbench_scene::record::Snapshot;
+
+use super::part::PartReader;
+use crate::export::record_json;
+
+/// Shows every snapshot of a run, in order of time: of its parts where there are some, else those of its record.
+///
+/// # Errors
+/// When there is no run there, or a file cannot be read, as `unreadable` says it; or who looks refuses.
+pub fn each_snapshot<E>(
+    dir: &Path,
+    unreadable: impl Fn(String) -> E,
+    look: &mut impl FnMut(Snapshot) -> Result<(), E>,
+) -> Result<(), E> {
+    let folder = dir.join("snapshots");
+    if !folder.is_dir() {
+        let record = record_json::load(dir).map_err(|error| unreadable(error.to_string()))?;
+        return record.snapshots.into_iter().try_for_each(look);
+    }
+    let told = |path: &Path| {
+        let path = path.display().to_string();
+        let unreadable = &unreadable;
+        move |error: io::Error| unreadable(format!("{path}: cannot be read: {error}"))
+    };
+    let entries = fs::read_dir(&folder).and_then(Iterator::collect::<io::Result<Vec<_>>>).map_err(told(&folder))?;
+    let mut parts: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    // Their names begin with their number.
+    parts.sort();
+    for part in parts {
+        let mut reader = PartReader::open(&part).map_err(told(&part))?;
+        while let Some(snapshot) = reader.next().map_err(told(&part))? {
+            look(snapshot)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,319 @@
+//! `grainbench fields`: grains or material points read as a continuum, cell by cell.
+
+use super::exit::{Fault, Outcome, check_writable, print, print_json};
+use super::simulate::{path_and_value, positive};
+use grainbench::fields::column::COLUMNS;
+use grainbench::fields::course::Course;
+use grainbench::fields::grid::Grid;
+use grainbench::fields::kind::Kind;
+use grainbench::fields::mask::{Masks, Orifice};
+use grainbench::fields::trails::Trails;
+use grainbench::reference::grain_dump::{Beside, GrainDump};
+use grainbench::reference::observer::Names;
+use grainbench::reports::elements::{Summary, write_elements};
+use grainbench::reports::{each_snapshot, number, refuse_mixed};
+use grainbench::scene::nalgebra::Vector3;
+use grainbench::scene::record::Snapshot;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Directory that `simulate` left, or a dump of grains as LAMMPS and LIGGGHTS write it.
+    #[arg(value_name = "DIR|DUMP")]
+    source: PathBuf,
+    /// Size of a cell (m): a number for all axes, or one for each; cells are made to fill the box.
+    #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive, required = true)]
+    cell: Vec<f64>,
+    /// Dump of the contacts between the grains of a dump (`dump local`), at the same steps.
+    #[arg(long, value_name = "FILE")]
+    contacts: Option<PathBuf>,
+    /// What columns are called in the files, such as `x=xu`; of contacts `id1`, `id2`, `force_x` (on the first) and, where it
+    /// stands apart, `tangential_x`.
+    #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
+    map: Vec<(String, String)>,
+    /// Radius of all grains of a dump that does not tell them (m).
+    #[arg(long, value_name = "METRES", value_parser = positive)]
+    radius: Option<f64>,
+    /// Density of all grains of a dump that tells neither mass nor density (kg/m³; kg/m² of discs).
+    #[arg(long, value_name = "DENSITY", value_parser = positive)]
+    density: Option<f64>,
+    /// Time of a step of a dump that does not tell the time (s).
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    time_step: Option<f64>,
+    /// 2 for discs in the plane z = 0, 3 for spheres; by default a plane where a directory holds one.
+    #[arg(long, value_name = "2|3", value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimension: Option<u8>,
+    /// Lower corner of the cells (m); that of the box by default.
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true)]
+    low: Vec<f64>,
+    /// Upper corner of the cells (m).
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true)]
+    high: Vec<f64>,
+    /// First time that is looked at (s).
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    from: Option<f64>,
+    /// Last time that is looked at (s).
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    to: Option<f64>,
+    /// Takes velocities from where grains were in the frame before, in place of those of the instant.
+    #[arg(long)]
+    between: bool,
+    /// Follows elements that move with the flow, which begin in boxes of this size (m): a number for all axes, or one for each.
+    #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive)]
+    tracers: Vec<f64>,
+    /// Which way up is, for the free surface: y in the plane and z in space by default.
+    #[arg(long, value_name = "AXIS", value_parser = ["x", "y", "z", "-x", "-y", "-z"], allow_hyphen_values = true)]
+    up: Option<String>,
+    /// Packing fraction below which a cell, and the one under it, are at the surface and left out of means.
+    #[arg(long, value_name = "FRACTION", value_parser = positive, default_value_t = 0.4)]
+    surface: f64,
+    /// Fewest grains or points in a cell that is not left out of means.
+    #[arg(long, value_name = "NUMBER", default_value_t = 8)]
+    fewest: usize,
+    /// Leaves cells out of means whose middle is within `r` of an orifice, such as `x=0,z=0,r=7.5` of a slit along y (m).
+    #[arg(long, value_name = "x=…,z=…,r=…", allow_hyphen_values = true)]
+    orifice: Option<String>,
+    /// Blocks of frames that intervals are found from.
+    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..))]
+    blocks: u16,
+    /// Directory for tables, image data and pictures.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-fields")]
+    out: PathBuf,
+    /// Print the summary as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Most cells of a grid, and of all frames together.
+const MOST_CELLS: f64 = 1e6;
+const MOST_ELEMENTS: usize = 20_000_000;
+
+/// Reads the snapshots, takes means over the cells, and writes them.
+pub(crate) fn fields(arguments: &Arguments) -> Outcome {
+    check_writable(&arguments.out)?;
+    let mut course: Option<Course> = None;
+    let mut take = |snapshot: Snapshot| -> Result<(), Fault> {
+        let (from, to) = (arguments.from.unwrap_or(f64::NEG_INFINITY), arguments.to.unwrap_or(f64::INFINITY));
+        if snapshot.time < from || snapshot.time > to {
+            return Ok(());
+        }
+        let course = match &mut course {
+            Some(course) => course,
+            none => none.insert(begin(&snapshot, arguments)?),
+        };
+        let needs_time = if arguments.between { Some("--between") } else { None };
+        let needs_time = needs_time.or((!arguments.tracers.is_empty()).then_some("--tracers"));
+        if let Some(flag) = needs_time.filter(|_| !snapshot.time.is_finite()) {
+            return Err(Fault::input(format!(
+                "{flag}: expected a dump that tells the time, or `--time-step` beside it"
+            )));
+        }
+        course.add(snapshot);
+        if course.grid.cells() * course.frames.len() > MOST_ELEMENTS {
+            return Err(Fault::input(format!(
+                "expected at most {} elements in all frames, found more: take larger cells, or fewer frames (--from, --to)",
+                number::count(MOST_ELEMENTS as u64)
+            )));
+        }
+        Ok(())
+    };
+    if arguments.source.is_dir() {
+        of_directory(&arguments.source, arguments, &mut take)?;
+    } else {
+        of_dump(&arguments.source, arguments, &mut take)?;
+    }
+    let there = arguments.source.display();
+    let Some(course) = course.filter(|course| !course.frames.is_empty()) else {
+        let what = if arguments.between { "two snapshots or more" } else { "a snapshot" };
+        return Err(Fault::input(format!(
+            "{there}: expected {what} between the times that are asked for, found fewer"
+        )));
+    };
+    let summary = Summary::of(&course, there.to_string(), usize::from(arguments.blocks));
+    write_elements(&arguments.out, &course, &summary).map_err(Fault::writing)?;
+    if arguments.json {
+        print_json(&summary)?;
+    } else {
+        print(&told(&summary, &arguments.out))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The snapshots of a directory that `simulate` left.
+fn of_directory(
+    dir: &Path,
+    arguments: &Arguments,
+    take: &mut impl FnMut(Snapshot) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    let beside_a_dump = [
+        (arguments.contacts.is_some(), "--contacts"),
+        (!arguments.map.is_empty(), "--map"),
+        (arguments.radius.is_some(), "--radius"),
+        (arguments.density.is_some(), "--density"),
+        (arguments.time_step.is_some(), "--time-step"),
+    ];
+    if let Some((_, flag)) = beside_a_dump.into_iter().find(|(given, _)| *given) {
+        return Err(Fault::input(format!(
+            "{flag}: expected a dump to be beside, found the directory {}",
+            dir.display()
+        )));
+    }
+    refuse_mixed(dir).map_err(Fault::input)?;
+    each_snapshot(dir, Fault::input, take)
+}
+
+/// The snapshots of a dump.
+fn of_dump(
+    path: &Path,
+    arguments: &Arguments,
+    take: &mut impl FnMut(Snapshot) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    let beside = Beside {
+        names: Names(arguments.map.clone()),
+        radius: arguments.radius,
+        density: arguments.density,
+        time_step: arguments.time_step,
+        plane: arguments.dimension == Some(2),
+    };
+    if (arguments.from.is_some() || arguments.to.is_some()) && arguments.time_step.is_none() {
+        // A dump may tell the time; where it does not, a window of times would silently hold nothing.
+        let mut first = GrainDump::open(path, None, beside.clone()).map_err(Fault::input)?;
+        if first.read().map_err(Fault::input)?.is_some_and(|snapshot| !snapshot.time.is_finite()) {
+            return Err(Fault::input("--from, --to: expected a dump that tells the time, or `--time-step` beside it"));
+        }
+    }
+    let mut dump = GrainDump::open(path, arguments.contacts.as_deref(), beside).map_err(Fault::input)?;
+    while let Some(snapshot) = dump.read().map_err(Fault::input)? {
+        take(snapshot)?;
+    }
+    Ok(())
+}
+
+/// The grid over the first snapshot, and what is left out.
+fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
+    let flat = snapshot
+        .grains
+        .iter()
+        .map(|grain| grain.position.z)
+        .chain(snapshot.points.iter().map(|point| point.position.z));
+    let kind = match arguments.dimension {
+        Some(2) => Kind::Discs,
+        Some(_) => Kind::Spheres,
+        None if arguments.source.is_dir() && flat.clone().all(|z| z == 0.0) => Kind::Discs,
+        None => Kind::Spheres,
+    };
+    let dimension = kind.dimension();
+    let corner = |given: &[f64], of_box: Vector3<f64>, flag: &str| match given {
+        [] => Ok(of_box),
+        [x, y] if dimension == 2 => Ok(Vector3::new(*x, *y, of_box.z)),
+        [x, y, z] if dimension == 3 => Ok(Vector3::new(*x, *y, *z)),
+        _ => Err(Fault::input(format!("{flag}: expected {dimension} numbers, found {}", given.len()))),
+    };
+    let low = corner(&arguments.low, snapshot.bounds.0, "--low")?;
+    let high = corner(&arguments.high, snapshot.bounds.1, "--high")?;
+    let size = size_of(&arguments.cell, "--cell", [low, high], dimension)?;
+    let cells: f64 = (0..dimension).map(|axis| ((high[axis] - low[axis]) / size[axis]).round().max(1.0)).product();
+    if cells > MOST_CELLS {
+        return Err(Fault::input(format!(
+            "--cell: expected at most {MOST_CELLS} cells, found {cells}: take larger ones"
+        )));
+    }
+    let up = match arguments.up.as_deref() {
+        None => (dimension - 1, true),
+        Some(word) => (usize::from(word.as_bytes()[word.len() - 1] - b'x'), !word.starts_with('-')),
+    };
+    if up.0 >= dimension {
+        return Err(Fault::input("--up: expected x or y in the plane, found z"));
+    }
+    let masks = Masks {
+        fewest: arguments.fewest.max(1),
+        surface: arguments.surface,
+        up,
+        periodic: snapshot.periodic,
+        dimension,
+        orifice: arguments.orifice.as_deref().map(orifice).transpose()?,
+    };
+    let grid = Grid::filling((low, high), size);
+    let plane = if up.0 == 0 { [1, 0] } else { [0, up.0] };
+    let mut course = Course::new(grid, kind, plane, masks, arguments.between);
+    if !arguments.tracers.is_empty() {
+        let size = size_of(&arguments.tracers, "--tracers", [low, high], dimension)?;
+        course.trails = Some(Trails::new(Grid::filling((low, high), size)));
+    }
+    Ok(course)
+}
+
+/// The size of a cell (m) as it was asked for, if the box from `low` to `high` (m) holds one.
+fn size_of(given: &[f64], flag: &str, [low, high]: [Vector3<f64>; 2], dimension: usize) -> Result<Vector3<f64>, Fault> {
+    let size = match *given {
+        [all] => Vector3::repeat(all),
+        [x, y] if dimension == 2 => Vector3::new(x, y, 1.0),
+        [x, y, z] if dimension == 3 => Vector3::new(x, y, z),
+        _ => return Err(Fault::input(format!("{flag}: expected a number or {dimension}, found {}", given.len()))),
+    };
+    let size = if dimension == 2 { Vector3::new(size.x, size.y, high.z - low.z) } else { size };
+    for axis in 0..dimension {
+        let length = high[axis] - low[axis];
+        let name = ["x", "y", "z"][axis];
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(Fault::input(format!(
+                "expected a box that is wide along {name}, found {length} m from {} to {}: say --low and --high",
+                low[axis], high[axis]
+            )));
+        }
+        if size[axis] > length * (1.0 + 1e-9) {
+            return Err(Fault::input(format!(
+                "{flag}: expected at most the {length} m that the box is wide along {name}, found {}",
+                size[axis]
+            )));
+        }
+    }
+    Ok(size)
+}
+
+/// Reads `x=0,z=0,r=7.5`.
+fn orifice(text: &str) -> Result<Orifice, Fault> {
+    let fault =
+        || Fault::input(format!("--orifice: expected places and a reach such as x=0,z=0,r=7.5, found `{text}`"));
+    let (mut middle, mut reach) = ([None; 3], None);
+    for part in text.split(',') {
+        let (name, value) = part.split_once('=').ok_or_else(fault)?;
+        let value: f64 = value.trim().parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(fault)?;
+        match name.trim() {
+            "x" => middle[0] = Some(value),
+            "y" => middle[1] = Some(value),
+            "z" => middle[2] = Some(value),
+            "r" if value > 0.0 => reach = Some(value),
+            _ => return Err(fault()),
+        }
+    }
+    let reach = reach.filter(|_| middle.iter().any(Option::is_some)).ok_or_else(fault)?;
+    Ok(Orifice { middle, reach })
+}
+
+/// The quantities that are printed.
+const PRINTED: usize = 11;
+
+/// The summary for people.
+fn told(summary: &Summary, out: &Path) -> String {
+    let [x, y, z] = summary.cell.map(|size| number::significant(size, 4));
+    let mut text = format!("{}\ncells of {x} × {y} × {z} m\n\n", summary.words());
+    for over in summary.means.iter().filter(|over| COLUMNS[..PRINTED].iter().any(|column| column.name == over.quantity))
+    {
+        let unit = if over.unit == "1" { String::new() } else { format!(" {}", over.unit) };
+        let value = number::significant(over.mean.value, 4);
+        let interval = over.mean.half_width.map_or(String::new(), |half| {
+            format!(
+                " ± {} ({:.0} %, {} blocks)",
+                number::significant(half, 2),
+                100.0 * summary.confidence,
+                over.mean.blocks
+            )
+        });
+        text +=
+            &format!("{:<42} {value}{unit}{interval}, {} elements\n", over.words, number::count(over.elements as u64));
+    }
+    format!("{text}\n{}\n", out.display())
+}
