@@ -38,6 +38,7 @@ pub(super) fn close(scene: &mut Scene) {
     }
     for (name, x, out) in [("left side", domain.low.x, 1.0), ("right side", domain.high.x, -1.0)] {
         scene.walls.push(Wall {
+            until: None,
             name: name.to_owned(),
             material: side,
             shape: WallShape::Plane { point: Vector3::new(x, 0.0, 0.0), normal: Vector3::new(out, 0.0, 0.0) },

@@ -23,7 +23,7 @@ pub fn contact_stress(snapshot: &Snapshot, dimension: usize, grid: &Grid) -> Opt
         for contact in contacts {
             let force = contact.shear_force - contact.normal * contact.normal_force;
             let arm = |id: u32, side: f64| {
-                let place = place_of(snapshot, id)?;
+                let place = snapshot.place_of(id)?;
                 let radius = snapshot.grains[place].radius;
                 Some((homes[place]?, contact.normal * (side * (radius - 0.5 * contact.overlap))))
             };
@@ -53,15 +53,4 @@ pub fn contact_stress(snapshot: &Snapshot, dimension: usize, grid: &Grid) -> Opt
         }
     }
     Some(stress)
-}
-
-/// Place of a grain among those of a snapshot, which stand in order of id.
-fn place_of(snapshot: &Snapshot, id: u32) -> Option<usize> {
-    let grains = &snapshot.grains;
-    let at = (id as usize).checked_sub(1)?;
-    if grains.get(at).is_some_and(|grain| grain.id == id) {
-        return Some(at);
-    }
-    // Some have left.
-    grains.binary_search_by_key(&id, |grain| grain.id).ok()
 }

@@ -55,10 +55,8 @@ pub fn movers(snapshot: &Snapshot) -> Vec<Mover> {
 pub fn movers_between(before: &Snapshot, after: &Snapshot) -> Vec<Mover> {
     let elapsed = after.time - before.time;
     let length = after.bounds.1 - after.bounds.0;
-    // Grains stand in order of id.
-    let earlier = |id: u32| before.grains.binary_search_by_key(&id, |grain| grain.id).ok().map(|at| &before.grains[at]);
     let mover = |grain: &GrainState| {
-        let mut step = grain.position - earlier(grain.id)?.position;
+        let mut step = grain.position - before.grain(grain.id)?.position;
         for axis in (0..3).filter(|&axis| after.periodic[axis]) {
             step[axis] -= (step[axis] / length[axis]).round() * length[axis];
         }

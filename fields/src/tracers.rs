@@ -64,10 +64,8 @@ impl Tracer {
     #[must_use]
     pub fn deformation(&self, snapshot: &Snapshot, dimension: usize) -> Option<Matrix3<f64>> {
         let length = snapshot.bounds.1 - snapshot.bounds.0;
-        let grains = &snapshot.grains;
-        let now = |id: u32| grains.binary_search_by_key(&id, |grain| grain.id).ok().map(|at| grains[at].position);
         let moved = |&(id, before): &(u32, Vector3<f64>)| {
-            let mut step = now(id)? - before;
+            let mut step = snapshot.grain(id)?.position - before;
             for axis in (0..3).filter(|&axis| snapshot.periodic[axis]) {
                 step[axis] -= (step[axis] / length[axis]).round() * length[axis];
             }

@@ -12,6 +12,9 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     if scene.grains.is_empty() {
         return Err("it has no grain".to_owned());
     }
+    if let Some(what) = scene.passing() {
+        return Err(format!("it has {what}, which decks do not write"));
+    }
     if scene.global_damping != 0.0 {
         return Err("mass-proportional damping of translation and rotation (`global_damping`) is in neither".to_owned());
     }

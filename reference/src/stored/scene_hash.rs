@@ -24,8 +24,14 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     for Grain { material, radius, mass, inertia, position, velocity, spin } in &scene.grains {
         let _ = writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");
     }
-    for Wall { material, shape, motion, .. } in &scene.walls {
+    for Wall { material, shape, motion, until, .. } in &scene.walls {
         let _ = writeln!(text, "wall {material} {shape:?} {motion:?}");
+        if let Some(until) = until {
+            let _ = writeln!(text, "until {until:?}");
+        }
+    }
+    if !scene.stays.is_always() {
+        let _ = writeln!(text, "stays {:?}", scene.stays);
     }
     for Driven { grains, velocity, .. } in &scene.driven {
         let _ = writeln!(text, "driven {grains:?} {velocity:?}");

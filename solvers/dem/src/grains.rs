@@ -11,7 +11,10 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
 
-/// All grains, by slot. The slot of a grain changes when the grains are sorted, its place in the scene never.
+/// The slot of a grain that is not there.
+pub(crate) const ABSENT: u32 = u32::MAX;
+
+/// All grains that are there, by slot. The slot of a grain changes when the grains are sorted, its place in the scene never.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Grains<S: Geometry> {
@@ -31,56 +34,87 @@ pub(crate) struct Grains<S: Geometry> {
     pub(crate) material: Vec<u16>,
     /// Place of the grain in the scene.
     pub(crate) id: Vec<u32>,
-    /// Slot of every place in the scene.
+    /// Slot of every place in the scene, [`ABSENT`] of a grain that is not there.
     pub(crate) slot: Vec<u32>,
     space: PhantomData<S>,
 }
 
 impl<S: Geometry> Grains<S> {
-    /// Whether these can be the same grains, sorted otherwise.
-    pub(crate) fn is_like(&self, other: &Self) -> bool {
+    /// Whether these can be grains of a scene that are there, sorted somehow.
+    pub(crate) fn is_of(&self, scene: &Scene, rotate: bool) -> bool {
         let Self { place, movement, turning, load, torque, inverse_inertia, material, id, slot, space: _ } = self;
-        let count = other.len();
-        let lengths = [place.len(), movement.len(), load.len(), material.len(), id.len(), slot.len()];
+        let count = place.len();
+        let only_if = |turns: bool| if turns { count } else { 0 };
+        let spatial = only_if(rotate && S::DIMENSION == 3);
+        let lengths = [movement.len(), load.len(), material.len(), id.len()];
         let turning = [turning.len(), torque.len(), inverse_inertia.len()];
-        let mut placed = slot.iter().enumerate();
+        let placed = slot.iter().filter(|&&slot| slot != ABSENT).count();
         lengths.iter().all(|&length| length == count)
-            && turning == [other.turning.len(), other.torque.len(), other.inverse_inertia.len()]
-            && placed.all(|(place, &slot)| id.get(slot as usize).is_some_and(|&id| id as usize == place))
-            && (0..count).all(|slot| material[slot] == other.material[other.slot[id[slot] as usize] as usize])
+            && turning == [spatial, spatial, only_if(rotate)]
+            && slot.len() == scene.grains.len()
+            && placed == count
+            && (placed == slot.len() || !scene.stays.is_always())
+            && id.iter().enumerate().all(|(at, &id)| slot.get(id as usize).is_some_and(|&slot| slot as usize == at))
+            && material.iter().zip(id).all(|(&material, &id)| material == scene.grains[id as usize].material)
     }
 
-    /// The grains as the scene has them at the start, without forces.
+    /// The grains that a scene has at the start, as they are then, without forces.
     pub(crate) fn new(scene: &Scene, rotate: bool) -> Self {
-        let (all, count) = (&scene.grains, scene.grains.len());
+        let count = scene.grains.len();
+        let mut later = vec![false; count];
+        let entered = scene.stays.entered_by(0.0);
+        scene.stays.entries[entered..].iter().for_each(|entry| later[entry.grain] = true);
+        let mut grains = Self {
+            place: Vec::with_capacity(count),
+            movement: Vec::with_capacity(count),
+            turning: Vec::new(),
+            load: Vec::with_capacity(count),
+            torque: Vec::new(),
+            inverse_inertia: Vec::new(),
+            material: Vec::with_capacity(count),
+            id: Vec::with_capacity(count),
+            slot: vec![ABSENT; count],
+            space: PhantomData,
+        };
+        for (id, grain) in scene.grains.iter().enumerate().filter(|&(id, _)| !later[id]) {
+            grains.enter(id as u32, grain, rotate);
+        }
+        // Nothing moves a driven grain: to what meets it, it is as heavy as a wall.
+        for &driven in scene.driven.iter().flat_map(|driven| &driven.grains) {
+            let slot = grains.slot[driven] as usize;
+            grains.movement[slot].0[3] = 0.0;
+        }
+        grains
+    }
+
+    /// Adds a grain as it is in the scene, with its place there, after all others.
+    pub(crate) fn enter(&mut self, id: u32, grain: &Grain, rotate: bool) {
         let quad = |vector: Vector3<f64>, last: f64| {
             let mut quad = Quad([0.0, 0.0, 0.0, last]);
             S::put(vector, &mut quad);
             quad
         };
-        let only_if = |turns: bool, count: usize| if turns { count } else { 0 };
-        let turning = only_if(rotate && S::DIMENSION == 3, count);
-        let inverse_inertia = |grain: &Grain| 1.0 / grain.inertia;
-        let mut grains = Self {
-            place: all.iter().map(|grain| quad(grain.position, grain.radius)).collect(),
-            movement: all.iter().map(|grain| quad(grain.velocity, 1.0 / grain.mass)).collect(),
-            turning: vec![Quad::default(); turning],
-            load: vec![Quad::default(); count],
-            torque: vec![Quad::default(); turning],
-            inverse_inertia: all.iter().take(only_if(rotate, count)).map(inverse_inertia).collect(),
-            material: all.iter().map(|grain| grain.material).collect(),
-            id: (0..count as u32).collect(),
-            slot: (0..count as u32).collect(),
-            space: PhantomData,
-        };
-        for (slot, grain) in all.iter().enumerate() {
-            grains.set_spin(slot, grain.spin);
+        let slot = self.place.len();
+        self.place.push(quad(grain.position, grain.radius));
+        self.movement.push(quad(grain.velocity, 1.0 / grain.mass));
+        self.load.push(Quad::default());
+        self.material.push(grain.material);
+        self.id.push(id);
+        self.slot[id as usize] = slot as u32;
+        if rotate {
+            self.inverse_inertia.push(1.0 / grain.inertia);
+            if S::DIMENSION == 3 {
+                self.turning.push(Quad::default());
+                self.torque.push(Quad::default());
+            }
         }
-        // Nothing moves a driven grain: to what meets it, it is as heavy as a wall.
-        for &driven in scene.driven.iter().flat_map(|driven| &driven.grains) {
-            grains.movement[driven].0[3] = 0.0;
-        }
-        grains
+        self.set_spin(slot, grain.spin);
+    }
+
+    /// Takes out all grains but those in some slots, which keep their order.
+    pub(crate) fn keep(&mut self, slots: &[u32]) {
+        self.slot.fill(ABSENT);
+        self.reorder(slots);
     }
 
     /// Number of grains.
@@ -88,7 +122,7 @@ impl<S: Geometry> Grains<S> {
         self.place.len()
     }
 
-    /// Whether the grains rotate.
+    /// Whether the grains rotate. (Where there is none it is all one.)
     pub(crate) fn rotate(&self) -> bool {
         !self.inverse_inertia.is_empty()
     }

@@ -166,6 +166,12 @@ impl Motion {
         if f64::is_finite(total) { fastest } else { f64::INFINITY }
     }
 
+    /// The velocity half a step before (m/s) of a grain that has one (m/s) and that nothing touches.
+    pub(crate) fn half_before(&self, velocity: Vector3<f64>) -> Vector3<f64> {
+        let half = 0.5 * self.time_step;
+        velocity * (1.0 + self.global_damping * half) - self.gravity * half
+    }
+
     /// Takes the velocities at the start to half a step before it, so that the first cycle ends at half a step after
     /// it.
     pub(crate) fn step_back_half<S: Geometry>(&self, grains: &mut Grains<S>) {

@@ -49,12 +49,13 @@ impl Neighbours {
     }
 
     /// Wraps the positions into the domain, sorts the grains and lists the pairs anew, in so many shares. Contacts go on
-    /// remembering.
+    /// remembering: `slots` are those that the grains had when the list was made, [`crate::grains::ABSENT`] of those that have
+    /// come since; they are as they were where none are given.
     pub(crate) fn rebuild<S: Geometry>(
         &mut self,
         team: &Team,
         count: usize,
-        grains: &mut Grains<S>,
+        (grains, slots): (&mut Grains<S>, Option<&[u32]>),
         domain: Option<&Domain>,
         largest: f64,
         layout: Layout,
@@ -66,8 +67,11 @@ impl Neighbours {
             }
         }
         let reach = 2.0 * largest + self.skin;
-        let (cells, order) = Cells::sort::<S>(&grains.place, reach);
+        let (cells, mut order) = Cells::sort::<S>(&grains.place, reach);
         grains.reorder(&order);
+        if let Some(slots) = slots {
+            order.iter_mut().for_each(|slot| *slot = slots[*slot as usize]);
+        }
 
         let shifts = domain.map(half_of_the_shifts).unwrap_or_default();
         let mut old = std::mem::take(&mut self.shares);
@@ -250,7 +254,7 @@ mod tests {
         let domain = Domain { low: Vector3::zeros(), high: Vector3::repeat(size), periodic };
         let mut grains = Grains::<S>::at(&points, radius);
         let mut neighbours = Neighbours::new(skin);
-        neighbours.rebuild(&Team::new(1), shares, &mut grains, Some(&domain), radius, NOTHING);
+        neighbours.rebuild(&Team::new(1), shares, (&mut grains, None), Some(&domain), radius, NOTHING);
         let mut listed = BTreeSet::new();
         for pairs in neighbours.shares.iter().flat_map(|share| [&share.near, &share.across]) {
             for at in pairs.own() {

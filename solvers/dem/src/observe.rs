@@ -2,6 +2,7 @@
 //! energies.
 
 use crate::geometry::Geometry;
+use crate::grains::ABSENT;
 use crate::neighbours::wrapped;
 use crate::simulation::Simulated;
 use grainbench_scene::record::{self, GrainState, Look, Snapshot, WallState};
@@ -13,7 +14,9 @@ use nalgebra::Vector3;
 pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
     let contacts = simulation.take_contacts();
     let (simulation, scene) = (&*simulation, &simulation.scene);
-    let mut grains: Vec<GrainState> = (0..scene.grains.len()).map(|id| grain_state(simulation, id)).collect();
+    let is_there = |id: &usize| simulation.grains.slot[*id] != ABSENT;
+    let mut grains: Vec<GrainState> =
+        (0..scene.grains.len()).filter(is_there).map(|id| grain_state(simulation, id)).collect();
     for driven in &scene.driven {
         for &grain in &driven.grains {
             (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());

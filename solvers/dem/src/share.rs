@@ -99,7 +99,8 @@ impl Share {
             return;
         }
         let found = |a: u32, b: u32| {
-            let share = &old[old.partition_point(|share| share.rows.end <= a as usize)];
+            // A grain that has come since has no row.
+            let share = old.get(old.partition_point(|share| share.rows.end <= a as usize))?;
             let mut lists = [&share.near, &share.across].into_iter().zip(share.work.places.iter().rev());
             lists.find_map(|(list, places)| list.find(a, b).map(|from| (list, places[from])))
         };

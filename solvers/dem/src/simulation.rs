@@ -7,7 +7,7 @@ use crate::accounts::{Accounts, Step};
 use crate::contact::{MEMORY, Options};
 use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
-use crate::grains::Grains;
+use crate::grains::{ABSENT, Grains};
 use crate::laws::Laws;
 use crate::motion::{Motion, Moving};
 use crate::neighbours::Neighbours;
@@ -65,6 +65,8 @@ pub(crate) struct Simulated<S: Geometry> {
     pub(crate) accounts: Accounts,
     /// Mass of the grains that are not driven (kg).
     free_mass: f64,
+    /// How many of the entries of the scene have come.
+    pub(crate) entered: usize,
 }
 
 impl<S: Geometry> Simulated<S> {
@@ -106,6 +108,7 @@ impl<S: Geometry> Simulated<S> {
                 let free = scene.grains.iter().zip(groups).filter(|(_, group)| group.is_none());
                 free.map(|(grain, _)| grain.mass).sum()
             },
+            entered: scene.stays.entered_by(0.0),
             scene: scene.clone(),
         };
         simulation.rebuild()?;
@@ -186,14 +189,16 @@ impl<S: Geometry> Simulated<S> {
         self.step += 1;
         let time = self.step as f64 * self.motion.time_step;
         let mut walls_moved = 0.0_f64;
+        let mut changed = self.has_comers(time) || self.has_leavers();
         for wall in &mut self.walls {
             wall.move_to(time, self.motion.time_step);
+            changed |= wall.take_away(time);
             walls_moved = walls_moved.max(wall.moved_since_list(self.extent));
         }
         if self.travelled > half_skin {
             self.travelled = self.neighbours.farthest(&self.grains);
         }
-        if self.travelled.max(walls_moved) > half_skin {
+        if changed || self.travelled.max(walls_moved) > half_skin {
             self.rebuild()?;
         }
         self.evaluate_forces(record, self.motion.time_step, move_on);
@@ -320,6 +325,44 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
+    /// Whether grains come at a time (s).
+    fn has_comers(&self, time: f64) -> bool {
+        self.scene.stays.entered_by(time) > self.entered
+    }
+
+    /// Whether grains are where they are taken out, at a step at which that is looked for.
+    fn has_leavers(&self) -> bool {
+        let Some(removal) = self.scene.stays.removal.filter(|removal| self.step.is_multiple_of(removal.every)) else {
+            return false;
+        };
+        (0..self.grains.len()).any(|slot| removal.takes(self.grains.position(slot), S::DIMENSION))
+    }
+
+    /// Lets grains come and go that do so at this step. Gives the slots that those that are there had before, where any did.
+    fn come_and_go(&mut self) -> Option<Vec<u32>> {
+        let time = self.step as f64 * self.motion.time_step;
+        let coming = self.entered..self.scene.stays.entered_by(time);
+        let leave = self.has_leavers();
+        if coming.is_empty() && !leave {
+            return None;
+        }
+        let mut slots: Vec<u32> = (0..self.grains.len() as u32).collect();
+        if let Some(removal) = self.scene.stays.removal.filter(|_| leave) {
+            slots.retain(|&slot| !removal.takes(self.grains.position(slot as usize), S::DIMENSION));
+            self.grains.keep(&slots);
+        }
+        let rotate = self.forces.turn();
+        for entry in coming {
+            let id = self.scene.stays.entries[entry].grain;
+            let mut grain = self.scene.grains[id];
+            grain.velocity = self.motion.half_before(grain.velocity);
+            self.grains.enter(id as u32, &grain, rotate);
+            slots.push(ABSENT);
+            self.entered += 1;
+        }
+        Some(slots)
+    }
+
     /// Lists the neighbours anew, after a look at every grain.
     fn rebuild(&mut self) -> Result<(), Box<Broken>> {
         self.refuse_broken_state()?;
@@ -330,14 +373,18 @@ impl<S: Geometry> Simulated<S> {
             .map(|wall| wall.near.iter().map(|&(slot, memory)| (self.grains.id[slot as usize], memory)).collect())
             .collect();
         let layout = self.forces.layout();
+        let slots = self.come_and_go();
         let shares = self.shares();
         let Self { neighbours, grains, team, largest_radius, .. } = self;
-        neighbours.rebuild(team, shares, grains, domain.as_ref(), *largest_radius, layout);
-        let mut remembered = vec![[0.0; MEMORY]; self.grains.len()];
+        neighbours.rebuild(team, shares, (grains, slots.as_deref()), domain.as_ref(), *largest_radius, layout);
+        let mut remembered = vec![[0.0; MEMORY]; self.scene.grains.len()];
         self.extent = 0.0;
         for (wall, before) in self.walls.iter_mut().zip(&by_wall) {
             before.iter().for_each(|&(id, memory)| remembered[id as usize] = memory);
             wall.begin_list();
+            if wall.is_gone() {
+                continue;
+            }
             for slot in 0..self.grains.len() {
                 let position = self.grains.position(slot);
                 if wall.facing(position).distance < self.grains.radius(slot) + self.neighbours.skin {

@@ -24,6 +24,7 @@ struct State<S: Geometry> {
     extent: f64,
     cost: Counts,
     accounts: Accounts,
+    entered: usize,
     recorder: Recorder,
 }
 
@@ -38,6 +39,7 @@ impl<S: Geometry> Simulated<S> {
             extent: self.extent,
             cost: self.cost,
             accounts: self.accounts.clone(),
+            entered: self.entered,
             recorder: recorder.clone(),
         };
         Checkpoint::keep(identity, self.step, &state)
@@ -50,8 +52,9 @@ impl<S: Geometry> Simulated<S> {
         checkpoint: &Checkpoint,
     ) -> Result<Recorder, CheckpointError> {
         let state: State<S> = checkpoint.state(identity)?;
-        let count = self.grains.len();
-        let same = state.grains.is_like(&self.grains)
+        let count = state.grains.len();
+        let same = state.grains.is_of(&self.scene, self.forces.turn())
+            && state.entered <= self.scene.stays.entries.len()
             && state.neighbours.is_of(count, self.forces.layout())
             && state.walls.len() == self.walls.len()
             && state.walls.iter().all(|wall| wall.is_of(count));
@@ -67,6 +70,7 @@ impl<S: Geometry> Simulated<S> {
         self.extent = state.extent;
         self.cost = state.cost;
         self.accounts = state.accounts;
+        self.entered = state.entered;
         Ok(state.recorder)
     }
 }

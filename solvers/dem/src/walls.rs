@@ -26,6 +26,8 @@ pub(crate) struct MovingWall {
     pub(crate) near: NearWall,
     /// Force of the grains on the wall in the last force evaluation (N).
     pub(crate) force: Vector3<f64>,
+    /// Whether it has been taken away.
+    gone: bool,
 }
 
 /// What a wall must remember between two steps; the rest follows from its motion.
@@ -35,6 +37,7 @@ pub(crate) struct WallMemory {
     at_list: Displacement,
     near: NearWall,
     force: Vector3<f64>,
+    gone: bool,
 }
 
 impl WallMemory {
@@ -66,6 +69,7 @@ impl MovingWall {
             spin: Vector3::zeros(),
             near: Vec::new(),
             force: Vector3::zeros(),
+            gone: false,
             wall: wall.clone(),
         }
     }
@@ -90,6 +94,7 @@ impl MovingWall {
             at_list: self.at_list,
             near: self.near.clone(),
             force: self.force,
+            gone: self.gone,
         }
     }
 
@@ -101,6 +106,19 @@ impl MovingWall {
         self.at_list = memory.at_list;
         self.near = memory.near;
         self.force = memory.force;
+        self.gone = memory.gone;
+    }
+
+    /// Whether it has been taken away.
+    pub(crate) fn is_gone(&self) -> bool {
+        self.gone
+    }
+
+    /// Takes it away where it is time (s). Gives whether that is now.
+    pub(crate) fn take_away(&mut self, time: f64) -> bool {
+        let now = !self.gone && self.wall.until.is_some_and(|until| time >= until * (1.0 - 1e-9));
+        self.gone |= now;
+        now
     }
 
     /// Moves the wall to where it is at `time`, one step after the last call.

@@ -8,6 +8,9 @@ use grainbench_scene::scene::{Duration, Scene, WallShape};
 
 /// Why the scene cannot be run, if it cannot.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
+    if let Some(what) = scene.passing() {
+        return Some(format!("it has {what}, which was written for `dem` alone"));
+    }
     let flat = scene.dimension.count() == 2;
     if flat && scene.grain_shape == GrainShape::Sphere && !scene.grains.is_empty() {
         return Some("a sphere kept in the plane is neither a disc in plane strain nor free".to_owned());

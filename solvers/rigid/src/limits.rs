@@ -10,6 +10,9 @@ const DEEPEST: f64 = 0.25;
 
 /// Why the scene cannot be run, if it cannot.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
+    if let Some(what) = scene.passing() {
+        return Some(format!("it has {what}, which was written for `dem` alone"));
+    }
     if let Some(what) = scene.needs_deformable() {
         return Some(format!("it has {what}, and rapier's grains are rigid"));
     }

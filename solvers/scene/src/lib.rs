@@ -22,6 +22,7 @@ mod near;
 pub mod overlap;
 pub mod packing;
 pub mod perturbed;
+pub mod pouring;
 mod probe;
 pub mod record;
 pub mod recorder;
@@ -31,6 +32,7 @@ pub mod scene;
 pub mod solver;
 pub mod source;
 pub mod space;
+pub mod stays;
 pub mod terms;
 pub mod text;
 

@@ -23,6 +23,14 @@ impl Deepest {
         }
     }
 
+    /// The same, found among some grains of a scene that stand at these places of it.
+    pub(crate) fn among(self, places: &[usize]) -> Self {
+        match self {
+            Self::Grains(a, b, ratio) => Self::Grains(places[a], places[b], ratio),
+            Self::GrainWall(grain, wall, ratio) => Self::GrainWall(places[grain], wall, ratio),
+        }
+    }
+
     /// Who overlaps, and by how much.
     #[must_use]
     pub fn words(&self, walls: &[Wall]) -> String {

@@ -81,7 +81,7 @@ fn mean_stress(snapshot: &Snapshot, dimension: Dimension) -> Vec<f64> {
     let mut contacts = 0_u32;
     for contact in snapshot.contacts.iter().flatten() {
         let Partner::Grain(other) = contact.partner else { continue };
-        let radius = |id: u32| snapshot.grains[id as usize - 1].radius;
+        let radius = |id: u32| snapshot.grain(id).map_or(0.0, |grain| grain.radius);
         let line = contact.normal * (radius(contact.grain) + radius(other) - contact.overlap);
         stress += line * (contact.shear_force - contact.normal * contact.normal_force).transpose();
         contacts += 1;
@@ -140,6 +140,7 @@ fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static s
             all.extend(plain(&[("coordination", "1")]));
             all
         }
+        ProbeTarget::Count => plain(&[("present", "1"), ("entered", "1"), ("left", "1")]),
         ProbeTarget::System => {
             let mut all = plain(&[
                 ("kinetic_energy", "J"),
@@ -203,6 +204,11 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
             all
         }
         ProbeTarget::Stress => mean_stress(snapshot, scene.dimension),
+        ProbeTarget::Count => {
+            let first = scene.grains.len() - scene.stays.entries.len();
+            let (present, entered) = (snapshot.grains.len(), first + scene.stays.entered_by(snapshot.time));
+            vec![present as f64, entered as f64, entered as f64 - present as f64]
+        }
         ProbeTarget::System => {
             let bodies = &snapshot.bodies;
             let half_squared = |mass: f64, velocity: &Vector3<f64>| 0.5 * mass * velocity.norm_squared();

@@ -215,6 +215,23 @@ impl Snapshot {
         self.contacts.as_deref().unwrap_or_default()
     }
 
+    /// Place of the grain of an id in the list of grains; none where it is not there.
+    #[must_use]
+    pub fn place_of(&self, id: u32) -> Option<usize> {
+        // Where all are there the id tells it.
+        let place = (id as usize).checked_sub(1)?;
+        if self.grains.get(place).is_some_and(|grain| grain.id == id) {
+            return Some(place);
+        }
+        self.grains.binary_search_by_key(&id, |grain| grain.id).ok()
+    }
+
+    /// The grain of an id; none where it is not there.
+    #[must_use]
+    pub fn grain(&self, id: u32) -> Option<&GrainState> {
+        self.place_of(id).map(|place| &self.grains[place])
+    }
+
     /// What a solver shows that knows of grains alone: no contacts, and walls as far as they have moved, without
     /// forces.
     #[must_use]

@@ -6,6 +6,7 @@ use crate::contact_law::ContactLaw;
 use crate::file::GrainShape;
 use crate::grains::Grains;
 use crate::motion::{Displacement, Motion};
+use crate::stays::Stays;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -127,6 +128,8 @@ pub struct Wall {
     pub shape: WallShape,
     /// How it moves.
     pub motion: Motion,
+    /// When it is taken away (s).
+    pub until: Option<f64>,
 }
 
 /// Grains that are moved as a wall is: at a constant velocity, whatever the forces on them; they do not turn.
@@ -181,6 +184,8 @@ pub enum ProbeTarget {
     Budget,
     /// Mean stress and number of contacts of the grains.
     Stress,
+    /// How many grains there are.
+    Count,
     /// Everything.
     System,
 }
@@ -248,6 +253,8 @@ pub struct Scene {
     pub deformable: Vec<Option<Deformable>>,
     /// Grains; the id of a grain is its place here plus one.
     pub grains: Grains,
+    /// Which of them come or go.
+    pub stays: Stays,
     /// Deformable bodies that are no grains.
     pub bodies: Vec<Block>,
     /// How deformable bodies start.
@@ -306,6 +313,18 @@ impl Scene {
     #[must_use]
     pub fn law(&self, a: u16, b: u16) -> Option<&ContactLaw> {
         self.laws[usize::from(a) * self.materials.len() + usize::from(b)].as_ref()
+    }
+
+    /// What is there for a while only, in words, if anything is: not every solver takes grains in or out, or walls away.
+    #[must_use]
+    pub fn passing(&self) -> Option<&'static str> {
+        if !self.stays.entries.is_empty() {
+            return Some("grains that are poured");
+        }
+        if self.stays.removal.is_some() {
+            return Some("grains that are taken out");
+        }
+        self.walls.iter().any(|wall| wall.until.is_some()).then_some("walls that are taken away")
     }
 
     /// What needs a solver of deformable bodies, in words, if anything does.

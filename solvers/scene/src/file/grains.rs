@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A group of grains: exactly one of `position`, `lattice`, `random`, `packed` and `file`.
+/// A group of grains: exactly one of `position`, `lattice`, `random`, `packed`, `poured` and `file`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrainsSpec {
@@ -30,6 +30,9 @@ pub struct GrainsSpec {
     /// Grains of given sizes, packed densely without overlap, from a seed.
     #[serde(default)]
     pub packed: Option<PackedSpec>,
+    /// Grains that come one after the other, from a seed. They come with the group's velocity.
+    #[serde(default)]
+    pub poured: Option<PouredSpec>,
     /// Grains read from a LAMMPS data file (atom style sphere), plain or gzip.
     #[serde(default)]
     pub file: Option<FileSpec>,
@@ -84,6 +87,42 @@ pub struct PackedSpec {
     /// Whether faces that are not periodic cut grains: such a face holds centres then, not whole grains.
     #[serde(default)]
     pub cut: bool,
+}
+
+/// Grains that come one after the other, each somewhere in a box.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PouredSpec {
+    /// How many.
+    pub count: u32,
+    /// Grains in a second (1/s).
+    pub rate: f64,
+    /// Seed of the generator: the same seed gives the same grains on every machine and to every solver.
+    pub seed: u64,
+    /// Lower corner of the box in which centres are at first (m).
+    pub low: Vec<f64>,
+    /// Upper corner (m).
+    pub high: Vec<f64>,
+    /// When the first comes (s).
+    #[serde(default)]
+    pub start: f64,
+}
+
+/// Where grains are taken out: beyond the sides of a box.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RemovalSpec {
+    /// Lower corner of the box (m).
+    pub low: Vec<f64>,
+    /// Upper corner (m).
+    pub high: Vec<f64>,
+    /// Grains are looked for every so many calculation cycles.
+    #[serde(default = "default_removal_cycles")]
+    pub every_cycles: u64,
+}
+
+const fn default_removal_cycles() -> u64 {
+    100
 }
 
 /// Grains read from a file.

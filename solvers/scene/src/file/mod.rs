@@ -14,7 +14,7 @@ mod walls;
 pub use crate::contact_law::{ContactSpec, LawKind};
 pub use bodies::{AnnulusSpec, BodySpec, BoxSpec, SideSpec, WaveSpec};
 pub use driven::DrivenSpec;
-pub use grains::{FileSpec, GrainsSpec, LatticeSpec, PackedSpec, RandomSpec, SpinSpec};
+pub use grains::{FileSpec, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, RemovalSpec, SpinSpec};
 pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
 pub use materials::{ConstitutiveKind, MaterialSpec};
 pub use output::OutputSpec;
@@ -80,6 +80,9 @@ pub struct SceneFile {
     /// Groups of grains by name. Grains are numbered from 1 in the order of the file.
     #[serde(default)]
     pub grains: IndexMap<String, GrainsSpec>,
+    /// Where grains are taken out; nowhere when absent.
+    #[serde(default)]
+    pub removal: Option<RemovalSpec>,
     /// Deformable bodies that are no grains, by name.
     #[serde(default)]
     pub bodies: IndexMap<String, BodySpec>,

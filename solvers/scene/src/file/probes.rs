@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `driven`, `stress`, `budget` and
-/// `system`.
+/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `driven`, `stress`, `budget`,
+/// `count` and `system`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeSpec {
@@ -43,6 +43,9 @@ pub struct ProbeSpec {
     /// sigma_xz, sigma_yz), and coordination, the mean number of grains that a grain touches.
     #[serde(default)]
     pub stress: Option<bool>,
+    /// How many grains there are, and have come and gone: columns present, entered (the first ones too), left.
+    #[serde(default)]
+    pub count: Option<bool>,
     /// The whole system: kinetic, rotational, elastic and gravitational energy, their sum, momentum, angular momentum
     /// about the origin, number of contacts.
     #[serde(default)]

@@ -20,6 +20,9 @@ pub struct WallSpec {
     /// A rectangle, solid on both sides; three dimensions only. At the joint of two a grain touches both.
     #[serde(default)]
     pub rectangle: Option<RectangleSpec>,
+    /// When it is taken away (s), as the plug of an orifice is; never when absent.
+    #[serde(default)]
+    pub until: Option<f64>,
     /// Prescribed motion: phases that add up.
     #[serde(default)]
     pub motion: Vec<MotionSpec>,

@@ -8,6 +8,7 @@ use crate::memory;
 use crate::overlap::{self, Deepest};
 use crate::packing;
 use crate::scene::{Domain, Grain, Wall};
+use crate::stays::{Entry, Stays};
 use indexmap::IndexMap;
 use nalgebra::Vector3;
 
@@ -19,16 +20,18 @@ impl Resolver<'_> {
         &self,
         shape: GrainShape,
         domain: Option<&Domain>,
-    ) -> Result<(Vec<Grain>, Groups), SceneError> {
+    ) -> Result<(Vec<Grain>, Groups, Vec<Entry>), SceneError> {
         let mut grains = Vec::new();
+        let mut entries = Vec::new();
         let mut groups = IndexMap::new();
         for (name, spec) in &self.file.grains {
             let start = grains.len();
-            self.group(name, spec, shape, domain, &mut grains)?;
+            self.group(name, spec, shape, domain, (&mut grains, &mut entries))?;
             self.refuse_beyond_numbers(name, &grains[start..])?;
             groups.insert(name.clone(), start..grains.len());
         }
-        Ok((grains, groups))
+        entries.sort_by(|a: &Entry, b: &Entry| a.time.total_cmp(&b.time));
+        Ok((grains, groups, entries))
     }
 
     fn group(
@@ -37,7 +40,7 @@ impl Resolver<'_> {
         spec: &GrainsSpec,
         shape: GrainShape,
         domain: Option<&Domain>,
-        grains: &mut Vec<Grain>,
+        (grains, entries): (&mut Vec<Grain>, &mut Vec<Entry>),
     ) -> Result<(), SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("grains.{name}.{part}");
@@ -48,6 +51,7 @@ impl Resolver<'_> {
                 ("lattice", spec.lattice.is_some()),
                 ("random", spec.random.is_some()),
                 ("packed", spec.packed.is_some()),
+                ("poured", spec.poured.is_some()),
                 ("file", spec.file.is_some()),
             ],
         )?;
@@ -121,6 +125,14 @@ impl Resolver<'_> {
             let density = density()?;
             let places = self.packed(name, packed, domain)?;
             grains.extend(places.into_iter().map(|(centre, radius)| grain(centre, radius, density, velocity)));
+        }
+        if let Some(poured) = &spec.poured {
+            self.refuse_too_many(&format!("grains.{name}.poured.count"), u128::from(poured.count))?;
+            let (radius, density) = (radius()?, density()?);
+            for (time, centre) in self.pour(name, spec, poured, radius, velocity, domain)? {
+                entries.push(Entry { grain: grains.len(), time });
+                grains.push(grain(centre, radius, density, velocity));
+            }
         }
         if let Some(file) = &spec.file {
             self.grains_from_file(name, file, shape, material, grains)?;
@@ -255,6 +267,7 @@ impl Resolver<'_> {
     pub(super) fn refuse_deep_overlap(
         &self,
         grains: &[Grain],
+        stays: &Stays,
         walls: &[Wall],
         domain: Option<&Domain>,
         groups: &Groups,
@@ -262,7 +275,15 @@ impl Resolver<'_> {
         let bound = self.file.largest_initial_overlap;
         self.check.not_negative("largest_initial_overlap", bound, "ratio")?;
         // Where the centre of one lies within another it is of no use to know which pair is worse still.
-        let found = overlap::deepest(grains, walls, domain, bound.max(1.0));
+        let mut later = vec![false; grains.len()];
+        stays.entries.iter().for_each(|entry| later[entry.grain] = true);
+        let first: Vec<usize> = (0..grains.len()).filter(|&grain| !later[grain]).collect();
+        let found = if stays.entries.is_empty() {
+            overlap::deepest(grains, walls, domain, bound.max(1.0))
+        } else {
+            let at_first: Vec<Grain> = first.iter().map(|&grain| grains[grain]).collect();
+            overlap::deepest(&at_first, walls, domain, bound.max(1.0)).map(|deepest| deepest.among(&first))
+        };
         let Some(deepest) = found.filter(|deepest| deepest.ratio() > bound) else { return Ok(()) };
         let group_of =
             |grain: usize| groups.iter().find(|(_, range)| range.contains(&grain)).map_or("", |(name, _)| name);

@@ -7,6 +7,7 @@ use crate::file::{DomainSpec, GrainShape, GravitySpec, ManufacturedSpec, SceneFi
 use crate::manufactured::Manufactured;
 use crate::scene::{Dimension, Domain, Duration, Sampling, Scene, Wall};
 use crate::source::SceneSource;
+use crate::stays::Stays;
 use indexmap::IndexMap;
 use nalgebra::Vector3;
 use probes::Names;
@@ -19,6 +20,7 @@ mod grains;
 mod laws;
 mod materials;
 mod probes;
+mod stays;
 mod walls;
 
 /// A grain as a data file describes it.
@@ -77,7 +79,8 @@ impl Resolver<'_> {
                 check.positive(&format!("materials.{name}.density"), density, "density (kg/m³)")?;
             }
         }
-        let (mut grains, groups) = self.grains(grain_shape, domain.as_ref())?;
+        let (mut grains, groups, entries) = self.grains(grain_shape, domain.as_ref())?;
+        let stays = Stays { entries, removal: self.removal()? };
         if let Some(domain) = &domain {
             self.refuse_outside(domain, &grains, &groups)?;
         }
@@ -93,8 +96,9 @@ impl Resolver<'_> {
         let laws = self.laws(&materials, &grains, &bodies, &walls)?;
         let mut place = 0..;
         deformable.retain(|_| place.next().is_some_and(|place| materials.contains(&place)));
-        self.refuse_deep_overlap(&grains, &walls, domain.as_ref(), &groups)?;
-        let names = Names { groups: &groups, bodies: &bodies, walls: &walls, driven: &driven };
+        self.refuse_deep_overlap(&grains, &stays, &walls, domain.as_ref(), &groups)?;
+        self.refuse_passing(&stays, &driven, &bodies)?;
+        let names = Names { groups: &groups, bodies: &bodies, walls: &walls, driven: &driven, stays: &stays };
         let mut spots = Vec::new();
         let probes = file
             .probes
@@ -121,6 +125,7 @@ impl Resolver<'_> {
             start: self.start(gravity)?,
             reference_length: self.reference_length(&grains, &bodies)?,
             grains: grains.into(),
+            stays,
             bodies,
             walls,
             driven,

@@ -5,6 +5,7 @@ use crate::check::Checker;
 use crate::error::SceneError;
 use crate::file::ProbeSpec;
 use crate::scene::{Block, BodyName, Driven, Probe, ProbeTarget, Spot, Wall};
+use crate::stays::Stays;
 
 impl Resolver<'_> {
     pub(super) fn probe(
@@ -27,6 +28,7 @@ impl Resolver<'_> {
                 ("driven", spec.driven.is_some()),
                 ("budget", spec.budget == Some(true)),
                 ("stress", spec.stress == Some(true)),
+                ("count", spec.count == Some(true)),
                 ("system", spec.system == Some(true)),
             ],
         )?;
@@ -58,9 +60,16 @@ impl Resolver<'_> {
             ProbeTarget::Budget
         } else if spec.stress == Some(true) {
             ProbeTarget::Stress
+        } else if spec.count == Some(true) {
+            ProbeTarget::Count
         } else {
             ProbeTarget::System
         };
+        let of_a_grain = matches!(target, ProbeTarget::Grain(_) | ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..));
+        if !names.stays.is_always() && (of_a_grain || target == ProbeTarget::Budget) {
+            let expected = "a probe of what is there all the time, for grains come or go here";
+            return Err(check.error(&format!("probes.{name}"), expected, "one of a grain, a contact or the budget"));
+        }
         Ok(Probe { name: name.to_owned(), target })
     }
 }
@@ -71,6 +80,7 @@ pub(super) struct Names<'a> {
     pub(super) bodies: &'a [Block],
     pub(super) walls: &'a [Wall],
     pub(super) driven: &'a [Driven],
+    pub(super) stays: &'a Stays,
 }
 
 impl Names<'_> {

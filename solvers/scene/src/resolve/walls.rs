@@ -55,7 +55,8 @@ impl Resolver<'_> {
             return Err(check.error(&format!("walls.{name}"), "a shape", "none"));
         };
         let material = self.material(&key("material"), &spec.material)?;
-        Ok(Wall { name: name.to_owned(), material, shape, motion: self.motion(name, &spec.motion)? })
+        let until = spec.until.map(|time| check.positive(&key("until"), time, "time (s)")).transpose()?;
+        Ok(Wall { name: name.to_owned(), material, shape, motion: self.motion(name, &spec.motion)?, until })
     }
 
     fn motion(&self, wall: &str, specs: &[MotionSpec]) -> Result<Motion, SceneError> {

@@ -1,0 +1,119 @@
+//! Grains that are poured: one after the other at a rate, each somewhere in a box from a seed, so that the same grains come
+//! whatever the solver.
+
+use crate::scene::{Dimension, Domain};
+use nalgebra::Vector3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use std::collections::VecDeque;
+
+/// What is poured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pour {
+    /// How many grains.
+    pub count: u32,
+    /// Grains in a second (1/s).
+    pub rate: f64,
+    /// Seed of the generator.
+    pub seed: u64,
+    /// Radius of every grain (m).
+    pub radius: f64,
+    /// Velocity at which they come (m/s).
+    pub velocity: Vector3<f64>,
+    /// Gravity (m/s²).
+    pub gravity: Vector3<f64>,
+    /// Corners of the box in which centres are at first (m).
+    pub corners: [Vector3<f64>; 2],
+    /// Time of the first (s).
+    pub start: f64,
+}
+
+/// Where and when each grain comes: time (s) and centre (m). None when no room is found for one in 10,000 tries. A grain
+/// touches none of those before it as long as these fall freely: what stands in the way of the box is not looked at.
+#[must_use]
+pub fn poured(pour: &Pour, domain: Option<&Domain>, dimension: Dimension) -> Option<Vec<(f64, Vector3<f64>)>> {
+    const TRIES: u32 = 10_000;
+    let mut generator = Pcg64::seed_from_u64(pour.seed);
+    let [low, high] = pour.corners;
+    let mut all = Vec::with_capacity(pour.count as usize);
+    // Those that may still be near the box.
+    let mut near: VecDeque<(f64, Vector3<f64>)> = VecDeque::new();
+    for number in 0..pour.count {
+        let time = pour.start + f64::from(number) / pour.rate;
+        let now = |&(since, from): &(f64, Vector3<f64>)| {
+            let fallen = time - since;
+            from + pour.velocity * fallen + pour.gravity * (0.5 * fallen * fallen)
+        };
+        let reach = 2.0 * pour.radius;
+        let left = |place: Vector3<f64>| {
+            let beyond = |axis: usize| place[axis] < low[axis] - reach || place[axis] > high[axis] + reach;
+            (0..dimension.count()).any(|axis| beyond(axis) && !domain.is_some_and(|domain| domain.periodic[axis]))
+        };
+        while near.front().is_some_and(|first| left(now(first))) {
+            near.pop_front();
+        }
+        let places: Vec<Vector3<f64>> = near.iter().map(now).collect();
+        let is_free = |centre: &Vector3<f64>| {
+            places.iter().all(|place| {
+                let mut between = place - centre;
+                for axis in (0..dimension.count()).filter(|&axis| domain.is_some_and(|domain| domain.periodic[axis])) {
+                    let length = domain.map_or(1.0, |domain| domain.high[axis] - domain.low[axis]);
+                    between[axis] -= (between[axis] / length).round() * length;
+                }
+                between.norm_squared() >= reach * reach
+            })
+        };
+        let centre = (0..TRIES).find_map(|_| {
+            let mut centre = Vector3::zeros();
+            for axis in 0..dimension.count() {
+                centre[axis] = low[axis] + (high[axis] - low[axis]) * generator.random::<f64>();
+            }
+            is_free(&centre).then_some(centre)
+        })?;
+        near.push_back((time, centre));
+        all.push((time, centre));
+    }
+    Some(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pour() -> Pour {
+        Pour {
+            count: 200,
+            rate: 40.0,
+            seed: 3,
+            radius: 0.5,
+            velocity: Vector3::new(0.0, 0.0, -17.0),
+            gravity: Vector3::new(0.0, 0.0, -1.0),
+            corners: [Vector3::new(0.0, 0.0, 9.0), Vector3::new(4.0, 4.0, 10.0)],
+            start: 0.5,
+        }
+    }
+
+    #[test]
+    fn grains_come_at_their_rate_and_touch_none_that_falls() {
+        let pour = pour();
+        let periodic = [true, true, false];
+        let domain = Domain { low: Vector3::zeros(), high: Vector3::new(4.0, 4.0, 20.0), periodic };
+        let all = poured(&pour, Some(&domain), Dimension::Three).unwrap_or_default();
+        assert_eq!(all.len(), 200);
+        assert!((all[0].0 - 0.5).abs() < 1e-15 && (all[199].0 - (0.5 + 199.0 / 40.0)).abs() < 1e-12);
+        for (number, &(time, centre)) in all.iter().enumerate() {
+            for &(since, from) in &all[..number] {
+                let fallen = time - since;
+                let mut between = from + pour.velocity * fallen + pour.gravity * (0.5 * fallen * fallen) - centre;
+                (0..2).for_each(|axis| between[axis] -= 4.0 * (between[axis] / 4.0).round());
+                assert!(between.norm() >= 1.0, "{number}");
+            }
+        }
+        assert_eq!(poured(&pour, Some(&domain), Dimension::Three), Some(all));
+    }
+
+    #[test]
+    fn a_rate_that_leaves_no_room_is_told() {
+        assert_eq!(poured(&Pour { rate: 4000.0, ..pour() }, None, Dimension::Three), None);
+    }
+}

@@ -1,0 +1,77 @@
+//! Grains that come or go.
+
+use super::Resolver;
+use crate::error::SceneError;
+use crate::file::{GrainsSpec, PouredSpec};
+use crate::pouring::{Pour, poured};
+use crate::scene::{Block, Domain, Driven};
+use crate::stays::{Removal, Stays};
+use nalgebra::Vector3;
+
+impl Resolver<'_> {
+    /// When (s) and where (m) the grains of a group come.
+    pub(super) fn pour(
+        &self,
+        name: &str,
+        group: &GrainsSpec,
+        spec: &PouredSpec,
+        radius: f64,
+        velocity: Vector3<f64>,
+        domain: Option<&Domain>,
+    ) -> Result<Vec<(f64, Vector3<f64>)>, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("grains.{name}.poured.{part}");
+        let low = check.vector(&key("low"), &spec.low)?;
+        let high = check.vector(&key("high"), &spec.high)?;
+        if let Some(axis) = (0..check.dimension.count()).find(|&axis| low[axis] > high[axis]) {
+            let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+            return Err(check.error(&key("high"), "a corner not below `low`", &found));
+        }
+        if spec.count == 0 {
+            return Err(check.error(&key("count"), "one grain or more", "0"));
+        }
+        if group.spin.is_some() {
+            return Err(check.error(&format!("grains.{name}.spin"), "no spin of grains that are poured", "one"));
+        }
+        let pour = Pour {
+            count: spec.count,
+            rate: check.positive(&key("rate"), spec.rate, "rate (1/s)")?,
+            seed: spec.seed,
+            radius,
+            velocity,
+            gravity: self.gravity()?,
+            corners: [low, high],
+            start: check.not_negative(&key("start"), spec.start, "time (s)")?,
+        };
+        poured(&pour, domain, check.dimension).ok_or_else(|| {
+            check.error(&key("rate"), "room in the box for each grain when it comes", &format!("{} 1/s", spec.rate))
+        })
+    }
+
+    pub(super) fn removal(&self) -> Result<Option<Removal>, SceneError> {
+        let Some(spec) = &self.file.removal else { return Ok(None) };
+        let check = &self.check;
+        let low = check.vector("removal.low", &spec.low)?;
+        let high = check.vector("removal.high", &spec.high)?;
+        if let Some(axis) = (0..check.dimension.count()).find(|&axis| low[axis] >= high[axis]) {
+            let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+            return Err(check.error("removal.high", "a corner above `low`", &found));
+        }
+        if spec.every_cycles == 0 {
+            return Err(check.error("removal.every_cycles", "one cycle or more", "0"));
+        }
+        Ok(Some(Removal { low, high, every: spec.every_cycles }))
+    }
+
+    /// What is moved as a wall is must be there all the time, and deformable bodies are.
+    pub(super) fn refuse_passing(&self, stays: &Stays, driven: &[Driven], bodies: &[Block]) -> Result<(), SceneError> {
+        let key = if stays.entries.is_empty() { "removal" } else { "grains" };
+        if !stays.is_always() && !driven.is_empty() {
+            return Err(self.check.error("driven", "no driven grains where grains come or go", "some"));
+        }
+        if !stays.is_always() && !bodies.is_empty() {
+            return Err(self.check.error(key, "no grains that come or go beside deformable bodies", "some"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,217 @@
+//! Grains that come and go, and walls that are taken away.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{files, grainbench};
+use grainbench::cases::solvers;
+use grainbench::scene::record::{Record, Snapshot};
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, Threads};
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+/// What scenes here have in common: spheres of mass one and a floor.
+const HEAD: &str = r#"title = "Passing"
+dimension = 3
+duration = 2.0
+gravity = [0.0, 0.0, -1.0]
+domain = { low = [-3.0, 0.0, -50.0], high = [3.0, 4.0, 50.0], periodic = [false, true, false] }
+materials.m.density = 1.909859317102744
+contacts.all = { between = ["m", "m"], normal_stiffness = 2e4, tangential_stiffness = 6e3, friction = 0.5, normal_damping = 20.0 }
+output = { every_cycles = 100, snapshots = 3 }
+probes.grains = { count = true }
+"#;
+
+const FLOOR: &str = "walls.floor = { material = 'm', plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] } }\n";
+
+fn scene(text: &str) -> Scene {
+    let source = SceneSource::from_text("passing", Path::new(""), text);
+    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn run(text: &str, threads: usize) -> Record {
+    let solver = solvers::by_name("dem").unwrap();
+    solver
+        .run(&scene(text), &Resolution::TimeStep(1e-3), &mut Threads(threads))
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn end(record: &Record) -> &Snapshot {
+    record.snapshots.last().unwrap()
+}
+
+/// Three grains that touch nothing: each is where a free fall from its own entry takes it, z₀ + vτ − gτ²/2, and none is there
+/// before it comes.
+#[test]
+fn a_grain_that_is_poured_falls_from_when_it_comes() {
+    let feed = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.5, 0.0, -3.0]\n\
+        poured = { count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 40.0], high = [0.0, 4.0, 40.0], start = 0.25 }\n";
+    let text = format!("{HEAD}{feed}");
+    let record = run(&text, 1);
+    let scene = scene(&text);
+    for snapshot in &record.snapshots {
+        let there: Vec<u32> = snapshot.grains.iter().map(|grain| grain.id).collect();
+        let come: Vec<u32> = (1..=3).filter(|&id| 0.25 + 0.5 * f64::from(id - 1) <= snapshot.time + 1e-9).collect();
+        assert_eq!(there, come, "at {}", snapshot.time);
+        for grain in &snapshot.grains {
+            let start = scene.grains[grain.id as usize - 1];
+            let fallen = snapshot.time - (0.25 + 0.5 * f64::from(grain.id - 1));
+            let exact = start.position + start.velocity * fallen + scene.gravity * (0.5 * fallen * fallen);
+            assert!((grain.position - exact).norm() < 1e-12, "{} for {exact}", grain.position);
+            assert!((grain.velocity - (start.velocity + scene.gravity * fallen)).norm() < 1e-12);
+        }
+    }
+    let column = |name: &str| record.series.column(name).unwrap().last().copied();
+    assert_eq!(
+        (column("grains.present"), column("grains.entered"), column("grains.left")),
+        (Some(3.0), Some(3.0), Some(0.0))
+    );
+}
+
+/// A grain that is poured where another one flies by at that moment, as fast: they strike a grain on the floor alike.
+#[test]
+fn a_grain_that_comes_is_one_that_came_from_farther_up() {
+    let target = "[grains.target]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 2.0, 0.49995]\n";
+    // From z = 10 at −3 m/s: after a second at 10 − 3 − ½ with −4 m/s.
+    let ball =
+        "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\nposition = [-0.2, 2.1, 10.0]\n";
+    let poured = "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -4.0]\n\
+        poured = { count = 1, rate = 1.0, seed = 1, low = [-0.2, 2.1, 6.5], high = [-0.2, 2.1, 6.5], start = 1.0 }\n";
+    let head = HEAD.replace("duration = 2.0", "duration = 2.5");
+    let [flown, poured] = [ball, poured].map(|ball| run(&format!("{head}{FLOOR}{target}{ball}"), 1));
+    assert_eq!([poured.snapshots[0].grains.len(), end(&poured).grains.len()], [1, 2]);
+    for (a, b) in end(&flown).grains.iter().zip(&end(&poured).grains) {
+        assert!((a.position - b.position).norm() < 1e-8, "{}: {} {}", a.id, a.position, b.position);
+        assert!(a.velocity.norm() > 0.1, "it was struck");
+    }
+}
+
+/// A bed at rest, and beside it a grain that is taken out: to the bed it makes no difference, to the bit.
+#[test]
+fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
+    let bed = "[grains.bed]\nmaterial = 'm'\nradius = 0.5\n\
+        lattice = { origin = [-2.2, 0.5, 0.499], spacing = [1.01, 0.999, 0.99], count = [3, 4, 3] }\n";
+    let thrown =
+        "[grains.a-thrown]\nmaterial = 'm'\nradius = 0.5\nposition = [2.5, 2.0, 1.0]\nvelocity = [4.0, 0.0, 2.0]\n";
+    let removal = "removal = { low = [-3.0, -1.0, -1.0], high = [4.0, 5.0, 50.0], every_cycles = 50 }\n";
+    let alone = run(&format!("{HEAD}{FLOOR}{bed}"), 1);
+    let record = run(&format!("{HEAD}{removal}{FLOOR}{bed}{thrown}"), 1);
+    assert_eq!((record.snapshots[0].grains.len(), end(&record).grains.len()), (37, 36));
+    // It leaves at (4 − 2.5)/4 s, and is looked for every fiftieth step.
+    let left = record.series.column("grains.left").unwrap();
+    let when = left.iter().position(|&left| left == 1.0).map(|at| record.series.time[at]);
+    assert_eq!(when, Some(0.4));
+    for (a, b) in end(&alone).grains.iter().zip(&end(&record).grains) {
+        assert_eq!((a.id, a.position, a.velocity, a.spin), (b.id, b.position, b.velocity, b.spin));
+    }
+    let contacts = |record: &Record| format!("{:?}", end(record).contacts);
+    assert_eq!(contacts(&alone), contacts(&record));
+}
+
+/// A grain on a plug that is taken away falls ½g(t − t₀)² from there, but for what the spring still gave.
+#[test]
+fn what_stood_on_a_wall_falls_when_it_is_taken_away() {
+    let floor = FLOOR.replace("material = 'm',", "material = 'm', until = 1.2,");
+    let ball = "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 2.0, 0.49995]\n";
+    let record = run(&format!("{HEAD}{floor}{ball}"), 1);
+    let z = |at: usize| record.snapshots[at].grains[0].position.z;
+    assert!((z(2) - 0.49995).abs() < 1e-12, "at rest on mg/k until then: {}", z(2));
+    let fallen = end(&record).time - 1.2;
+    // The last force is that of the step before: half a step of it.
+    assert!((end(&record).grains[0].position.z - (0.49995 - 0.5 * fallen * fallen)).abs() < 1e-3);
+    let stays = run(&format!("{HEAD}{FLOOR}{ball}"), 1);
+    assert!((end(&stays).grains[0].position.z - 0.49995).abs() < 1e-12);
+}
+
+/// A silo that is filled and drained.
+fn silo() -> String {
+    format!(
+        "{HEAD}{}{}",
+        "removal = { low = [-4.0, -1.0, -3.0], high = [4.0, 5.0, 60.0], every_cycles = 50 }\n",
+        r#"
+[grains.feed]
+material = "m"
+radius = 0.5
+velocity = [0.0, 0.0, -6.0]
+poured = { count = 90, rate = 90.0, seed = 1, low = [-2.4, 0.0, 6.0], high = [2.4, 4.0, 7.0] }
+[walls.left]
+material = "m"
+plane = { point = [-3.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+[walls.right]
+material = "m"
+plane = { point = [3.0, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] }
+[walls.ledge]
+material = "m"
+rectangle = { corner = [-3.0, -1.0, 0.0], edges = [[2.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }
+[walls.plug]
+material = "m"
+rectangle = { corner = [-1.0, -1.0, 0.0], edges = [[4.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }
+until = 1.3
+"#
+    )
+    .replace("duration = 2.0", "duration = 5.0")
+}
+
+/// Whatever the number of threads, and whether it was stopped on the way: the same bits.
+#[test]
+fn threads_and_checkpoints_leave_no_trace() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("silo.toml"), silo()).unwrap();
+    let with = |further: &[&str]| {
+        let all = ["simulate", "silo.toml", "--solver", "dem", "--time-step", "1e-3", "--write", "dump"];
+        let answer = grainbench(path, &[&all[..], further].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+    };
+    with(&["--out", "one", "--threads", "1"]);
+    with(&["--out", "two", "--threads", "2", "--checkpoint", "half", "--checkpoint-every", "2400"]);
+    with(&["--out", "three", "--threads", "1", "--restart", "half"]);
+    let same = |file: &str| {
+        let of = |folder: &str| std::fs::read(path.join(folder).join(file)).unwrap();
+        assert!(of("one") == of("two"), "{file}, threads");
+        assert!(of("one") == of("three"), "{file}, restarted");
+    };
+    ["series.csv", "snapshots.dump"].into_iter().for_each(same);
+    let record = run(&silo(), 1);
+    let last = |name: &str| record.series.column(name).unwrap().last().copied().unwrap();
+    assert!(last("grains.left") > 20.0 && last("grains.present") + last("grains.left") == 90.0);
+}
+
+#[test]
+fn what_cannot_come_or_go_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let before = files(path);
+    let mut refusals = String::new();
+    let mut refuse = |what: &str, text: String, solver: &str| {
+        std::fs::write(path.join("scene.toml"), text).unwrap();
+        let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver, "--out", "out"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{what}: {}", answer.err);
+        std::fs::remove_file(path.join("scene.toml")).unwrap();
+        assert_eq!(files(path), before);
+        refusals += &format!("{what}\n    {}", answer.err);
+    };
+    let silo = silo();
+    let with = |from: &str, to: &str| {
+        assert!(silo.contains(from), "{from}");
+        silo.replace(from, to)
+    };
+    refuse("another solver", silo.clone(), "mpm");
+    refuse("rigid grains", silo.clone(), "rigid");
+    refuse("no rate", with("rate = 90.0", "rate = 0.0"), "dem");
+    refuse("no room", with("rate = 90.0", "rate = 9e5"), "dem");
+    refuse("none", with("count = 90", "count = 0"), "dem");
+    refuse("a box upside down", with("high = [2.4, 4.0, 7.0]", "high = [2.4, 4.0, 5.0]"), "dem");
+    refuse("spin", with("velocity = [0.0, 0.0, -6.0]", "spin = [1.0, 0.0, 0.0]"), "dem");
+    refuse("a negative start", with("seed = 1", "seed = 1, start = -1.0"), "dem");
+    refuse("another place too", with("radius = 0.5\n", "radius = 0.5\nposition = [0.0, 0.0, 1.0]\n"), "dem");
+    refuse("removal of nothing", with("low = [-4.0, -1.0, -3.0]", "low = [-4.0, -1.0, 61.0]"), "dem");
+    refuse("removal never", with("every_cycles = 50 }", "every_cycles = 0 }"), "dem");
+    refuse("a wall that never was", with("until = 1.3", "until = 0.0"), "dem");
+    refuse("a probe of a grain", with("{ count = true }", "{ grain = 'feed.1' }"), "dem");
+    refuse("a budget", with("{ count = true }", "{ budget = true }"), "dem");
+    refuse("driven", silo.clone() + "[driven.d]\ngrains = 'feed'\nvelocity = [0.0, 0.0, 1.0]\n", "dem");
+    insta::assert_snapshot!(refusals);
+}
