@@ -15,19 +15,27 @@ pub struct Masked {
     pub wall: bool,
     /// It is near an orifice.
     pub orifice: bool,
+    /// It shears less than what counts as flowing.
+    pub still: bool,
 }
 
 impl Masked {
     /// Whether it is left out at all.
     #[must_use]
     pub const fn any(self) -> bool {
-        self.few || self.surface || self.wall || self.orifice
+        self.few || self.surface || self.wall || self.orifice || self.still
     }
 
     /// The reasons in words, joined by `+`; empty where there is none.
     #[must_use]
     pub fn words(self) -> String {
-        let reasons = [(self.few, "few"), (self.surface, "surface"), (self.wall, "wall"), (self.orifice, "orifice")];
+        let reasons = [
+            (self.few, "few"),
+            (self.surface, "surface"),
+            (self.wall, "wall"),
+            (self.orifice, "orifice"),
+            (self.still, "still"),
+        ];
         let named: Vec<&str> = reasons.into_iter().filter_map(|(is, word)| is.then_some(word)).collect();
         named.join("+")
     }
@@ -48,6 +56,8 @@ pub struct Masks {
     pub dimension: usize,
     /// An orifice.
     pub orifice: Option<Orifice>,
+    /// |D₀| (1/s) from which on a cell flows, where only those that do are wanted.
+    pub flowing: Option<f64>,
 }
 
 /// Where an orifice is, and how far around it cells are left out.
@@ -87,6 +97,7 @@ impl Masks {
                 surface: !bulk(cell) || above(at).is_some_and(|over| !bulk(over)),
                 // The upper end of the grid is no wall: what ends there is a surface, or a lid that presses.
                 wall: (0..self.dimension).any(|axis| !self.periodic[axis] && at_side(axis) && !(axis == up && top)),
+                still: self.flowing.is_some_and(|least| elements[cell].shear_rate().is_none_or(|rate| rate < least)),
                 orifice: self.orifice.is_some_and(|orifice| orifice.distance(grid.middle(cell)) < orifice.reach),
             }
         };
@@ -102,6 +113,9 @@ impl Masks {
         );
         if let Some(orifice) = self.orifice {
             words += &format!(", within {} m of the orifice", orifice.reach);
+        }
+        if let Some(least) = self.flowing {
+            words += &format!(", where |D₀| is below {least}/s");
         }
         words
     }
@@ -130,12 +144,16 @@ mod tests {
             periodic: [false, true, false],
             dimension: 3,
             orifice: Some(orifice),
+            flowing: None,
         };
         let masked = masks.of(&elements, &grid);
         let words = |x: usize, z: usize| masked[grid.place([x, 0, z])].words();
         assert_eq!(words(1, 2), "");
         assert_eq!([words(2, 2), words(1, 3), words(0, 2)], ["few", "surface", "wall"]);
         assert_eq!([words(2, 0), words(2, 1), words(2, 4)], ["wall+orifice", "orifice", "surface"]);
+        // What does not shear is still, and what has no rate of shear is too.
+        let still = Masks { flowing: Some(0.1), ..masks.clone() }.of(&elements, &grid);
+        assert_eq!(still[grid.place([1, 0, 2])].words(), "still");
         // Upside down the other end is the surface.
         let masks = Masks { up: (2, false), orifice: None, ..masks };
         let masked = masks.of(&elements, &grid);

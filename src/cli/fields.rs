@@ -75,6 +75,9 @@ pub(crate) struct Arguments {
     /// Leaves cells out of means whose middle is within `r` of an orifice, such as `x=0,z=0,r=7.5` of a slit along y (m).
     #[arg(long, value_name = "x=…,z=…,r=…", allow_hyphen_values = true)]
     orifice: Option<String>,
+    /// Leaves cells out of means that shear less than this, |D₀| (1/s).
+    #[arg(long, value_name = "RATE", value_parser = positive)]
+    flowing: Option<f64>,
     /// Blocks of frames that intervals are found from.
     #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..))]
     blocks: u16,
@@ -234,6 +237,7 @@ fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
         periodic: snapshot.periodic,
         dimension,
         orifice: arguments.orifice.as_deref().map(orifice).transpose()?,
+        flowing: arguments.flowing,
     };
     let grid = Grid::filling((low, high), size);
     let plane = if up.0 == 0 { [1, 0] } else { [0, up.0] };
