@@ -8,9 +8,10 @@ use super::progress::Progress;
 use grainbench::cases::registry::read_grains;
 use grainbench::cases::solvers;
 use grainbench::reports::export::{self, Format};
-use grainbench::reports::{End, SnapshotStore, StagedDir, number};
+use grainbench::reports::{End, SnapshotStore, StagedDir, number, write_file};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
+use grainbench::scene::end_state::EndState;
 use grainbench::scene::record::{Cost, Provenance, Record, Remains, Series, Snapshot};
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Method, NotStored, Resolution, RunError, Solver, Watch};
@@ -90,6 +91,9 @@ pub(crate) struct Arguments {
     /// Continue from this checkpoint of the same run: the record is that of the whole run, in every bit but its times.
     #[arg(long, value_name = "FILE")]
     restart: Option<PathBuf>,
+    /// Leave the state at the end here, with what contacts remember, for another scene to begin with (`grains.NAME.state`).
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
     /// Directory for the record.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
@@ -164,6 +168,12 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let scene = source.scene(&read_grains)?;
     let solver = solver(&arguments.solver)?;
     let resolution = resolution(arguments, &scene)?;
+    if arguments.state.is_some() && Method::of(&arguments.solver) != Some(Method::Dem) {
+        let solver = &arguments.solver;
+        return Err(Fault::input(format!(
+            "--state: expected `dem`, found `{solver}`, which does not tell its end state"
+        )));
+    }
     check_writable(&arguments.out)?;
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
     let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
@@ -195,13 +205,15 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         store,
         snapshots,
         remains: None,
+        wants_state: arguments.state.is_some(),
+        state: None,
         interrupt,
     };
     let record = match &from {
         None => solver.run(&scene, &resolution, &mut watcher),
         Some(checkpoint) => solver.restart(&scene, &resolution, checkpoint, &mut watcher),
     };
-    let Watcher { mut snapshots, remains, .. } = watcher;
+    let Watcher { mut snapshots, remains, state, .. } = watcher;
     let mut record = match record {
         Ok(record) => record,
         Err(error) => return Err(left(&error, remains.as_ref(), snapshots, arguments)),
@@ -214,6 +226,10 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
     export::write_run(&record, &mut snapshots, &formats, &mut out).map_err(Fault::writing)?;
     out.commit().map_err(Fault::writing)?;
+    if let Some(path) = &arguments.state {
+        let bytes = state.map(|state| state.to_bytes()).transpose().map_err(Fault::input)?;
+        write_file(path, bytes.unwrap_or_default()).map_err(Fault::writing)?;
+    }
     if arguments.json {
         print_json(&Summary::of(&record, &snapshots, arguments))?;
     } else {
@@ -343,6 +359,9 @@ struct Watcher {
     snapshots: SnapshotStore,
     /// The series of a run that broke or was ended.
     remains: Option<Series>,
+    /// Whether the state at the end is wanted, and that.
+    wants_state: bool,
+    state: Option<EndState>,
     interrupt: Interrupt,
 }
 
@@ -409,6 +428,14 @@ impl Watch for Watcher {
 
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
         self.snapshots.add(snapshot).map(|()| None).map_err(|error| NotStored(error.to_string()))
+    }
+
+    fn wants_end_state(&self) -> bool {
+        self.wants_state
+    }
+
+    fn end_state(&mut self, state: EndState) {
+        self.state = Some(state);
     }
 
     fn is_over(&self) -> bool {

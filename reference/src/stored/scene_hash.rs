@@ -30,6 +30,9 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
             let _ = writeln!(text, "until {until:?}");
         }
     }
+    if let Some(springs) = &scene.springs {
+        let _ = writeln!(text, "springs {springs:?}");
+    }
     if !scene.stays.is_always() {
         let _ = writeln!(text, "stays {:?}", scene.stays);
     }

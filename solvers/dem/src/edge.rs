@@ -3,6 +3,7 @@
 use crate::geometry::Geometry;
 use crate::simulation::Simulated;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::end_state::EndState;
 use grainbench_scene::record::{Counts, Look};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::solver::Broken;
@@ -32,6 +33,8 @@ pub trait Simulation: Send {
     fn counts(&self) -> Counts;
     /// Cycles taken.
     fn step(&self) -> u64;
+    /// The state after the last step, for another scene to begin with, of what the named solver made.
+    fn end_state(&self, solver: &str) -> EndState;
     /// The state at this step: grains, contacts, walls and energies. The contacts are taken away: whoever looks again at the
     /// same step is told none.
     fn look(&mut self) -> Look;
@@ -64,6 +67,10 @@ impl<S: Geometry> Simulation for Simulated<S> {
 
     fn step(&self) -> u64 {
         self.step
+    }
+
+    fn end_state(&self, solver: &str) -> EndState {
+        Self::end_state(self, solver)
     }
 
     fn look(&mut self) -> Look {

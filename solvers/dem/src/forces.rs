@@ -63,6 +63,8 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
     ) -> u64;
     /// What a contact remembers.
     fn layout(&self) -> Layout;
+    /// What a contact remembers, in words that change when it does.
+    fn springs(&self) -> String;
     /// Whether tangential forces turn the grains.
     fn turn(&self) -> bool;
     /// The space and the stages in words.
@@ -146,6 +148,11 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
 
     fn layout(&self) -> Layout {
         Layout::of::<S, T, R>()
+    }
+
+    fn springs(&self) -> String {
+        let space = S::DIMENSION;
+        format!("{} numbers of a tangential and {} of a rolling spring in {space} dimensions", T::NUMBERS, R::NUMBERS)
     }
 
     fn turn(&self) -> bool {

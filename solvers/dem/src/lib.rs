@@ -21,6 +21,7 @@ mod cells;
 mod contact;
 pub mod convention;
 mod edge;
+mod end_state;
 mod forces;
 mod geometry;
 mod grains;

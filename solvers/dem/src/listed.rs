@@ -1,5 +1,6 @@
 //! Listed pairs, in rows, with what their contacts remember in the order of those that touch.
 
+use crate::contact::Memory;
 use crate::contact::chain::Layout;
 use grainbench_lanes::{Quad, WIDEST};
 use serde::{Deserialize, Serialize};
@@ -67,6 +68,36 @@ impl Pairs {
         pairs.memory = [0, 4].map(|from| vec![Quad::default(); usize::from(layout.numbers > from)]);
         pairs.fill_up();
         pairs
+    }
+
+    /// Pairs that touch, of so many rows, with what each remembers.
+    pub(crate) fn remembering(rows: usize, layout: Layout, springs: &[(u32, u32, Memory<f64>)]) -> Self {
+        let mut sorted: Vec<&(u32, u32, Memory<f64>)> = springs.iter().collect();
+        sorted.sort_by_key(|(row, ..)| *row);
+        let mut next = sorted.iter().peekable();
+        let mut pairs = Self::list(0..rows, layout, |row, partners, _| {
+            while let Some((_, partner, _)) = next.next_if(|(first, ..)| *first as usize == row) {
+                partners.push(*partner);
+            }
+        });
+        for (at, (.., memory)) in sorted.iter().enumerate() {
+            pairs.touches[at / WIDEST] |= 1 << (at % WIDEST);
+            for (number, of) in pairs.memory.iter_mut().enumerate().filter(|(_, of)| !of.is_empty()) {
+                of.push(Quad(std::array::from_fn(|part| memory[4 * number + part])));
+            }
+        }
+        pairs
+    }
+
+    /// Row, partner and what is remembered, of each pair in rows of its own that touches.
+    pub(crate) fn remembered(&self) -> impl Iterator<Item = (u32, u32, Memory<f64>)> {
+        let (own, mut place) = (self.own(), 0);
+        (0..own.end).filter_map(move |at| {
+            let touches = self.touches_at(at);
+            place += usize::from(touches);
+            let number = |number: usize| self.memory[number / 4].get(place).map_or(0.0, |quad| quad.0[number % 4]);
+            (touches && at >= own.start).then(|| (self.row[at], self.partner[at], std::array::from_fn(number)))
+        })
     }
 
     /// Room beyond the last pair, so that registers can be filled.

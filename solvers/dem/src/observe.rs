@@ -14,14 +14,7 @@ use nalgebra::Vector3;
 pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
     let contacts = simulation.take_contacts();
     let (simulation, scene) = (&*simulation, &simulation.scene);
-    let is_there = |id: &usize| simulation.grains.slot[*id] != ABSENT;
-    let mut grains: Vec<GrainState> =
-        (0..scene.grains.len()).filter(is_there).map(|id| grain_state(simulation, id)).collect();
-    for driven in &scene.driven {
-        for &grain in &driven.grains {
-            (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
-        }
-    }
+    let grains = grain_states(simulation);
     let elastic_energy = simulation.energies().map(|of| of.elastic).sum();
     let budget = simulation.accounting.then(|| simulation.accounts.budget(scene, &grains, elastic_energy));
     let walls = simulation
@@ -44,6 +37,20 @@ pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
         points: Vec::new(),
     };
     Look { driven: simulation.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
+}
+
+/// The grains that are there, in order of id.
+pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> Vec<GrainState> {
+    let scene = &simulation.scene;
+    let is_there = |id: &usize| simulation.grains.slot[*id] != ABSENT;
+    let mut grains: Vec<GrainState> =
+        (0..scene.grains.len()).filter(is_there).map(|id| grain_state(simulation, id)).collect();
+    for driven in &scene.driven {
+        for &grain in &driven.grains {
+            (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
+        }
+    }
+    grains
 }
 
 /// A grain, with its velocity (m/s) and spin (rad/s) brought from half a step before to the time of the positions.

@@ -111,6 +111,9 @@ impl<S: Geometry> Simulated<S> {
             entered: scene.stays.entered_by(0.0),
             scene: scene.clone(),
         };
+        if let Some(springs) = &scene.springs {
+            simulation.begin_with(springs);
+        }
         simulation.rebuild()?;
         simulation.evaluate_forces(true, 0.0, false);
         simulation.motion.step_back_half(&mut simulation.grains);

@@ -15,10 +15,11 @@ use grainbench_lanes::Team;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
+use grainbench_scene::end_state::EndState;
 use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Scene};
-use grainbench_scene::solver::{Broken, Defect, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Defect, Resolution, RunError, Solver, Watch};
 use grainbench_scene::space::{Plane, Solid};
 use grainbench_scene::terms::Terms;
 
@@ -62,11 +63,10 @@ impl Dem {
     pub fn start_on(&self, scene: &Scene, time_step: f64, threads: usize) -> Result<Box<dyn Simulation>, RunError> {
         self.refuse(scene)?;
         let team = Team::new(threads.min(scene.grains.len() / FEWEST));
-        let simulation: Result<Box<dyn Simulation>, Box<Broken>> = match scene.dimension {
+        match scene.dimension {
             Dimension::Two => self.start_with(scene, plane(scene, &self.convention), time_step, team),
             Dimension::Three => self.start_with(scene, solid(scene), time_step, team),
-        };
-        simulation.map_err(RunError::Broken)
+        }
     }
 
     fn start_with<S: Geometry>(
@@ -75,8 +75,18 @@ impl Dem {
         forces: Box<dyn Forces<S>>,
         time_step: f64,
         team: Team,
-    ) -> Result<Box<dyn Simulation>, Box<Broken>> {
-        Ok(Box::new(Simulated::new(scene, forces, Options::of(&self.convention), time_step, team)?))
+    ) -> Result<Box<dyn Simulation>, RunError> {
+        if let Some(springs) = scene.springs.as_ref().filter(|springs| springs.layout != forces.springs()) {
+            let reason = format!(
+                "its contacts begin with springs of another law or convention, {} for {} (`springs = false` beside the state \
+                 leaves them out)",
+                springs.layout,
+                forces.springs()
+            );
+            return Err(RunError::Unsupported { solver: self.name(), reason });
+        }
+        let simulated = Simulated::new(scene, forces, Options::of(&self.convention), time_step, team);
+        Ok(Box::new(simulated.map_err(RunError::Broken)?))
     }
 
     /// The run that a checkpoint belongs to.
@@ -242,6 +252,10 @@ impl Stepper for Running<'_> {
 
     fn counts(&self) -> Counts {
         self.simulation.counts()
+    }
+
+    fn end_state(&self) -> Option<EndState> {
+        Some(self.simulation.end_state(&self.run.solver))
     }
 
     fn keep(&self, recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {

@@ -1,10 +1,9 @@
 //! The state of a run between two steps, from which it continues to the same bits.
 //!
-//! On disk: the line `grainbench checkpoint <format>`, the number of bytes that follow the hash (8 bytes, little end
-//! first), their BLAKE3 hash (32 bytes), and the bytes: a [`Checkpoint`] in postcard's format, which keeps every bit of
-//! a number.
+//! On disk: a [`crate::sealed`] file of a [`Checkpoint`] in postcard's format, which keeps every bit of a number.
 
 use crate::scene::Scene;
+use crate::sealed::{self, Broken};
 use crate::text::tamed;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -15,8 +14,6 @@ use thiserror::Error;
 const MAGIC: &[u8] = b"grainbench checkpoint ";
 /// The format that this program writes: to be raised whenever anything that is stored changes its meaning or its place.
 const FORMAT: u32 = 4;
-/// Length of the longest first line that a format of ours could have.
-const LONGEST_LINE: usize = MAGIC.len() + 11;
 
 /// Why a run cannot be continued from a checkpoint, or a checkpoint not be left.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -208,12 +205,7 @@ impl Checkpoint {
     /// # Errors
     /// Never, as far as is known.
     pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
-        let body = written(self)?;
-        let mut bytes = [MAGIC, FORMAT.to_string().as_bytes(), b"\n"].concat();
-        bytes.extend((body.len() as u64).to_le_bytes());
-        bytes.extend(blake3::hash(&body).as_bytes());
-        bytes.extend(body);
-        Ok(bytes)
+        Ok(sealed::seal(MAGIC, FORMAT, &written(self)?))
     }
 
     /// Whether a file begins as a checkpoint of any format does.
@@ -232,33 +224,16 @@ impl Checkpoint {
     /// # Errors
     /// When the file is of another kind, of a newer format, cut off or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
-        let start = &bytes[..bytes.len().min(LONGEST_LINE)];
-        let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
-        let number = line.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
-        let after_line = bytes.get(line.len() + 1..).unwrap_or_default();
-        let format = std::str::from_utf8(number).ok().and_then(|digits| digits.parse().ok());
-        match format {
-            Some(FORMAT) => {}
-            Some(found) if found > FORMAT => return Err(CheckpointError::Newer { found }),
-            Some(found @ 1..) => return Err(CheckpointError::Older { found }),
-            _ => return Err(CheckpointError::Foreign),
-        }
-        let whole = |expected: u64| CheckpointError::Length { expected, found: after_line.len() as u64 };
-        let (length, rest) = after_line.split_first_chunk::<8>().ok_or_else(|| whole(HEAD))?;
-        let (hash, body) = rest.split_first_chunk::<32>().ok_or_else(|| whole(HEAD))?;
-        let length = u64::from_le_bytes(*length);
-        if length != body.len() as u64 {
-            return Err(whole(HEAD.saturating_add(length)));
-        }
-        if blake3::hash(body).as_bytes() != hash {
-            return Err(CheckpointError::Damaged("its bytes are not those that were written".to_owned()));
-        }
+        let body = sealed::open(MAGIC, FORMAT, bytes).map_err(|broken| match broken {
+            Broken::Foreign => CheckpointError::Foreign,
+            Broken::Older(found) => CheckpointError::Older { found },
+            Broken::Newer(found) => CheckpointError::Newer { found },
+            Broken::Length(expected, found) => CheckpointError::Length { expected, found },
+            Broken::Changed => CheckpointError::Damaged("its bytes are not those that were written".to_owned()),
+        })?;
         postcard::from_bytes(body).map_err(|error| CheckpointError::Damaged(error.to_string()))
     }
 }
-
-/// Bytes of length and hash.
-const HEAD: u64 = 40;
 
 fn written(value: &impl Serialize) -> Result<Vec<u8>, CheckpointError> {
     postcard::to_allocvec(value).map_err(|error| CheckpointError::NotStored(error.to_string()))

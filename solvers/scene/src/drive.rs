@@ -2,6 +2,7 @@
 //! checkpoints are left. And the one clock: it runs from the first step of any kind, settling included, to the last.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::end_state::EndState;
 use crate::record::{Cost, Counts, Look, Remains, Series, Snapshot};
 use crate::recorder::Recorder;
 use crate::scene::Scene;
@@ -33,6 +34,11 @@ pub trait Stepper {
 
     /// Counts so far; no times.
     fn counts(&self) -> Counts;
+
+    /// The state after the last step, for another scene to begin with; none of a solver that does not tell it.
+    fn end_state(&self) -> Option<EndState> {
+        None
+    }
 
     /// The state with the record so far; none of a solver that leaves no checkpoints.
     ///
@@ -108,6 +114,11 @@ impl Course<'_> {
                 watch.broke(Remains { series, snapshots, end });
             }
             return Err(error);
+        }
+        if watch.wants_end_state()
+            && let Some(state) = stepper.end_state()
+        {
+            watch.end_state(state);
         }
         let cost = Cost::of(stepper.counts(), clock.elapsed().as_secs_f64());
         let (series, snapshots) = recorder.finish();

@@ -3,12 +3,14 @@
 pub use crate::body::Block;
 use crate::body::{Deformable, Start};
 use crate::contact_law::ContactLaw;
+use crate::end_state::Springs;
 use crate::file::GrainShape;
 use crate::grains::Grains;
 use crate::motion::{Displacement, Motion};
 use crate::stays::Stays;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Number of dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -253,6 +255,8 @@ pub struct Scene {
     pub deformable: Vec<Option<Deformable>>,
     /// Grains; the id of a grain is its place here plus one.
     pub grains: Grains,
+    /// What their contacts remember at the start; nothing where absent.
+    pub springs: Option<Arc<Springs>>,
     /// Which of them come or go.
     pub stays: Stays,
     /// Deformable bodies that are no grains.
@@ -323,6 +327,9 @@ impl Scene {
         }
         if self.stays.removal.is_some() {
             return Some("grains that are taken out");
+        }
+        if self.springs.is_some() {
+            return Some("contacts that remember at the start (`springs = false` beside the state leaves that out)");
         }
         self.walls.iter().any(|wall| wall.until.is_some()).then_some("walls that are taken away")
     }

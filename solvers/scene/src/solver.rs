@@ -1,6 +1,7 @@
 //! What a solver is: something that takes a scene and a resolution and leaves a record.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::end_state::EndState;
 use crate::record::{Record, Remains, Snapshot};
 use crate::scene::{Duration, Scene};
 use nalgebra::Vector3;
@@ -434,6 +435,12 @@ pub trait Watch {
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
         Ok(Some(snapshot))
     }
+    /// Whether the state at the end is wanted, for another scene to begin with.
+    fn wants_end_state(&self) -> bool {
+        false
+    }
+    /// Called with the state at the end, of solvers that tell it.
+    fn end_state(&mut self, _state: EndState) {}
     /// Whether the run is to end early; asked whenever progress is told.
     fn is_over(&self) -> bool {
         false

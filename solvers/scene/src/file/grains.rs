@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A group of grains: exactly one of `position`, `lattice`, `random`, `packed`, `poured` and `file`.
+/// A group of grains: exactly one of `position`, `lattice`, `random`, `packed`, `poured`, `state` and `file`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrainsSpec {
@@ -33,6 +33,9 @@ pub struct GrainsSpec {
     /// Grains that come one after the other, from a seed. They come with the group's velocity.
     #[serde(default)]
     pub poured: Option<PouredSpec>,
+    /// Grains as a run ended with them, with what their contacts remember.
+    #[serde(default)]
+    pub state: Option<StateSpec>,
     /// Grains read from a LAMMPS data file (atom style sphere), plain or gzip.
     #[serde(default)]
     pub file: Option<FileSpec>,
@@ -106,6 +109,22 @@ pub struct PouredSpec {
     /// When the first comes (s).
     #[serde(default)]
     pub start: f64,
+}
+
+/// Grains as a run ended with them, in a file that `simulate --state` left. Walls are found again by name; what contacts with
+/// walls remember that this scene does not have is forgotten.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StateSpec {
+    /// Path, relative to the scene file.
+    pub path: String,
+    /// Whether contacts go on remembering. Programs that read the grains from a data file cannot have that.
+    #[serde(default = "yes")]
+    pub springs: bool,
+}
+
+const fn yes() -> bool {
+    true
 }
 
 /// Where grains are taken out: beyond the sides of a box.

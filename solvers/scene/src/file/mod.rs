@@ -14,7 +14,9 @@ mod walls;
 pub use crate::contact_law::{ContactSpec, LawKind};
 pub use bodies::{AnnulusSpec, BodySpec, BoxSpec, SideSpec, WaveSpec};
 pub use driven::DrivenSpec;
-pub use grains::{FileSpec, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, RemovalSpec, SpinSpec};
+pub use grains::{
+    FileSpec, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, RemovalSpec, SpinSpec, StateSpec,
+};
 pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
 pub use materials::{ConstitutiveKind, MaterialSpec};
 pub use output::OutputSpec;

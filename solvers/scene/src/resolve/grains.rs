@@ -1,6 +1,7 @@
 //! Grains of the file, one by one.
 
 use super::{Groups, Resolver};
+use crate::end_state::Springs;
 use crate::error::SceneError;
 use crate::file::{FileSpec, GrainShape, GrainsSpec, PackedSpec};
 use crate::generate;
@@ -11,27 +12,34 @@ use crate::scene::{Domain, Grain, Wall};
 use crate::stays::{Entry, Stays};
 use indexmap::IndexMap;
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// What a grain takes in a scene, a solver and a snapshot of all (B).
 const BYTES_OF_A_GRAIN: f64 = 1e3;
 
+/// Grains with what is known of them at the start.
+pub(super) struct Placed {
+    pub(super) grains: Vec<Grain>,
+    pub(super) groups: Groups,
+    /// Those that come later.
+    pub(super) entries: Vec<Entry>,
+    /// What their contacts remember.
+    pub(super) springs: Option<Arc<Springs>>,
+}
+
 impl Resolver<'_> {
-    pub(super) fn grains(
-        &self,
-        shape: GrainShape,
-        domain: Option<&Domain>,
-    ) -> Result<(Vec<Grain>, Groups, Vec<Entry>), SceneError> {
+    pub(super) fn grains(&self, shape: GrainShape, domain: Option<&Domain>) -> Result<Placed, SceneError> {
         let mut grains = Vec::new();
-        let mut entries = Vec::new();
+        let (mut entries, mut springs) = (Vec::new(), None);
         let mut groups = IndexMap::new();
         for (name, spec) in &self.file.grains {
             let start = grains.len();
-            self.group(name, spec, shape, domain, (&mut grains, &mut entries))?;
+            self.group(name, spec, shape, domain, (&mut grains, &mut entries, &mut springs))?;
             self.refuse_beyond_numbers(name, &grains[start..])?;
             groups.insert(name.clone(), start..grains.len());
         }
         entries.sort_by(|a: &Entry, b: &Entry| a.time.total_cmp(&b.time));
-        Ok((grains, groups, entries))
+        Ok(Placed { grains, groups, entries, springs: springs.map(Arc::new) })
     }
 
     fn group(
@@ -40,7 +48,7 @@ impl Resolver<'_> {
         spec: &GrainsSpec,
         shape: GrainShape,
         domain: Option<&Domain>,
-        (grains, entries): (&mut Vec<Grain>, &mut Vec<Entry>),
+        (grains, entries, springs): (&mut Vec<Grain>, &mut Vec<Entry>, &mut Option<Springs>),
     ) -> Result<(), SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("grains.{name}.{part}");
@@ -52,6 +60,7 @@ impl Resolver<'_> {
                 ("random", spec.random.is_some()),
                 ("packed", spec.packed.is_some()),
                 ("poured", spec.poured.is_some()),
+                ("state", spec.state.is_some()),
                 ("file", spec.file.is_some()),
             ],
         )?;
@@ -133,6 +142,9 @@ impl Resolver<'_> {
                 entries.push(Entry { grain: grains.len(), time });
                 grains.push(grain(centre, radius, density, velocity));
             }
+        }
+        if let Some(state) = &spec.state {
+            self.grains_from_state(name, spec, state, material, (grains, springs))?;
         }
         if let Some(file) = &spec.file {
             self.grains_from_file(name, file, shape, material, grains)?;

@@ -8,6 +8,7 @@ use crate::manufactured::Manufactured;
 use crate::scene::{Dimension, Domain, Duration, Sampling, Scene, Wall};
 use crate::source::SceneSource;
 use crate::stays::Stays;
+use grains::Placed;
 use indexmap::IndexMap;
 use nalgebra::Vector3;
 use probes::Names;
@@ -20,6 +21,7 @@ mod grains;
 mod laws;
 mod materials;
 mod probes;
+mod state;
 mod stays;
 mod walls;
 
@@ -79,7 +81,7 @@ impl Resolver<'_> {
                 check.positive(&format!("materials.{name}.density"), density, "density (kg/m³)")?;
             }
         }
-        let (mut grains, groups, entries) = self.grains(grain_shape, domain.as_ref())?;
+        let Placed { mut grains, groups, entries, springs } = self.grains(grain_shape, domain.as_ref())?;
         let stays = Stays { entries, removal: self.removal()? };
         if let Some(domain) = &domain {
             self.refuse_outside(domain, &grains, &groups)?;
@@ -125,6 +127,7 @@ impl Resolver<'_> {
             start: self.start(gravity)?,
             reference_length: self.reference_length(&grains, &bodies)?,
             grains: grains.into(),
+            springs,
             stays,
             bodies,
             walls,

@@ -1,0 +1,80 @@
+//! The state at the end of a run, and a start from one: grains at the time of their positions, and what contacts remember.
+
+use crate::contact::{MEMORY, Memory};
+use crate::geometry::Geometry;
+use crate::listed::Pairs;
+use crate::observe::grain_states;
+use crate::share::Share;
+use crate::simulation::Simulated;
+use grainbench_scene::end_state::{EndState, Springs, StateGrain};
+use std::collections::BTreeMap;
+
+impl<S: Geometry> Simulated<S> {
+    /// The state after the last step, of what the named solver made. Grains that are not there have no place in it.
+    pub(crate) fn end_state(&self, solver: &str) -> EndState {
+        let scene = &self.scene;
+        let states = grain_states(self);
+        let place: BTreeMap<u32, u32> = states.iter().map(|grain| grain.id - 1).zip(0..).collect();
+        let of_slot = |slot: u32| place[&self.grains.id[slot as usize]];
+        let numbers = self.forces.layout().numbers;
+        let pairs = self.neighbours.shares.iter().flat_map(|share| [&share.across, &share.near]);
+        let springs = Springs {
+            layout: self.forces.springs(),
+            pairs: pairs
+                .flat_map(Pairs::remembered)
+                .map(|(row, partner, memory)| (of_slot(row), of_slot(partner), memory[..numbers].to_vec()))
+                .collect(),
+            walls: self
+                .walls
+                .iter()
+                .flat_map(|wall| wall.near.iter().map(move |near| (wall.name(), near)))
+                .filter(|(_, (_, memory))| memory.iter().any(|&number| number != 0.0))
+                .map(|(name, &(slot, memory))| (of_slot(slot), name.to_owned(), memory[..numbers].to_vec()))
+                .collect(),
+        };
+        let grain = |grain: &grainbench_scene::record::GrainState| StateGrain {
+            material: grain.material,
+            size: [grain.radius, grain.mass, scene.grains[grain.id as usize - 1].inertia],
+            position: grain.position,
+            velocity: grain.velocity,
+            spin: grain.spin,
+        };
+        EndState {
+            of: [scene.title.clone(), solver.to_owned()],
+            dimension: scene.dimension.count(),
+            time: self.step as f64 * self.motion.time_step,
+            materials: scene.materials.clone(),
+            grains: states.iter().map(grain).collect(),
+            springs,
+        }
+    }
+
+    /// Lets the contacts remember what they did where the scene begins, before the first list is made. What is told of walls
+    /// that are not there is forgotten.
+    pub(crate) fn begin_with(&mut self, springs: &Springs) {
+        let memory = |numbers: &[f64]| -> Memory<f64> {
+            let mut memory = [0.0; MEMORY];
+            memory.iter_mut().zip(numbers).for_each(|(memory, number)| *memory = *number);
+            memory
+        };
+        let count = self.grains.len();
+        let slot = |place: u32| self.grains.slot.get(place as usize).copied().filter(|&slot| (slot as usize) < count);
+        let pairs: Vec<(u32, u32, Memory<f64>)> = springs
+            .pairs
+            .iter()
+            .filter_map(|(first, second, numbers)| Some((slot(*first)?, slot(*second)?, memory(numbers))))
+            .collect();
+        let layout = self.forces.layout();
+        if layout.numbers > 0 {
+            let mut whole = Share::new(0..count);
+            whole.near = Pairs::remembering(count, layout, &pairs);
+            self.neighbours.shares = vec![whole];
+        }
+        for (grain, name, numbers) in &springs.walls {
+            let wall = self.walls.iter_mut().find(|wall| wall.name() == name);
+            if let (Some(wall), Some(slot)) = (wall, slot(*grain)) {
+                wall.near.push((slot, memory(numbers)));
+            }
+        }
+    }
+}

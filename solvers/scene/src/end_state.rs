@@ -1,0 +1,154 @@
+//! The state that a run ends in, from which another scene begins: grains with their velocities and spins, and what their
+//! contacts remember. A data file loses the springs of contacts, and with them the friction that holds a heap up.
+//!
+//! On disk: a [`crate::sealed`] file of a zlib stream of an [`EndState`] in postcard's format, which keeps every bit of a
+//! number.
+
+use crate::sealed::{self, Broken};
+use flate2::Compression;
+use flate2::read::ZlibDecoder;
+use flate2::write::ZlibEncoder;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::io::{Read, Write};
+
+/// What a file begins with, before the number of its format.
+const MAGIC: &[u8] = b"grainbench state ";
+/// The format that this program writes.
+const FORMAT: u32 = 1;
+/// Most bytes that a state may unfold to.
+const MOST: u64 = 1 << 34;
+
+/// The state that a run ended in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EndState {
+    /// What ran: title of the scene, and solver.
+    pub of: [String; 2],
+    /// Number of dimensions.
+    pub dimension: usize,
+    /// Time at which it was (s).
+    pub time: f64,
+    /// Names of the materials of grains.
+    pub materials: Vec<String>,
+    /// The grains, in order of id.
+    pub grains: Vec<StateGrain>,
+    /// What contacts remember.
+    pub springs: Springs,
+}
+
+/// A grain at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StateGrain {
+    /// Place in [`EndState::materials`].
+    pub material: u16,
+    /// Radius (m), mass (kg; per metre of discs) and moment of inertia (kg m²).
+    pub size: [f64; 3],
+    /// Centre (m).
+    pub position: Vector3<f64>,
+    /// Velocity (m/s).
+    pub velocity: Vector3<f64>,
+    /// Angular velocity (rad/s).
+    pub spin: Vector3<f64>,
+}
+
+/// What contacts remember, as a solver lays it out.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Springs {
+    /// The layout in words that change when it does.
+    pub layout: String,
+    /// Of contacts between grains: their places, and the numbers, from the side of the first.
+    pub pairs: Vec<(u32, u32, Vec<f64>)>,
+    /// Of contacts with walls: the grain's place, the wall by name, and the numbers.
+    pub walls: Vec<(u32, String, Vec<f64>)>,
+}
+
+impl Springs {
+    /// The same of grains that stand so many places later.
+    #[must_use]
+    pub fn later_by(mut self, places: u32) -> Self {
+        for (first, second, _) in &mut self.pairs {
+            (*first, *second) = (*first + places, *second + places);
+        }
+        self.walls.iter_mut().for_each(|(grain, ..)| *grain += places);
+        self
+    }
+}
+
+impl EndState {
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// When the state has a part that cannot be written down, in words.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
+        let body = postcard::to_allocvec(self).map_err(|error| error.to_string())?;
+        let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
+        let packed = packed.write_all(&body).and_then(|()| packed.finish()).map_err(|error| error.to_string())?;
+        Ok(sealed::seal(MAGIC, FORMAT, &packed))
+    }
+
+    /// A state from the bytes of a file.
+    ///
+    /// # Errors
+    /// What was found in its place, in words.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
+        let packed = sealed::open(MAGIC, FORMAT, bytes).map_err(|broken| match broken {
+            Broken::Foreign => "another kind of file".to_owned(),
+            Broken::Older(found) => format!("format {found}, which an older version of the program wrote"),
+            Broken::Newer(found) => format!("format {found}, which a newer version of the program wrote"),
+            Broken::Length(expected, found) => {
+                format!("{found} bytes where it says {expected}: it is cut off or changed")
+            }
+            Broken::Changed => "bytes that are not those that were written".to_owned(),
+        })?;
+        let mut body = Vec::new();
+        let unpacked = ZlibDecoder::new(packed).take(MOST).read_to_end(&mut body);
+        unpacked.map_err(|error| error.to_string())?;
+        let state: Self = postcard::from_bytes(&body).map_err(|error| error.to_string())?;
+        let count = state.grains.len();
+        let is_place = |place: &u32| (*place as usize) < count;
+        let of_grains = state.springs.pairs.iter().all(|(a, b, _)| a != b && is_place(a) && is_place(b))
+            && state.springs.walls.iter().all(|(grain, ..)| is_place(grain))
+            && state.grains.iter().all(|grain| usize::from(grain.material) < state.materials.len());
+        if of_grains { Ok(state) } else { Err("springs or materials of grains that it does not have".to_owned()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    fn state() -> EndState {
+        let grain = |x: f64| StateGrain {
+            material: 0,
+            size: [0.5, 1.0, 0.1],
+            position: Vector3::new(x, -0.0, f64::from_bits(1)),
+            velocity: Vector3::x(),
+            spin: Vector3::z(),
+        };
+        let springs = Springs {
+            layout: "numbers".to_owned(),
+            pairs: vec![(0, 1, vec![0.25])],
+            walls: vec![(1, "floor".to_owned(), vec![-0.5])],
+        };
+        let of = ["a".to_owned(), "dem".to_owned()];
+        let materials = vec!["m".to_owned()];
+        EndState { of, dimension: 3, time: 1.5, materials, grains: vec![grain(0.1), grain(0.2)], springs }
+    }
+
+    #[test]
+    fn a_state_comes_back_in_every_bit_and_wherever_it_is_cut_or_changed_it_is_refused() {
+        let whole = state().to_bytes().unwrap();
+        assert_eq!(format!("{:?}", EndState::from_bytes(&whole).unwrap()), format!("{:?}", state()));
+        for length in 0..whole.len() {
+            assert!(EndState::from_bytes(&whole[..length]).is_err(), "cut at {length}");
+            let mut changed = whole.clone();
+            changed[length] ^= 1;
+            assert!(EndState::from_bytes(&changed).is_err(), "changed at {length}");
+        }
+        let strange =
+            EndState { springs: Springs { pairs: vec![(0, 2, Vec::new())], ..Springs::default() }, ..state() };
+        assert!(EndState::from_bytes(&strange.to_bytes().unwrap()).is_err());
+    }
+}

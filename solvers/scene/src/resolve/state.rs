@@ -1,0 +1,60 @@
+//! Grains as a run ended with them.
+
+use super::Resolver;
+use crate::end_state::{EndState, Springs};
+use crate::error::SceneError;
+use crate::file::{GrainsSpec, StateSpec};
+use crate::scene::Grain;
+
+impl Resolver<'_> {
+    pub(super) fn grains_from_state(
+        &self,
+        name: &str,
+        group: &GrainsSpec,
+        spec: &StateSpec,
+        material: u16,
+        (grains, springs): (&mut Vec<Grain>, &mut Option<Springs>),
+    ) -> Result<(), SceneError> {
+        let check = &self.check;
+        let key = format!("grains.{name}.state.path");
+        let path = check.source.directory.join(&spec.path);
+        let refuse = |found: String| check.error(&key, "a state that `simulate --state` left", &found);
+        let bytes = std::fs::read(&path).map_err(|error| refuse(error.to_string()))?;
+        let state = EndState::from_bytes(&bytes).map_err(refuse)?;
+        if state.dimension != check.dimension.count() {
+            return Err(refuse(format!("one of {} dimensions", state.dimension)));
+        }
+        if let Some(given) = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())]
+            .into_iter()
+            .find_map(|(part, given)| given.then_some(part))
+        {
+            let key = format!("grains.{name}.{given}");
+            return Err(check.error(&key, "none, for the state tells it", "one"));
+        }
+        // Of one material it is that of the group, whatever it was called there.
+        let materials: Vec<u16> = match &state.materials[..] {
+            [_] => vec![material],
+            several => several.iter().map(|material| self.material(&key, material)).collect::<Result<_, _>>()?,
+        };
+        let first = grains.len() as u32;
+        for grain in &state.grains {
+            let [radius, mass, inertia] = grain.size;
+            grains.push(Grain {
+                material: materials[usize::from(grain.material)],
+                radius: check.positive(&key, radius, "radius (m)")?,
+                mass: check.positive(&key, mass, "mass (kg)")?,
+                inertia: check.positive(&key, inertia, "moment of inertia (kg m²)")?,
+                position: grain.position,
+                velocity: grain.velocity,
+                spin: grain.spin,
+            });
+        }
+        if spec.springs {
+            if springs.is_some() {
+                return Err(check.error(&key, "springs of one state (`springs = false` for others)", "two"));
+            }
+            *springs = Some(state.springs.later_by(first));
+        }
+        Ok(())
+    }
+}
