@@ -17,9 +17,21 @@ gravity = [0.0, 1.0, -10.0]
 largest_initial_overlap = 0.2
 domain = {{ low = [0.0, 0.0, 0.0], high = [5.0, 5.0, 10.0], periodic = [true, false, false] }}
 materials.m.density = 1.0
-contacts.all = {{ between = ["m", "m"], normal_stiffness = 2e3, tangential_stiffness = 1e3, friction = 0.4, normal_damping = 40.0, tangential_damping = 20.0 }}
-output = {{ every = 1.0, snapshots = 0 }}
+
+[contacts.all]
+between = ["m", "m"]
+normal_stiffness = 2e3
+tangential_stiffness = 1e3
+friction = 0.4
+normal_damping = 40.0
+tangential_damping = 20.0
+
+[output]
+every = 1.0
+snapshots = 0
+
 {grains}
+
 [walls.floor]
 material = "m"
 plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}

@@ -9,6 +9,11 @@ use crate::simulation::Simulated;
 use grainbench_scene::end_state::{EndState, Springs, StateGrain};
 use std::collections::BTreeMap;
 
+/// What contacts remember, in words that change when it does.
+pub(crate) fn words([tangential, rolling, dimension]: [usize; 3]) -> String {
+    format!("{tangential} numbers of a tangential and {rolling} of a rolling spring in {dimension} dimensions")
+}
+
 impl<S: Geometry> Simulated<S> {
     /// The state after the last step, of what the named solver made. Grains that are not there have no place in it.
     pub(crate) fn end_state(&self, solver: &str) -> EndState {
@@ -19,7 +24,7 @@ impl<S: Geometry> Simulated<S> {
         let numbers = self.forces.layout().numbers;
         let pairs = self.neighbours.shares.iter().flat_map(|share| [&share.across, &share.near]);
         let springs = Springs {
-            layout: self.forces.springs(),
+            layout: words(self.forces.springs()),
             pairs: pairs
                 .flat_map(Pairs::remembered)
                 .map(|(row, partner, memory)| (of_slot(row), of_slot(partner), memory[..numbers].to_vec()))

@@ -63,8 +63,8 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
     ) -> u64;
     /// What a contact remembers.
     fn layout(&self) -> Layout;
-    /// What a contact remembers, in words that change when it does.
-    fn springs(&self) -> String;
+    /// How many numbers of a tangential and of a rolling spring a contact remembers, and in how many dimensions.
+    fn springs(&self) -> [usize; 3];
     /// Whether tangential forces turn the grains.
     fn turn(&self) -> bool;
     /// The space and the stages in words.
@@ -150,9 +150,8 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         Layout::of::<S, T, R>()
     }
 
-    fn springs(&self) -> String {
-        let space = S::DIMENSION;
-        format!("{} numbers of a tangential and {} of a rolling spring in {space} dimensions", T::NUMBERS, R::NUMBERS)
+    fn springs(&self) -> [usize; 3] {
+        [T::NUMBERS, R::NUMBERS, S::DIMENSION]
     }
 
     fn turn(&self) -> bool {

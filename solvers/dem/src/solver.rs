@@ -6,6 +6,7 @@ use crate::contact::rolling::{ElasticPlastic, FreeRolling};
 use crate::contact::tangential::{Coulomb, Frictionless, Projected, Tangential, Turned};
 use crate::convention::{Convention, History};
 use crate::edge::Simulation;
+use crate::end_state::words;
 use crate::forces::{Chain, Forces};
 use crate::geometry::Geometry;
 use crate::share::FEWEST;
@@ -76,12 +77,12 @@ impl Dem {
         time_step: f64,
         team: Team,
     ) -> Result<Box<dyn Simulation>, RunError> {
-        if let Some(springs) = scene.springs.as_ref().filter(|springs| springs.layout != forces.springs()) {
+        let own = words(forces.springs());
+        if let Some(springs) = scene.springs.as_ref().filter(|springs| springs.layout != own) {
             let reason = format!(
-                "its contacts begin with springs of another law or convention, {} for {} (`springs = false` beside the state \
+                "its contacts begin with springs of another law or convention, {} for {own} (`springs = false` beside the state \
                  leaves them out)",
-                springs.layout,
-                forces.springs()
+                springs.layout
             );
             return Err(RunError::Unsupported { solver: self.name(), reason });
         }
