@@ -1,6 +1,6 @@
 //! Contacts that the probes of a scene ask for, from where the grains are and from the forces that dumps tell.
 
-use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_segment};
+use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
 use grainbench_scene::record::{ContactState, GrainState, Partner};
 use grainbench_scene::scene::{ProbeTarget, Scene, WallShape};
 use nalgebra::Vector3;
@@ -77,6 +77,7 @@ fn to_wall(at: Vector3<f64>, shape: &WallShape) -> (Vector3<f64>, f64) {
         WallShape::Plane { point, normal } => (-normal, (at - point).dot(normal)),
         WallShape::Segment { ends } => direction(nearest_on_segment(at, ends) - at),
         WallShape::Rectangle { corner, edges } => direction(nearest_on_rectangle(at, corner, edges) - at),
+        WallShape::Round { axis, radii } => direction(nearest_on_round(at, axis, radii) - at),
     }
 }
 

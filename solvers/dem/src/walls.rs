@@ -2,7 +2,7 @@
 
 use crate::contact::Memory;
 use grainbench_scene::motion::Displacement;
-use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_segment};
+use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
 use grainbench_scene::scene::{Wall, WallShape};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -167,6 +167,7 @@ impl MovingWall {
             }
             WallShape::Segment { ends } => facing_point(at, nearest_on_segment(at, ends)),
             WallShape::Rectangle { corner, edges } => facing_point(at, nearest_on_rectangle(at, corner, edges)),
+            WallShape::Round { axis, radii } => facing_point(at, nearest_on_round(at, axis, radii)),
         };
         let velocity = self.velocity + self.spin.cross(&(nearest - self.centre));
         Facing { normal, distance, velocity }

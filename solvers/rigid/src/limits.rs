@@ -13,6 +13,9 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if let Some(what) = scene.passing() {
         return Some(format!("it has {what}, which was written for `dem` alone"));
     }
+    if let Some(what) = scene.round_wall() {
+        return Some(format!("{what}, which was written for `dem` alone"));
+    }
     if let Some(what) = scene.needs_deformable() {
         return Some(format!("it has {what}, and rapier's grains are rigid"));
     }

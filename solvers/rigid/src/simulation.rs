@@ -174,15 +174,7 @@ impl<'a> Simulation<'a> {
     fn shape(&self, wall: &Wall) -> WallShape {
         let motion = &wall.motion;
         let displacement = motion.displacement(self.time(), self.stepping.time_step);
-        let at = |point| motion.moved(point, &displacement);
-        let turned = |direction| motion.turned(direction, &displacement);
-        match wall.shape {
-            WallShape::Plane { point, normal } => WallShape::Plane { point: at(point), normal: turned(normal) },
-            WallShape::Segment { ends } => WallShape::Segment { ends: ends.map(at) },
-            WallShape::Rectangle { corner, edges } => {
-                WallShape::Rectangle { corner: at(corner), edges: edges.map(turned) }
-            }
-        }
+        wall.shape.moved(motion, &displacement)
     }
 
     /// A grain with the sums of the forces (N) and torques (N m) that act on it.
@@ -237,11 +229,7 @@ fn unwrapped(wrapped: f64, expected: f64) -> f64 {
 }
 
 fn wall_state(wall: &Wall, shape: &WallShape, force: Vector3<f64>) -> WallState {
-    let (corners, infinite) = match *shape {
-        WallShape::Plane { point, normal } => (vec![point, normal], true),
-        WallShape::Segment { ends } => (ends.to_vec(), false),
-        WallShape::Rectangle { corner, edges: [u, v] } => (vec![corner, corner + u, corner + u + v, corner + v], false),
-    };
+    let (corners, infinite) = shape.corners();
     WallState { name: wall.name.clone(), corners, infinite, force: Some(force) }
 }
 

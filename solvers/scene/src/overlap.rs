@@ -1,7 +1,7 @@
 //! Finds grains that overlap at the start, so that a mistyped position is an error and not an explosion.
 
 use crate::near::near_pairs;
-use crate::scene::{Domain, Grain, Wall, WallShape};
+use crate::scene::{Domain, Grain, Wall, WallShape, across};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
@@ -95,6 +95,7 @@ pub fn distance(point: Vector3<f64>, shape: &WallShape) -> f64 {
         WallShape::Plane { point: on, normal } => (point - on).dot(normal),
         WallShape::Segment { ends } => (point - nearest_on_segment(point, ends)).norm(),
         WallShape::Rectangle { corner, edges } => (point - nearest_on_rectangle(point, corner, edges)).norm(),
+        WallShape::Round { axis, radii } => (point - nearest_on_round(point, axis, radii)).norm(),
     }
 }
 
@@ -111,6 +112,24 @@ pub fn nearest_on_rectangle(point: Vector3<f64>, corner: &Vector3<f64>, edges: &
     edges
         .iter()
         .fold(*corner, |at, edge| at + edge * ((point - corner).dot(edge) / edge.norm_squared()).clamp(0.0, 1.0))
+}
+
+/// The point of the side of a cylinder or cone that is nearest to `point`: it lies in one half-plane with it, bounded by the
+/// axis, where the side is a segment. Of all that are nearest to a point of the axis it is one.
+#[must_use]
+pub fn nearest_on_round(point: Vector3<f64>, axis: &[Vector3<f64>; 2], radii: &[f64; 2]) -> Vector3<f64> {
+    let line = axis[1] - axis[0];
+    let length = line.norm();
+    let along = line / length;
+    let from = point - axis[0];
+    let height = from.dot(&along);
+    let away = from - along * height;
+    let distance = away.norm();
+    let out = if distance > 1e-12 * (radii[0] + radii[1]) { away / distance } else { across(line) };
+    let widening = radii[1] - radii[0];
+    let part = (height * length + (distance - radii[0]) * widening) / (length * length + widening * widening);
+    let part = part.clamp(0.0, 1.0);
+    axis[0] + line * part + out * (radii[0] + widening * part)
 }
 
 #[cfg(test)]
@@ -132,6 +151,38 @@ mod tests {
         let domain = Domain { low: Vector3::zeros(), high: Vector3::repeat(4.0), periodic: [true, false, false] };
         let found = deepest(&[grain(4001.0), grain(2.5), grain(1.15)], &[], Some(&domain), 1.0).unwrap();
         assert!(matches!(found, Deepest::Grains(0, 2, _)) && (found.ratio() - 0.5).abs() < 1e-9, "{found:?}");
+    }
+
+    /// Of many points of a cone none is nearer than the one that is found, and that is one of it.
+    #[test]
+    fn the_nearest_point_of_a_cone_is_nearest() {
+        let axis = [Vector3::new(0.3, -0.2, 0.1), Vector3::new(1.3, 0.8, 2.1)];
+        for radii in [[0.4, 1.5], [1.0, 1.0], [0.0, 2.0]] {
+            let line = axis[1] - axis[0];
+            let (u, length) = (across(line), line.norm());
+            let v = line.cross(&u) / length;
+            let of = |part: f64, angle: f64| {
+                axis[0] + line * part + (u * angle.cos() + v * angle.sin()) * (radii[0] + (radii[1] - radii[0]) * part)
+            };
+            for number in 0..200 {
+                let odd = |times: f64| (f64::from(number) * times).fract() * 5.0 - 2.0;
+                let point = Vector3::new(odd(0.754_877), odd(0.569_840), odd(0.328_117));
+                let found = nearest_on_round(point, &axis, &radii);
+                let mut nearest = f64::INFINITY;
+                for at in 0..40 * 90 {
+                    let sample = of(f64::from(at / 90) / 39.0, f64::from(at % 90) * std::f64::consts::TAU / 90.0);
+                    nearest = nearest.min((sample - point).norm());
+                }
+                let distance = (found - point).norm();
+                assert!(distance <= nearest + 1e-12 && distance > nearest - 0.06, "{distance} {nearest}");
+                let height = (found - axis[0]).dot(&line) / length;
+                let away = (found - axis[0] - line * (height / length)).norm();
+                assert!((away - radii[0] - (radii[1] - radii[0]) * height / length).abs() < 1e-12);
+            }
+            // On the axis, where all directions are alike.
+            let middle = nearest_on_round(axis[0] + line * 0.5, &axis, &radii);
+            assert!(middle.iter().all(|number| number.is_finite()));
+        }
     }
 
     /// A million grains in one place: of all pairs this would take hours.

@@ -93,6 +93,13 @@ pub enum WallShape {
         /// The perpendicular edges from it (m).
         edges: [Vector3<f64>; 2],
     },
+    /// The side of a cylinder or of a part of a cone, in space.
+    Round {
+        /// The ends of its axis (m).
+        axis: [Vector3<f64>; 2],
+        /// Radius at each end (m).
+        radii: [f64; 2],
+    },
 }
 
 impl WallShape {
@@ -105,6 +112,7 @@ impl WallShape {
             Self::Plane { point, normal } => Self::Plane { point: at(point), normal: turn(normal) },
             Self::Segment { ends } => Self::Segment { ends: ends.map(at) },
             Self::Rectangle { corner, edges } => Self::Rectangle { corner: at(corner), edges: edges.map(turn) },
+            Self::Round { axis, radii } => Self::Round { axis: axis.map(at), radii },
         }
     }
 
@@ -115,8 +123,19 @@ impl WallShape {
             Self::Plane { point, normal } => (vec![point, normal], true),
             Self::Segment { ends } => (ends.to_vec(), false),
             Self::Rectangle { corner, edges: [u, v] } => (vec![corner, corner + u, corner + u + v, corner + v], false),
+            Self::Round { axis: [from, to], radii } => {
+                let out = across(to - from);
+                (vec![from, to, from + out * radii[0], to + out * radii[1]], false)
+            }
         }
     }
+}
+
+/// A unit vector across a direction; along an axis where the direction is along another.
+pub(crate) fn across(direction: Vector3<f64>) -> Vector3<f64> {
+    let least = (0..3).min_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs())).unwrap_or(0);
+    let axis = Vector3::ith(least, 1.0);
+    (axis - direction * (direction.dot(&axis) / direction.norm_squared())).normalize()
 }
 
 /// A wall with its prescribed motion.
@@ -332,6 +351,13 @@ impl Scene {
             return Some("contacts that remember at the start (`springs = false` beside the state leaves that out)");
         }
         self.walls.iter().any(|wall| wall.until.is_some()).then_some("walls that are taken away")
+    }
+
+    /// Walls that are round, in words, if there are any: not every solver has them.
+    #[must_use]
+    pub fn round_wall(&self) -> Option<String> {
+        let round = self.walls.iter().find(|wall| matches!(wall.shape, WallShape::Round { .. }))?;
+        Some(format!("wall `{}` is the side of a cylinder or a cone", round.name))
     }
 
     /// What needs a solver of deformable bodies, in words, if anything does.

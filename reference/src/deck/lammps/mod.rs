@@ -42,6 +42,9 @@ impl Peer for Lammps {
 
 fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     one_inertia(scene, inertia_factor(scene))?;
+    if let Some(what) = scene.round_wall().filter(|_| scene.laws.iter().flatten().any(|law| law.is_hertz())) {
+        return Err(format!("{what}, and LAMMPS puts its curvature into Hertz' law, where it is a plane here"));
+    }
     // LAMMPS reads the density of a data file as a sphere's, in two dimensions too.
     let data = data_file(scene, scene.materials.len(), box_of(scene), of_sphere);
     let (commands, logged) = logged(scene, "NULL", forces_of_wall)?;

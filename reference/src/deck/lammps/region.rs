@@ -64,7 +64,26 @@ fn placed(wall: &Wall) -> Result<Placed, String> {
             rectangle(wall, a - across, [b - a, across * 2.0])
         }
         WallShape::Rectangle { corner, edges } => rectangle(wall, corner, edges),
+        WallShape::Round { axis, radii } => {
+            let shape = round(axis, radii).ok_or_else(|| {
+                format!("wall `{}` is round about an axis that is not x, y or z: LAMMPS has no other", wall.name)
+            })?;
+            Ok(Placed { shape, centre: motion.centre, rotation: Vector3::zeros() })
+        }
     }
+}
+
+/// A cylinder or a cone about an axis of the box, open at both ends, so that grains meet its side from within and without.
+fn round([from, to]: [Vector3<f64>; 2], radii: [f64; 2]) -> Option<String> {
+    let along = (0..3).find(|&along| (0..3).all(|axis| axis == along || from[axis] == to[axis]))?;
+    let across: Vec<f64> = (0..3).filter(|&axis| axis != along).map(|axis| from[axis]).collect();
+    let mut ends = [(from[along], radii[0]), (to[along], radii[1])];
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [(low, first), (high, last)] = ends;
+    let (name, radii) =
+        if first == last { ("cylinder", format!("{first:?}")) } else { ("cone", format!("{first:?} {last:?}")) };
+    let axis = AXES[along];
+    Some(format!("{name} {axis} {:?} {:?} {radii} {low:?} {high:?} open 1 open 2", across[0], across[1]))
 }
 
 /// A block along the axes, turned about the centre of rotation so that it lies as the rectangle does.

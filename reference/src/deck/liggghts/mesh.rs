@@ -24,6 +24,8 @@ pub(crate) fn triangles(shape: &WallShape, centre: Vector3<f64>, reach: f64) -> 
             rectangle(a - depth, [b - a, depth * 2.0])
         }
         WallShape::Rectangle { corner, edges } => rectangle(corner, edges),
+        // Refused before: triangles are flat.
+        WallShape::Round { .. } => Vec::new(),
     }
 }
 

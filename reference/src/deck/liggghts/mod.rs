@@ -57,6 +57,9 @@ impl Peer for Liggghts {
 }
 
 fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+    if let Some(what) = scene.round_wall() {
+        return Err(format!("{what}: LIGGGHTS has cylinders without ends, and of a mesh flat triangles"));
+    }
     let mut meshes = Vec::new();
     let (mut low, mut high) = box_of(scene);
     let (centre, reach) = (0.5 * (low + high), (high - low).norm() + way(scene, stepping));

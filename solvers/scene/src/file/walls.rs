@@ -4,7 +4,7 @@ use super::SpinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A wall: exactly one of `plane`, `segment` and `rectangle`.
+/// A wall: exactly one of `plane`, `segment`, `rectangle`, `cylinder` and `cone`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallSpec {
@@ -20,6 +20,13 @@ pub struct WallSpec {
     /// A rectangle, solid on both sides; three dimensions only. At the joint of two a grain touches both.
     #[serde(default)]
     pub rectangle: Option<RectangleSpec>,
+    /// The side of a cylinder, without its ends, solid on both sides; three dimensions only. It may turn about its axis. A
+    /// contact law takes it for the plane that touches it: its curvature is in no law.
+    #[serde(default)]
+    pub cylinder: Option<CylinderSpec>,
+    /// The side of a cone or of a part of one, as of a cylinder.
+    #[serde(default)]
+    pub cone: Option<ConeSpec>,
     /// When it is taken away (s), as the plug of an orifice is; never when absent.
     #[serde(default)]
     pub until: Option<f64>,
@@ -46,6 +53,26 @@ pub struct RectangleSpec {
     pub corner: Vec<f64>,
     /// The two edges from it (m).
     pub edges: [Vec<f64>; 2],
+}
+
+/// The side of a cylinder.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderSpec {
+    /// The ends of its axis (m).
+    pub axis: [Vec<f64>; 2],
+    /// Radius (m).
+    pub radius: f64,
+}
+
+/// The side of a cone.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConeSpec {
+    /// The ends of its axis (m).
+    pub axis: [Vec<f64>; 2],
+    /// Radius at each end (m); one of them may be zero.
+    pub radii: [f64; 2],
 }
 
 /// One phase of a wall's motion.

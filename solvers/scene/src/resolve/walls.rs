@@ -17,6 +17,8 @@ impl Resolver<'_> {
                 ("plane", spec.plane.is_some()),
                 ("segment", spec.segment.is_some()),
                 ("rectangle", spec.rectangle.is_some()),
+                ("cylinder", spec.cylinder.is_some()),
+                ("cone", spec.cone.is_some()),
             ],
         )?;
         let shape = if let Some(plane) = &spec.plane {
@@ -51,12 +53,38 @@ impl Resolver<'_> {
                 return Err(check.error(&key("rectangle.edges"), "two perpendicular edges", &found));
             }
             WallShape::Rectangle { corner, edges }
+        } else if let Some(cylinder) = &spec.cylinder {
+            let radius = check.positive(&key("cylinder.radius"), cylinder.radius, "radius (m)")?;
+            self.round(&key("cylinder"), &cylinder.axis, [radius; 2])?
+        } else if let Some(cone) = &spec.cone {
+            for radius in cone.radii {
+                check.not_negative(&key("cone.radii"), radius, "radius (m)")?;
+            }
+            if cone.radii[0] == cone.radii[1] {
+                let found = format!("{} twice", cone.radii[0]);
+                return Err(check.error(&key("cone.radii"), "two different radii (a `cylinder` has one)", &found));
+            }
+            self.round(&key("cone"), &cone.axis, cone.radii)?
         } else {
             return Err(check.error(&format!("walls.{name}"), "a shape", "none"));
         };
         let material = self.material(&key("material"), &spec.material)?;
         let until = spec.until.map(|time| check.positive(&key("until"), time, "time (s)")).transpose()?;
         Ok(Wall { name: name.to_owned(), material, shape, motion: self.motion(name, &spec.motion)?, until })
+    }
+
+    fn round(&self, key: &str, axis: &[Vec<f64>; 2], radii: [f64; 2]) -> Result<WallShape, SceneError> {
+        let check = &self.check;
+        if check.dimension == Dimension::Two {
+            return Err(check.error(key, "a `segment` or `plane` in two dimensions", "a round wall"));
+        }
+        let of_axis = format!("{key}.axis");
+        let axis = [check.vector(&of_axis, &axis[0])?, check.vector(&of_axis, &axis[1])?];
+        let length = (axis[1] - axis[0]).norm();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(check.error(&of_axis, "two different points", &format!("{length} m between them")));
+        }
+        Ok(WallShape::Round { axis, radii })
     }
 
     fn motion(&self, wall: &str, specs: &[MotionSpec]) -> Result<Motion, SceneError> {
