@@ -38,6 +38,7 @@ pub(super) fn close(scene: &mut Scene) {
     }
     for (name, x, out) in [("left side", domain.low.x, 1.0), ("right side", domain.high.x, -1.0)] {
         scene.walls.push(Wall {
+            piston: None,
             until: None,
             name: name.to_owned(),
             material: side,

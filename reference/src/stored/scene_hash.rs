@@ -24,8 +24,11 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     for Grain { material, radius, mass, inertia, position, velocity, spin } in &scene.grains {
         let _ = writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");
     }
-    for Wall { material, shape, motion, until, .. } in &scene.walls {
+    for Wall { material, shape, motion, piston, until, .. } in &scene.walls {
         let _ = writeln!(text, "wall {material} {shape:?} {motion:?}");
+        if let Some(piston) = piston {
+            let _ = writeln!(text, "piston {piston:?}");
+        }
         if let Some(until) = until {
             let _ = writeln!(text, "until {until:?}");
         }

@@ -117,6 +117,7 @@ impl<S: Geometry> Simulated<S> {
         simulation.rebuild()?;
         simulation.evaluate_forces(true, 0.0, false);
         simulation.motion.step_back_half(&mut simulation.grains);
+        simulation.walls.iter_mut().for_each(|wall| wall.step_back_half(time_step));
         simulation.drive(0.0);
         if simulation.accounting {
             simulation.account();

@@ -3,7 +3,7 @@
 use crate::contact::Memory;
 use grainbench_scene::motion::Displacement;
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
-use grainbench_scene::scene::{Wall, WallShape};
+use grainbench_scene::scene::{Piston, Wall, WallShape};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +26,8 @@ pub(crate) struct MovingWall {
     pub(crate) near: NearWall,
     /// Force of the grains on the wall in the last force evaluation (N).
     pub(crate) force: Vector3<f64>,
+    /// How far it has been pressed along its normal (m), and its speed half a step ago (m/s).
+    pressed: [f64; 2],
     /// Whether it has been taken away.
     gone: bool,
 }
@@ -37,6 +39,7 @@ pub(crate) struct WallMemory {
     at_list: Displacement,
     near: NearWall,
     force: Vector3<f64>,
+    pressed: [f64; 2],
     gone: bool,
 }
 
@@ -69,6 +72,7 @@ impl MovingWall {
             spin: Vector3::zeros(),
             near: Vec::new(),
             force: Vector3::zeros(),
+            pressed: [0.0; 2],
             gone: false,
             wall: wall.clone(),
         }
@@ -94,6 +98,7 @@ impl MovingWall {
             at_list: self.at_list,
             near: self.near.clone(),
             force: self.force,
+            pressed: self.pressed,
             gone: self.gone,
         }
     }
@@ -106,7 +111,7 @@ impl MovingWall {
         self.at_list = memory.at_list;
         self.near = memory.near;
         self.force = memory.force;
-        self.gone = memory.gone;
+        (self.pressed, self.gone) = (memory.pressed, memory.gone);
     }
 
     /// Whether it has been taken away.
@@ -121,13 +126,35 @@ impl MovingWall {
         now
     }
 
-    /// Moves the wall to where it is at `time`, one step after the last call.
+    /// What presses it, the acceleration along its normal that this and the grains give it (m/s²), and the normal.
+    fn pressure(&self) -> Option<(Piston, f64, Vector3<f64>)> {
+        let (Some(piston), WallShape::Plane { normal, .. }) = (self.wall.piston, self.shape) else { return None };
+        Some((piston, (piston.force + self.force.dot(&normal)) / piston.mass, normal))
+    }
+
+    /// Takes the speed of a wall that is pressed, and at rest, to half a step before the start.
+    pub(crate) fn step_back_half(&mut self, time_step: f64) {
+        if let Some((_, acceleration, _)) = self.pressure() {
+            self.pressed[1] = -0.5 * acceleration * time_step;
+        }
+    }
+
+    /// Moves the wall to where it is at `time`, one step after the last call: a wall that is pressed by the force that the
+    /// grains had on it then, as grains are.
     pub(crate) fn move_to(&mut self, time: f64, time_step: f64) {
         let motion = &self.wall.motion;
-        if !motion.is_moving() {
+        let pressure = self.pressure();
+        if !motion.is_moving() && pressure.is_none() {
             return;
         }
-        let now = motion.displacement(time, time_step);
+        let mut now = motion.displacement(time, time_step);
+        if let Some((piston, acceleration, normal)) = pressure {
+            let half = 0.5 * piston.damping * time_step;
+            let [way, speed] = &mut self.pressed;
+            *speed = (*speed * (1.0 - half) + acceleration * time_step) / (1.0 + half);
+            *way += *speed * time_step;
+            now.translation += normal * *way;
+        }
         self.velocity = (now.translation - self.displacement.translation) / time_step;
         self.spin = (now.rotation - self.displacement.rotation) / time_step;
         self.displaced_to(now);

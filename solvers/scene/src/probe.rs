@@ -2,7 +2,7 @@
 
 use crate::budget::Budget;
 use crate::record::{BodyState, Column, ContactState, GrainState, Look, Partner, Series, Snapshot};
-use crate::scene::{Dimension, Probe, ProbeTarget, Scene};
+use crate::scene::{Dimension, Probe, ProbeTarget, Scene, WallShape};
 use nalgebra::{Matrix3, Vector3};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -140,6 +140,7 @@ fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static s
             all.extend(plain(&[("coordination", "1")]));
             all
         }
+        ProbeTarget::Piston(_) => plain(&[("advance", "m")]),
         ProbeTarget::Count => plain(&[("present", "1"), ("entered", "1"), ("left", "1")]),
         ProbeTarget::System => {
             let mut all = plain(&[
@@ -195,6 +196,10 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
         ProbeTarget::Pair(a, b) => contact_values(look, a, Partner::Grain(b as u32 + 1), flat),
         ProbeTarget::GrainWall(grain, wall) => contact_values(look, grain, Partner::Wall(wall as u16), flat),
         ProbeTarget::Wall(wall) => vector(&snapshot.walls[wall].force.unwrap_or(UNKNOWN)),
+        ProbeTarget::Piston(wall) => {
+            let WallShape::Plane { point, normal } = scene.walls[wall].shape else { return vec![f64::NAN] };
+            vec![snapshot.walls[wall].corners.first().map_or(f64::NAN, |now| (now - point).dot(&normal))]
+        }
         ProbeTarget::Driven(group) => vector(look.driven.get(group).unwrap_or(&UNKNOWN)),
         ProbeTarget::Budget => {
             let Some(budget) = &look.budget else { return vec![f64::NAN; ENERGIES.len() + 2 * count] };

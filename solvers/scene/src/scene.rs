@@ -149,8 +149,21 @@ pub struct Wall {
     pub shape: WallShape,
     /// How it moves.
     pub motion: Motion,
+    /// What presses it.
+    pub piston: Option<Piston>,
     /// When it is taken away (s).
     pub until: Option<f64>,
+}
+
+/// What presses a plane: M dv/dt = F − F_n − M c v along its normal, with the normal force F_n of the grains on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piston {
+    /// Force F along the normal (N).
+    pub force: f64,
+    /// Mass M (kg).
+    pub mass: f64,
+    /// Damping c (1/s).
+    pub damping: f64,
 }
 
 /// Grains that are moved as a wall is: at a constant velocity, whatever the forces on them; they do not turn.
@@ -199,6 +212,8 @@ pub enum ProbeTarget {
     GrainWall(usize, usize),
     /// A wall.
     Wall(usize),
+    /// How far a wall that is pressed has gone.
+    Piston(usize),
     /// A group of driven grains, by place in [`Scene::driven`].
     Driven(usize),
     /// Where energy comes from and goes.
@@ -346,6 +361,9 @@ impl Scene {
         }
         if self.stays.removal.is_some() {
             return Some("grains that are taken out");
+        }
+        if self.walls.iter().any(|wall| wall.piston.is_some()) {
+            return Some("a wall that is pressed");
         }
         if self.springs.is_some() {
             return Some("contacts that remember at the start (`springs = false` beside the state leaves that out)");

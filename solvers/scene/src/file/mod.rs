@@ -21,7 +21,7 @@ pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
 pub use materials::{ConstitutiveKind, MaterialSpec};
 pub use output::OutputSpec;
 pub use probes::{PointSpec, ProbeSpec};
-pub use walls::{ConeSpec, CylinderSpec, MotionSpec, PlaneSpec, RectangleSpec, WallSpec};
+pub use walls::{ConeSpec, CylinderSpec, MotionSpec, PistonSpec, PlaneSpec, RectangleSpec, WallSpec};
 
 use crate::body::InitialPressure;
 use indexmap::IndexMap;

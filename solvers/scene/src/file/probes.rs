@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `driven`, `stress`, `budget`,
+/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `piston`, `driven`, `stress`, `budget`,
 /// `count` and `system`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -29,6 +29,9 @@ pub struct ProbeSpec {
     /// A wall: columns force_x, … of the grains on it.
     #[serde(default)]
     pub wall: Option<String>,
+    /// A wall that is pressed: column advance, how far it has gone along its normal (m).
+    #[serde(default)]
+    pub piston: Option<String>,
     /// A group of driven grains: columns force_x, … of the other grains on them.
     #[serde(default)]
     pub driven: Option<String>,

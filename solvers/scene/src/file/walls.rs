@@ -27,6 +27,9 @@ pub struct WallSpec {
     /// The side of a cone or of a part of one, as of a cylinder.
     #[serde(default)]
     pub cone: Option<ConeSpec>,
+    /// What presses it: then it moves along its normal as a piston does, beside its prescribed motion. Planes only.
+    #[serde(default)]
+    pub piston: Option<PistonSpec>,
     /// When it is taken away (s), as the plug of an orifice is; never when absent.
     #[serde(default)]
     pub until: Option<f64>,
@@ -53,6 +56,21 @@ pub struct RectangleSpec {
     pub corner: Vec<f64>,
     /// The two edges from it (m).
     pub edges: [Vec<f64>; 2],
+}
+
+/// A plane that is pressed: M dv/dt = F − F_n − M c v along its normal, with the normal force F_n of the grains on it. At rest
+/// it presses with F.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PistonSpec {
+    /// Force F along its normal (N; N/m in two dimensions).
+    pub force: f64,
+    /// Mass M (kg; kg/m in two dimensions): no less than that of the grains together that it touches, or the step at which they
+    /// are stable is too long for it.
+    pub mass: f64,
+    /// Damping c (1/s).
+    #[serde(default)]
+    pub damping: f64,
 }
 
 /// The side of a cylinder.

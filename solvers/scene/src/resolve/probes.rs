@@ -25,6 +25,7 @@ impl Resolver<'_> {
                 ("point", spec.point.is_some()),
                 ("contact", spec.contact.is_some()),
                 ("wall", spec.wall.is_some()),
+                ("piston", spec.piston.is_some()),
                 ("driven", spec.driven.is_some()),
                 ("budget", spec.budget == Some(true)),
                 ("stress", spec.stress == Some(true)),
@@ -53,6 +54,10 @@ impl Resolver<'_> {
         } else if let Some(wall) = &spec.wall {
             let known = names.walls.iter().map(|wall| &wall.name);
             ProbeTarget::Wall(check.place_of(&key("wall"), wall, "a wall of this scene", known)?)
+        } else if let Some(wall) = &spec.piston {
+            let pressed = names.walls.iter().map(|wall| wall.piston.map_or("", |_| wall.name.as_str()));
+            let known: Vec<String> = pressed.map(str::to_owned).collect();
+            ProbeTarget::Piston(check.place_of(&key("piston"), wall, "a wall that is pressed", known.iter())?)
         } else if let Some(group) = &spec.driven {
             let known = names.driven.iter().map(|driven| &driven.name);
             ProbeTarget::Driven(check.place_of(&key("driven"), group, "a group of driven grains", known)?)
@@ -69,6 +74,10 @@ impl Resolver<'_> {
         if !names.stays.is_always() && (of_a_grain || target == ProbeTarget::Budget) {
             let expected = "a probe of what is there all the time, for grains come or go here";
             return Err(check.error(&format!("probes.{name}"), expected, "one of a grain, a contact or the budget"));
+        }
+        if names.walls.iter().any(|wall| wall.piston.is_some()) && target == ProbeTarget::Budget {
+            let expected = "no budget where a wall is pressed, for its energy is not added up";
+            return Err(check.error(&format!("probes.{name}.budget"), expected, "one"));
         }
         Ok(Probe { name: name.to_owned(), target })
     }

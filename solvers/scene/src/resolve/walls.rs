@@ -2,9 +2,9 @@
 
 use super::Resolver;
 use crate::error::SceneError;
-use crate::file::{MotionSpec, WallSpec};
+use crate::file::{MotionSpec, PistonSpec, WallSpec};
 use crate::motion::{Moment, Motion, Phase};
-use crate::scene::{Dimension, Wall, WallShape};
+use crate::scene::{Dimension, Piston, Wall, WallShape};
 use nalgebra::Vector3;
 
 impl Resolver<'_> {
@@ -70,7 +70,25 @@ impl Resolver<'_> {
         };
         let material = self.material(&key("material"), &spec.material)?;
         let until = spec.until.map(|time| check.positive(&key("until"), time, "time (s)")).transpose()?;
-        Ok(Wall { name: name.to_owned(), material, shape, motion: self.motion(name, &spec.motion)?, until })
+        let motion = self.motion(name, &spec.motion)?;
+        let piston = spec.piston.as_ref().map(|piston| self.piston(name, piston, &shape, &motion)).transpose()?;
+        Ok(Wall { name: name.to_owned(), material, shape, motion, piston, until })
+    }
+
+    fn piston(&self, wall: &str, spec: &PistonSpec, shape: &WallShape, motion: &Motion) -> Result<Piston, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("walls.{wall}.piston{part}");
+        if !matches!(shape, WallShape::Plane { .. }) {
+            return Err(check.error(&key(""), "a `plane` that is pressed", "another wall"));
+        }
+        if motion.phases.iter().any(|phase| phase.spin.norm() > 0.0) {
+            return Err(check.error(&key(""), "a plane that does not turn", "one that does"));
+        }
+        Ok(Piston {
+            force: check.finite(&key(".force"), spec.force, "force (N)")?,
+            mass: check.positive(&key(".mass"), spec.mass, "mass (kg)")?,
+            damping: check.not_negative(&key(".damping"), spec.damping, "damping (1/s)")?,
+        })
     }
 
     fn round(&self, key: &str, axis: &[Vec<f64>; 2], radii: [f64; 2]) -> Result<WallShape, SceneError> {
