@@ -1,6 +1,7 @@
 //! The state of a run between two steps, from which it continues to the same bits.
 //!
-//! On disk: a [`crate::sealed`] file of a [`Checkpoint`] in postcard's format, which keeps every bit of a number.
+//! On disk: the line `grainbench checkpoint <format>`, length and hash (see `sealed`), and a [`Checkpoint`] in postcard's
+//! format, which keeps every bit of a number.
 
 use crate::scene::Scene;
 use crate::sealed::{self, Broken};

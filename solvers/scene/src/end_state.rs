@@ -1,8 +1,8 @@
 //! The state that a run ends in, from which another scene begins: grains with their velocities and spins, and what their
 //! contacts remember. A data file loses the springs of contacts, and with them the friction that holds a heap up.
 //!
-//! On disk: a [`crate::sealed`] file of a zlib stream of an [`EndState`] in postcard's format, which keeps every bit of a
-//! number.
+//! On disk: the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an [`EndState`] in
+//! postcard's format, which keeps every bit of a number.
 
 use crate::sealed::{self, Broken};
 use flate2::Compression;
