@@ -126,7 +126,10 @@ fn what_is_no_state_is_refused() {
         assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{what}: {}", answer.err);
         std::fs::remove_file(path.join("scene.toml")).unwrap();
         assert_eq!(files(path), before);
-        refusals += &format!("{what}\n    {}", answer.err);
+        // How long a file is depends on what is in it.
+        let lengths = |line: &str| line.replace(|digit: char| digit.is_ascii_digit(), "#");
+        let said = if what == "cut off" { lengths(&answer.err) } else { answer.err };
+        refusals += &format!("{what}\n    {said}");
     };
     let of = |file: &str, further: &str| {
         scene(1.0, &format!("[grains.g]\nmaterial = 'm'\nstate = {{ path = '{file}' }}\n{further}"))

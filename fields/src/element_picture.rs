@@ -41,9 +41,10 @@ pub fn pictures(name: &str, shots: &[Shot<'_>], size: f64, range: (f64, f64)) ->
     field(column, range, pixel, panels, (String::new(), vec![0.0]))
 }
 
-/// A film of quantities over the sheet of cells of a course, side by side, each on a scale of its own, or a picture where it has
-/// one frame. None where the grid is no sheet of one cell's depth, or no element has any of the quantities. A range runs from
-/// zero to what a fiftieth of the elements is above. Cells that hold too little are left blank.
+/// A film of quantities over the sheet of cells of a course, side by side, each on a scale of its own, or a picture where it
+/// has one frame. None where the grid is no sheet of one cell's depth, or no element has any of the quantities. A range runs
+/// from zero, that of packing fractions from what a fiftieth of the elements is below, to what a fiftieth is above. Cells that
+/// hold too little are left blank.
 #[must_use]
 pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
     let [across, up] = sheet(&course.grid)?;
@@ -58,8 +59,8 @@ pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
         let mut values: Vec<f64> =
             shown.iter().flat_map(|frame| cells().filter_map(|cell| value(frame, cell))).collect();
         values.sort_by(f64::total_cmp);
-        let high = values.get(values.len().checked_sub(1)? * 49 / 50)?;
-        let range = (0.0, two_digits(*high));
+        let at = |fiftieths: usize| values.get(values.len().checked_sub(1)? * fiftieths / 50).copied();
+        let range = (lowest(name, at(1)?), two_digits(at(49)?));
         let of = |frame: &&Frame| {
             let of_cell = |cell: usize| level(value(frame, cell).unwrap_or(f64::NAN), range);
             raster(&course.grid, [across, up], pixels, of_cell)
@@ -72,6 +73,11 @@ pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
     let times = shown.iter().map(|frame| frame.time).collect();
     let clock = ("time t (s)".to_owned(), times);
     (!panels.is_empty()).then(|| field(&COLUMNS[0], (0.0, 1.0), pixel, panels, clock))
+}
+
+/// Where the range of a quantity begins whose lowest fiftieth ends at a value: packing fractions of a bulk differ by little.
+fn lowest(name: &str, value: f64) -> f64 {
+    if name == "packing_fraction" { ((value * 20.0).floor() / 20.0).max(0.0) } else { 0.0 }
 }
 
 /// The two axes along which a sheet of cells lies, one cell deep along the third; x or y first.

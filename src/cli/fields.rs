@@ -194,18 +194,19 @@ fn of_dump(
     Ok(())
 }
 
+/// Whether a snapshot of ours is of a plane: nothing is beside z = 0, in a box from −½ to ½.
+fn is_plane(snapshot: &Snapshot) -> bool {
+    let grains = snapshot.grains.iter().map(|grain| grain.position.z);
+    let mut heights = grains.chain(snapshot.points.iter().map(|point| point.position.z));
+    (snapshot.bounds.0.z, snapshot.bounds.1.z) == (-0.5, 0.5) && heights.all(|height| height == 0.0)
+}
+
 /// The grid over the first snapshot, and what is left out.
 fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
-    let flat = snapshot
-        .grains
-        .iter()
-        .map(|grain| grain.position.z)
-        .chain(snapshot.points.iter().map(|point| point.position.z));
     let kind = match arguments.dimension {
         Some(2) => Kind::Discs,
-        Some(_) => Kind::Spheres,
-        None if arguments.source.is_dir() && flat.clone().all(|z| z == 0.0) => Kind::Discs,
-        None => Kind::Spheres,
+        None if arguments.source.is_dir() && is_plane(snapshot) => Kind::Discs,
+        _ => Kind::Spheres,
     };
     let dimension = kind.dimension();
     let corner = |given: &[f64], of_box: Vector3<f64>, flag: &str| match given {

@@ -44,7 +44,7 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary) -> Result<
     if let Some(field) = film(course, &DRAWN) {
         let caption = format!(
             "Velocity, friction, packing fraction and rate of shear, {}. Cells of too few grains are left blank; of each \
-             quantity the highest fiftieth stands at the end of its scale.",
+             quantity what is beyond its scale stands at its end.",
             summary.velocity
         );
         let title = format!("Granular elements, {}", cells(summary));

@@ -17,7 +17,7 @@ const MAGIC: &[u8] = b"grainbench state ";
 /// The format that this program writes.
 const FORMAT: u32 = 1;
 /// Most bytes that a state may unfold to.
-const MOST: u64 = 1 << 34;
+const MOST: u64 = 1 << 32;
 
 /// The state that a run ended in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

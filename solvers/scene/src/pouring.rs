@@ -28,11 +28,27 @@ pub struct Pour {
     pub start: f64,
 }
 
-/// Where and when each grain comes: time (s) and centre (m). None when no room is found for one in 10,000 tries. A grain
-/// touches none of those before it as long as these fall freely: what stands in the way of the box is not looked at.
-#[must_use]
-pub fn poured(pour: &Pour, domain: Option<&Domain>, dimension: Dimension) -> Option<Vec<(f64, Vector3<f64>)>> {
+/// Why grains cannot be poured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unpourable {
+    /// No room was found for one of them in 10,000 tries.
+    NoRoom,
+    /// More than 20,000 are still near the box: they do not fall out of it, or it is a domain and no spout.
+    Crowd,
+}
+
+/// Where and when each grain comes: time (s) and centre (m). A grain touches none of those before it as long as these fall
+/// freely: what stands in the way of the box is not looked at.
+///
+/// # Errors
+/// When there is no room for all of them, or too many stay near the box.
+pub fn poured(
+    pour: &Pour,
+    domain: Option<&Domain>,
+    dimension: Dimension,
+) -> Result<Vec<(f64, Vector3<f64>)>, Unpourable> {
     const TRIES: u32 = 10_000;
+    const CROWD: usize = 20_000;
     let mut generator = Pcg64::seed_from_u64(pour.seed);
     let [low, high] = pour.corners;
     let mut all = Vec::with_capacity(pour.count as usize);
@@ -52,6 +68,9 @@ pub fn poured(pour: &Pour, domain: Option<&Domain>, dimension: Dimension) -> Opt
         while near.front().is_some_and(|first| left(now(first))) {
             near.pop_front();
         }
+        if near.len() > CROWD {
+            return Err(Unpourable::Crowd);
+        }
         let places: Vec<Vector3<f64>> = near.iter().map(now).collect();
         let is_free = |centre: &Vector3<f64>| {
             places.iter().all(|place| {
@@ -69,11 +88,12 @@ pub fn poured(pour: &Pour, domain: Option<&Domain>, dimension: Dimension) -> Opt
                 centre[axis] = low[axis] + (high[axis] - low[axis]) * generator.random::<f64>();
             }
             is_free(&centre).then_some(centre)
-        })?;
+        });
+        let centre = centre.ok_or(Unpourable::NoRoom)?;
         near.push_back((time, centre));
         all.push((time, centre));
     }
-    Some(all)
+    Ok(all)
 }
 
 #[cfg(test)]
@@ -109,11 +129,17 @@ mod tests {
                 assert!(between.norm() >= 1.0, "{number}");
             }
         }
-        assert_eq!(poured(&pour, Some(&domain), Dimension::Three), Some(all));
+        assert_eq!(poured(&pour, Some(&domain), Dimension::Three), Ok(all));
     }
 
     #[test]
     fn a_rate_that_leaves_no_room_is_told() {
-        assert_eq!(poured(&Pour { rate: 4000.0, ..pour() }, None, Dimension::Three), None);
+        let with = |pour: Pour| poured(&pour, None, Dimension::Three);
+        assert_eq!(with(Pour { rate: 4000.0, ..pour() }), Err(Unpourable::NoRoom));
+        // Times beyond all numbers, and grains that do not fall.
+        assert_eq!(with(Pour { rate: 1e-320, ..pour() }), Err(Unpourable::NoRoom));
+        let (still, corners) = (Vector3::zeros(), [Vector3::zeros(), Vector3::repeat(1e4)]);
+        let resting = Pour { count: 1_000_000, velocity: still, gravity: still, corners, ..pour() };
+        assert_eq!(with(resting), Err(Unpourable::Crowd));
     }
 }

@@ -3,7 +3,7 @@
 use super::Resolver;
 use crate::error::SceneError;
 use crate::file::{GrainsSpec, PouredSpec};
-use crate::pouring::{Pour, poured};
+use crate::pouring::{Pour, Unpourable, poured};
 use crate::scene::{Block, Domain, Driven};
 use crate::stays::{Removal, Stays};
 use nalgebra::Vector3;
@@ -43,8 +43,12 @@ impl Resolver<'_> {
             corners: [low, high],
             start: check.not_negative(&key("start"), spec.start, "time (s)")?,
         };
-        poured(&pour, domain, check.dimension).ok_or_else(|| {
-            check.error(&key("rate"), "room in the box for each grain when it comes", &format!("{} 1/s", spec.rate))
+        poured(&pour, domain, check.dimension).map_err(|reason| {
+            let expected = match reason {
+                Unpourable::NoRoom => "room in the box for each grain when it comes",
+                Unpourable::Crowd => "a box that grains fall out of: with a velocity, gravity or a lower rate",
+            };
+            check.error(&key("rate"), expected, &format!("{} 1/s", spec.rate))
         })
     }
 
