@@ -73,7 +73,7 @@ impl LoadedDisc {
             let normal = contact.normal.xy();
             let force = contact.shear_force.xy() - normal * contact.normal_force;
             let mut push = |id: u32, load: Load| {
-                if let Some(loads) = (id as usize).checked_sub(1).and_then(|place| loads.get_mut(place)) {
+                if let Some(loads) = snapshot.place_of(id).and_then(|place| loads.get_mut(place)) {
                     loads.push(load);
                 }
             };

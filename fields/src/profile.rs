@@ -4,6 +4,7 @@ use crate::grid::inside;
 use crate::overlap::disc_in_box;
 use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// What a profile is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,21 +62,22 @@ pub fn profile(
     sums.iter().enumerate().filter(|(_, sum)| sum.0 > 0.0).map(|(slice, sum)| (middle(slice), sum.1 / sum.0)).collect()
 }
 
-/// How far every grain has come since the first snapshot (m).
+/// How far every grain of the last snapshot has come since the first that it is in (m).
 fn displacements(snapshots: &[Snapshot]) -> Vec<Vector3<f64>> {
-    let count = snapshots.first().map_or(0, |first| first.grains.len());
-    let mut moved = vec![Vector3::zeros(); count];
+    let mut moved: BTreeMap<u32, Vector3<f64>> = BTreeMap::new();
     for pair in snapshots.windows(2) {
         let length = pair[1].bounds.1 - pair[1].bounds.0;
-        for ((moved, before), after) in moved.iter_mut().zip(&pair[0].grains).zip(&pair[1].grains) {
+        for after in &pair[1].grains {
+            let Some(before) = pair[0].grain(after.id) else { continue };
             let mut step = after.position - before.position;
             for axis in (0..3).filter(|&axis| pair[1].periodic[axis]) {
                 step[axis] -= (step[axis] / length[axis]).round() * length[axis];
             }
-            *moved += step;
+            *moved.entry(after.id).or_default() += step;
         }
     }
-    moved
+    let last = snapshots.last().map_or(&[][..], |last| &last.grains);
+    last.iter().map(|grain| moved.get(&grain.id).copied().unwrap_or_default()).collect()
 }
 
 #[cfg(test)]
@@ -123,6 +125,13 @@ mod tests {
             // A slice holds half of one disc: its velocity.
             assert!((velocity - (x.floor() + 0.5)).abs() < 1e-12, "{x} {velocity}");
         }
+        // One that leaves on the way takes nothing from the others.
+        let mut fewer = snapshots.clone();
+        for snapshot in &mut fewer[5..] {
+            snapshot.grains.remove(0);
+        }
+        let all = profile(&snapshots, Motion::Displacement, 0, 1, 4);
+        assert_eq!(profile(&fewer, Motion::Displacement, 0, 1, 4), all[1..]);
         // Passing more than half the domain between two snapshots cannot be followed.
         let rare = [snapshots[0].clone(), snapshots[8].clone()];
         assert!(profile(&rare, Motion::Displacement, 0, 1, 4).iter().any(|(x, moved)| (moved - 4.0 * x).abs() > 1.0));

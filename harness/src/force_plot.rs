@@ -13,7 +13,7 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
         .told_contacts()
         .iter()
         .filter_map(|contact| {
-            let radius = |id: u32| Some(snapshot.grains.get((id as usize).checked_sub(1)?)?.radius);
+            let radius = |id: u32| Some(snapshot.grain(id)?.radius);
             let beyond = match contact.partner {
                 Partner::Grain(other) => radius(other)?,
                 Partner::Body(_) | Partner::Wall(_) => 0.0,
