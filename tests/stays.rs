@@ -121,6 +121,7 @@ fn what_stood_on_a_wall_falls_when_it_is_taken_away() {
     let fallen = end(&record).time - 1.2;
     // The last force is that of the step before: half a step of it.
     assert!((end(&record).grains[0].position.z - (0.49995 - 0.5 * fallen * fallen)).abs() < 1e-3);
+    assert!(record.snapshots[0].walls[0].corners.len() == 2 && end(&record).walls[0].corners.is_empty());
     let stays = run(&format!("{HEAD}{FLOOR}{ball}"), 1);
     assert!((end(&stays).grains[0].position.z - 0.49995).abs() < 1e-12);
 }

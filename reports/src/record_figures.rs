@@ -40,12 +40,13 @@ impl Named<'_> {
 /// Whether all of a record lies in the plane z = 0 and has something to be seen.
 #[must_use]
 pub fn is_plane(record: &Record) -> bool {
-    let flat = |snapshot: &Snapshot| {
+    let heights = |snapshot: &Snapshot| {
         let grains = snapshot.grains.iter().map(|grain| grain.position.z);
-        let mut heights = grains.chain(snapshot.points.iter().map(|point| point.position.z)).peekable();
-        heights.peek().is_some() && heights.all(|height| height == 0.0)
+        grains.chain(snapshot.points.iter().map(|point| point.position.z)).collect::<Vec<f64>>()
     };
-    !record.snapshots.is_empty() && record.snapshots.iter().all(flat)
+    // Where grains are poured there may be none at first.
+    let all: Vec<f64> = record.snapshots.iter().flat_map(heights).collect();
+    !all.is_empty() && all.iter().all(|&height| height == 0.0)
 }
 
 /// Every picture that the records have the data for, at times of the first one. `fringe` is the constant c of fringes

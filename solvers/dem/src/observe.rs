@@ -21,7 +21,7 @@ pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
         .walls
         .iter()
         .map(|wall| {
-            let (corners, infinite) = wall.shape.corners();
+            let (corners, infinite) = if wall.is_gone() { (Vec::new(), false) } else { wall.shape.corners() };
             WallState { name: wall.name().to_owned(), corners, infinite, force: Some(wall.force) }
         })
         .collect();
