@@ -182,6 +182,31 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     assert!(image.contains("Name=\"pressure\" format=\"ascii\">\nnan\n"), "no pressure is told as such");
 }
 
+/// Of a dump without velocities and times the packing and the stress are known, and nothing of what moves; its clock is the
+/// step.
+#[test]
+fn what_a_dump_does_not_tell_is_nowhere() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let packing = packing();
+    let still = |text: String, step: &str| text.replace("vx vy vz", "p q r").replace("TIMESTEP\n7", step);
+    let steps = ["TIMESTEP\n7", "TIMESTEP\n9"];
+    std::fs::write(path.join("still.dump"), steps.map(|step| still(dump(&packing), step)).concat()).unwrap();
+    std::fs::write(path.join("contacts.dump"), steps.map(|step| still(contacts(&packing), step)).concat()).unwrap();
+    let fields = ["fields", "still.dump", "--contacts", "contacts.dump", "--map", MAP, "--cell", "2.5,5,2.5"];
+    let answer = grainbench(path, &[&fields[..], &["--fewest", "1", "--flowing", "0.1", "--out", "out"]].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let known = |name: &str| column(&path.join("out"), "elements.csv", name).iter().flatten().count();
+    for name in ["speed (m/s)", "shear_rate (1/s)", "residual_velocity (m/s)", "angle_of_largest (deg)", "time (s)"] {
+        assert_eq!(known(name), 0, "{name}");
+    }
+    assert!(known("packing_fraction (1)") == 16 && known("pressure (Pa)") == 16);
+    let table = std::fs::read_to_string(path.join("out/elements.csv")).unwrap();
+    assert!(table.lines().skip(1).all(|row| row.contains("still")), "what has no rate of shear does not flow");
+    let clock = std::fs::read_to_string(path.join("out/elements/elements.pvd")).unwrap();
+    assert!(!clock.contains("NaN") && clock.contains("\"9.0\"") || clock.contains("\"9\""), "{clock}");
+}
+
 #[test]
 fn a_run_of_ours_becomes_tables_images_films_and_trails() {
     let directory = tempfile::tempdir().unwrap();

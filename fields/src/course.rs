@@ -26,6 +26,14 @@ pub struct Frame {
     pub outside: usize,
 }
 
+impl Frame {
+    /// Where it stands on the clock: its time (s), or its step where nobody told that.
+    #[must_use]
+    pub fn clock(&self) -> f64 {
+        if self.time.is_finite() { self.time } else { self.step as f64 }
+    }
+}
+
 /// A course of snapshots as granular elements.
 #[derive(Clone, Debug)]
 pub struct Course {
@@ -80,11 +88,10 @@ impl Course {
         let all = if snapshot.points.is_empty() { snapshot.grains.len() } else { snapshot.points.len() };
         let masked = self.masks.of(&elements, &self.grid);
         let outside = all.saturating_sub(inside);
-        let frame = Frame { step: snapshot.step, time: snapshot.time, elements, masked, outside };
         if let Some(trails) = &mut self.trails {
-            trails.go_on(&snapshot, &frame, self.frames.len(), &self.grid, self.kind.dimension());
+            trails.go_on(&self.frames, &snapshot, &self.grid, self.kind.dimension());
         }
-        self.frames.push(frame);
+        self.frames.push(Frame { step: snapshot.step, time: snapshot.time, elements, masked, outside });
         if self.between {
             self.before = Some(snapshot);
         }

@@ -70,8 +70,8 @@ pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
     };
     let panels: Vec<Panel> = names.iter().filter_map(panel).collect();
     let pixel = course.grid.cell[across] / f64::from(pixels);
-    let times = shown.iter().map(|frame| frame.time).collect();
-    let clock = ("time t (s)".to_owned(), times);
+    let words = if shown.iter().all(|frame| frame.time.is_finite()) { "time t (s)" } else { "step" };
+    let clock = (words.to_owned(), shown.iter().map(|frame| frame.clock()).collect());
     (!panels.is_empty()).then(|| field(&COLUMNS[0], (0.0, 1.0), pixel, panels, clock))
 }
 

@@ -116,7 +116,9 @@ pub fn motion(movers: &[Mover], dimension: usize, grid: &Grid) -> Vec<Motion> {
             sums[cell].add(mover.weight, mover.position - grid.middle(cell), mover.velocity);
         }
     }
-    let gradients: Vec<_> = sums.iter().map(|sums| sums.gradient(dimension, grid.cell)).collect();
+    // Velocities that nobody told are no numbers, and nothing is known of what they would make.
+    let told = |gradient: &Matrix3<f64>| gradient.iter().all(|number| number.is_finite());
+    let gradients: Vec<_> = sums.iter().map(|sums| sums.gradient(dimension, grid.cell).filter(told)).collect();
     let mut left = vec![0.0; grid.cells()];
     for (mover, home) in movers.iter().zip(&homes) {
         if let Some(cell) = *home
@@ -127,9 +129,10 @@ pub fn motion(movers: &[Mover], dimension: usize, grid: &Grid) -> Vec<Motion> {
             left[cell] += mover.weight * (mover.velocity - velocity / weight - gradient * arm).norm_squared();
         }
     }
+    let mean = |sums: &Sums| Some(sums.velocity / sums.weight).filter(|mean| mean.iter().all(|part| part.is_finite()));
     let of = |cell: usize| Motion {
         members: sums[cell].members,
-        velocity: (sums[cell].members > 0).then(|| sums[cell].velocity / sums[cell].weight),
+        velocity: mean(&sums[cell]),
         gradient: gradients[cell],
         residual: gradients[cell].map(|_| (left[cell] / sums[cell].weight).sqrt()),
     };

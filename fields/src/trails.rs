@@ -12,7 +12,6 @@ pub struct Trails {
     /// Cells in whose middles tracers begin, and whose grains are labelled.
     pub boxes: Grid,
     tracers: Vec<Tracer>,
-    before: Option<Frame>,
     /// Where they were, frame after frame.
     pub stops: Vec<Stop>,
 }
@@ -34,16 +33,16 @@ impl Trails {
     /// Of tracers that begin in the middles of these cells.
     #[must_use]
     pub const fn new(boxes: Grid) -> Self {
-        Self { boxes, tracers: Vec::new(), before: None, stops: Vec::new() }
+        Self { boxes, tracers: Vec::new(), stops: Vec::new() }
     }
 
-    /// Goes on to a frame of a course, the `number`th, by the mean velocities of the frame before. A tracer that nothing moves
-    /// any more, for no grains are around it, ends there.
-    pub(crate) fn go_on(&mut self, snapshot: &Snapshot, frame: &Frame, number: usize, grid: &Grid, dimension: usize) {
-        match self.before.replace(frame.clone()) {
+    /// Goes on from the frames so far to a snapshot, by the mean velocities of the last of them. A tracer that nothing moves any
+    /// more, for no grains are around it, ends there.
+    pub(crate) fn go_on(&mut self, frames: &[Frame], snapshot: &Snapshot, grid: &Grid, dimension: usize) {
+        match frames.last() {
             None => self.tracers = tracers(snapshot, &self.boxes),
             Some(before) => {
-                let elapsed = frame.time - before.time;
+                let elapsed = snapshot.time - before.time;
                 for tracer in self.tracers.iter_mut().filter(|tracer| !tracer.is_lost()) {
                     tracer.carry(&before.elements, grid, snapshot.periodic, elapsed);
                 }
@@ -52,7 +51,7 @@ impl Trails {
         for (tracer, of) in self.tracers.iter().enumerate().filter(|(_, of)| !of.is_lost()) {
             let deformation = of.deformation(snapshot, dimension);
             let strain = deformation.and_then(|deformation| hencky(&deformation)).map(|strain| strain.norm());
-            self.stops.push(Stop { tracer, frame: number, position: of.position, strain });
+            self.stops.push(Stop { tracer, frame: frames.len(), position: of.position, strain });
         }
     }
 }

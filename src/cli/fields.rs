@@ -113,6 +113,11 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
                 "{flag}: expected a dump that tells the time, or `--time-step` beside it"
             )));
         }
+        if let Some(flag) = needs_time.filter(|_| !snapshot.points.is_empty()) {
+            return Err(Fault::input(format!(
+                "{flag}: expected grains to follow, found material points, which have no names"
+            )));
+        }
         course.add(snapshot);
         if course.grid.cells() * course.frames.len() > MOST_ELEMENTS {
             return Err(Fault::input(format!(

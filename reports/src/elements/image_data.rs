@@ -18,7 +18,7 @@ pub(super) fn write(course: &Course, frame: &Frame, mut out: impl Write) -> io::
         out,
         "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
     )?;
-    writeln!(out, "{:?}\n</DataArray>\n</FieldData>", frame.time)?;
+    writeln!(out, "{:?}\n</DataArray>\n</FieldData>", frame.clock())?;
     writeln!(out, "<Piece Extent=\"{extent}\">\n<CellData Scalars=\"packing_fraction\">")?;
     for column in &COLUMNS {
         writeln!(out, "<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">", column.name)?;

@@ -38,7 +38,7 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary) -> Result<
     for (number, frame) in course.frames.iter().enumerate() {
         let name = format!("elements-{number:06}.vti");
         out.write_with(format!("elements/{name}"), |file| image_data::write(course, frame, file))?;
-        files.push((frame.time, name));
+        files.push((frame.clock(), name));
     }
     out.write("elements/elements.pvd", crate::export::vtk::collection(&files))?;
     if let Some(field) = film(course, &DRAWN) {
