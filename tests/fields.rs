@@ -8,9 +8,9 @@ use common::{files, grainbench};
 use grainbench::cases::solvers;
 use grainbench::fields::element::{elements, whole_stress};
 use grainbench::fields::grid::Grid;
-use grainbench::fields::kind::Kind;
 use grainbench::scene::nalgebra::{Matrix3, Vector3};
 use grainbench::scene::record::{Partner, Snapshot};
+use grainbench::scene::scene::Dimension;
 use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::fmt::Write;
@@ -75,7 +75,7 @@ fn packing() -> Snapshot {
 fn the_stress_of_a_packing_at_rest_carries_its_weight() {
     let packing = packing();
     let grid = Grid::filling(packing.bounds, Vector3::new(1.7, 2.5, 1.1));
-    let inner = whole_stress(&elements(&packing, Kind::Spheres, &grid), &grid).unwrap();
+    let inner = whole_stress(&elements(&packing, Dimension::Three, &grid), &grid).unwrap();
     let on_walls = packing.told_contacts().iter().filter(|contact| matches!(contact.partner, Partner::Wall(_)));
     let (mut outer, mut shifted) = (Matrix3::zeros(), Matrix3::zeros());
     for contact in on_walls {
@@ -152,7 +152,7 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     let mut alone = packing;
     alone.contacts.as_mut().unwrap().retain(|contact| matches!(contact.partner, Partner::Grain(_)));
     let grid = Grid::filling(alone.bounds, Vector3::new(1.25, 2.5, 1.25));
-    let exact = elements(&alone, Kind::Spheres, &grid);
+    let exact = elements(&alone, Dimension::Three, &grid);
     let same = |file: &str, name: &str, of: &dyn Fn(usize) -> Option<f64>| {
         let found = column(&path.join(file), "elements.csv", name);
         assert_eq!(found.len(), grid.cells());

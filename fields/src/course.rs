@@ -4,11 +4,11 @@ use crate::average::{Mean, mean};
 use crate::column::{COLUMNS, Column, Grains};
 use crate::element::{Element, elements, elements_moving, interpolated, mean_grain};
 use crate::grid::Grid;
-use crate::kind::Kind;
 use crate::mask::{Masked, Masks};
 use crate::motion::{motion, movers_between};
 use crate::trails::Trails;
 use grainbench_scene::record::Snapshot;
+use grainbench_scene::scene::Dimension;
 use nalgebra::{Matrix3, Vector3};
 
 /// The elements of one snapshot.
@@ -39,8 +39,8 @@ impl Frame {
 pub struct Course {
     /// The cells.
     pub grid: Grid,
-    /// What grains are.
-    pub kind: Kind,
+    /// The plane, where grains are discs to whoever looks, or space.
+    pub space: Dimension,
     /// What quantities are found with.
     pub grains: Grains,
     /// What is left out of means.
@@ -57,10 +57,10 @@ pub struct Course {
 impl Course {
     /// Of no snapshots yet.
     #[must_use]
-    pub fn new(grid: Grid, kind: Kind, plane: [usize; 2], masks: Masks, between: bool) -> Self {
+    pub fn new(grid: Grid, space: Dimension, plane: [usize; 2], masks: Masks, between: bool) -> Self {
         Self {
             grid,
-            kind,
+            space,
             grains: Grains { mean: None, plane },
             masks,
             frames: Vec::new(),
@@ -72,24 +72,24 @@ impl Course {
 
     /// Adds a snapshot. Between snapshots there are velocities from the second on: the first then adds no frame.
     pub fn add(&mut self, snapshot: Snapshot) {
-        self.grains.mean = self.grains.mean.or_else(|| mean_grain(&snapshot, self.kind)).filter(|of| of.1.is_finite());
+        self.grains.mean = self.grains.mean.or_else(|| mean_grain(&snapshot, self.space)).filter(|of| of.1.is_finite());
         let elements = match &self.before {
             Some(before) if self.between => {
-                let motion = motion(&movers_between(before, &snapshot), self.kind.dimension(), &self.grid);
-                elements_moving(&snapshot, motion, self.kind, &self.grid)
+                let motion = motion(&movers_between(before, &snapshot), self.space.count(), &self.grid);
+                elements_moving(&snapshot, motion, self.space, &self.grid)
             }
             None if self.between => {
                 self.before = Some(snapshot);
                 return;
             }
-            _ => elements(&snapshot, self.kind, &self.grid),
+            _ => elements(&snapshot, self.space, &self.grid),
         };
         let inside: usize = elements.iter().map(|element| element.motion.members).sum();
         let all = if snapshot.points.is_empty() { snapshot.grains.len() } else { snapshot.points.len() };
         let masked = self.masks.of(&elements, &self.grid);
         let outside = all.saturating_sub(inside);
         if let Some(trails) = &mut self.trails {
-            trails.go_on(&self.frames, &snapshot, &self.grid, self.kind.dimension());
+            trails.go_on(&self.frames, &snapshot, &self.grid, self.space.count());
         }
         self.frames.push(Frame { step: snapshot.step, time: snapshot.time, elements, masked, outside });
         if self.between {

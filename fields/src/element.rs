@@ -3,11 +3,12 @@
 
 use crate::contact_stress::contact_stress;
 use crate::grid::Grid;
-use crate::kind::Kind;
 use crate::motion::{Motion, motion, movers};
 use crate::packing::packing_fraction;
 use crate::tensor;
+use grainbench_scene::file::GrainShape;
 use grainbench_scene::record::Snapshot;
+use grainbench_scene::scene::Dimension;
 use nalgebra::{Matrix3, Vector3};
 
 /// What a cell holds.
@@ -71,16 +72,16 @@ impl Element {
 /// The cells of a grid over a snapshot, in the order of [`Grid::place`]: of material points where there are some, else of
 /// grains.
 #[must_use]
-pub fn elements(snapshot: &Snapshot, kind: Kind, grid: &Grid) -> Vec<Element> {
-    elements_moving(snapshot, motion(&movers(snapshot), kind.dimension(), grid), kind, grid)
+pub fn elements(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<Element> {
+    elements_moving(snapshot, motion(&movers(snapshot), space.count(), grid), space, grid)
 }
 
 /// The same with a motion that was found otherwise, such as between two snapshots.
 #[must_use]
-pub fn elements_moving(snapshot: &Snapshot, motion: Vec<Motion>, kind: Kind, grid: &Grid) -> Vec<Element> {
-    let dimension = kind.dimension();
+pub fn elements_moving(snapshot: &Snapshot, motion: Vec<Motion>, space: Dimension, grid: &Grid) -> Vec<Element> {
+    let dimension = space.count();
     let stress = contact_stress(snapshot, dimension, grid);
-    let filled = packing_fraction(snapshot, kind, grid);
+    let filled = packing_fraction(snapshot, space, grid);
     let element = |(cell, (motion, packing_fraction)): (usize, (Motion, f64))| Element {
         packing_fraction,
         stress: stress.as_ref().map(|stress| stress[cell]),
@@ -93,14 +94,14 @@ pub fn elements_moving(snapshot: &Snapshot, motion: Vec<Motion>, kind: Kind, gri
 /// Mean diameter (m) and mean density (kg/m³; kg/m² of discs) of the grains of a snapshot, each grain as much as any other;
 /// none of a snapshot without grains.
 #[must_use]
-pub fn mean_grain(snapshot: &Snapshot, kind: Kind) -> Option<(f64, f64)> {
+pub fn mean_grain(snapshot: &Snapshot, space: Dimension) -> Option<(f64, f64)> {
     let grains = &snapshot.grains;
-    let volume = |radius: f64| match kind {
-        Kind::Discs => std::f64::consts::PI * radius * radius,
-        Kind::Spheres => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+    let shape = match space {
+        Dimension::Two => GrainShape::Disc,
+        Dimension::Three => GrainShape::Sphere,
     };
     let sum = |(diameter, density): (f64, f64), (more, of): (f64, f64)| (diameter + more, density + of);
-    let each = grains.iter().map(|grain| (2.0 * grain.radius, grain.mass / volume(grain.radius)));
+    let each = grains.iter().map(|grain| (2.0 * grain.radius, grain.mass / shape.mass(grain.radius, 1.0)));
     let (diameter, density) = each.fold((0.0, 0.0), sum);
     let count = grains.len() as f64;
     (count > 0.0).then_some((diameter / count, density / count))

@@ -4,7 +4,6 @@ use crate::column::{COLUMNS, Column, Grains};
 use crate::course::{Course, Frame};
 use crate::element::elements;
 use crate::grid::Grid;
-use crate::kind::Kind;
 use crate::picture::two_digits;
 use grainbench_harness::figure::{Field, Panel, Shades};
 use grainbench_harness::raster::{Raster, level};
@@ -31,7 +30,7 @@ pub fn pictures(name: &str, shots: &[Shot<'_>], size: f64, range: (f64, f64)) ->
     let panels = shots.iter().map(|(title, snapshot, scene)| {
         let grid = Grid::filling(snapshot.bounds, Vector3::new(size, size, 1.0));
         pixel = grid.cell.x / f64::from(PIXELS);
-        let cells = elements(snapshot, Kind::of(scene), &grid);
+        let cells = elements(snapshot, scene.dimension, &grid);
         let grains = Grains { mean: None, plane: [0, 1] };
         let value = |place: usize| (column.of)(&cells[place], &grains).unwrap_or(f64::NAN);
         let frame = raster(&grid, [0, 1], PIXELS, |place| level(value(place), range));

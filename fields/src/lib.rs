@@ -11,7 +11,6 @@ pub mod disc;
 pub mod element;
 pub mod element_picture;
 pub mod grid;
-pub mod kind;
 pub mod mask;
 pub mod motion;
 pub mod overlap;

@@ -1,18 +1,18 @@
 //! Packing fraction: the part of each cell that grains fill, to their exact volumes.
 
 use crate::grid::{Grid, inside};
-use crate::kind::Kind;
 use crate::overlap::{disc_in_box, sphere_in_box};
 use grainbench_scene::record::{GrainState, Snapshot};
+use grainbench_scene::scene::Dimension;
 use nalgebra::Vector3;
 
 /// φ = (1/V) Σ volume of grain within the cell, of images across periodic sides too; where grains overlap they count twice.
 /// Of material points φ = (1/V) Σ V_p.
 #[must_use]
-pub fn packing_fraction(snapshot: &Snapshot, kind: Kind, grid: &Grid) -> Vec<f64> {
+pub fn packing_fraction(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<f64> {
     let mut filled = vec![0.0; grid.cells()];
     if snapshot.points.is_empty() {
-        snapshot.grains.iter().for_each(|grain| of_grain(snapshot, grain, kind, grid, &mut filled));
+        snapshot.grains.iter().for_each(|grain| of_grain(snapshot, grain, space, grid, &mut filled));
     } else {
         for point in &snapshot.points {
             if let Some(cell) = grid.find(inside(snapshot, point.position)) {
@@ -25,24 +25,24 @@ pub fn packing_fraction(snapshot: &Snapshot, kind: Kind, grid: &Grid) -> Vec<f64
 }
 
 /// Gives every cell what is in it of a grain and its images.
-fn of_grain(snapshot: &Snapshot, grain: &GrainState, kind: Kind, grid: &Grid, filled: &mut [f64]) {
+fn of_grain(snapshot: &Snapshot, grain: &GrainState, space: Dimension, grid: &Grid, filled: &mut [f64]) {
     let (low, high) = snapshot.bounds;
     let shifts = |axis: usize| -> &[f64] {
-        if axis < kind.dimension() && snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] }
+        if axis < space.count() && snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] }
     };
     for &i in shifts(0) {
         for &j in shifts(1) {
             for &k in shifts(2) {
                 let centre = grain.position + Vector3::new(i, j, k).component_mul(&(high - low));
-                share_out(centre, grain.radius, kind, grid, filled);
+                share_out(centre, grain.radius, space, grid, filled);
             }
         }
     }
 }
 
-fn share_out(centre: Vector3<f64>, radius: f64, kind: Kind, grid: &Grid, filled: &mut [f64]) {
+fn share_out(centre: Vector3<f64>, radius: f64, space: Dimension, grid: &Grid, filled: &mut [f64]) {
     let reach = |axis: usize| {
-        if axis >= kind.dimension() {
+        if axis >= space.count() {
             return 0..1;
         }
         let cell = |place: f64| ((place - grid.low[axis]) / grid.cell[axis]).floor().max(0.0) as usize;
@@ -53,9 +53,9 @@ fn share_out(centre: Vector3<f64>, radius: f64, kind: Kind, grid: &Grid, filled:
             for i in reach(0) {
                 let low = grid.corner([i, j, k]) - centre;
                 let high = low + grid.cell;
-                filled[grid.place([i, j, k])] += match kind {
-                    Kind::Discs => disc_in_box(radius, [low.x, low.y], [high.x, high.y]),
-                    Kind::Spheres => sphere_in_box(radius, low.into(), high.into()),
+                filled[grid.place([i, j, k])] += match space {
+                    Dimension::Two => disc_in_box(radius, [low.x, low.y], [high.x, high.y]),
+                    Dimension::Three => sphere_in_box(radius, low.into(), high.into()),
                 };
             }
         }

@@ -5,11 +5,11 @@
 
 use grainbench_fields::element::{Element, elements, velocity_at, whole_stress};
 use grainbench_fields::grid::Grid;
-use grainbench_fields::kind::Kind;
 use grainbench_fields::motion::{Mover, motion, movers_between};
 use grainbench_fields::tensor;
 use grainbench_fields::tracers::{hencky, tracers};
 use grainbench_scene::record::{ContactState, GrainState, Partner, Snapshot};
+use grainbench_scene::scene::Dimension;
 use nalgebra::{Matrix3, Vector3};
 
 fn grain(id: u32, position: Vector3<f64>) -> GrainState {
@@ -91,7 +91,7 @@ fn middle_cell(snapshot: &Snapshot, first: &[Vector3<f64>], deformation: &Matrix
     alone.grains.iter_mut().filter(|grain| !inside(grain.id)).for_each(|grain| grain.position.x = 1e6);
     let volume = (root.powi(3)) * deformation.determinant();
     let grid = Grid { low: Vector3::zeros(), cell: Vector3::repeat(20.0), count: [1; 3] };
-    let element = elements(&alone, Kind::Spheres, &grid)[0];
+    let element = elements(&alone, Dimension::Three, &grid)[0];
     assert_eq!(element.motion.members, 4);
     element.stress.unwrap() * grid.volume() / volume
 }
@@ -248,7 +248,7 @@ fn no_choice_of_cells_gains_or_loses_anything() {
     let shot = Snapshot { contacts: Some(contacts), ..snapshot(grains, high, [true; 3]) };
     for size in [[2.5, 8.0, 2.5], [1.3, 1.7, 0.9], [10.0, 8.0, 12.0]] {
         let grid = Grid::filling(shot.bounds, size.into());
-        let elements = elements(&shot, Kind::Spheres, &grid);
+        let elements = elements(&shot, Dimension::Three, &grid);
         let filled: f64 = elements.iter().map(|element| element.packing_fraction * grid.volume()).sum();
         close(filled, all, 1e-13);
         assert_eq!(elements.iter().map(|element| element.motion.members).sum::<usize>(), 300);
@@ -262,7 +262,7 @@ fn without_contacts_there_is_no_stress() {
     let shot =
         Snapshot { contacts: None, ..snapshot(vec![grain(1, Vector3::repeat(1.0))], Vector3::repeat(2.0), [false; 3]) };
     let grid = Grid::filling(shot.bounds, Vector3::repeat(2.0));
-    let element = elements(&shot, Kind::Spheres, &grid)[0];
+    let element = elements(&shot, Dimension::Three, &grid)[0];
     assert_eq!((element.stress, element.pressure(), element.sine_of_friction()), (None, None, None));
     close(element.packing_fraction, std::f64::consts::PI / 6.0 / 8.0, 1e-13);
 }
@@ -290,12 +290,12 @@ fn tracers_move_and_deform_with_the_flow() {
     let mut all = tracers(&first, &Grid::filling((Vector3::zeros(), high), Vector3::new(5.0, 8.0, 5.0)));
     assert_eq!(all.len(), 4);
     // The middle of a cell is only as near to where its field is told as its grains are to it.
-    let before = elements(&first, Kind::Spheres, &grid);
+    let before = elements(&first, Dimension::Three, &grid);
     let found = velocity_at(&before, &grid, first.periodic, Vector3::new(5.0, 4.0, 5.0)).unwrap();
     assert!((found - Vector3::new(0.4, 0.0, -0.4)).norm() < 0.02, "{found}");
     for frame in 0..40 {
         let shot = shot(frame);
-        let elements = elements(&shot, Kind::Spheres, &grid);
+        let elements = elements(&shot, Dimension::Three, &grid);
         all.iter_mut().for_each(|tracer| tracer.carry(&elements, &grid, shot.periodic, step));
         assert!(all.iter().all(|tracer| !tracer.is_lost()));
     }

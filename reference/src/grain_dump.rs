@@ -3,11 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use grainbench_scene::file::GrainShape;
 use grainbench_scene::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::Vector3;
 
 use crate::observer::Names;
-use crate::pair_forces::{FORCE, TANGENTIAL};
+use crate::pair_forces::PairColumns;
 use crate::read::dump::DumpReader;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
@@ -153,13 +154,9 @@ impl GrainDump {
         if !(radius > 0.0 && radius.is_finite()) {
             return fault("a radius above zero", radius);
         }
-        let volume = if self.beside.plane {
-            std::f64::consts::PI * radius * radius
-        } else {
-            4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
-        };
+        let shape = if self.beside.plane { GrainShape::Disc } else { GrainShape::Sphere };
         let density = columns.density.map(|at| numbers[at]).or(self.beside.density);
-        let mass = columns.mass.map(|at| numbers[at]).or_else(|| density.map(|density| density * volume));
+        let mass = columns.mass.map(|at| numbers[at]).or_else(|| density.map(|density| shape.mass(radius, density)));
         let mut position = Vector3::from(columns.position.map(|coordinate| coordinate.of(numbers)));
         if self.beside.plane {
             position.z = 0.0;
@@ -198,15 +195,7 @@ impl GrainDump {
             let expected = format!("the contacts of step {step}");
             return Err(ReadError::at(file, entries.first_line, expected, format!("those of step {}", entries.step)));
         }
-        let column = |name: &str| entries.column(self.beside.names.of(name));
-        let (Some(first), Some(second)) = (column("id1"), column("id2")) else {
-            return Err(Self::missing(file, entries, "columns `id1` and `id2` (`--map id1=…,id2=…` names them)"));
-        };
-        let force = FORCE.map(column);
-        if force[0].is_none() || force[1].is_none() {
-            return Err(Self::missing(file, entries, "columns `force_x`, `force_y`, `force_z` (`--map force_x=…`)"));
-        }
-        let parts = [force, TANGENTIAL.map(column)];
+        let PairColumns { ids: [first, second], parts } = PairColumns::find(file, entries, &self.beside.names)?;
         let place: BTreeMap<u32, usize> =
             snapshot.grains.iter().enumerate().map(|(at, grain)| (grain.id, at)).collect();
         let (mut contacts, mut seen) = (Vec::new(), BTreeSet::new());

@@ -32,8 +32,33 @@ pub(crate) struct PairForces {
 }
 
 /// Names of the components of the force, and of the part that may stand apart.
-pub(crate) const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
-pub(crate) const TANGENTIAL: [&str; 3] = ["tangential_x", "tangential_y", "tangential_z"];
+const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
+const TANGENTIAL: [&str; 3] = ["tangential_x", "tangential_y", "tangential_z"];
+
+/// Where a dump of contacts has the ids of two grains, and the parts of the force on the first.
+pub(crate) struct PairColumns {
+    pub(crate) ids: [usize; 2],
+    pub(crate) parts: [[Option<usize>; 3]; 2],
+}
+
+impl PairColumns {
+    pub(crate) fn find(file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Self, ReadError> {
+        let column = |name: &str| snapshot.column(names.of(name));
+        let missing = |what: &str| {
+            let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
+            let expected = format!("columns {what} of contacts (`--map id1=…,id2=…,force_x=…` names them)");
+            ReadError::at(file, snapshot.first_line.saturating_sub(1), expected, quoted(&have.join(" ")))
+        };
+        let (Some(first), Some(second)) = (column("id1"), column("id2")) else {
+            return Err(missing("`id1` and `id2`"));
+        };
+        let force = FORCE.map(column);
+        if force[0].is_none() || force[1].is_none() {
+            return Err(missing("`force_x` and `force_y`"));
+        }
+        Ok(Self { ids: [first, second], parts: [force, TANGENTIAL.map(column)] })
+    }
+}
 
 impl PairForces {
     /// Those of a scene whose grains have these ids in the dump, in the order of the scene.
@@ -71,31 +96,18 @@ impl PairForces {
         names: &Names,
         digits: Option<&[Digits]>,
     ) -> Result<(), ReadError> {
-        let column = |name: &str| snapshot.column(names.of(name));
-        let missing = |what: &str| {
-            let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
-            let expected = format!("columns {what} of contacts (`--map id1=…,id2=…,force_x=…` names them)");
-            ReadError::at(file, snapshot.first_line.saturating_sub(1), expected, quoted(&have.join(" ")))
-        };
-        let (Some(first), Some(second)) = (column("id1"), column("id2")) else {
-            return Err(missing("`id1` and `id2`"));
-        };
-        let force = FORCE.map(column);
-        if force[0].is_none() || force[1].is_none() {
-            return Err(missing("`force_x` and `force_y`"));
-        }
-        let parts = [force, TANGENTIAL.map(column)];
+        let columns = PairColumns::find(file, snapshot, names)?;
         let of_file = digits.map(|digits| digits.iter().fold(Digits::default(), |all, digits| all.with(digits)));
         let forces = self.by_step.entry(snapshot.step).or_default();
         for at in 0..snapshot.rows() {
             let row = snapshot.row(at);
-            let (a, b) = (row[first] as u64, row[second] as u64);
+            let [a, b] = columns.ids.map(|id| row[id] as u64);
             let pair = (a.min(b), a.max(b));
             if !self.asked.contains(&pair) {
                 continue;
             }
             let mut found = PairForce::default();
-            for part in &parts {
+            for part in &columns.parts {
                 for (axis, column) in part.iter().enumerate() {
                     let Some(column) = *column else { continue };
                     let value = row[column];

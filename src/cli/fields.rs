@@ -5,7 +5,6 @@ use super::simulate::{path_and_value, positive};
 use grainbench::fields::column::COLUMNS;
 use grainbench::fields::course::Course;
 use grainbench::fields::grid::Grid;
-use grainbench::fields::kind::Kind;
 use grainbench::fields::mask::{Masks, Orifice};
 use grainbench::fields::trails::Trails;
 use grainbench::reference::grain_dump::{Beside, GrainDump};
@@ -14,6 +13,7 @@ use grainbench::reports::elements::{Summary, write_elements};
 use grainbench::reports::{each_snapshot, number, refuse_mixed};
 use grainbench::scene::nalgebra::Vector3;
 use grainbench::scene::record::Snapshot;
+use grainbench::scene::scene::Dimension;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -208,12 +208,12 @@ fn is_plane(snapshot: &Snapshot) -> bool {
 
 /// The grid over the first snapshot, and what is left out.
 fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
-    let kind = match arguments.dimension {
-        Some(2) => Kind::Discs,
-        None if arguments.source.is_dir() && is_plane(snapshot) => Kind::Discs,
-        _ => Kind::Spheres,
+    let space = match arguments.dimension {
+        Some(2) => Dimension::Two,
+        None if arguments.source.is_dir() && is_plane(snapshot) => Dimension::Two,
+        _ => Dimension::Three,
     };
-    let dimension = kind.dimension();
+    let dimension = space.count();
     let corner = |given: &[f64], of_box: Vector3<f64>, flag: &str| match given {
         [] => Ok(of_box),
         [x, y] if dimension == 2 => Ok(Vector3::new(*x, *y, of_box.z)),
@@ -247,7 +247,7 @@ fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
     };
     let grid = Grid::filling((low, high), size);
     let plane = if up.0 == 0 { [1, 0] } else { [0, up.0] };
-    let mut course = Course::new(grid, kind, plane, masks, arguments.between);
+    let mut course = Course::new(grid, space, plane, masks, arguments.between);
     if !arguments.tracers.is_empty() {
         let size = size_of(&arguments.tracers, "--tracers", [low, high], dimension)?;
         course.trails = Some(Trails::new(Grid::filling((low, high), size)));
