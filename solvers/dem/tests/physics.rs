@@ -202,6 +202,29 @@ fn a_driven_grain_has_no_finite_mass() {
     assert!((rebound - 0.5).abs() < 5e-3, "{rebound}");
 }
 
+/// Grains in a box are driven, those outside it are free; one that is held against a wall with a dashpot, which has no mass to
+/// go by, stays what it is, and the spring of the contact pushes as it does on any grain.
+#[test]
+fn grains_of_a_region_are_held_against_a_wall() {
+    let text = "dimension = 2\nduration = 0.01\n\
+         materials.n.density = 1000.0\n\
+         contacts.n = { between = ['n', 'n'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e6, friction = 0.5, \
+         normal_damping = 50.0, tangential_damping = 50.0 }\n\
+         [grains.row]\nmaterial = 'n'\nradius = 0.5\nlattice = { origin = [0.499, 0.0], spacing = [1.0, 1.0], count = [3, 1] }\n\
+         [walls.left]\nmaterial = 'n'\nplane = { point = [0.0, 0.0], normal = [1.0, 0.0] }\n\
+         [driven.held]\nregion = { low = [0.0, -1.0], high = [2.0, 1.0] }\n\
+         [probes]\nall.system = true\nfirst.grain = 'row.1'\nlast.grain = 'row.3'\nc.contact = ['row.1', 'left']\n";
+    let source = SceneSource::from_text("test", Path::new(""), text);
+    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
+    assert_eq!(scene.driven[0].grains, [0, 1]);
+    let record = run(text);
+    assert_eq!((last(&record, "first.x"), last(&record, "last.x")), (0.499, 2.499));
+    assert!((last(&record, "c.normal_force") - 1e3).abs() < 1e-6 && last(&record, "all.total_energy").is_finite());
+    let empty = text.replace("low = [0.0, -1.0], high = [2.0, 1.0]", "low = [0.0, 1.0], high = [2.0, -1.0]");
+    let refused = SceneSource::from_text("test", Path::new(""), &empty).scene(&|_| Err("no files".to_owned()));
+    assert!(refused.unwrap_err().to_string().contains("driven.held.region.high: expected a corner above `low`"));
+}
+
 /// A disc that is pushed along a floor: with a dashpot of any size friction stays within Coulomb's limit at every step.
 /// The paper adds the dashpot while the contact sticks, whatever it comes to.
 #[test]

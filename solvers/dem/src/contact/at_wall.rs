@@ -2,6 +2,7 @@
 
 use super::chain::{Answer, Evaluation, Turning, stages};
 use super::normal::Normal;
+use super::pair::harmonic;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
 use super::{Memory, Touch};
@@ -44,7 +45,7 @@ impl<S: Geometry> AtWall<'_, S> {
             normal: self.normal,
             overlap: self.radius - self.distance,
             velocity: self.velocity,
-            effective_mass: 1.0 / self.inverse_mass,
+            effective_mass: harmonic([self.inverse_mass, 0.0]),
             effective_radius: self.radius,
         };
         let options = evaluation.options;

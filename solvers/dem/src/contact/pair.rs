@@ -74,7 +74,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
 /// The mass (kg), or moment of inertia (kg m²), of two bodies against each other, from the inverses of both; none where
 /// both are driven: they do not feel each other.
 #[inline(always)]
-fn harmonic<X: Number>([first, second]: [X; 2]) -> X {
+pub(crate) fn harmonic<X: Number>([first, second]: [X; 2]) -> X {
     let inverse = first + second;
     let [zero, one] = [inverse.like(0.0), inverse.like(1.0)];
     X::choose(zero.below(inverse), one / inverse, zero)

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Grains that do not obey forces: they move at a constant velocity and do not turn, nor deform. Exactly one of
-/// `grains` and `face`.
+/// `grains`, `face` and `region`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrivenSpec {
@@ -15,7 +15,20 @@ pub struct DrivenSpec {
     /// The grains that a face of the domain cuts at the start.
     #[serde(default)]
     pub face: Option<SideSpec>,
+    /// The grains whose centre is in a box at the start.
+    #[serde(default)]
+    pub region: Option<RegionSpec>,
     /// Velocity (m/s); at rest when absent.
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
+}
+
+/// A box whose sides are along the axes.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegionSpec {
+    /// Lower corner (m).
+    pub low: Vec<f64>,
+    /// Upper corner (m).
+    pub high: Vec<f64>,
 }

@@ -13,7 +13,7 @@ mod walls;
 
 pub use crate::contact_law::{ContactSpec, LawKind};
 pub use bodies::{AnnulusSpec, BodySpec, BoxSpec, SideSpec, WaveSpec};
-pub use driven::DrivenSpec;
+pub use driven::{DrivenSpec, RegionSpec};
 pub use grains::{
     FileSpec, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, RemovalSpec, SpinSpec, StateSpec,
 };

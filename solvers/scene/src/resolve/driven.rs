@@ -45,10 +45,19 @@ impl Resolver<'_> {
         domain: Option<&Domain>,
     ) -> Result<Vec<usize>, SceneError> {
         let check = &self.check;
-        check.exactly_one(key, &[("grains", spec.grains.is_some()), ("face", spec.face.is_some())])?;
+        let kinds =
+            [("grains", spec.grains.is_some()), ("face", spec.face.is_some()), ("region", spec.region.is_some())];
+        check.exactly_one(key, &kinds)?;
         if let Some(group) = &spec.grains {
             let place = check.place_of(&format!("{key}.grains"), group, "a group of grains", groups.keys())?;
             return Ok(groups[place].clone().collect());
+        }
+        if let Some(spec) = &spec.region {
+            let [low, high] = self.corners(&format!("{key}.region"), &spec.low, &spec.high)?;
+            let within = |grain: &Grain| {
+                (0..check.dimension.count()).all(|axis| (low[axis]..=high[axis]).contains(&grain.position[axis]))
+            };
+            return Ok((0..grains.len()).filter(|&at| within(&grains[at])).collect());
         }
         let key = format!("{key}.face");
         let Some(domain) = domain else {

@@ -55,16 +55,23 @@ impl Resolver<'_> {
     pub(super) fn removal(&self) -> Result<Option<Removal>, SceneError> {
         let Some(spec) = &self.file.removal else { return Ok(None) };
         let check = &self.check;
-        let low = check.vector("removal.low", &spec.low)?;
-        let high = check.vector("removal.high", &spec.high)?;
-        if let Some(axis) = (0..check.dimension.count()).find(|&axis| low[axis] >= high[axis]) {
-            let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
-            return Err(check.error("removal.high", "a corner above `low`", &found));
-        }
+        let [low, high] = self.corners("removal", &spec.low, &spec.high)?;
         if spec.every_cycles == 0 {
             return Err(check.error("removal.every_cycles", "one cycle or more", "0"));
         }
         Ok(Some(Removal { low, high, every: spec.every_cycles }))
+    }
+
+    /// The corners of a box that is wide along every axis, of the keys `low` and `high` under a key.
+    pub(super) fn corners(&self, key: &str, low: &[f64], high: &[f64]) -> Result<[Vector3<f64>; 2], SceneError> {
+        let check = &self.check;
+        let (of_low, of_high) = (format!("{key}.low"), format!("{key}.high"));
+        let (low, high) = (check.vector(&of_low, low)?, check.vector(&of_high, high)?);
+        if let Some(axis) = (0..check.dimension.count()).find(|&axis| low[axis] >= high[axis]) {
+            let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+            return Err(check.error(&of_high, "a corner above `low`", &found));
+        }
+        Ok([low, high])
     }
 
     /// What is moved as a wall is must be there all the time, and deformable bodies are.
