@@ -101,8 +101,8 @@ impl GrainDump {
             bodies: Vec::new(),
             points: Vec::new(),
         };
-        if self.contacts.is_some() {
-            snapshot.contacts = Some(self.contacts_of(&snapshot)?);
+        if let Some((reader, file)) = &mut self.contacts {
+            snapshot.contacts = Some(contacts_of(&snapshot, reader, &mut self.entries, file, &self.beside.names)?);
         }
         Ok(Some(snapshot))
     }
@@ -179,51 +179,55 @@ impl GrainDump {
             plastic_strain: 0.0,
         })
     }
+}
 
-    /// The contacts between the grains of a snapshot.
-    fn contacts_of(&mut self, snapshot: &Snapshot) -> Result<Vec<ContactState>, ReadError> {
-        let Some((reader, file)) = &mut self.contacts else { return Ok(Vec::new()) };
-        let (step, entries) = (snapshot.step, &mut self.entries);
-        // Contacts may be told at more steps than grains are.
-        while entries.columns.is_empty() || entries.step < step {
-            if !reader.read(entries)? {
-                let expected = format!("the contacts of step {step}");
-                return Err(ReadError::at(file, entries.first_line, expected, "the end of the file"));
-            }
-        }
-        if entries.step != step {
+/// The contacts between the grains of a snapshot, from a dump of them; `entries` are those that were read last.
+pub(crate) fn contacts_of(
+    snapshot: &Snapshot,
+    reader: &mut DumpReader,
+    entries: &mut DumpSnapshot,
+    file: &str,
+    names: &Names,
+) -> Result<Vec<ContactState>, ReadError> {
+    let step = snapshot.step;
+    // Contacts may be told at more steps than grains are.
+    while entries.columns.is_empty() || entries.step < step {
+        if !reader.read(entries)? {
             let expected = format!("the contacts of step {step}");
-            return Err(ReadError::at(file, entries.first_line, expected, format!("those of step {}", entries.step)));
+            return Err(ReadError::at(file, entries.first_line, expected, "the end of the file"));
         }
-        let PairColumns { ids: [first, second], parts } = PairColumns::find(file, entries, &self.beside.names)?;
-        let place: BTreeMap<u32, usize> =
-            snapshot.grains.iter().enumerate().map(|(at, grain)| (grain.id, at)).collect();
-        let (mut contacts, mut seen) = (Vec::new(), BTreeSet::new());
-        for row in 0..entries.rows() {
-            let numbers = entries.row(row);
-            let find = |at: usize| {
-                let known = place.get(&(numbers[at] as u32)).copied();
-                known.ok_or_else(|| {
-                    let (line, found) = (entries.first_line + row as u64, numbers[at].to_string());
-                    ReadError::at(file, line, format!("the id of a grain of step {step}"), found)
-                })
-            };
-            let (one, other) = (find(first)?, find(second)?);
-            // A list may have a pair twice, once from either side: that is one contact.
-            if one == other || !seen.insert((one.min(other), one.max(other))) {
-                continue;
-            }
-            let mut force = Vector3::zeros();
-            for part in &parts {
-                for (axis, column) in part.iter().enumerate() {
-                    force[axis] += column.map_or(0.0, |column| numbers[column]);
-                }
-            }
-            contacts.push(contact(snapshot, one, other, force));
-        }
-        contacts.sort_by_key(|contact: &ContactState| contact.grain);
-        Ok(contacts)
     }
+    if entries.step != step {
+        let expected = format!("the contacts of step {step}");
+        return Err(ReadError::at(file, entries.first_line, expected, format!("those of step {}", entries.step)));
+    }
+    let PairColumns { ids: [first, second], parts } = PairColumns::find(file, entries, names)?;
+    let place: BTreeMap<u32, usize> = snapshot.grains.iter().enumerate().map(|(at, grain)| (grain.id, at)).collect();
+    let (mut contacts, mut seen) = (Vec::new(), BTreeSet::new());
+    for row in 0..entries.rows() {
+        let numbers = entries.row(row);
+        let find = |at: usize| {
+            let known = place.get(&(numbers[at] as u32)).copied();
+            known.ok_or_else(|| {
+                let (line, found) = (entries.first_line + row as u64, numbers[at].to_string());
+                ReadError::at(file, line, format!("the id of a grain of step {step}"), found)
+            })
+        };
+        let (one, other) = (find(first)?, find(second)?);
+        // A list may have a pair twice, once from either side: that is one contact.
+        if one == other || !seen.insert((one.min(other), one.max(other))) {
+            continue;
+        }
+        let mut force = Vector3::zeros();
+        for part in &parts {
+            for (axis, column) in part.iter().enumerate() {
+                force[axis] += column.map_or(0.0, |column| numbers[column]);
+            }
+        }
+        contacts.push(contact(snapshot, one, other, force));
+    }
+    contacts.sort_by_key(|contact: &ContactState| contact.grain);
+    Ok(contacts)
 }
 
 /// The contact of two grains, by place, with the force on the first (N).

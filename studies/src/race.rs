@@ -131,6 +131,7 @@ fn for_steps(scene: &Scene, steps: u64) -> Scene {
         sampling: Sampling::Cycles(steps),
         snapshots: 0,
         snapshot_times: Vec::new(),
+        snapshot_contacts: false,
         probes: vec![Probe { name: "all".to_owned(), target: ProbeTarget::System }],
         ..scene.clone()
     }

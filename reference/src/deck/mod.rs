@@ -130,9 +130,9 @@ fn asks_for_contacts_at(scene: &Scene, number: usize) -> bool {
     scene.probes.iter().any(|probe| is_at(probe.target))
 }
 
-/// Whether a probe asks for a contact between grains.
+/// Whether a probe asks for a contact between grains, or snapshots are to hold them.
 fn asks_for_pairs(scene: &Scene) -> bool {
-    scene.probes.iter().any(|probe| matches!(probe.target, ProbeTarget::Pair(..)))
+    scene.snapshot_contacts || scene.probes.iter().any(|probe| matches!(probe.target, ProbeTarget::Pair(..)))
 }
 
 /// The lines that say what is printed: nothing but the end of the run, or sums at every sample.

@@ -18,6 +18,7 @@ use deadline::Deadline;
 use process::Limits;
 
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
+use crate::grain_dump::contacts_of;
 use crate::observer::{Observed, Observer};
 use crate::pair_forces::PairForces;
 use crate::read::dump::DumpReader;
@@ -219,7 +220,17 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
             observer.take(name, &snapshot, &deck.names, time, None, past > 0).map_err(output)?;
         }
     }
-    Ok(observer.finish())
+    let mut observed = observer.finish();
+    if scene.snapshot_contacts {
+        let path = plain_file(folder, CONTACTS)?;
+        let (mut reader, mut entries) = (DumpReader::open(&path).map_err(output)?, DumpSnapshot::default());
+        for seen in observed.snapshots.iter_mut().filter(|seen| seen.step.is_multiple_of(stepping.interval)) {
+            deadline.check()?;
+            let contacts = contacts_of(seen, &mut reader, &mut entries, CONTACTS, &deck.names).map_err(output)?;
+            seen.contacts = Some(contacts);
+        }
+    }
+    Ok(observed)
 }
 
 #[cfg(test)]

@@ -309,6 +309,8 @@ pub struct Scene {
     pub snapshots: u32,
     /// Times of further snapshots (s).
     pub snapshot_times: Vec<f64>,
+    /// Whether snapshots of other programs hold the contacts between grains too.
+    pub snapshot_contacts: bool,
     /// Named time series.
     pub probes: Vec<Probe>,
     /// Places that [`ProbeTarget::Point`] refers to.

@@ -20,4 +20,7 @@ pub struct OutputSpec {
     /// Times of further snapshots (s), each taken at the nearest cycle.
     #[serde(default)]
     pub snapshot_times: Vec<f64>,
+    /// Whether snapshots of other programs hold the contacts between grains, as those of our solvers always do.
+    #[serde(default)]
+    pub contacts: bool,
 }

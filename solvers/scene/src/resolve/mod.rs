@@ -121,6 +121,7 @@ impl Resolver<'_> {
             sampling: self.sampling()?,
             snapshots: file.output.snapshots,
             snapshot_times: self.snapshot_times()?,
+            snapshot_contacts: file.output.contacts,
             probes,
             spots,
             deformable,
