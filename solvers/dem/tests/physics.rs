@@ -214,15 +214,16 @@ fn grains_of_a_region_are_held_against_a_wall() {
          [walls.left]\nmaterial = 'n'\nplane = { point = [0.0, 0.0], normal = [1.0, 0.0] }\n\
          [driven.held]\nregion = { low = [0.0, -1.0], high = [2.0, 1.0] }\n\
          [probes]\nall.system = true\nfirst.grain = 'row.1'\nlast.grain = 'row.3'\nc.contact = ['row.1', 'left']\n";
-    let source = SceneSource::from_text("test", Path::new(""), text);
-    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
-    assert_eq!(scene.driven[0].grains, [0, 1]);
+    let scene = |text: &str| {
+        let source = SceneSource::from_text("test", Path::new(""), &format!("{}{text}", support::MATERIAL));
+        source.scene(&|_| Err("no files".to_owned()))
+    };
+    assert_eq!(scene(text).unwrap().driven[0].grains, [0, 1]);
     let record = run(text);
     assert_eq!((last(&record, "first.x"), last(&record, "last.x")), (0.499, 2.499));
     assert!((last(&record, "c.normal_force") - 1e3).abs() < 1e-6 && last(&record, "all.total_energy").is_finite());
     let empty = text.replace("low = [0.0, -1.0], high = [2.0, 1.0]", "low = [0.0, 1.0], high = [2.0, -1.0]");
-    let refused = SceneSource::from_text("test", Path::new(""), &empty).scene(&|_| Err("no files".to_owned()));
-    assert!(refused.unwrap_err().to_string().contains("driven.held.region.high: expected a corner above `low`"));
+    assert!(scene(&empty).unwrap_err().to_string().contains("driven.held.region.high: expected a corner above `low`"));
 }
 
 /// A disc that is pushed along a floor: with a dashpot of any size friction stays within Coulomb's limit at every step.
