@@ -103,6 +103,8 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
         grainbench::scene::end_state::EndState::from_bytes(&bytes).unwrap()
     });
     assert!(first.springs.pairs.len() > 100 && first.springs.walls.len() > 10);
+    // Their order is that of the grains, whatever lists a run had.
+    assert!(first.springs.pairs.is_sorted_by_key(|pair| (pair.0, pair.1)));
     assert_eq!(first.springs.pairs.len(), again.springs.pairs.len());
 }
 

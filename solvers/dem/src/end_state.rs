@@ -23,7 +23,7 @@ impl<S: Geometry> Simulated<S> {
         let of_slot = |slot: u32| place[&self.grains.id[slot as usize]];
         let numbers = self.forces.layout().numbers;
         let pairs = self.neighbours.shares.iter().flat_map(|share| [&share.across, &share.near]);
-        let springs = Springs {
+        let mut springs = Springs {
             layout: words(self.forces.springs()),
             pairs: pairs
                 .flat_map(Pairs::remembered)
@@ -37,6 +37,9 @@ impl<S: Geometry> Simulated<S> {
                 .map(|(name, &(slot, memory))| (of_slot(slot), name.to_owned(), memory[..numbers].to_vec()))
                 .collect(),
         };
+        // Lists of several threads have another order.
+        springs.pairs.sort_by_key(|&(first, second, _)| (first, second));
+        springs.walls.sort_by(|one, other| (one.0, &one.1).cmp(&(other.0, &other.1)));
         let grain = |grain: &grainbench_scene::record::GrainState| StateGrain {
             material: grain.material,
             size: [grain.radius, grain.mass, scene.grains[grain.id as usize - 1].inertia],
