@@ -21,7 +21,7 @@ fn main() -> std::process::ExitCode {
     let set = if long { Set::Long } else { Set::Tests };
     let mut trials = Vec::new();
     for case in CASES {
-        let runner = Arc::new(runner(case));
+        let runner = Arc::new(runner(case).afresh(set));
         for claim in (case.claims)().into_iter().filter(|claim| claim.set() <= set) {
             let claim = Arc::new(claim);
             let run = &claim.runs[0];

@@ -327,7 +327,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let scene = |angle: f64| runner.scene(&at_angle(OBLIQUE[0], angle));
     let (mut exact_restitution, mut exact_spin) = (Vec::new(), Vec::new());
     for angle in (33..=85).map(f64::from) {
-        let (e, turn) = sliding(&scene(angle)?);
+        let at_angle = scene(angle)?;
+        let (e, turn) = sliding(&at_angle);
         exact_restitution.push((angle, e));
         exact_spin.push((angle, turn));
     }

@@ -121,7 +121,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             measured.push((force, speed));
         }
     }
-    let scale = scale(&runner.scene(&strike(1.0))?);
+    let scale = scale(&*runner.scene(&strike(1.0))?);
     let line = |coefficient: f64| -> Vec<(f64, f64)> {
         let ends = [measured.first(), measured.last()];
         ends.into_iter().flatten().map(|(force, _)| (*force, coefficient * scale * force.powf(1.0 / 6.0))).collect()

@@ -71,7 +71,7 @@ fn within((words, done): &Slab) -> Slab {
         }
         snapshot.points.retain(|point| !matches!(point.owner, Owner::Grain(id) if out[id as usize - 1]));
     }
-    (*words, Done { scene: Arc::clone(&done.scene), record: Arc::new(record) })
+    (*words, Done::new(Arc::clone(&done.scene), Arc::new(record)))
 }
 
 pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {

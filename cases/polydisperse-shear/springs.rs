@@ -3,7 +3,6 @@
 use super::{entry, gained, measures, to_shear};
 use crate::rows::programs::{PAIRS, row};
 use grainbench_harness::compare::pointwise::{largest, worst};
-use grainbench_harness::control::{Red, Wrong};
 use grainbench_harness::prelude::*;
 
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
@@ -38,7 +37,6 @@ fn momentum(done: &Done) -> Result<Measured, Missing> {
 }
 
 pub(super) fn claims() -> Vec<Claim> {
-    let long_steps = Wrong::OtherRun("dem", Resolution::CriticalFraction(0.2));
     let mut claims = vec![
         claim(
             "energy that is neither stored nor rubbed away, over the work of the walls, 80 % shear, grains on springs",
@@ -49,7 +47,7 @@ pub(super) fn claims() -> Vec<Claim> {
             Ok(Measured::new(gained(&done[0], "unbalanced")? / entry(&done[0], "work")?, 0.0, 1.0))
         })
         .within(judged(1e-3, "second order in the step"))
-        .refuses(Control { name: "steps four times as long", wrong: long_steps, red: Red::Value }),
+        .refuses(Control::run("steps four times as long", "dem", Resolution::CriticalFraction(0.2))),
         claim("momentum gained along the slab, 80 % shear", "N s")
             .of(slab())
             .holds("equal and opposite forces", |done| momentum(&done[0]))

@@ -7,7 +7,6 @@ use super::paper::{FIGURE_6, bands};
 use super::{FRAMES, chains, grid, to_shear};
 use crate::sources::literature::bardenhagen_2000::WORK as PAPER;
 use crate::sources::prototype::sheared_slab as prototype;
-use grainbench_harness::control::{Red, Wrong};
 use grainbench_harness::prelude::*;
 use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Duration;
@@ -92,7 +91,7 @@ fn other_contacts() -> Vec<Claim> {
 fn energy() -> Vec<Claim> {
     const APPROACH: &str = "contact on approach (2000), which makes energy";
     let makes_energy = || Control::solver(APPROACH, "mpm:2000");
-    let on_half = Control { name: APPROACH, wrong: Wrong::OtherRun("mpm:2000", grid(75.0)), red: Red::Value };
+    let on_half = Control::run(APPROACH, "mpm:2000", grid(75.0));
     let springs = Control::without_the_error("springs between surfaces", "mpm", grid(75.0));
     let to = "80 % shear";
     vec![
@@ -154,10 +153,9 @@ fn refined() -> Vec<Claim> {
         [("plastic strain", plastic_strain, 0.1, Some(PATCHES)), ("rotation of grains", rotation_deg, 0.15, None)];
     let finer = |(words, of, allowed, known): Quantity, coarse: f64, [run, finer]: [Run; 2], shear: f64| {
         let fine = 2.0 * coarse;
-        let glued = Wrong::OtherRun("mpm:no-slip", grid(coarse));
         let (run, control) = match known {
             Some(reason) => (run.known(reason), Control::without_the_error("the finer grid", "mpm", grid(fine))),
-            None => (run, Control { name: "contacts glued on the coarser grid", wrong: glued, red: Red::Value }),
+            None => (run, Control::run("contacts glued on the coarser grid", "mpm:no-slip", grid(coarse))),
         };
         claim(format!("{words} on a grid of {coarse}² over that on one of {fine}², {:.0} % shear", 100.0 * shear), "1")
             .of_all([run, finer.aside()])

@@ -1,12 +1,12 @@
 //! The registry of solvers: a line each.
 
-use crate::{stored, uncertainty, varied};
+use crate::{kept, stored, uncertainty, varied};
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
-use grainbench_harness::solvers::Solvers;
+use grainbench_harness::solvers::{Kept, Solvers};
 use grainbench_mpm::solver::Mpm;
 use grainbench_reference::deck::Program;
 use grainbench_reference::live::Live;
@@ -81,6 +81,10 @@ impl Solvers for Registry {
 
     fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
         stored::record(case, run, scene)
+    }
+
+    fn kept(&self, case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
+        kept::load(case, run, scene, control)
     }
 
     fn uncertainty(&self, case: &Case, claim: &Claim) -> Option<f64> {

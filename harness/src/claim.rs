@@ -334,10 +334,10 @@ impl Claim {
         self.runs.first().map(|run| run.standing).unwrap_or_default()
     }
 
-    /// The smallest set that has all its runs.
+    /// The smallest set in which it can be judged.
     #[must_use]
     pub fn set(&self) -> Set {
-        self.runs.iter().map(|run| run.set).max().unwrap_or_default()
+        self.runs.iter().map(Run::judged_in).max().unwrap_or_default()
     }
 
     /// Resolutions in words: one, or the first and the last of several.

@@ -1,6 +1,7 @@
 //! Negative controls: wrong physics that a claim must refuse, and how it must turn red.
 
-use crate::run::Change;
+use crate::reading::Table;
+use crate::run::{Change, Set};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, Resolution};
@@ -20,6 +21,8 @@ pub enum Wrong {
     OtherSolver(&'static str),
     /// Another solver takes its place, at a resolution of its own.
     OtherRun(&'static str, Resolution),
+    /// What was read of snapshots is made wrong.
+    Misread(fn(&mut [Table])),
 }
 
 /// How a row turns red under wrong physics.
@@ -52,11 +55,25 @@ pub struct Control {
     pub wrong: Wrong,
     /// How the row must turn red.
     pub red: Red,
+    /// The smallest set in which a run that is kept is done under it.
+    pub set: Set,
 }
 
 impl Control {
     const fn new(name: &'static str, wrong: Wrong) -> Self {
-        Self { name, wrong, red: Red::Value }
+        Self { name, wrong, red: Red::Value, set: Set::Main }
+    }
+
+    /// The control as one of which a run that is kept is done in the long set only.
+    #[must_use]
+    pub fn long(self) -> Self {
+        Self { set: Set::Long, ..self }
+    }
+
+    /// What was read of the snapshots of a run is made wrong: elements given the stress of others, angles turned.
+    #[must_use]
+    pub const fn misread(name: &'static str, change: fn(&mut [Table])) -> Self {
+        Self::new(name, Wrong::Misread(change))
     }
 
     /// A wrong scene.
@@ -92,6 +109,12 @@ impl Control {
     /// Of a known error: a solver that does not have it, at a resolution of its own. The row must then pass.
     #[must_use]
     pub const fn without_the_error(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
+        Self::run(name, solver, resolution)
+    }
+
+    /// Another solver, at a resolution of its own.
+    #[must_use]
+    pub const fn run(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self::new(name, Wrong::OtherRun(solver, resolution))
     }
 }

@@ -18,6 +18,7 @@ pub mod force_plot;
 pub mod measure;
 pub mod prelude;
 pub mod raster;
+pub mod reading;
 pub mod run;
 pub mod runner;
 pub mod scope;

@@ -6,6 +6,7 @@ pub use crate::control::Control;
 pub use crate::course::{Plate, from_start, no_more, samples};
 pub use crate::expect::{Bound, Expected, Measured};
 pub use crate::figure::{Axis, Curve, Figure, Stroke};
+pub use crate::reading::{Reader, Reading, Table};
 pub use crate::run::{Change, Done, Missing, Run};
 pub use crate::runner::Runner;
 pub use crate::source::Source;

@@ -1,5 +1,6 @@
 //! The runs that a claim reads: which scene, which solver, how finely.
 
+use crate::reading::{Reading, Table};
 use grainbench_scene::record::{Record, Series};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Resolution;
@@ -27,6 +28,10 @@ pub struct Run {
     pub set: Set,
     /// Whether it is there to judge by, and no negative control touches it.
     pub aside: bool,
+    /// What is read of its snapshots, where they are not kept.
+    pub reading: Option<Reading>,
+    /// Whether what it leaves is kept with the case: sets that it does not belong to judge that.
+    pub kept: bool,
 }
 
 /// Sets of runs, each with all of those before it.
@@ -39,6 +44,8 @@ pub enum Set {
     Tests,
     /// What takes minutes.
     Long,
+    /// What takes an hour: scenes of the size that a paper has.
+    Paper,
 }
 
 /// What is expected of a row.
@@ -58,7 +65,17 @@ impl Run {
     /// A run of a variant as it stands.
     #[must_use]
     pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
-        Self { variant, solver, resolution, adjustment: None, standing: Standing::Passes, set: Set::Main, aside: false }
+        Self {
+            variant,
+            solver,
+            resolution,
+            adjustment: None,
+            standing: Standing::Passes,
+            set: Set::Main,
+            aside: false,
+            reading: None,
+            kept: false,
+        }
     }
 
     /// The run with a change of the scene.
@@ -86,6 +103,30 @@ impl Run {
         Self { set: Set::Long, ..self }
     }
 
+    /// The run as one of scenes as large as those of a paper.
+    #[must_use]
+    pub fn paper_size(self) -> Self {
+        Self { set: Set::Paper, ..self }
+    }
+
+    /// The run with a reading of its snapshots, which it does not keep then.
+    #[must_use]
+    pub fn read_by(self, reading: Reading) -> Self {
+        Self { reading: Some(reading), ..self }
+    }
+
+    /// The run as one whose tables are kept with the case, so that it is judged in every set and done in its own.
+    #[must_use]
+    pub fn kept(self) -> Self {
+        Self { kept: true, ..self }
+    }
+
+    /// The smallest set in which a claim of it can be judged.
+    #[must_use]
+    pub fn judged_in(&self) -> Set {
+        if self.kept { Set::Main } else { self.set }
+    }
+
     /// The run as one that judges and is not judged: negative controls leave it alone.
     #[must_use]
     pub fn aside(self) -> Self {
@@ -111,7 +152,7 @@ impl Run {
     #[must_use]
     pub fn key(&self) -> String {
         let adjustment = self.adjustment.as_ref().map(|(name, _)| name.as_str()).unwrap_or_default();
-        format!("{}|{}|{:?}|{adjustment}", self.variant, self.solver, self.resolution)
+        format!("{}|{}|{:?}|{adjustment}|{:?}", self.variant, self.solver, self.resolution, self.reading)
     }
 }
 
@@ -122,6 +163,10 @@ pub struct Done {
     pub scene: Arc<Scene>,
     /// The record.
     pub record: Arc<Record>,
+    /// What was read of its snapshots.
+    pub tables: Arc<Vec<Table>>,
+    /// Of a run that is kept and was not done now: when and by what it was done, in words.
+    pub kept: Option<String>,
 }
 
 /// A quantity that the records do not have.
@@ -135,6 +180,20 @@ impl fmt::Display for Missing {
 }
 
 impl Done {
+    /// A run that left a record and nothing else.
+    #[must_use]
+    pub fn new(scene: Arc<Scene>, record: Arc<Record>) -> Self {
+        Self { scene, record, tables: Arc::default(), kept: None }
+    }
+
+    /// A table that was read of its snapshots.
+    ///
+    /// # Errors
+    /// When there is none of that name.
+    pub fn table(&self, name: &str) -> Result<&Table, Missing> {
+        self.tables.iter().find(|table| table.name == name).ok_or_else(|| Missing(format!("table `{name}`")))
+    }
+
     /// The time series.
     #[must_use]
     pub fn series(&self) -> &Series {

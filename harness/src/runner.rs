@@ -2,23 +2,27 @@
 
 use crate::case::Case;
 use crate::claim::Claim;
-use crate::control::Wrong;
+use crate::control::{self, Wrong};
 use crate::expect::Measured;
-use crate::run::{Done, Missing, Run, Standing};
+use crate::reading::{self, Table};
+use crate::run::{Done, Missing, Run, Set, Standing};
 use crate::scope::Scope;
-use crate::solvers::Solvers;
+use crate::solvers::{Kept, Solvers};
 use crate::tolerance::Made;
 use crate::uncertainty::{Estimate, of_finest};
 use crate::verdict::{Control, Outcome, Verdict};
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Defect, Method, Resolution, RunError, Solver, Threads};
+use grainbench_scene::solver::{Defect, Method, Resolution, RunError, Solver};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
-/// The place of a run's record, which is there once it has been done.
-type Slot = Arc<OnceLock<Result<Arc<Record>, RunError>>>;
+/// What a run leaves: its record, what was read of its snapshots, and, of a run that is kept and was not done now, when and by
+/// what it was done.
+type Left = (Arc<Record>, Arc<Vec<Table>>, Option<String>);
+/// The place of what a run leaves, which is there once it has been done.
+type Slot = Arc<OnceLock<Result<Left, RunError>>>;
 /// Runs by their keys.
 type Runs = BTreeMap<String, (Run, Result<Done, RunError>)>;
 /// Scenes that were run, with their records, by solver and resolution.
@@ -35,8 +39,12 @@ pub struct Runner {
     thorough: bool,
     /// Threads of a run.
     threads: usize,
+    /// The largest set of which runs are done now though they are kept.
+    afresh: Option<Set>,
     /// Runs of scenes as the case means them, by [`Run::key`].
     runs: Mutex<Runs>,
+    /// Scenes as the case means them, by [`Run::scene_words`].
+    scenes: Mutex<Vec<(String, Arc<Scene>)>>,
     /// Every run of a scene, right or wrong, by solver and resolution: claims that lead to the same scene share it.
     done: Mutex<Slots>,
 }
@@ -47,14 +55,27 @@ struct By<'a> {
     solver: &'a str,
     defect: Option<Defect>,
     resolution: &'a Resolution,
+    /// The negative control that it is for.
+    control: Option<&'a control::Control>,
 }
 
 impl Runner {
     /// A runner that has done nothing yet.
     #[must_use]
     pub fn new(case: &'static Case, solvers: Arc<dyn Solvers>) -> Self {
-        let (runs, done) = (Mutex::default(), Mutex::default());
-        Self { case, solvers, stranger: None, live: false, thorough: false, threads: 1, runs, done }
+        let (runs, scenes, done) = (Mutex::default(), Mutex::default(), Mutex::default());
+        Self {
+            case,
+            solvers,
+            stranger: None,
+            live: false,
+            thorough: false,
+            threads: 1,
+            afresh: None,
+            runs,
+            scenes,
+            done,
+        }
     }
 
     /// A runner that puts one solver in the place of every solver that the claims name. It is given their resolutions,
@@ -80,6 +101,12 @@ impl Runner {
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
+    }
+
+    /// The runner that does runs of sets up to this one even where they are kept.
+    #[must_use]
+    pub fn afresh(self, set: Set) -> Self {
+        Self { afresh: Some(set), ..self }
     }
 
     /// Whether figures may take as long as the finest levels do.
@@ -113,7 +140,7 @@ impl Runner {
         if let Some((_, done)) = self.runs.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
             return done.clone();
         }
-        let by = By { solver: run.solver, defect: None, resolution: &run.resolution };
+        let by = By { solver: run.solver, defect: None, resolution: &run.resolution, control: None };
         let done = self.done_by(run, by, None);
         let mut runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
         runs.entry(key).or_insert_with(|| (run.clone(), done)).1.clone()
@@ -131,7 +158,7 @@ impl Runner {
     pub fn is_available(&self, claim: &Claim) -> bool {
         let is_stored = |run: &Run| !self.live && self.solvers.is_stored(self.case, run);
         let can_run = |run: &Run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok());
-        claim.runs.iter().all(|run| is_stored(run) || can_run(run))
+        claim.runs.iter().all(|run| self.is_read_back(run, None) || is_stored(run) || can_run(run))
     }
 
     /// Judges a claim.
@@ -154,8 +181,12 @@ impl Runner {
     }
 
     /// A run of a claim under its wrong physics.
-    fn run_wrong(&self, claim: &Claim, run: &Run) -> Result<Done, RunError> {
-        let mut by = By { solver: run.solver, defect: None, resolution: &run.resolution };
+    ///
+    /// # Errors
+    /// When the solver cannot run the scene or breaks.
+    pub fn run_wrong(&self, claim: &Claim, run: &Run) -> Result<Done, RunError> {
+        let control = Some(&claim.control);
+        let mut by = By { solver: run.solver, defect: None, resolution: &run.resolution, control };
         match &claim.control.wrong {
             _ if run.aside => self.run(run),
             // What is made wrong is our own side.
@@ -173,21 +204,13 @@ impl Runner {
                 (by.solver, by.resolution) = (solver, resolution);
                 self.done_by(run, by, None)
             }
+            Wrong::Misread(change) => self.run(run).map(|done| misread(done, *change)),
         }
     }
 
     /// A run by a solver, of the scene as the case means it or with a change.
     fn done_by(&self, run: &Run, by: By<'_>, wrong: Option<&dyn Fn(&mut Scene)>) -> Result<Done, RunError> {
-        let scene = Arc::new(self.scene(run)?);
-        if wrong.is_none()
-            && self.stranger.is_none()
-            && !self.live
-            && by.solver == run.solver
-            && by.defect.is_none()
-            && let Some(record) = self.solvers.stored(self.case, run, &scene)
-        {
-            return Ok(Done { scene, record: Arc::new(record?) });
-        }
+        let scene = self.scene(run)?;
         let given = match wrong {
             None => Arc::clone(&scene),
             Some(change) => {
@@ -196,14 +219,47 @@ impl Runner {
                 Arc::new(given)
             }
         };
-        let slot = self.slot(by, &given);
-        let record = slot.get_or_init(|| self.simulate(run, by, &given)).clone()?;
-        Ok(Done { scene, record })
+        if wrong.is_none()
+            && self.stranger.is_none()
+            && run.reading.is_none()
+            && !self.live
+            && by.solver == run.solver
+            && by.defect.is_none()
+            && let Some(record) = self.solvers.stored(self.case, run, &scene)
+        {
+            return Ok(Done::new(scene, Arc::new(record?)));
+        }
+        let slot = self.slot(run, by, &given);
+        let left = || {
+            if self.is_read_back(run, by.control) {
+                self.read_back(run, by, &given)
+            } else {
+                self.simulate(run, by, &given)
+            }
+        };
+        let (record, tables, kept) = slot.get_or_init(left).clone()?;
+        Ok(Done { scene, record, tables, kept })
     }
 
-    /// The place of a run's record: one for each scene, solver and resolution.
-    fn slot(&self, by: By<'_>, scene: &Arc<Scene>) -> Slot {
-        let key = format!("{}|{:?}|{:?}", by.solver, by.defect, by.resolution);
+    /// What is kept of a run.
+    fn read_back(&self, run: &Run, by: By<'_>, scene: &Scene) -> Result<Left, RunError> {
+        let of_control = by.control.map(|control| control.name);
+        let none = || self.unusable(run, "nothing is kept of it; `grainbench reference keep` does it".to_owned());
+        let kept = self.solvers.kept(self.case, run, scene, of_control).ok_or_else(none)?;
+        let Kept { record, tables, made } = kept?;
+        Ok((Arc::new(record), Arc::new(tables), Some(made)))
+    }
+
+    /// Whether what is kept of a run is taken: it belongs to a larger set than those that are done now.
+    fn is_read_back(&self, run: &Run, control: Option<&control::Control>) -> bool {
+        let set = control.map_or(run.set, |control| run.set.max(control.set));
+        let is_wanted_now = self.live && self.solvers.is_program(run.solver);
+        run.kept && self.stranger.is_none() && !is_wanted_now && self.afresh.is_none_or(|afresh| set > afresh)
+    }
+
+    /// The place of what a run leaves: one for each scene, solver, resolution and reading.
+    fn slot(&self, run: &Run, by: By<'_>, scene: &Arc<Scene>) -> Slot {
+        let key = format!("{}|{:?}|{:?}|{:?}", by.solver, by.defect, by.resolution, run.reading);
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         let of_solver = done.entry(key).or_default();
         if let Some((_, slot)) = of_solver.iter().find(|(known, _)| known == scene) {
@@ -214,26 +270,49 @@ impl Runner {
         slot
     }
 
-    fn simulate(&self, run: &Run, by: By<'_>, scene: &Scene) -> Result<Arc<Record>, RunError> {
+    fn simulate(&self, run: &Run, by: By<'_>, scene: &Scene) -> Result<Left, RunError> {
         let solver = match by.defect {
             None => self.solver(by.solver),
             Some(defect) => self.solvers.with_defect(by.solver, defect),
         };
         let solver = solver.ok_or_else(|| self.unusable(run, "there is no such solver".to_owned()))?;
-        solver.run(scene, by.resolution, &mut Threads(self.threads)).map(Arc::new)
+        let (record, tables) = reading::run(&*solver, scene, by.resolution, self.threads, run.reading)?;
+        Ok((Arc::new(record), Arc::new(tables), None))
     }
 
     /// The scene of a run as the case means it.
     ///
     /// # Errors
     /// When the scene file is wrong.
-    pub fn scene(&self, run: &Run) -> Result<Scene, RunError> {
+    pub fn scene(&self, run: &Run) -> Result<Arc<Scene>, RunError> {
+        let mut scenes = self.scenes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = scenes.iter().find(|(key, _)| *key == run.scene_words()) {
+            return Ok(Arc::clone(known));
+        }
         let variant = self.case.variant(run.variant);
         let mut scene = variant.map_err(|error| self.unusable(run, error.to_string()))?;
         if let Some((_, change)) = &run.adjustment {
             change(&mut scene);
         }
+        let scene = Arc::new(scene);
+        scenes.push((run.scene_words(), Arc::clone(&scene)));
         Ok(scene)
+    }
+
+    /// The scene that the solver of a run is given: as the case means it, or, where it is `wrong`, as the claim's control has it.
+    ///
+    /// # Errors
+    /// When the scene file is wrong.
+    pub fn given(&self, claim: &Claim, run: &Run, wrong: bool) -> Result<Arc<Scene>, RunError> {
+        let scene = self.scene(run)?;
+        match &claim.control.wrong {
+            Wrong::Scene(change) | Wrong::Ours(change) if wrong => {
+                let mut given = (*scene).clone();
+                change(&mut given);
+                Ok(Arc::new(given))
+            }
+            _ => Ok(scene),
+        }
     }
 
     /// The solver that does the runs of a name.
@@ -338,13 +417,24 @@ impl Runner {
         }
     }
 
-    /// The row says which programs it was compared with.
+    /// The row says which programs it was compared with, and what was not run now.
     fn with_programs(&self, mut row: Verdict, done: &[Done]) -> Verdict {
         for run in done.iter().map(|done| &done.record.provenance).filter(|run| self.solvers.is_program(&run.solver)) {
             row.source.push_str(&format!(": {}", run.options.join(", ")));
         }
+        let mut kept: Vec<&String> = done.iter().filter_map(|done| done.kept.as_ref()).collect();
+        kept.dedup();
+        for made in kept {
+            row.source.push_str(&format!("; judged on what is kept of a run of {made}"));
+        }
         row
     }
+}
+
+/// A run of which what was read is made wrong.
+fn misread(mut done: Done, change: fn(&mut [Table])) -> Done {
+    change(Arc::<Vec<Table>>::make_mut(&mut done.tables));
+    done
 }
 
 /// A method's own documented error is amber for as long as it is there and finite.

@@ -2,12 +2,23 @@
 
 use crate::case::Case;
 use crate::claim::Claim;
+use crate::reading::Table;
 use crate::run::Run;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, RunError, Solver};
 use std::sync::Arc;
 use std::time::Duration;
+
+/// What is kept of a run with its case.
+pub struct Kept {
+    /// Its record, without snapshots.
+    pub record: Record,
+    /// What was read of them.
+    pub tables: Vec<Table>,
+    /// When and by what it was done, in words.
+    pub made: String,
+}
 
 /// Solvers by name, and the runs of other programs that are kept.
 pub trait Solvers: Send + Sync {
@@ -31,6 +42,12 @@ pub trait Solvers: Send + Sync {
 
     /// The stored record of a run of another program; none where nothing is stored.
     fn stored(&self, _case: &Case, _run: &Run, _scene: &Scene) -> Option<Result<Record, RunError>> {
+        None
+    }
+
+    /// What is kept of a run of any solver whose snapshots are read, with the scene that it was given, which a negative
+    /// control of this name changed; none where nothing is kept.
+    fn kept(&self, _case: &Case, _run: &Run, _scene: &Scene, _control: Option<&str>) -> Option<Result<Kept, RunError>> {
         None
     }
 

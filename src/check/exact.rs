@@ -23,7 +23,7 @@ pub(super) fn exact(
     let scene = Arc::new(candidate.scene.clone());
     let measured = |series: Series| {
         let record = record(&candidate.scene, outputs, observed, series);
-        (claim.measure)(&[Done { scene: Arc::clone(&scene), record: Arc::new(record) }])
+        (claim.measure)(&[Done::new(Arc::clone(&scene), Arc::new(record))])
     };
     let row = Verdict {
         evidence: claim.evidence(),

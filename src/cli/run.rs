@@ -10,7 +10,7 @@ use grainbench::cases::{registry, solvers};
 use grainbench::harness::conformance;
 use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
-use grainbench::harness::run::{Done, Run};
+use grainbench::harness::run::{Done, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::verdict::{self, Control, Verdict};
 use grainbench::reports::results::results_json;
@@ -231,6 +231,8 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
 impl<'a> Work<'a> {
     fn new(selected: &'a Selected, options: &Options, thorough: bool) -> Self {
         let runner = registry::runner(selected.case).live(options.live).thorough(thorough);
+        // All levels are asked for: what is kept of runs is done anew too.
+        let runner = if thorough { runner.afresh(Set::Paper) } else { runner };
         Self {
             selected,
             runner: runner.threads(usize::from(options.threads)),

@@ -131,7 +131,8 @@ fn thinned(series: &Series) -> Series {
 }
 
 /// Gzip without name or time, so that equal texts are equal files.
-fn compressed(text: &str) -> Vec<u8> {
+#[must_use]
+pub fn compressed(text: &str) -> Vec<u8> {
     let mut encoder = GzBuilder::new().mtime(0).write(Vec::new(), Compression::best());
     // Memory takes whatever is written to it.
     let _ = encoder.write_all(text.as_bytes());

@@ -247,7 +247,7 @@ fn first(subject: &Subject, task: &Task) -> Point {
     match record {
         Ok(record) => {
             point.counts = Counts::from(&record.cost);
-            let done = Done { scene: Arc::clone(&task.scene), record: Arc::new(record) };
+            let done = Done::new(Arc::clone(&task.scene), Arc::new(record));
             match (subject.measure)(&[done]) {
                 Ok(measured) if measured.error().is_finite() => {
                     point.standing = Standing::Measured;

@@ -52,7 +52,8 @@ impl Ledger {
         let runner = Runner::new(case, Arc::clone(&solvers));
         let mut claims = (case.claims)();
         claims.retain(|claim| {
-            claim.standing() == Standing::Passes && claim.set() < Set::Long && runner.is_available(claim)
+            let is_short = |run: &Run| run.set < Set::Long && run.reading.is_none();
+            claim.standing() == Standing::Passes && claim.runs.iter().all(is_short) && runner.is_available(claim)
         });
         Self { case, solvers, runner, claims, without: BTreeMap::new() }
     }
@@ -196,13 +197,13 @@ impl Ledger {
 
     fn simulate_without(&self, run: &Run, effect: Effect) -> Result<Done, RunError> {
         let scene = self.runner.scene(run)?;
-        let mut given = scene.clone();
+        let mut given = (*scene).clone();
         effect.switch_off(&mut given);
         let unknown =
             || RunError::Unsupported { solver: run.solver.to_owned(), reason: "there is no such solver".to_owned() };
         let solver = self.solvers.find(run.solver).ok_or_else(unknown)?;
         let record = solver.run(&given, &run.resolution, &mut ())?;
-        Ok(Done { scene: Arc::new(scene), record: Arc::new(record) })
+        Ok(Done::new(scene, Arc::new(record)))
     }
 
     /// Whether a run is one of ours that is judged, and not one that others are judged by.
@@ -230,7 +231,7 @@ impl Ledger {
         let is_ours =
             |run: &&Run| self.is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == Some(method);
         let run = self.claims.iter().flat_map(|claim| &claim.runs).find(is_ours)?;
-        let mut scene = self.runner.scene(run).ok()?;
+        let mut scene = (*self.runner.scene(run).ok()?).clone();
         if method == Method::Grid {
             // A grid says its step only when it runs.
             let ran = self.runner.run(run).ok()?.record;

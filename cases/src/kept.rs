@@ -1,0 +1,290 @@
+//! What is kept with a case of runs that take minutes or hours: what was read of their snapshots, their series, and where both
+//! come from. The main job judges it without the run; the sets that a run belongs to do it anew.
+
+use crate::registry::CASES;
+use crate::solvers::is_program;
+use flate2::read::GzDecoder;
+use grainbench_harness::case::Case;
+use grainbench_harness::claim::Claim;
+use grainbench_harness::control::Wrong;
+use grainbench_harness::reading::Table;
+use grainbench_harness::run::{Done, Run, Set};
+use grainbench_harness::solvers::Kept;
+use grainbench_reference::deck::Stepping;
+use grainbench_reference::stored::{compressed, scene_hash};
+use grainbench_scene::record::{Cost, Provenance as OfRecord, Record, Series};
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Failure, RunError};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const PROVENANCE: &str = "provenance.toml";
+const SERIES: &str = "series";
+const ENDING: &str = ".csv.gz";
+/// Digits of the numbers of tables: they are read off many grains, and rounding a millionth is nothing to them.
+const DIGITS: usize = 6;
+
+/// Where what is kept comes from.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// The program that made it, with its version.
+    pub program: String,
+    /// The commit that it was built from.
+    pub commit: String,
+    /// The day (YYYY-MM-DD).
+    pub date: String,
+    /// What was run, in words.
+    pub title: String,
+    /// How its snapshots were read.
+    pub reading: String,
+    /// BLAKE3 hash of everything in the scene that the run depends on.
+    pub scene: String,
+    /// What makes it again.
+    pub command: String,
+    /// BLAKE3 hash of every file, by name.
+    pub blake3: BTreeMap<String, String>,
+    /// The run.
+    pub run: OfRecord,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+/// A run of a claim, as it stands or under the claim's wrong physics, whose tables are kept.
+#[derive(Clone)]
+pub struct Wanted {
+    /// The case.
+    pub case: &'static Case,
+    /// A claim that reads it.
+    pub claim: Claim,
+    /// The run.
+    pub run: Run,
+    /// Whether it is the run under the claim's control.
+    pub wrong: bool,
+    /// Name of its folder.
+    pub id: String,
+}
+
+impl Wanted {
+    /// The set in which it is done.
+    #[must_use]
+    pub fn set(&self) -> Set {
+        if self.wrong { self.run.set.max(self.claim.control.set) } else { self.run.set }
+    }
+
+    /// Where it is kept.
+    #[must_use]
+    pub fn folder(&self) -> PathBuf {
+        folder(self.case, &self.id)
+    }
+
+    /// Whether what is kept is of the scene as it is now.
+    #[must_use]
+    pub fn is_there(&self, given: &Scene) -> bool {
+        let control = self.wrong.then_some(self.claim.control.name);
+        matches!(load(self.case, &self.run, given, control), Some(Ok(_)))
+    }
+}
+
+/// All that claims of a case read, each once.
+#[must_use]
+pub fn all(case: &'static Case) -> Vec<Wanted> {
+    let mut all: Vec<Wanted> = Vec::new();
+    for claim in (case.claims)() {
+        for run in claim.runs.iter().filter(|run| run.kept) {
+            let changes = match claim.control.wrong {
+                Wrong::Scene(_) => true,
+                Wrong::Ours(_) => !is_program(run.solver),
+                _ => false,
+            };
+            for wrong in [false, true] {
+                let control = wrong.then_some(claim.control.name);
+                let id = id(run, control);
+                if (!wrong || (changes && !run.aside)) && all.iter().all(|known| known.id != id) {
+                    all.push(Wanted { case, claim: claim.clone(), run: run.clone(), wrong, id });
+                }
+            }
+        }
+    }
+    all
+}
+
+/// The cases that keep something.
+#[must_use]
+pub fn cases() -> Vec<&'static Case> {
+    CASES
+        .iter()
+        .copied()
+        .filter(|case| (case.claims)().iter().any(|claim| claim.runs.iter().any(|run| run.kept)))
+        .collect()
+}
+
+/// Name of the folder of a run, under a control of this name: scene, solver, resolution and control in letters, digits and `-`.
+fn id(run: &Run, control: Option<&str>) -> String {
+    let words = format!("{} {} {} {}", run.scene_words(), run.solver, run.resolution, control.unwrap_or_default());
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
+    let words: String = words.chars().map(plain).collect();
+    words.split('-').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-").to_lowercase()
+}
+
+fn folder(case: &Case, id: &str) -> PathBuf {
+    case.directory().join("kept").join(id)
+}
+
+fn hash(scene: &Scene, run: &Run) -> Result<String, String> {
+    Ok(scene_hash(scene, &Stepping::of(scene, &run.resolution)?))
+}
+
+/// What is kept of a run of a scene, under a control of this name; none where nothing is.
+#[must_use]
+pub(crate) fn load(case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
+    let folder = folder(case, &id(run, control));
+    if !folder.is_dir() {
+        return None;
+    }
+    let broken = |reason: String| RunError::Program {
+        solver: run.solver.to_owned(),
+        failure: Failure::Output(format!("{}: {reason}", folder.display())),
+        last_lines: Vec::new(),
+    };
+    Some(read(&folder, run, scene).map_err(|error| match error {
+        Unusable::Stale(reason) => RunError::Stale { solver: run.solver.to_owned(), reason },
+        Unusable::Broken(reason) => broken(reason),
+    }))
+}
+
+/// Why what is kept cannot be used.
+enum Unusable {
+    /// It is of another scene or reading.
+    Stale(String),
+    /// A file is missing, damaged or changed.
+    Broken(String),
+}
+
+fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<Kept, Unusable> {
+    let text = fs::read_to_string(folder.join(PROVENANCE)).map_err(|error| Unusable::Broken(error.to_string()))?;
+    let provenance: Provenance = toml::from_str(&text).map_err(|error| Unusable::Broken(error.to_string()))?;
+    let reading = run.reading.map_or("", |reading| reading.name);
+    if hash(scene, run).map_err(Unusable::Broken)? != provenance.scene || reading != provenance.reading {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let reason =
+            format!("`{name}` is of another scene, time step or reading; `grainbench reference keep` does it anew");
+        return Err(Unusable::Stale(reason));
+    }
+    let mut tables = Vec::new();
+    for (file, expected) in &provenance.blake3 {
+        tables.push(table(folder, file, expected).map_err(Unusable::Broken)?);
+    }
+    let place = tables.iter().position(|table| table.name == SERIES);
+    let series = place.map(|place| series(scene, &tables.remove(place))).unwrap_or_default();
+    let made = format!("{} ({}, {})", provenance.date, provenance.program, provenance.commit);
+    Ok(Kept {
+        record: Record { provenance: provenance.run, series, snapshots: Vec::new(), cost: provenance.cost },
+        tables,
+        made,
+    })
+}
+
+/// A table of a file, which must be the one that was kept. A field without a number is no number.
+fn table(folder: &Path, file: &str, expected: &str) -> Result<Table, String> {
+    let name = file.strip_suffix(ENDING).filter(|name| name.bytes().all(|byte| byte.is_ascii_alphanumeric()));
+    let name = name.ok_or_else(|| format!("expected the name of a table, found `{file}`"))?;
+    let bytes = fs::read(folder.join(file)).map_err(|error| format!("{file}: {error}"))?;
+    let found = blake3::hash(&bytes).to_hex().to_string();
+    if found != expected {
+        return Err(format!("{file}: expected the hash {expected}, found {found}"));
+    }
+    let mut reader = csv::Reader::from_reader(GzDecoder::new(&bytes[..]));
+    let columns: Vec<String> =
+        reader.headers().map_err(|error| format!("{file}: {error}"))?.iter().map(str::to_owned).collect();
+    let mut values = vec![Vec::new(); columns.len()];
+    let mut row = csv::StringRecord::new();
+    while reader.read_record(&mut row).map_err(|error| format!("{file}: {error}"))? {
+        for (column, field) in values.iter_mut().zip(&row) {
+            let value = if field.is_empty() { Ok(f64::NAN) } else { field.parse() };
+            column.push(value.map_err(|_| format!("{file}: expected a number, found `{field}`"))?);
+        }
+    }
+    Ok(Table { name: name.to_owned(), columns, values })
+}
+
+/// The series of a record from its table.
+fn series(scene: &Scene, table: &Table) -> Series {
+    let values = |name: &str| table.column(name).map(<[f64]>::to_vec).unwrap_or_default();
+    let mut series = Series {
+        step: values("step").iter().map(|step| *step as u64).collect(),
+        time: values("time"),
+        ..Series::default()
+    };
+    for column in Recorder::new(scene, 1.0, 1).finish().0.columns {
+        if let Some(of_column) = table.column(&column.name) {
+            series.values.push(of_column.to_vec());
+            series.columns.push(column);
+        }
+    }
+    series
+}
+
+/// The files that keep a run that was done: name and bytes of each.
+///
+/// # Errors
+/// When the provenance cannot be written down, in words.
+pub fn files(of: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let record = &done.record;
+    let mut files = vec![(format!("{SERIES}{ENDING}"), compressed(&text_of_series(&record.series)))];
+    for table in done.tables.iter() {
+        files.push((format!("{}{ENDING}", table.name), compressed(&text(&table.columns, &table.values))));
+    }
+    let program = match record.provenance.options.first().filter(|_| is_program(of.run.solver)) {
+        Some(version) => version.clone(),
+        None => format!("grainbench {}", env!("CARGO_PKG_VERSION")),
+    };
+    let control = if of.wrong { format!(", {}", of.claim.control.name) } else { String::new() };
+    let provenance = Provenance {
+        program,
+        commit: made[0].to_owned(),
+        date: made[1].to_owned(),
+        title: format!("{}/{}{control}, {}, {}", of.case.name, of.run.scene_words(), of.run.solver, of.run.resolution),
+        reading: of.run.reading.map_or("", |reading| reading.name).to_owned(),
+        scene: hash(given, &of.run)?,
+        command: format!("grainbench reference keep {}", of.case.name),
+        blake3: files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect(),
+        run: record.provenance.clone(),
+        cost: record.cost,
+    };
+    files.push((PROVENANCE.to_owned(), toml::to_string(&provenance).map_err(|error| error.to_string())?.into_bytes()));
+    Ok(files)
+}
+
+/// A series with all digits.
+fn text_of_series(series: &Series) -> String {
+    let mut lines =
+        format!("step,time{}\n", series.columns.iter().map(|column| format!(",{}", column.name)).collect::<String>());
+    for (at, (step, time)) in series.step.iter().zip(&series.time).enumerate() {
+        let values: String = series.values.iter().map(|values| format!(",{:?}", values[at])).collect();
+        lines.push_str(&format!("{step},{time:?}{values}\n"));
+    }
+    lines
+}
+
+/// A table with the digits that are kept; nothing where there is no number.
+fn text(columns: &[String], values: &[Vec<f64>]) -> String {
+    let rows = values.first().map_or(0, Vec::len);
+    let mut lines = columns.join(",") + "\n";
+    for row in 0..rows {
+        let fields: Vec<String> = values.iter().map(|column| rounded(column[row])).collect();
+        lines.push_str(&(fields.join(",") + "\n"));
+    }
+    lines
+}
+
+fn rounded(value: f64) -> String {
+    if !value.is_finite() {
+        return String::new();
+    }
+    let short: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
+    format!("{short}")
+}
