@@ -40,38 +40,63 @@ pub fn pictures(name: &str, shots: &[Shot<'_>], size: f64, range: (f64, f64)) ->
     field(column, range, pixel, panels, (String::new(), vec![0.0]))
 }
 
-/// A film of quantities over the sheet of cells of a course, side by side, each on a scale of its own, or a picture where it
-/// has one frame. None where the grid is no sheet of one cell's depth, or no element has any of the quantities. A range runs
-/// from zero, that of packing fractions from what a fiftieth of the elements is below, to what a fiftieth is above. Cells that
-/// hold too little are left blank.
+/// Quantities over a sheet of cells, one cell deep, at some times.
+pub struct Sheet {
+    /// The cells.
+    pub grid: Grid,
+    /// What tells the times apart, such as `time t (s)`.
+    pub clock: String,
+    /// The times.
+    pub times: Vec<f64>,
+    /// What is shown, each in every cell at every time: the name of its column, and values; no number where nothing is shown.
+    pub shown: Vec<(&'static str, Vec<Vec<f64>>)>,
+}
+
+/// A film of quantities over the sheet of cells of a course, or a picture where it has one frame. None where the grid is no
+/// sheet of one cell's depth, or no element has any of the quantities. Cells that hold too little are left blank.
 #[must_use]
 pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
-    let [across, up] = sheet(&course.grid)?;
     let count = course.frames.len().min(FRAMES);
     let last = course.frames.len().checked_sub(1)?;
-    let shown: Vec<&Frame> = (0..count).map(|frame| &course.frames[frame * last / (count - 1).max(1)]).collect();
-    let pixels = (LONGEST / course.grid.count[across].max(course.grid.count[up]) as u32).clamp(1, PIXELS);
-    let panel = |name: &&str| {
+    let frames: Vec<&Frame> = (0..count).map(|frame| &course.frames[frame * last / (count - 1).max(1)]).collect();
+    let of = |name: &&str| {
         let column = named(name);
         let value = |frame: &Frame, cell: usize| course.value(column, frame, cell).filter(|_| !frame.masked[cell].few);
-        let cells = || 0..course.grid.cells();
-        let mut values: Vec<f64> =
-            shown.iter().flat_map(|frame| cells().filter_map(|cell| value(frame, cell))).collect();
-        values.sort_by(f64::total_cmp);
-        let at = |fiftieths: usize| values.get(values.len().checked_sub(1)? * fiftieths / 50).copied();
-        let range = (lowest(name, at(1)?), two_digits(at(49)?));
-        let of = |frame: &&Frame| {
-            let of_cell = |cell: usize| level(value(frame, cell).unwrap_or(f64::NAN), range);
-            raster(&course.grid, [across, up], pixels, of_cell)
-        };
-        let own = Some((range, column.unit.to_owned()));
-        Some(Panel { title: column.words.to_owned(), frames: shown.iter().map(of).collect(), own })
+        let of_frame =
+            |frame: &&Frame| (0..course.grid.cells()).map(|cell| value(frame, cell).unwrap_or(f64::NAN)).collect();
+        (column.name, frames.iter().map(of_frame).collect())
     };
-    let panels: Vec<Panel> = names.iter().filter_map(panel).collect();
-    let pixel = course.grid.cell[across] / f64::from(pixels);
-    let words = if shown.iter().all(|frame| frame.time.is_finite()) { "time t (s)" } else { "step" };
-    let clock = (words.to_owned(), shown.iter().map(|frame| frame.clock()).collect());
-    (!panels.is_empty()).then(|| field(&COLUMNS[0], (0.0, 1.0), pixel, panels, clock))
+    let words = if frames.iter().all(|frame| frame.time.is_finite()) { "time t (s)" } else { "step" };
+    let times = frames.iter().map(|frame| frame.clock()).collect();
+    Sheet { grid: course.grid, clock: words.to_owned(), times, shown: names.iter().map(of).collect() }.film()
+}
+
+impl Sheet {
+    /// The quantities side by side, each on a scale of its own, which runs from zero, that of packing fractions from what a
+    /// fiftieth of the elements is below, to what a fiftieth is above.
+    #[must_use]
+    pub fn film(&self) -> Option<Field> {
+        let [across, up] = sheet(&self.grid)?;
+        let pixels = (LONGEST / self.grid.count[across].max(self.grid.count[up]) as u32).clamp(1, PIXELS);
+        let panel = |(name, frames): &(&'static str, Vec<Vec<f64>>)| {
+            let column = named(name);
+            let mut values: Vec<f64> = frames.iter().flatten().copied().filter(|value| value.is_finite()).collect();
+            values.sort_by(f64::total_cmp);
+            let at = |fiftieths: usize| values.get(values.len().checked_sub(1)? * fiftieths / 50).copied();
+            let range = (lowest(name, at(1)?), two_digits(at(49)?));
+            let of = |frame: &Vec<f64>| {
+                raster(&self.grid, [across, up], pixels, |cell| {
+                    level(frame.get(cell).copied().unwrap_or(f64::NAN), range)
+                })
+            };
+            let own = Some((range, column.unit.to_owned()));
+            Some(Panel { title: column.words.to_owned(), frames: frames.iter().map(of).collect(), own })
+        };
+        let panels: Vec<Panel> = self.shown.iter().filter_map(panel).collect();
+        let pixel = self.grid.cell[across] / f64::from(pixels);
+        let clock = (self.clock.clone(), self.times.clone());
+        (!panels.is_empty()).then(|| field(&COLUMNS[0], (0.0, 1.0), pixel, panels, clock))
+    }
 }
 
 /// Where the range of a quantity begins whose lowest fiftieth ends at a value: packing fractions of a bulk differ by little.
