@@ -7,6 +7,7 @@ pub mod exact;
 pub mod kept;
 pub mod registry;
 pub mod rows;
+mod silo;
 pub mod solvers;
 pub mod sources;
 pub mod stage;

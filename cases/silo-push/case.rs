@@ -1,0 +1,45 @@
+//! The deposit of the wide silo, half of whose floor is pushed up, read as granular elements.
+
+use crate::silo::ELEMENTS;
+use crate::silo::claims::{LEVELS, Numbers, Silo, WEAKNESS};
+use crate::silo::ensemble::Flow;
+use crate::sources::prototype::silo as prototype;
+use grainbench_harness::prelude::*;
+
+pub(crate) static CASE: Case = Case {
+    name: "silo-push",
+    title: "Wide silo, pushed from below: spheres read as granular elements",
+    claim: "Elements of 2.5 d of a deposit that is pushed lie on the curves of silos that drain, as an independent prototype \
+            finds it, and LAMMPS from the same deposit.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: WEAKNESS,
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+static NUMBERS: Numbers = Numbers {
+    sine: prototype::PUSH_SINE,
+    packing: prototype::PUSH_PACKING,
+    plateau: prototype::WIDE_PLATEAU,
+    onset: prototype::PUSH_ONSET,
+    angles: [prototype::PUSH_LARGEST, prototype::PUSH_WINDOW],
+    correlations: [prototype::CRITERIA, prototype::WIDE_RATES],
+    bins: &[prototype::PUSH_INERTIA_0, prototype::PUSH_INERTIA_1, prototype::PUSH_INERTIA_2, prototype::PUSH_INERTIA_3],
+};
+
+fn silo() -> Silo {
+    let run = Run::new("pushed", "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().long();
+    Silo { flow: Flow::Pushed, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
+}
+
+fn claims() -> Vec<Claim> {
+    silo().of_every()
+}
+
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, NUMBERS.bins))
+}

@@ -1,0 +1,64 @@
+//! A tall silo that drains by a slit, read as granular elements.
+
+use crate::silo::ELEMENTS;
+use crate::silo::claims::{GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
+use crate::silo::ensemble::Flow;
+use crate::sources::prototype::silo as prototype;
+use grainbench_harness::prelude::*;
+
+pub(crate) static CASE: Case = Case {
+    name: "silo-tall",
+    title: "Tall silo, drained: spheres read as granular elements",
+    claim: "Elements of 2.5 d of a silo that drains dilate, shear and carry stress as an independent prototype finds it, and \
+            LAMMPS from the same deposit.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: WEAKNESS,
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+static NUMBERS: Numbers = Numbers {
+    sine: prototype::TALL_SINE,
+    packing: prototype::TALL_PACKING,
+    plateau: prototype::TALL_PLATEAU,
+    onset: prototype::TALL_ONSET,
+    angles: [prototype::TALL_LARGEST, prototype::TALL_WINDOW],
+    correlations: [prototype::CRITERIA, prototype::TALL_RATES],
+    bins: &[
+        prototype::TALL_INERTIA_0,
+        prototype::TALL_INERTIA_1,
+        prototype::TALL_INERTIA_2,
+        prototype::TALL_INERTIA_3,
+        prototype::TALL_INERTIA_4,
+        prototype::TALL_INERTIA_5,
+        prototype::TALL_INERTIA_6,
+        prototype::TALL_INERTIA_7,
+        prototype::TALL_INERTIA_8,
+    ],
+};
+
+fn silo() -> Silo {
+    let run = Run::new("drained", "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().slow();
+    Silo { flow: Flow::Drained, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
+}
+
+fn claims() -> Vec<Claim> {
+    let silo = silo();
+    let mut all = vec![
+        silo.deposit(prototype::DEPOSIT),
+        silo.equals(GONE, prototype::TALL_GONE, no_springs(), gone),
+        silo.turn(prototype::TALL_TURN),
+        silo.symmetry(),
+        silo.beside_lammps(GONE, gone),
+    ];
+    all.extend(silo.of_every());
+    all
+}
+
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, NUMBERS.bins))
+}

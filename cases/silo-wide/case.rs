@@ -1,0 +1,58 @@
+//! A wide silo that drains by a slit, read as granular elements.
+
+use crate::silo::ELEMENTS;
+use crate::silo::claims::{GONE, LEVELS, Numbers, Silo, WEAKNESS, gone};
+use crate::silo::ensemble::Flow;
+use crate::sources::prototype::silo as prototype;
+use grainbench_harness::prelude::*;
+
+pub(crate) static CASE: Case = Case {
+    name: "silo-wide",
+    title: "Wide silo, drained: spheres read as granular elements",
+    claim: "Elements of 2.5 d of a wide silo that drains lie on the curves of the tall one, as an independent prototype finds \
+            it, and LAMMPS from the same deposit.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: WEAKNESS,
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+static NUMBERS: Numbers = Numbers {
+    sine: prototype::WIDE_SINE,
+    packing: prototype::WIDE_PACKING,
+    plateau: prototype::WIDE_PLATEAU,
+    onset: prototype::WIDE_ONSET,
+    angles: [prototype::WIDE_LARGEST, prototype::WIDE_WINDOW],
+    correlations: [prototype::CRITERIA, prototype::WIDE_RATES],
+    bins: &[
+        prototype::WIDE_INERTIA_0,
+        prototype::WIDE_INERTIA_1,
+        prototype::WIDE_INERTIA_2,
+        prototype::WIDE_INERTIA_3,
+        prototype::WIDE_INERTIA_4,
+        prototype::WIDE_INERTIA_5,
+        prototype::WIDE_INERTIA_6,
+        prototype::WIDE_INERTIA_7,
+        prototype::WIDE_INERTIA_8,
+    ],
+};
+
+fn silo() -> Silo {
+    let run = Run::new("drained", "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().long();
+    Silo { flow: Flow::Drained, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
+}
+
+fn claims() -> Vec<Claim> {
+    let silo = silo();
+    let mut all = vec![silo.turn(prototype::WIDE_TURN), silo.symmetry(), silo.beside_lammps(GONE, gone)];
+    all.extend(silo.of_every());
+    all
+}
+
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, NUMBERS.bins))
+}

@@ -1,0 +1,294 @@
+//! What is claimed of every silo, from its elements, blocks and tracers.
+
+use super::ensemble::{self, Flow, mean, share, steady};
+use crate::rows::programs::row;
+use grainbench_harness::compare::pointwise::{largest, worst};
+use grainbench_harness::prelude::*;
+use grainbench_harness::source::Cited;
+use grainbench_harness::statistics::spread;
+
+/// A quantity of a silo.
+pub(crate) type Quantity = fn(&Done, Flow) -> Result<f64, Missing>;
+
+/// Numbers of the prototype that every silo has.
+pub(crate) struct Numbers {
+    pub(crate) sine: Cited,
+    pub(crate) packing: Cited,
+    pub(crate) plateau: Cited,
+    pub(crate) onset: Cited,
+    /// Angle between axes, frame by frame, and of means over 20 frames.
+    pub(crate) angles: [Cited; 2],
+    /// Correlations of the two criteria of friction, and of rates found in two ways.
+    pub(crate) correlations: [Cited; 2],
+    /// Packing fraction in the first bins of |I₀|.
+    pub(crate) bins: &'static [Cited],
+}
+
+/// A silo and how its tolerances were found.
+#[derive(Clone)]
+pub(crate) struct Silo {
+    /// What makes it flow.
+    pub(crate) flow: Flow,
+    /// The run that is judged.
+    pub(crate) run: Run,
+    /// What the prototype gives.
+    pub(crate) numbers: &'static Numbers,
+    /// What ten packings of our own give of every quantity: a table with a row a packing, made by `examples/silo_packings.rs`.
+    pub(crate) packings: &'static str,
+}
+
+/// How finely silos are run: the first is that of the rows.
+pub(crate) const LEVELS: &[Level] = &[
+    Level { name: "dt=2.5e-4 s", resolution: Resolution::TimeStep(2.5e-4) },
+    Level { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
+];
+
+/// Where these cases are weak.
+pub(crate) const WEAKNESS: &str = "A tenth of the size of the paper's silo, and one deposit of ten, whose spread is what tolerances \
+                                   are made of. The friction of the paper is not printed; .5 is assumed. The main job judges what \
+                                   is kept of runs; the tests do them anew.";
+
+/// Names and units of the quantities of silos.
+pub(crate) const GONE: [&str; 2] = ["grains out after 14 τ", "1"];
+const SINE: [&str; 2] = ["mean sin φ of the flow", "1"];
+const PACKING: [&str; 2] = ["mean packing fraction of the flow", "1"];
+const PLATEAU: [&str; 2] = ["packing fraction of tracers strained by more than .4", "1"];
+const ONSET: [&str; 2] = ["largest sin φ of tracers before they dilate, median", "1"];
+
+/// Why a quantity may be off by what packings differ by.
+const PACKINGS: &str = "a deposit is one draw of many: the 99 % interval of the difference of two, from ten of our own";
+
+/// Friction halved.
+fn half_the_friction() -> Control {
+    Control::scene("friction .25 for .5", |scene| scene.change_laws(|law| law.friction = 0.25))
+}
+
+/// Contacts without tangential springs.
+pub(crate) fn no_springs() -> Control {
+    Control::scene("tangential springs a millionth as stiff", |scene| {
+        scene.change_laws(|law| law.scale_tangential(1e-6))
+    })
+}
+
+/// Gravity turned by ten degrees about y.
+fn turned_gravity() -> Control {
+    Control::scene("gravity turned by 10°", |scene| {
+        let (sine, cosine) = 10.0_f64.to_radians().sin_cos();
+        let down = scene.gravity.z;
+        (scene.gravity.x, scene.gravity.z) = (-sine * down, cosine * down);
+    })
+    .long()
+}
+
+/// Mean sin φ of the elements that flow steadily.
+fn sine(done: &Done, flow: Flow) -> Result<f64, Missing> {
+    Ok(mean(&steady(done, flow, "sine_of_friction")?))
+}
+
+/// Their mean packing fraction.
+fn packing(done: &Done, flow: Flow) -> Result<f64, Missing> {
+    Ok(mean(&steady(done, flow, "packing_fraction")?))
+}
+
+/// Grains that have left.
+pub(crate) fn gone(done: &Done, _: Flow) -> Result<f64, Missing> {
+    ensemble::gone(done)
+}
+
+/// Packing fraction of strained tracers.
+fn plateau(done: &Done, _: Flow) -> Result<f64, Missing> {
+    ensemble::plateau(done)
+}
+
+/// Largest sin φ before tracers dilate, median.
+fn onset(done: &Done, _: Flow) -> Result<f64, Missing> {
+    ensemble::onset(done)
+}
+
+/// Mean angle between the axes of largest T and D.
+fn angle(done: &Done, flow: Flow) -> Result<f64, Missing> {
+    Ok(mean(&ensemble::angles(done, flow, false, "largest")?))
+}
+
+/// The same of means over windows of frames.
+fn angle_of_windows(done: &Done, flow: Flow) -> Result<f64, Missing> {
+    Ok(mean(&ensemble::angles(done, flow, true, "largest")?))
+}
+
+impl Silo {
+    /// The rows of every silo.
+    pub(crate) fn of_every(&self) -> Vec<Claim> {
+        let of = self.numbers;
+        let mut all = vec![
+            self.equals(SINE, of.sine, half_the_friction(), sine),
+            self.equals(PACKING, of.packing, no_springs(), packing),
+            self.range_of_friction(),
+            self.equals(PLATEAU, of.plateau, no_springs(), plateau),
+            self.equals(ONSET, of.onset, no_springs(), onset),
+        ];
+        all.extend(self.over_inertia());
+        all.extend(self.correlations());
+        all.extend(self.coaxiality());
+        all.push(self.beginning());
+        let beside: [([&str; 2], Quantity); 4] = [(SINE, sine), (PACKING, packing), (PLATEAU, plateau), (ONSET, onset)];
+        all.extend(beside.map(|(name, of)| self.beside_lammps(name, of)));
+        all
+    }
+
+    /// How far two packings are apart in a quantity, with 99 %; nothing where the table does not have it, so that the row is red.
+    fn spread(&self, quantity: &str) -> f64 {
+        let mut table = csv::Reader::from_reader(self.packings.as_bytes());
+        let place = table.headers().ok().and_then(|names| names.iter().position(|name| name == quantity));
+        let value = |row: csv::StringRecord| row.get(place?)?.parse().ok();
+        let values: Vec<f64> = table.records().flatten().filter_map(value).collect();
+        spread(&values).unwrap_or(0.0)
+    }
+
+    /// A quantity that is what the prototype gives, within what packings differ by.
+    pub(crate) fn equals(
+        &self,
+        [quantity, unit]: [&'static str; 2],
+        cited: Cited,
+        control: Control,
+        of: Quantity,
+    ) -> Claim {
+        let flow = self.flow;
+        let allowed = (self.spread(quantity) + cited.uncertainty) / cited.value.abs();
+        let because = format!("{PACKINGS}, and what the prototype says of its own mean; in units of the value");
+        claim(quantity, unit)
+            .of(self.run.clone())
+            .equals_cited(cited, cited.value.abs(), move |done| of(&done[0], flow))
+            .within(computed(allowed, because))
+            .refuses(control)
+    }
+
+    /// Part of the elements whose sin φ lies where the paper sees it.
+    fn range_of_friction(&self) -> Claim {
+        let (flow, source) = (self.flow, self.numbers.sine.source());
+        claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
+            .of(self.run.clone())
+            .at_least(0.95, source, move |done| Ok(share(&steady(&done[0], flow, "sine_of_friction")?, [0.2, 0.6])))
+            .within(exactly("a bound"))
+            .refuses(no_springs())
+    }
+
+    /// Correlations, which shuffled elements lose.
+    fn correlations(&self) -> Vec<Claim> {
+        let [criteria, rates] = self.numbers.correlations.map(|cited| cited.source());
+        let shuffled = "each element beside the friction of another";
+        let elsewhere = "each element beside the rate of another";
+        vec![
+            claim("correlation of sin φ with Drucker and Prager's ratio", "1")
+                .of(self.run.clone())
+                .at_least(0.92, criteria, |done| ensemble::of_criteria(&done[0]))
+                .within(exactly("a bound"))
+                .refuses(Control::misread(shuffled, ensemble::friction_elsewhere)),
+            claim("correlation of log |D₀| of the instant with that from positions .2 τ apart", "1")
+                .of(self.run.clone())
+                .at_least(0.95, rates, |done| ensemble::of_rates(&done[0]))
+                .within(exactly("a bound"))
+                .refuses(Control::misread(elsewhere, ensemble::rate_elsewhere)),
+        ]
+    }
+
+    /// Coaxiality of stress and rate.
+    fn coaxiality(&self) -> Vec<Claim> {
+        let cited = self.numbers.angles;
+        let elsewhere = || Control::misread("each block beside the stress of another", ensemble::stress_elsewhere);
+        vec![
+            self.equals(
+                ["angle between the axes of largest T and D in blocks of 5 d", "deg"],
+                cited[0],
+                elsewhere(),
+                angle,
+            ),
+            self.equals(["the same angle of means over 20 frames", "deg"], cited[1], elsewhere(), angle_of_windows),
+        ]
+    }
+
+    /// Neither half of a symmetric flow turns its rate against its stress otherwise than the other, by much.
+    pub(crate) fn turn(&self, cited: Cited) -> Claim {
+        let control = Control::misread("D turned by 10°", ensemble::rate_turned);
+        self.equals(["turn from T to D in the plane, with the sign of x", "deg"], cited, control, ensemble::turn)
+    }
+
+    /// A symmetric silo has no shear as a whole.
+    pub(crate) fn symmetry(&self) -> Claim {
+        claim("mean shear stress T_xz over the pressure, of the whole silo", "1")
+            .of(self.run.clone())
+            .holds("scene, walls and slit are their own mirror image in x = 0", |done| {
+                Ok(Measured::new(mean(&ensemble::whole(&done[0], "shear_over_pressure")?), 0.0, 1.0))
+            })
+            .within(judged(0.03, "the deposit is not its own mirror image; 10° of gravity are .07 in the prototype"))
+            .refuses(turned_gravity())
+    }
+
+    /// φ over |I₀|: every bin, and the mean of what they are off by.
+    fn over_inertia(&self) -> Vec<Claim> {
+        let bins = self.numbers.bins;
+        let off = move |done: &Done| -> Result<Vec<[f64; 2]>, Missing> {
+            let found = ensemble::over_inertia(done)?;
+            let pairs = found.iter().zip(bins).filter_map(|(found, cited)| Some([(*found)?, cited.value]));
+            let pairs: Vec<[f64; 2]> = pairs.collect();
+            if pairs.is_empty() { Err(Missing("bin of |I₀| with elements".to_owned())) } else { Ok(pairs) }
+        };
+        let mean_off = "packing fraction over |I₀| less that of the prototype, mean over bins";
+        vec![
+            claim("packing fraction over |I₀| in bins, worst", "1")
+                .of(self.run.clone())
+                .equals(bins[0].source(), move |done| {
+                    let size = |[found, expected]: &[f64; 2]| (found - expected).abs();
+                    let worst = off(&done[0])?.into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+                    let [found, expected] = worst.unwrap_or([f64::NAN; 2]);
+                    Ok(Measured::new(found, expected, 1.0))
+                })
+                .within(required(
+                    0.008,
+                    "asked for before: two drains of the prototype are .005 to .008 apart; in units of φ",
+                ))
+                .refuses(no_springs()),
+            claim(mean_off, "1")
+                .of(self.run.clone())
+                .equals(bins[0].source(), move |done| {
+                    let off: Vec<f64> = off(&done[0])?.iter().map(|[found, expected]| found - expected).collect();
+                    Ok(Measured::new(mean(&off), 0.0, 1.0))
+                })
+                .within(computed(self.spread(mean_off), format!("{PACKINGS}; in units of φ")))
+                .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one)),
+        ]
+    }
+
+    /// The deposit.
+    pub(crate) fn deposit(&self, cited: Cited) -> Claim {
+        let control = Control::misread("radii a hundredth too large", ensemble::larger_radii);
+        self.equals(["packing fraction of the deposit", "1"], cited, control, |done, _| ensemble::deposit(done))
+    }
+
+    /// Our solver in LAMMPS' convention and LAMMPS, from the same grains.
+    pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], of: Quantity) -> Claim {
+        let flow = self.flow;
+        let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
+        let control = Control::ours("tangential springs a millionth as stiff in ours", |scene| {
+            scene.change_laws(|law| law.scale_tangential(1e-6));
+        });
+        let because = format!("chaos makes them two draws after .8 τ; {PACKINGS}");
+        let allowed = computed(self.spread(quantity), because);
+        row(quantity, unit, allowed, [run("dem:lammps"), run("lammps")], control, move |done| {
+            Ok(Measured::new(of(&done[0], flow)?, of(&done[1], flow)?, 1.0))
+        })
+    }
+
+    /// The same until chaos tells them apart.
+    fn beginning(&self) -> Claim {
+        let run = |solver| Run::new("beginning", solver, self.run.resolution);
+        let allowed = judged(1e-9, "order of sums, which grows by e every .033 τ; relative to the largest value");
+        let control =
+            Control::ours("friction .25 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.25));
+        row("kinetic energy up to .2 τ, worst", "m g d", allowed, [run("dem:lammps"), run("lammps")], control, |done| {
+            worst(done, &[ENERGY], largest(done[1].column(ENERGY)?))
+        })
+    }
+}
+
+/// Kinetic energy of translation.
+const ENERGY: &str = "all.kinetic_energy";

@@ -1,0 +1,155 @@
+//! Figures of silos, as the paper draws them, from what was read of their runs.
+
+use super::ensemble::{INERTIA, over_inertia, over_strain, strained};
+use super::reader::{ELEMENT, STEADY};
+use grainbench_fields::element_picture::Sheet;
+use grainbench_fields::grid::Grid;
+use grainbench_harness::prelude::*;
+use grainbench_harness::source::Cited;
+use nalgebra::Vector3;
+
+/// Frames of the film of a page.
+const FRAMES: usize = 24;
+/// Points of a cloud: more are one blot.
+const CLOUD: usize = 600;
+
+/// All figures of a silo: the film, φ over |I₀| beside the prototype's bins, sin φ over φ along tracers, φ over strain.
+pub(crate) fn all(done: &Done, bins: &[Cited]) -> Vec<Figure> {
+    [film(done), over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten().collect()
+}
+
+/// Columns of a table as rows in which every number is one.
+fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
+    let columns: Vec<&[f64]> = names.iter().filter_map(|name| table.column(name)).collect();
+    if columns.len() < N {
+        return Vec::new();
+    }
+    let row = |at: usize| std::array::from_fn(|column| columns[column][at]);
+    (0..table.rows()).map(row).filter(|row: &[f64; N]| row.iter().all(|number| number.is_finite())).collect()
+}
+
+/// Evenly chosen points of many.
+fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let every = points.len().div_ceil(CLOUD).max(1);
+    points.into_iter().step_by(every).collect()
+}
+
+/// Speed, sin φ, φ and |D₀| beside each other (figures 2 and 3 of the paper).
+fn film(done: &Done) -> Option<Figure> {
+    let table = done.table("elements").ok()?;
+    let domain = done.scene.domain.as_ref()?;
+    let mut times: Vec<f64> = table.column("time")?.to_vec();
+    times.dedup();
+    let every = times.len().div_ceil(FRAMES).max(1);
+    let times: Vec<f64> = times.into_iter().step_by(every).collect();
+    let top = table.column("z")?.iter().copied().fold(0.0, f64::max) + 0.5 * ELEMENT;
+    let corners = (Vector3::new(domain.low.x, 0.0, 0.0), Vector3::new(domain.high.x, ELEMENT, top));
+    let grid = Grid::filling(corners, Vector3::repeat(ELEMENT));
+    let names = ["sine_of_friction", "packing_fraction", "shear_rate"];
+    let mut shown: Vec<(&'static str, Vec<Vec<f64>>)> = std::iter::once("speed")
+        .chain(names)
+        .map(|name| (name, vec![vec![f64::NAN; grid.cells()]; times.len()]))
+        .collect();
+    let place = |time: f64, x: f64, z: f64| {
+        let frame = times.iter().position(|known| *known == time)?;
+        Some((frame, grid.find(Vector3::new(x, 0.5 * ELEMENT, z))?))
+    };
+    for row in rows(table, ["time", "x", "velocity_x", "velocity_z", "z", "surface"]) {
+        if let Some((frame, cell)) = place(row[0], row[1], row[4]).filter(|_| row[5] == 0.0) {
+            shown[0].1[frame][cell] = row[2].hypot(row[3]);
+        }
+    }
+    for (number, name) in (1..).zip(names) {
+        for [time, x, z, surface, value] in rows(table, ["time", "x", "z", "surface", name]) {
+            if let Some((frame, cell)) = place(time, x, z).filter(|_| surface == 0.0) {
+                shown[number].1[frame][cell] = value;
+            }
+        }
+    }
+    let field = Sheet { grid, clock: "time t (τ)".to_owned(), times, shown }.film()?;
+    let caption = "Speed, sin φ, packing fraction and rate of shear of elements of 2.5 d, beside each other; lengths in d, rates in \
+                   1/τ, speeds in d/τ. Cells of fewer than eight grains and those at the surface are blank. The paper sees a funnel over the slit, a plug \
+                   above it that hardly shears, and sin φ between .2 and .6.";
+    Some(Figure::field("elements", "Granular elements of the flow", caption, field))
+}
+
+/// φ over |I₀| (figure 6).
+fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
+    let table = done.table("elements").ok()?;
+    let cloud = rows(table, ["time", "side", "surface", "inertial_number", "packing_fraction"]).into_iter();
+    let cloud = cloud.filter(|row| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0).map(|row| (row[3], row[4]));
+    let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
+    let ours = over_inertia(done).ok()?;
+    let ours = ours.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect();
+    let theirs = bins.iter().enumerate().map(|(bin, cited)| (middle(bin), cited.value)).collect();
+    let line = [5e-4, 0.012].map(|rate: f64| (rate, 0.635 - rate / 0.123)).to_vec();
+    let caption = "Each small point is an element at one moment of the steady flow. The mean packing fraction falls along one curve, \
+                   which is no straight line; the paper's fit |I₀| = .123 (.635 − φ) is that of slow elements alone.";
+    Some(Figure::graph(
+        "inertia",
+        "Packing fraction over the inertial number",
+        caption,
+        [Axis::log("inertial number |I₀| (1)"), Axis::linear("packing fraction φ (1)")],
+        vec![
+            Curve::new("mean of bins", Stroke::MarkedLine, ours),
+            Curve::new("elements", Stroke::Beside, thinned(cloud.collect())),
+            Curve::new("prototype, mean of bins", Stroke::Markers, theirs),
+            Curve::new("fit of the paper", Stroke::Dashed, line),
+        ],
+    ))
+}
+
+/// sin φ over φ along tracers (figure 7).
+fn along_tracers(done: &Done) -> Option<Figure> {
+    let table = done.table("tracers").ok()?;
+    let all = rows(table, ["tracer", "z", "packing_fraction", "sine_of_friction"]);
+    let mut starts: Vec<(f64, f64)> = Vec::new();
+    let (mut cloud, mut last) = (Vec::new(), Vec::new());
+    let mut tracers: Vec<f64> = all.iter().map(|row| row[0]).collect();
+    tracers.sort_by(f64::total_cmp);
+    tracers.dedup();
+    for tracer in tracers {
+        let course: Vec<(f64, f64)> =
+            all.iter().filter(|row| row[0] == tracer && row[1] > ELEMENT).map(|row| (row[2], row[3])).collect();
+        starts.extend(course.first());
+        last.extend(course.last());
+        cloud.extend(course);
+    }
+    let caption = "Tracers begin on the right, come to their largest sin φ while they are still dense, and then dilate to the left. \
+                   The paper sees .6 before any dilation; at a tenth of its size it is .5 to .6.";
+    Some(Figure::graph(
+        "tracers",
+        "sin φ over the packing fraction along tracers",
+        caption,
+        [Axis::linear("packing fraction φ (1)"), Axis::linear("sin φ of friction (1)")],
+        vec![
+            Curve::new("at the start", Stroke::Markers, starts),
+            Curve::new("on their way", Stroke::Beside, thinned(cloud)),
+            Curve::new("at the end", Stroke::Markers, last),
+        ],
+    ))
+}
+
+/// Bounds of the bins of strain.
+const STRAIN: [[f64; 2]; 8] =
+    [[0.02, 0.04], [0.04, 0.08], [0.08, 0.1], [0.1, 0.15], [0.15, 0.2], [0.2, 0.3], [0.3, 0.4], [0.4, 0.8]];
+
+/// φ over |E| (figure 8).
+fn over_hencky(done: &Done) -> Option<Figure> {
+    let cloud = strained(done).ok()?.into_iter().map(|[strain, packing]| (strain, packing)).collect();
+    let means = over_strain(done, &STRAIN).ok()?;
+    let means =
+        STRAIN.iter().zip(means).filter_map(|(bin, packing)| Some((0.5 * (bin[0] + bin[1]), packing?))).collect();
+    let caption = "The packing fraction of labelled boxes of 5 d over the Hencky strain |E| that they went through: it falls to a \
+                   plateau by |E| = .4, whatever the flow; the paper sees the same collapse.";
+    Some(Figure::graph(
+        "strain",
+        "Packing fraction over strain",
+        caption,
+        [Axis::linear("Hencky strain |E| (1)"), Axis::linear("packing fraction φ (1)")],
+        vec![
+            Curve::new("mean of bins", Stroke::MarkedLine, means),
+            Curve::new("tracers", Stroke::Beside, thinned(cloud)),
+        ],
+    ))
+}

@@ -1,0 +1,11 @@
+//! Flow of spheres out of a silo, and through one that is pushed from below, read as granular elements: what the cases of it
+//! share. Lengths in diameters d, times in τ = √(d/g), masses of a grain are 1.
+//!
+//! Source: C. H. Rycroft, K. Kamrin and M. Z. Bazant, *Assessing continuum postulates in simulations of granular flow* (2009).
+
+pub(crate) mod claims;
+pub(crate) mod ensemble;
+pub(crate) mod figures;
+mod reader;
+
+pub(crate) use reader::ELEMENTS;

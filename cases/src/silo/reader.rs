@@ -1,0 +1,271 @@
+//! Reads the snapshots of a silo as granular elements of 2.5 d across, as blocks of 5 d, and along tracers.
+
+use grainbench_fields::column::COLUMNS;
+use grainbench_fields::course::Course;
+use grainbench_fields::element::{Element, elements};
+use grainbench_fields::grid::Grid;
+use grainbench_fields::mask::Masks;
+use grainbench_fields::motion::{motion, movers_between};
+use grainbench_fields::tensor::{deviator, principal};
+use grainbench_fields::trails::Trails;
+use grainbench_harness::reading::{Reader, Reading, Table};
+use grainbench_scene::record::Snapshot;
+use grainbench_scene::scene::{Dimension, Scene};
+use nalgebra::{Matrix3, Vector3};
+
+/// The reading of every silo.
+pub(crate) const ELEMENTS: Reading = Reading { name: "granular elements", begin };
+
+/// Size of an element across and up (m): it is as deep as the period.
+pub(super) const ELEMENT: f64 = 2.5;
+/// Time from which on the flow is taken for steady (s): windows begin there.
+pub(super) const STEADY: f64 = 6.0;
+/// Frames whose stresses and motions are averaged into a window.
+const WINDOW: usize = 20;
+/// Most rows of elements that are kept: of larger runs some frames only.
+const MOST_ROWS: usize = 30_000;
+/// The plane in which axes turn: x and z.
+const PLANE: [usize; 2] = [0, 2];
+/// Without fewer than eight grains, and a cell at the surface is filled to less than two fifths, or the one above it.
+const MASKS: Masks = Masks {
+    fewest: 8,
+    surface: 0.4,
+    up: (2, true),
+    periodic: [false, true, false],
+    dimension: 3,
+    orifice: None,
+    flowing: None,
+};
+
+fn begin(scene: &Scene) -> Box<dyn Reader> {
+    let width = scene.domain.as_ref().map_or([-0.5, 0.5], |domain| [domain.low.x, domain.high.x]);
+    let depth = scene.domain.as_ref().map_or([-0.5, 0.5], |domain| [domain.low.y, domain.high.y]);
+    let top = scene.grains.iter().map(|grain| grain.position.z + grain.radius).fold(0.0, f64::max);
+    // Whole blocks of two elements, of which the lowest stand on the floor; one more, so that the surface has something above it.
+    let height = ((top / (2.0 * ELEMENT)).ceil() + 1.0) * 2.0 * ELEMENT;
+    let corners = (Vector3::new(width[0], depth[0], 0.0), Vector3::new(width[1], depth[1], height));
+    let of = |size: f64| Grid::filling(corners, Vector3::new(size, depth[1] - depth[0], size));
+    let mut course = Course::new(of(ELEMENT), Dimension::Three, PLANE, MASKS, false);
+    course.trails = Some(Trails::new(of(2.0 * ELEMENT)));
+    Box::new(Silo {
+        course,
+        blocks: of(2.0 * ELEMENT),
+        before: None,
+        rates: Vec::new(),
+        window: Vec::new(),
+        of_blocks: Table::new("blocks", &BLOCKS),
+        whole: Table::new("whole", &WHOLE),
+    })
+}
+
+/// Columns of the table of elements, beside the quantities of [`QUANTITIES`]: elements that stand on the floor are no elements
+/// of a side.
+const PLACED: [&str; 5] = ["time", "x", "z", "side", "surface"];
+/// Quantities of elements, by the names that [`COLUMNS`] gives them.
+const QUANTITIES: [&str; 8] = [
+    "packing_fraction",
+    "sine_of_friction",
+    "drucker_prager",
+    "shear_rate",
+    "inertial_number",
+    "pressure",
+    "velocity_x",
+    "velocity_z",
+];
+/// Columns of the table of blocks of 5 d: how many frames they are means of, and how the axes of T and D lie; beside it those
+/// of the T of another block.
+const BLOCKS: [&str; 13] = [
+    "time",
+    "frames",
+    "x",
+    "z",
+    "side",
+    "surface",
+    "shear_rate",
+    "largest",
+    "largest_elsewhere",
+    "smallest",
+    "turn",
+    "axis_of_stress",
+    "shear_stress",
+];
+/// Columns of the table of the whole silo: grains whose centre is above the floor, mean stresses of all elements below the
+/// surface over their pressure, and the pressure of the right half over that of the left one.
+const WHOLE: [&str; 5] = ["time", "grains", "packing_fraction", "shear_over_pressure", "right_over_left"];
+
+struct Silo {
+    course: Course,
+    blocks: Grid,
+    /// The grains of the snapshot before.
+    before: Option<Snapshot>,
+    /// |D₀| of every element from where grains were in the frame before.
+    rates: Vec<Vec<Option<f64>>>,
+    /// Stress and L of every block, of the frames of the window so far.
+    window: Vec<Vec<Element>>,
+    of_blocks: Table,
+    whole: Table,
+}
+
+impl Reader for Silo {
+    fn see(&mut self, snapshot: Snapshot) {
+        let between = self.before.as_ref().map(|before| {
+            let moved = motion(&movers_between(before, &snapshot), 3, &self.course.grid);
+            let rate = |motion| Element { packing_fraction: 0.0, stress: None, motion, dimension: 3 }.shear_rate();
+            moved.into_iter().map(rate).collect()
+        });
+        self.rates.push(between.unwrap_or_default());
+        self.see_blocks(&snapshot);
+        self.before = Some(Snapshot { contacts: None, ..snapshot.clone() });
+        self.course.add(snapshot);
+        self.see_whole();
+    }
+
+    fn end(self: Box<Self>) -> Vec<Table> {
+        vec![self.elements(), self.tracers(), self.of_blocks, self.whole]
+    }
+}
+
+impl Silo {
+    /// Adds the blocks of a snapshot, and those of the window that ends with it.
+    fn see_blocks(&mut self, snapshot: &Snapshot) {
+        let blocks = elements(snapshot, Dimension::Three, &self.blocks);
+        add_blocks(&mut self.of_blocks, &self.blocks, snapshot.time, 1, &blocks);
+        if snapshot.time < STEADY - 1e-9 {
+            return;
+        }
+        self.window.push(blocks);
+        if self.window.len() == WINDOW {
+            let means: Vec<Element> = (0..self.blocks.cells()).map(|cell| mean(&self.window, cell)).collect();
+            add_blocks(&mut self.of_blocks, &self.blocks, snapshot.time, WINDOW, &means);
+            self.window.clear();
+        }
+    }
+
+    /// Adds what the last frame is as a whole.
+    fn see_whole(&mut self) {
+        let (Some(frame), Some(snapshot)) = (self.course.frames.last(), &self.before) else { return };
+        let above = snapshot.grains.iter().filter(|grain| grain.position.z >= 0.0).count();
+        let (mut shear, mut pressures, mut filled, mut bulk) = (0.0, [0.0; 2], 0.0, 0.0);
+        for (cell, element) in frame.elements.iter().enumerate() {
+            let masked = frame.masked[cell];
+            if masked.few || masked.surface {
+                continue;
+            }
+            if let (Some(stress), Some(pressure)) = (element.stress, element.pressure()) {
+                shear += 0.5 * (stress[(0, 2)] + stress[(2, 0)]);
+                pressures[usize::from(self.course.grid.middle(cell).x > 0.0)] += pressure;
+            }
+            if !masked.wall {
+                (filled, bulk) = (filled + element.packing_fraction, bulk + 1.0);
+            }
+        }
+        let [left, right] = pressures;
+        let told = left + right > 0.0;
+        self.whole.push(&[
+            Some(frame.time),
+            Some(above as f64),
+            (bulk > 0.0).then(|| filled / bulk),
+            told.then(|| shear / (left + right)),
+            told.then(|| right / left),
+        ]);
+    }
+
+    /// Elements with eight grains or more, of every so many frames.
+    fn elements(&self) -> Table {
+        let columns = [&PLACED[..], &QUANTITIES, &["shear_rate_between"]].concat();
+        let mut table = Table::new("elements", &columns);
+        let rows = self.course.grid.cells() * self.course.frames.len();
+        let every = rows.div_ceil(MOST_ROWS).max(1);
+        for (frame, between) in self.course.frames.iter().zip(&self.rates).step_by(every) {
+            for (cell, masked) in frame.masked.iter().enumerate().filter(|(_, masked)| !masked.few) {
+                let middle = self.course.grid.middle(cell);
+                let side = is_side(&self.course.grid, cell);
+                let flags = [side, masked.surface].map(|flag| Some(f64::from(u8::from(flag))));
+                let mut row = vec![Some(frame.time), Some(middle.x), Some(middle.z), flags[0], flags[1]];
+                let quantity = |name: &&str| {
+                    let column = COLUMNS.iter().find(|column| column.name == *name)?;
+                    self.course.value(column, frame, cell)
+                };
+                row.extend(QUANTITIES.iter().map(quantity));
+                row.push(between.get(cell).copied().flatten());
+                table.push(&row);
+            }
+        }
+        table
+    }
+
+    /// Where tracers were, how far they were strained, and what was around them, for as long as they were in the bulk.
+    fn tracers(&self) -> Table {
+        let names = ["packing_fraction", "sine_of_friction"];
+        let mut table = Table::new("tracers", &["time", "tracer", "x", "z", "strain", names[0], names[1]]);
+        for stop in self.course.trails.iter().flat_map(|trails| &trails.stops) {
+            let frame = &self.course.frames[stop.frame];
+            let is_bulk = |cell: usize| !frame.masked[cell].surface && !frame.masked[cell].few;
+            // What lies between the bulk and its surface is mixed from both.
+            let over = stop.position + Vector3::new(0.0, 0.0, 0.5 * ELEMENT);
+            if ![stop.position, over].iter().all(|place| self.course.grid.find(*place).is_some_and(is_bulk)) {
+                continue;
+            }
+            let around = names.map(|name| {
+                let column = COLUMNS.iter().find(|column| column.name == name)?;
+                self.course.value_at(column, frame, stop.position)
+            });
+            let place = [frame.time, stop.tracer as f64, stop.position.x, stop.position.z].map(Some);
+            table.push(&[&place[..], &[stop.strain], &around].concat());
+        }
+        table
+    }
+}
+
+/// Whether a cell is of the first or the last column.
+fn is_side(grid: &Grid, cell: usize) -> bool {
+    let [column, ..] = grid.at(cell);
+    column == 0 || column + 1 == grid.count[0]
+}
+
+/// The element of the mean tensors of a block over some frames in which it had enough grains.
+fn mean(frames: &[Vec<Element>], cell: usize) -> Element {
+    let all: Vec<&Element> = frames.iter().map(|frame| &frame[cell]).collect();
+    let count = all.len() as f64;
+    let sum = |of: &dyn Fn(&Element) -> Option<Matrix3<f64>>| -> Option<Matrix3<f64>> {
+        all.iter().try_fold(Matrix3::zeros(), |sum, element| Some(sum + of(element)? / count))
+    };
+    let mut motion = all[0].motion;
+    motion.gradient = sum(&|element| element.motion.gradient);
+    motion.members = all.iter().map(|element| element.motion.members).min().unwrap_or_default();
+    let packing_fraction = all.iter().map(|element| element.packing_fraction).sum::<f64>() / count;
+    Element { packing_fraction, stress: sum(&|element| element.stress), motion, dimension: 3 }
+}
+
+fn add_blocks(table: &mut Table, grid: &Grid, time: f64, frames: usize, blocks: &[Element]) {
+    let masked = MASKS.of(blocks, grid);
+    for (cell, element) in blocks.iter().enumerate().filter(|(cell, _)| !masked[*cell].few) {
+        let middle = grid.middle(cell);
+        let flag = |is: bool| Some(f64::from(u8::from(is)));
+        let angles = element.coaxiality(PLANE);
+        let elsewhere = Element { stress: blocks[(cell + blocks.len() / 2 + 1) % blocks.len()].stress, ..*element };
+        table.push(&[
+            Some(time),
+            Some(frames as f64),
+            Some(middle.x),
+            Some(middle.z),
+            flag(is_side(grid, cell)),
+            flag(masked[cell].surface),
+            element.shear_rate(),
+            angles.map(|angles| angles.largest),
+            elsewhere.coaxiality(PLANE).map(|angles| angles.largest),
+            angles.map(|angles| angles.smallest),
+            angles.and_then(|angles| angles.in_plane),
+            element.stress.map(|stress| axis(&stress)),
+            element.stress.map(|stress| deviator(&stress, 3).norm()),
+        ]);
+    }
+}
+
+/// Angle of the axis of the largest principal stress from x towards z (degrees), −90 to 90.
+fn axis(stress: &Matrix3<f64>) -> f64 {
+    let all = principal(stress, 3);
+    let largest = all.axes[all.axes.len() - 1];
+    let angle = largest.z.atan2(largest.x).to_degrees();
+    angle - 180.0 * (angle / 180.0).round()
+}
