@@ -5,12 +5,13 @@ use crate::silo::claims::{LEVELS, Numbers, Silo, WEAKNESS};
 use crate::silo::ensemble::Flow;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
+use grainbench_harness::source::Cited;
 
 pub(crate) static CASE: Case = Case {
     name: "silo-push",
     title: "Wide silo, pushed from below: spheres read as granular elements",
-    claim: "Elements of 2.5 d of a deposit that is pushed lie on the curves of silos that drain, as an independent prototype \
-            finds it, and LAMMPS from the same deposit.",
+    claim: "Elements of 2.5 d of a deposit that is pushed have the friction and the packing fraction that an independent \
+            prototype finds, and LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: WEAKNESS,
@@ -21,15 +22,11 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-static NUMBERS: Numbers = Numbers {
-    sine: prototype::PUSH_SINE,
-    packing: prototype::PUSH_PACKING,
-    plateau: prototype::WIDE_PLATEAU,
-    onset: prototype::PUSH_ONSET,
-    angles: [prototype::PUSH_LARGEST, prototype::PUSH_WINDOW],
-    correlations: [prototype::CRITERIA, prototype::WIDE_RATES],
-    bins: &[prototype::PUSH_INERTIA_0, prototype::PUSH_INERTIA_1, prototype::PUSH_INERTIA_2, prototype::PUSH_INERTIA_3],
-};
+static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };
+
+/// Packing fraction in the first bins of |I₀|, which the figure shows.
+static BINS: &[Cited] =
+    &[prototype::PUSH_INERTIA_0, prototype::PUSH_INERTIA_1, prototype::PUSH_INERTIA_2, prototype::PUSH_INERTIA_3];
 
 fn silo() -> Silo {
     let run = Run::new("pushed", "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().long();
@@ -41,5 +38,5 @@ fn claims() -> Vec<Claim> {
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, NUMBERS.bins))
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, BINS))
 }

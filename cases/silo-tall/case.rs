@@ -1,7 +1,7 @@
 //! A tall silo that drains by a slit, read as granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
+use crate::silo::claims::{Drained, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
 use crate::silo::ensemble::Flow;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
@@ -21,9 +21,9 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-static NUMBERS: Numbers = Numbers {
-    sine: prototype::TALL_SINE,
-    packing: prototype::TALL_PACKING,
+static NUMBERS: Numbers = Numbers { sine: prototype::TALL_SINE, packing: prototype::TALL_PACKING };
+
+static DRAINED: Drained = Drained {
     plateau: prototype::TALL_PLATEAU,
     onset: prototype::TALL_ONSET,
     angles: [prototype::TALL_LARGEST, prototype::TALL_WINDOW],
@@ -56,9 +56,10 @@ fn claims() -> Vec<Claim> {
         silo.beside_lammps(GONE, gone),
     ];
     all.extend(silo.of_every());
+    all.extend(silo.of_drains(&DRAINED));
     all
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, NUMBERS.bins))
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, DRAINED.bins))
 }

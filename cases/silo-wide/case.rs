@@ -1,7 +1,7 @@
 //! A wide silo that drains by a slit, read as granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{GONE, LEVELS, Numbers, Silo, WEAKNESS, gone};
+use crate::silo::claims::{Drained, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone};
 use crate::silo::ensemble::Flow;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
@@ -21,9 +21,9 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-static NUMBERS: Numbers = Numbers {
-    sine: prototype::WIDE_SINE,
-    packing: prototype::WIDE_PACKING,
+static NUMBERS: Numbers = Numbers { sine: prototype::WIDE_SINE, packing: prototype::WIDE_PACKING };
+
+static DRAINED: Drained = Drained {
     plateau: prototype::WIDE_PLATEAU,
     onset: prototype::WIDE_ONSET,
     angles: [prototype::WIDE_LARGEST, prototype::WIDE_WINDOW],
@@ -50,9 +50,10 @@ fn claims() -> Vec<Claim> {
     let silo = silo();
     let mut all = vec![silo.turn(prototype::WIDE_TURN), silo.symmetry(), silo.beside_lammps(GONE, gone)];
     all.extend(silo.of_every());
+    all.extend(silo.of_drains(&DRAINED));
     all
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, NUMBERS.bins))
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, DRAINED.bins))
 }

@@ -14,6 +14,10 @@ pub(crate) type Quantity = fn(&Done, Flow) -> Result<f64, Missing>;
 pub(crate) struct Numbers {
     pub(crate) sine: Cited,
     pub(crate) packing: Cited,
+}
+
+/// Numbers of the prototype that silos have which drain.
+pub(crate) struct Drained {
     pub(crate) plateau: Cited,
     pub(crate) onset: Cited,
     /// Angle between axes, frame by frame, and of means over 20 frames.
@@ -123,14 +127,23 @@ impl Silo {
             self.equals(SINE, of.sine, half_the_friction(), sine),
             self.equals(PACKING, of.packing, no_springs(), packing),
             self.range_of_friction(),
+            self.beginning(),
+        ];
+        let beside: [([&str; 2], Quantity); 2] = [(SINE, sine), (PACKING, packing)];
+        all.extend(beside.map(|(name, of)| self.beside_lammps(name, of)));
+        all
+    }
+
+    /// The rows of silos that drain: these strain enough elements for courses along tracers and for curves.
+    pub(crate) fn of_drains(&self, of: &Drained) -> Vec<Claim> {
+        let mut all = vec![
             self.equals(PLATEAU, of.plateau, no_springs(), plateau),
             self.equals(ONSET, of.onset, no_springs(), onset),
         ];
-        all.extend(self.over_inertia());
-        all.extend(self.correlations());
-        all.extend(self.coaxiality());
-        all.push(self.beginning());
-        let beside: [([&str; 2], Quantity); 4] = [(SINE, sine), (PACKING, packing), (PLATEAU, plateau), (ONSET, onset)];
+        all.extend(self.over_inertia(of.bins));
+        all.extend(self.correlations(of.correlations));
+        all.extend(self.coaxiality(of.angles));
+        let beside: [([&str; 2], Quantity); 2] = [(PLATEAU, plateau), (ONSET, onset)];
         all.extend(beside.map(|(name, of)| self.beside_lammps(name, of)));
         all
     }
@@ -173,8 +186,8 @@ impl Silo {
     }
 
     /// Correlations, which shuffled elements lose.
-    fn correlations(&self) -> Vec<Claim> {
-        let [criteria, rates] = self.numbers.correlations.map(|cited| cited.source());
+    fn correlations(&self, cited: [Cited; 2]) -> Vec<Claim> {
+        let [criteria, rates] = cited.map(|cited| cited.source());
         let shuffled = "each element beside the friction of another";
         let elsewhere = "each element beside the rate of another";
         vec![
@@ -192,8 +205,7 @@ impl Silo {
     }
 
     /// Coaxiality of stress and rate.
-    fn coaxiality(&self) -> Vec<Claim> {
-        let cited = self.numbers.angles;
+    fn coaxiality(&self, cited: [Cited; 2]) -> Vec<Claim> {
         let elsewhere = || Control::misread("each block beside the stress of another", ensemble::stress_elsewhere);
         vec![
             self.equals(
@@ -224,8 +236,7 @@ impl Silo {
     }
 
     /// φ over |I₀|: every bin, and the mean of what they are off by.
-    fn over_inertia(&self) -> Vec<Claim> {
-        let bins = self.numbers.bins;
+    fn over_inertia(&self, bins: &'static [Cited]) -> Vec<Claim> {
         let off = move |done: &Done| -> Result<Vec<[f64; 2]>, Missing> {
             let found = ensemble::over_inertia(done)?;
             let pairs = found.iter().zip(bins).filter_map(|(found, cited)| Some([(*found)?, cited.value]));
