@@ -1,7 +1,7 @@
 //! A wide silo that drains by a slit, read as granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{Drained, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone};
+use crate::silo::claims::{Drained, LEVELS, Numbers, Silo, WEAKNESS};
 use crate::silo::ensemble::Flow;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
@@ -48,7 +48,7 @@ fn silo() -> Silo {
 
 fn claims() -> Vec<Claim> {
     let silo = silo();
-    let mut all = vec![silo.turn(prototype::WIDE_TURN), silo.symmetry(), silo.beside_lammps(GONE, gone)];
+    let mut all = vec![silo.turn(prototype::WIDE_TURN), silo.symmetry()];
     all.extend(silo.of_every());
     all.extend(silo.of_drains(&DRAINED));
     all
