@@ -13,6 +13,9 @@ const FRAMES: usize = 24;
 /// Points of a cloud: more are one blot.
 const CLOUD: usize = 600;
 
+/// An inertial number below which an element rests: grains that are held have one of rounding.
+const STILL: f64 = 1e-5;
+
 /// All figures of a silo: the film, φ over |I₀| beside the prototype's bins, sin φ over φ along tracers, φ over strain.
 pub(crate) fn all(done: &Done, bins: &[Cited]) -> Vec<Figure> {
     [film(done), over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten().collect()
@@ -77,7 +80,8 @@ fn film(done: &Done) -> Option<Figure> {
 fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
     let table = done.table("elements").ok()?;
     let cloud = rows(table, ["time", "side", "surface", "inertial_number", "packing_fraction"]).into_iter();
-    let cloud = cloud.filter(|row| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0).map(|row| (row[3], row[4]));
+    let flows = |row: &[f64; 5]| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0 && row[3] >= STILL;
+    let cloud = cloud.filter(flows).map(|row| (row[3], row[4]));
     let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
     let ours = over_inertia(done).ok()?;
     let ours = ours.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect();
