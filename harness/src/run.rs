@@ -152,7 +152,7 @@ impl Run {
     #[must_use]
     pub fn key(&self) -> String {
         let adjustment = self.adjustment.as_ref().map(|(name, _)| name.as_str()).unwrap_or_default();
-        format!("{}|{}|{:?}|{adjustment}|{:?}", self.variant, self.solver, self.resolution, self.reading)
+        format!("{}|{}|{:?}|{:?}|{adjustment}", self.variant, self.solver, self.resolution, self.reading)
     }
 }
 
