@@ -71,7 +71,8 @@ fn film(done: &Done) -> Option<Figure> {
     }
     let field = Sheet { grid, clock: "time t (τ)".to_owned(), times, shown }.film()?;
     let caption = "Speed, sin φ, packing fraction and rate of shear of elements of 2.5 d, beside each other; lengths in d, rates in \
-                   1/τ, speeds in d/τ. Cells of fewer than eight grains and those at the surface are blank. The paper sees a funnel over the slit, a plug \
+                   1/τ, speeds in d/τ. Cells of fewer than eight grains and those at the surface are blank. The paper sees a funnel \
+                   over the slit, a plug \
                    above it that hardly shears, and sin φ between .2 and .6.";
     Some(Figure::field("elements", "Granular elements of the flow", caption, field))
 }
