@@ -70,10 +70,10 @@ fn film(done: &Done) -> Option<Figure> {
         }
     }
     let field = Sheet { grid, clock: "time t (τ)".to_owned(), times, shown }.film()?;
-    let caption = "Speed, sin φ, packing fraction and rate of shear of elements of 2.5 d, beside each other; lengths in d, rates in \
-                   1/τ, speeds in d/τ. Cells of fewer than eight grains and those at the surface are blank. The paper sees a funnel \
-                   over the slit, a plug \
-                   above it that hardly shears, and sin φ between .2 and .6.";
+    let caption = "Speed, sin φ, packing fraction and rate of shear of elements of 2.5 d, beside each other; lengths \
+                  in d, rates in 1/τ, speeds in d/τ. Cells of fewer than eight grains and those at the surface are \
+                  blank. The paper sees a funnel over the slit, a plug above it that hardly shears, and sin φ \
+                  between .2 and .6.";
     Some(Figure::field("elements", "Granular elements of the flow", caption, field))
 }
 
@@ -88,8 +88,9 @@ fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
     let ours = ours.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect();
     let theirs = bins.iter().enumerate().map(|(bin, cited)| (middle(bin), cited.value)).collect();
     let line = [5e-4, 0.012].map(|rate: f64| (rate, 0.635 - rate / 0.123)).to_vec();
-    let caption = "Each small point is an element at one moment of the steady flow. The mean packing fraction falls along one curve, \
-                   which is no straight line; the paper's fit |I₀| = .123 (.635 − φ) is that of slow elements alone.";
+    let caption = "Each small point is an element at one moment of the steady flow. The mean packing fraction falls \
+                  along one curve, which is no straight line; the paper's fit |I₀| = .123 (.635 − φ) is that of slow \
+                  elements alone.";
     Some(Figure::graph(
         "inertia",
         "Packing fraction over the inertial number",
@@ -120,8 +121,9 @@ fn along_tracers(done: &Done) -> Option<Figure> {
         last.extend(course.last());
         cloud.extend(course);
     }
-    let caption = "Tracers begin on the right, come to their largest sin φ while they are still dense, and then dilate to the left. \
-                   The paper sees .6 before any dilation; at a tenth of its size it is .5 to .6.";
+    let caption = "Tracers begin on the right, come to their largest sin φ while they are still dense, and then \
+                  dilate to the left. The paper sees .6 before any dilation; at a tenth of its size it is .5 to \
+                  .6.";
     Some(Figure::graph(
         "tracers",
         "sin φ over the packing fraction along tracers",
@@ -145,8 +147,8 @@ fn over_hencky(done: &Done) -> Option<Figure> {
     let means = over_strain(done, &STRAIN).ok()?;
     let means =
         STRAIN.iter().zip(means).filter_map(|(bin, packing)| Some((0.5 * (bin[0] + bin[1]), packing?))).collect();
-    let caption = "The packing fraction of labelled boxes of 5 d over the Hencky strain |E| that they went through: it falls to a \
-                   plateau by |E| = .4, whatever the flow; the paper sees the same collapse.";
+    let caption = "The packing fraction of labelled boxes of 5 d over the Hencky strain |E| that they went through: \
+                  it falls to a plateau by |E| = .4, whatever the flow; the paper sees the same collapse.";
     Some(Figure::graph(
         "strain",
         "Packing fraction over strain",
