@@ -7,6 +7,7 @@ use crate::exact::one_grain::OneGrain;
 use crate::rows::incline::{self, Slope};
 use crate::rows::programs;
 use crate::rows::rigid::{self, Row};
+use crate::rows::set_down::{self, Dashpots};
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
@@ -44,7 +45,11 @@ pub(crate) static CASE: Case = Case {
 
 fn claims() -> Vec<Claim> {
     let programs = programs::one_grain(&SLOPES.iter().map(|slope| slope.variant).collect::<Vec<_>>());
-    [incline::claims(&CASE, SLOPES), rigid::inclines(RIGID), programs, elastic::claims()].concat()
+    [incline::claims(&CASE, SLOPES), set_down(), rigid::inclines(RIGID), programs, elastic::claims()].concat()
+}
+
+fn set_down() -> Vec<Claim> {
+    set_down::claims("30deg-mu.5", Dashpots::OfMass)
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

@@ -159,7 +159,7 @@ impl OneGrain {
 }
 
 /// 1 (y) in two dimensions, 2 (z) in three.
-fn normal_axis(scene: &Scene) -> usize {
+pub(crate) fn normal_axis(scene: &Scene) -> usize {
     scene.dimension.count() - 1
 }
 

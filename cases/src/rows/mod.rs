@@ -8,3 +8,4 @@ pub mod program_forces;
 pub mod programs;
 pub mod rigid;
 pub(crate) mod ringing;
+pub mod set_down;

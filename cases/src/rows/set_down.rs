@@ -1,0 +1,183 @@
+//! A grain set down on a slope deeper than it rests there, with so much friction that it sticks: it rings about its rest
+//! along the normal, and about rolling along the slope. The contact neither opens nor slips, so that only the springs and
+//! dashpots are felt, which every soft contact has alike.
+//!
+//! With the static overlap δ_s = m g_n/k_n and the slip velocity s = v − ΩR:
+//!
+//! ```text
+//! m d²δ/dt² + c_n dδ/dt + k_n δ = m g_n                          δ(0) = 3/2 δ_s, at rest
+//! ds/dt = g_t − (1 + 1/i)(k_t ∫s dt + c_t s)/m                   s(0) = 0
+//! ```
+//!
+//! two damped oscillators; c_n = γ_n m + β k_n, c_t = γ_t m + β k_t. Source: Newton's and Euler's laws.
+
+use crate::exact::one_grain::{OneGrain, course, normal_axis, rest_at_overlap};
+use crate::rows::incline::STEP;
+use grainbench_harness::prelude::*;
+use grainbench_scene::scene::{Duration, Sampling};
+
+const SPRINGS: Plate = Plate {
+    name: "set-down",
+    title: "Set down half as deep again as it rests",
+    caption: "A contact that neither opens nor slips shows its springs and dashpots.",
+    axes: ["time t (s)", "overlap δ (m)"],
+    logarithmic: false,
+};
+
+/// Which numbers of a law make its dashpots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dashpots {
+    /// γ_n and γ_t, in units of the mass.
+    OfMass,
+    /// β, in units of the stiffness.
+    OfStiffness,
+}
+
+/// Static overlap over the radius.
+const RATIO: f64 = 1e-3;
+/// Start over static overlap.
+const DEEPER: f64 = 1.5;
+/// Damping ratio along the normal.
+const DAMPING: f64 = 0.1;
+/// Friction that is never reached.
+const STICKING: f64 = 5.0;
+/// Length of the run and time between two samples, in units of 1/ω_n.
+const TIMES: [f64; 2] = [40.0, 0.2];
+
+const SOURCE: Source = Source::Derived("damped oscillators along the normal and along the slope (derivation)");
+const BECAUSE: &str = "steps of a hundredth of the critical one: the dashpot lags by half a step, 1 % of ζ; the torque arm \
+                       is between R and R − overlap";
+
+/// A damped oscillator that is let go at a distance of one from its rest.
+#[derive(Clone, Copy)]
+struct Oscillator {
+    /// Undamped frequency ω (rad/s).
+    frequency: f64,
+    /// Damping ratio ζ < 1.
+    damping: f64,
+}
+
+impl Oscillator {
+    /// Of a stiffness and a damping over a mass.
+    fn of(stiffness: f64, dashpot: f64) -> Self {
+        let frequency = stiffness.sqrt();
+        Self { frequency, damping: 0.5 * dashpot / frequency }
+    }
+
+    /// Its frequency with the damping (rad/s).
+    fn ringing(self) -> f64 {
+        self.frequency * (1.0 - self.damping * self.damping).sqrt()
+    }
+
+    /// Distance from rest at t.
+    fn distance(self, t: f64) -> f64 {
+        let (decay, phase) = (self.damping * self.frequency, self.ringing() * t);
+        (-decay * t).exp() * (phase.cos() + decay / self.ringing() * phase.sin())
+    }
+
+    /// −d(distance)/dt at t.
+    fn approach(self, t: f64) -> f64 {
+        let decay = self.damping * self.frequency;
+        (-decay * t).exp() * self.frequency * self.frequency / self.ringing() * (self.ringing() * t).sin()
+    }
+}
+
+/// The springs and dashpots of the scene's law over the grain's mass: along the normal, and along the slope.
+fn oscillators(scene: &Scene) -> [Oscillator; 2] {
+    let (grain, law) = (OneGrain::of(scene), scene.laws.iter().flatten().next().copied().unwrap_or_default());
+    let (normal, tangential) = (law.normal_stiffness() / grain.mass, law.tangential_stiffness() / grain.mass);
+    let turning = 1.0 + 1.0 / grain.inertia_factor;
+    [
+        Oscillator::of(normal, law.normal_damping + law.stiffness_damping * normal),
+        Oscillator::of(turning * tangential, turning * (law.tangential_damping + law.stiffness_damping * tangential)),
+    ]
+}
+
+/// Static overlap (m).
+fn rest(scene: &Scene) -> f64 {
+    let grain = OneGrain::of(scene);
+    grain.overlap_ratio * grain.radius
+}
+
+/// Peak of the slip velocity of an undamped spring: g_t/ω (m/s).
+fn peak(scene: &Scene) -> f64 {
+    OneGrain::of(scene).along / oscillators(scene)[1].frequency
+}
+
+fn set_down(scene: &mut Scene, dashpots: Dashpots) {
+    rest_at_overlap(scene, RATIO, DAMPING);
+    let axis = normal_axis(scene);
+    let grain = &mut scene.grains[0];
+    grain.position[axis] = grain.radius * (1.0 - DEEPER * RATIO);
+    scene.change_laws(|law| law.friction = STICKING);
+    let frequency = oscillators(scene)[0].frequency;
+    if dashpots == Dashpots::OfStiffness {
+        scene.change_laws(|law| {
+            (law.normal_damping, law.tangential_damping) = (0.0, 0.0);
+            law.stiffness_damping = 2.0 * DAMPING / frequency;
+        });
+    }
+    scene.duration = Duration::Seconds(TIMES[0] / frequency);
+    scene.sampling = Sampling::Seconds(TIMES[1] / frequency);
+}
+
+/// A spring a twentieth too stiff along both directions.
+fn stiffer(scene: &mut Scene) {
+    scene.change_laws(|law| {
+        if let grainbench_scene::contact_law::Springs::Linear { normal, tangential } = &mut law.springs {
+            (*normal, *tangential) = (1.05 * *normal, 1.05 * *tangential);
+        }
+    });
+}
+
+/// Both courses on a slope.
+#[must_use]
+pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
+    let name = match dashpots {
+        Dashpots::OfMass => "set down, damping by mass",
+        Dashpots::OfStiffness => "set down, damping by stiffness",
+    };
+    let run = || Run::new(variant, "dem:lammps", STEP).adjusted(name, move |scene| set_down(scene, dashpots));
+    let weaker = Control::scene("dashpots a tenth too weak", |scene| {
+        scene.change_laws(|law| {
+            law.normal_damping *= 0.9;
+            law.tangential_damping *= 0.9;
+            law.stiffness_damping *= 0.9;
+        });
+    });
+    let overlap = || {
+        claim("overlap while it rings, largest deviation", "m")
+            .of(run())
+            .series(|done| samples(done, "contact.overlap"))
+            .follows(
+                SOURCE,
+                |done, t| {
+                    let rest = rest(&done.scene);
+                    rest + (DEEPER - 1.0) * rest * oscillators(&done.scene)[0].distance(t)
+                },
+                |done| (DEEPER - 1.0) * rest(&done.scene),
+            )
+            .within(judged(0.01, BECAUSE))
+    };
+    let slip = || {
+        claim("slip velocity v − ΩR while it rings, largest deviation", "m/s")
+            .of(run())
+            .series(|done| {
+                let radius = done.scene.grains[0].radius;
+                Ok(course(done)?.into_iter().map(|(t, state)| (t, state.v - state.omega * radius)).collect())
+            })
+            .follows(
+                SOURCE,
+                |done, t| {
+                    let of = oscillators(&done.scene)[1];
+                    OneGrain::of(&done.scene).along / (of.frequency * of.frequency) * of.approach(t)
+                },
+                |done| peak(&done.scene),
+            )
+            .within(judged(0.01, BECAUSE))
+    };
+    vec![
+        overlap().refuses(Control::scene("springs ×1.05", stiffer)).fair_to_any().drawn(&SPRINGS, variant),
+        slip().refuses(weaker).fair_to_any(),
+    ]
+}
