@@ -5,7 +5,7 @@ use crate::claim::Claim;
 use crate::control::{self, Wrong};
 use crate::expect::Measured;
 use crate::reading::{self, Table};
-use crate::run::{Done, Missing, Run, Set, Standing};
+use crate::run::{Done, Run, Set, Standing};
 use crate::scope::Scope;
 use crate::solvers::{Kept, Solvers};
 use crate::tolerance::Made;
@@ -410,7 +410,9 @@ impl Runner {
             Ok(done) => {
                 let row = self.with_programs(row, &done);
                 match (claim.measure)(&done) {
-                    Err(Missing(what)) => row.left(Outcome::Fail, Missing(what).to_string()),
+                    // A solver of another's need not tell all that ours do.
+                    Err(missing) if self.stranger.is_some() => row.left(Outcome::Unsupported, missing.to_string()),
+                    Err(missing) => row.left(Outcome::Fail, missing.to_string()),
                     Ok(found) => known(row.judged(&found), claim.standing(), &found),
                 }
             }

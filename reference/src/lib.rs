@@ -4,12 +4,15 @@
 //! expected there and what was found. Nothing here panics on an input, however damaged.
 
 pub mod comparison;
+mod deadline;
 pub mod deck;
 pub mod grain_dump;
 pub mod live;
 pub mod observer;
 pub mod outputs;
+pub mod outside;
 mod pair_forces;
+mod process;
 mod read;
 pub mod stored;
 

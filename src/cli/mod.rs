@@ -3,6 +3,7 @@
 mod check;
 mod checkpoint;
 mod compare;
+mod conform;
 mod cores;
 mod cost;
 mod deck;
@@ -17,10 +18,13 @@ mod race;
 mod reference;
 mod report;
 mod run;
+mod scene;
 mod schema;
 mod select;
 mod simulate;
+mod solver;
 mod stability;
+mod step;
 mod subject;
 
 use clap::{Parser, Subcommand};
@@ -68,8 +72,12 @@ enum Command {
     /// Make the stored runs of LAMMPS and LIGGGHTS, or run these again and compare.
     #[command(subcommand)]
     Reference(reference::Command),
-    /// Print the JSON schema of scene files.
-    Schema,
+    /// Try what every solver owes: conservation, symmetries, free flight, order, determinism.
+    Conform(conform::Arguments),
+    /// Print a scene as programs are given it: everything definite, in SI.
+    Scene(scene::Arguments),
+    /// Print the JSON schema of scene files, or of the scenes that programs are given.
+    Schema(schema::Arguments),
     /// Make page and figures from what a run left, without any solver: of a report again, or pictures of a simulation.
     Report(report::Arguments),
 }
@@ -94,7 +102,9 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Race(arguments)) => race::race(&arguments),
         Some(Command::Reference(command)) => reference::reference(&command),
-        Some(Command::Schema) => schema::schema(),
+        Some(Command::Conform(arguments)) => conform::conform(&arguments),
+        Some(Command::Scene(arguments)) => scene::scene(&arguments),
+        Some(Command::Schema(arguments)) => schema::schema(&arguments),
         Some(Command::Report(arguments)) => report::report(&arguments),
     };
     done.unwrap_or_else(|fault: Fault| fault.report())

@@ -1,5 +1,6 @@
 //! `grainbench run`: judge the gates of cases and write the report.
 
+use super::conform;
 use super::cores::{MOST_THREADS, share};
 use super::exit::{self, Fault, Outcome, RED, check_writable, print};
 use super::interrupt::Interrupt;
@@ -7,18 +8,18 @@ use super::progress::Progress;
 use super::provenance::provenance;
 use super::select::{self, Selected};
 use grainbench::cases::{registry, solvers};
-use grainbench::harness::conformance;
 use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
 use grainbench::harness::run::{Done, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::verdict::{self, Control, Verdict};
+use grainbench::reference::outside::Outside;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, RunCost, Section, summary_table, write_report};
 use grainbench::scene::solver::RunError;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 /// What the command takes.
@@ -34,8 +35,9 @@ pub(crate) struct Arguments {
 /// Options of a run, which are those of the bare command too.
 #[derive(clap::Args)]
 pub(crate) struct Options {
-    /// Only rows of this solver; may be given more than once.
-    #[arg(long, value_name = "NAME")]
+    /// Only rows of this solver; may be given more than once. The manifest of a program puts it in the place of the solvers that
+    /// rows fair to any solver name.
+    #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
     /// Only gates at these resolution levels: `default`, `all`, or names such as `dt=.1`.
     #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
@@ -70,7 +72,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let (mut sections, left) = judge(&selected, options, thorough, &interrupt);
     // What every solver owes belongs to the whole registry, and not to a case.
     if cases.is_empty() && (options.levels.is_empty() || thorough) && left == 0 {
-        sections.extend(conformance(&options.solver));
+        sections.extend(conform::section(&options.solver)?);
     }
     let mut words = words(cases, options);
     if left > 0 {
@@ -85,41 +87,8 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     } else {
         print(&format!("{}\n{}\n", summary_table(&report), options.out.join("index.html").display()))?;
     }
-    if left > 0 { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, options.strict)) }
-}
-
-/// What every solver owes whatever its method, of the solvers named; all of ours when none is.
-fn conformance(named: &[String]) -> Option<Section> {
-    let wanted = |name: &String| named.is_empty() || named.contains(name);
-    let solvers: Vec<_> = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name())).collect();
-    let judged: Vec<_> = solvers.iter().map(|_| OnceLock::new()).collect();
-    share(
-        solvers.len(),
-        1,
-        || true,
-        |number| {
-            let (solver, terms) = &solvers[number];
-            judged[number].get_or_init(|| conformance::judge(&**solver, terms));
-        },
-    );
-    let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().filter_map(OnceLock::into_inner).unzip();
-    (!solvers.is_empty()).then(|| Section {
-        name: "conformance".to_owned(),
-        title: "What every solver owes".to_owned(),
-        claim: format!("Whatever its method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
-        derivation: "Each property is tried in scenes of its own: a grain that runs into four others, with friction and \
-                     without; two that fly apart; one held between two walls. The same solver with a flaw of a billionth \
-                     must turn the row red. What a method owes less is amber, with its physics, and red beyond the stated \
-                     size."
-            .to_owned(),
-        weak: "Properties hold of wrong answers too: a solver that conserves and is symmetric may have the wrong \
-               stiffness. Methods with a grid are run in the plane here, at two cells a radius."
-            .to_owned(),
-        figures: Vec::new(),
-        verdicts: verdicts.concat(),
-        controls: controls.concat(),
-        runs: Vec::new(),
-    })
+    let is_mute = selected.iter().any(|of| of.stranger.is_some()) && says_nothing(&report);
+    if left > 0 || is_mute { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, options.strict)) }
 }
 
 /// Success, or red when a row failed or has a stale reference, a control stayed green, a solver of ours broke, or nothing
@@ -141,6 +110,12 @@ pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
 pub(crate) const fn is_judged(verdict: &Verdict) -> bool {
     use verdict::Outcome::{Broken, Fail, Known, Pass, Unsupported};
     matches!(verdict.outcome, Pass | Fail | Known | Unsupported | Broken)
+}
+
+/// Whether no row says anything of a quantity: of a program that was asked for, what it cannot express does not.
+pub(crate) fn says_nothing(report: &Report) -> bool {
+    let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
+    rows.all(|row| row.outcome == verdict::Outcome::Unsupported || !is_judged(row))
 }
 
 /// Other people's programs may break without it being our failure.
@@ -217,12 +192,20 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
         }
         Task::Control(_, gate) => {
             let gate_of = &at.selected.claims[gate];
-            if at.runner.is_available(gate_of) {
+            // What a stranger cannot express it cannot express wrongly either.
+            let is_felt = || {
+                let verdict = at.verdicts[gate].get_or_init(|| at.runner.judge(gate_of));
+                verdict.outcome != verdict::Outcome::Unsupported
+            };
+            if at.runner.is_available(gate_of) && (at.selected.stranger.is_none() || is_felt()) {
                 at.controls[gate].get_or_init(|| at.runner.control(gate_of));
             }
         }
         Task::Draw(_) => {
-            at.figures.get_or_init(|| course::of_case(at.selected.case, &at.runner, &at.selected.claims));
+            at.figures.get_or_init(|| match at.selected.stranger {
+                None => course::of_case(at.selected.case, &at.runner, &at.selected.claims),
+                Some(_) => course::figures(&at.runner, &at.selected.claims),
+            });
         }
     }
     progress.advance();
@@ -233,6 +216,10 @@ impl<'a> Work<'a> {
         let runner = registry::runner(selected.case).live(options.live).thorough(thorough);
         // All levels are asked for: what is kept of runs is done anew too.
         let runner = if thorough { runner.afresh(Set::Paper) } else { runner };
+        let runner = match &selected.stranger {
+            Some(stranger) => runner.with_solver(Arc::<Outside>::clone(stranger)),
+            None => runner,
+        };
         Self {
             selected,
             runner: runner.threads(usize::from(options.threads)),
@@ -254,7 +241,10 @@ impl<'a> Work<'a> {
         };
         Section {
             name: case.name.to_owned(),
-            title: case.title.to_owned(),
+            title: match &self.selected.stranger {
+                Some(stranger) => format!("{}: {}", case.title, stranger.manifest().name),
+                None => case.title.to_owned(),
+            },
             claim: case.claim.to_owned(),
             derivation: case.derivation.to_owned(),
             weak: case.weakness.to_owned(),
@@ -270,7 +260,7 @@ fn cost(run: &Run, done: &Done) -> RunCost {
     let (provenance, cost) = (&done.record.provenance, &done.record.cost);
     RunCost {
         variant: run.scene_words(),
-        solver: run.solver.to_owned(),
+        solver: provenance.solver.clone(),
         resolution: run.resolution.to_string(),
         steps: cost.steps,
         particle_steps: cost.particle_steps,

@@ -1,11 +1,15 @@
 //! Which claims a command line means.
 
 use super::exit::Fault;
+use super::solver;
 use super::subject::Variant;
 use grainbench::cases::registry::CASES;
 use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::{Run, Set};
+use grainbench::harness::scope::Scope;
+use grainbench::reference::outside::Outside;
+use std::sync::Arc;
 
 /// The claims of one case that are to be judged.
 pub(crate) struct Selected {
@@ -13,11 +17,36 @@ pub(crate) struct Selected {
     pub(crate) case: &'static Case,
     /// Its claims, in their order; never empty.
     pub(crate) claims: Vec<Claim>,
+    /// The program that is put in the place of the solvers that they name.
+    pub(crate) stranger: Option<Arc<Outside>>,
+}
+
+/// The claims of the cases named, of solvers and of programs by their manifests: what is judged of each.
+pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
+    let (manifests, names): (Vec<&String>, Vec<&String>) = solvers.iter().partition(|name| solver::is_manifest(name));
+    let names: Vec<String> = names.into_iter().cloned().collect();
+    let mut selected =
+        if names.is_empty() && !manifests.is_empty() { Vec::new() } else { of_registry(cases, &names, levels)? };
+    for path in manifests {
+        let stranger = solver::outside(path)?;
+        for mut of_case in of_registry(cases, &[], levels)? {
+            of_case.claims.retain(|claim| claim.scope == Scope::AnySolver);
+            of_case.stranger = Some(Arc::clone(&stranger));
+            selected.push(of_case);
+        }
+    }
+    selected.retain(|selected| !selected.claims.is_empty());
+    if selected.is_empty() {
+        return Err(Fault::input(
+            "expected at least one gate that is fair to any solver, found none in the cases named",
+        ));
+    }
+    Ok(selected)
 }
 
 /// The claims of the cases (`CASE` or `CASE/VARIANT`; all when none is named) whose rows are of one of the solvers and
 /// that need one of the levels, in the order of the registry.
-pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
+fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
     let named = cases.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut selected = Vec::new();
     for case in CASES {
@@ -30,11 +59,11 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
             let wanted = |variant: &str| mine.iter().any(|named| named.variant == Some(variant));
             claims.retain(|claim| row(claim).is_some_and(|run| wanted(run.variant)));
         }
-        selected.push(Selected { case, claims });
+        selected.push(Selected { case, claims, stranger: None });
     }
     refuse_unknown_solvers(&selected, solvers)?;
     let levels = wanted_levels(&selected, levels)?;
-    for Selected { case, claims } in &mut selected {
+    for Selected { case, claims, .. } in &mut selected {
         if !solvers.is_empty() {
             let wanted = |run: &Run| solvers.iter().any(|name| name == run.solver);
             // A program is asked for by rows that compare ours with it.
@@ -91,7 +120,7 @@ fn wanted_levels(selected: &[Selected], names: &[String]) -> Result<Levels, Faul
         return Ok(Levels::Default);
     }
     let mut known: Vec<String> = vec!["default".to_owned(), "all".to_owned()];
-    for name in selected.iter().flat_map(|Selected { case, claims }| levels(case, claims)) {
+    for name in selected.iter().flat_map(|Selected { case, claims, .. }| levels(case, claims)) {
         push_new(&mut known, name);
     }
     let unified: Vec<String> = known.iter().map(|name| unified(name)).collect();

@@ -5,8 +5,9 @@ use super::cores::{MOST_THREADS, cores};
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
+use super::solver;
+use super::step::Step;
 use grainbench::cases::registry::read_grains;
-use grainbench::cases::solvers;
 use grainbench::reports::export::{self, Format};
 use grainbench::reports::{End, SnapshotStore, StagedDir, number, write_file};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
@@ -27,8 +28,8 @@ pub(crate) struct Arguments {
     /// Scene file.
     #[arg(value_name = "SCENE.toml")]
     scene: PathBuf,
-    /// Solver, by name.
-    #[arg(long, value_name = "NAME")]
+    /// Solver, by name, or by the manifest of a program.
+    #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: String,
     /// Variant of the scene.
     #[arg(long)]
@@ -36,19 +37,8 @@ pub(crate) struct Arguments {
     /// Override one key of the scene, such as `contacts.all.friction=0.5`; may be given more than once.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// Time step as a fraction of the critical one, 2√(m_min/k_max).
-    #[arg(
-        long,
-        value_name = "FRACTION",
-        default_value_t = 0.1,
-        value_parser = positive,
-        allow_hyphen_values = true,
-        conflicts_with = "time_step"
-    )]
-    time_step_fraction: f64,
-    /// Time step in seconds.
-    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
-    time_step: Option<f64>,
+    #[command(flatten)]
+    step: Step,
     /// Cells per reference length, of solvers with a grid: per radius, where there are grains.
     #[arg(long, value_name = "NUMBER", default_value_t = 8.0, value_parser = positive)]
     cells: f64,
@@ -166,7 +156,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         source = source.set(path, value);
     }
     let scene = source.scene(&read_grains)?;
-    let solver = solver(&arguments.solver)?;
+    let solver = solver::find(&arguments.solver)?;
     let resolution = resolution(arguments, &scene)?;
     if arguments.state.is_some() && Method::of(&arguments.solver) != Some(Method::Dem) {
         let solver = &arguments.solver;
@@ -263,13 +253,6 @@ fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format>
     }
 }
 
-fn solver(name: &str) -> Result<Box<dyn Solver>, Fault> {
-    solvers::by_name(name).ok_or_else(|| {
-        let names = solvers::names();
-        Fault::unknown("a solver", name, names.iter().map(String::as_str))
-    })
-}
-
 /// The resolution asked for, unless it is above the critical step and nobody said that this is meant.
 fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault> {
     if Method::of(&arguments.solver) == Some(Method::Rigid) {
@@ -286,12 +269,11 @@ fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault>
         return Ok(Resolution::Grid { cells, points, courant });
     }
     let critical = scene.critical_time_step();
-    let (resolution, step) = match arguments.time_step {
-        Some(step) => (Resolution::TimeStep(step), step),
-        None => {
-            let fraction = arguments.time_step_fraction;
-            (Resolution::CriticalFraction(fraction), fraction * critical)
-        }
+    let resolution = arguments.step.resolution();
+    let step = match resolution {
+        Resolution::CriticalFraction(fraction) => fraction * critical,
+        Resolution::TimeStep(step) => step,
+        Resolution::Grid { .. } | Resolution::Rigid { .. } => return Ok(resolution),
     };
     if step >= critical && critical.is_finite() && !arguments.allow_unstable {
         return Err(Fault::input(format!(

@@ -1,26 +1,21 @@
 //! LAMMPS and LIGGGHTS as solvers, where they are installed: deck, run, dump, record.
 
-mod deadline;
-mod process;
-
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
-use deadline::Deadline;
-use process::Limits;
-
+use crate::deadline::Deadline;
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
 use crate::grain_dump::contacts_of;
 use crate::observer::{Observed, Observer};
 use crate::pair_forces::PairForces;
+use crate::process::{self, Limits, Started};
 use crate::read::dump::DumpReader;
 use crate::read::log::read_log;
 use crate::read::numbers::NotFinite;
@@ -31,6 +26,9 @@ use crate::read::snapshot::DumpSnapshot;
 const TIME_LIMIT: Duration = Duration::from_secs(600);
 /// The variable of the environment that gives another time (s).
 const OTHER_LIMIT: &str = "GRAINBENCH_TIME_LIMIT";
+
+/// The log that a run leaves in its folder.
+const LOG: &str = "log.run";
 
 /// A program that is run as a solver.
 #[derive(Debug, Clone)]
@@ -104,14 +102,21 @@ impl Solver for Live {
         let stepping = deck.stepping;
         watch.begin(stepping.time_step, stepping.steps);
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
-        let folder = process::scratch(&deck).map_err(|error| fail(Failure::NotRun(error.to_string()), Vec::new()))?;
+        let files = deck.files.iter().map(|(name, text)| (name.as_str(), text.as_str()));
+        let folder = process::scratch(files).map_err(|error| fail(Failure::NotRun(error.to_string()), Vec::new()))?;
         let deadline = Deadline::after(self.time_limit);
-        let limits = Limits { deadline, bytes: most_bytes(scene, stepping) };
-        let screen = process::run(executable, &deck.files[0].0, folder.path(), limits)
-            .map_err(|(failure, last_lines)| fail(failure, last_lines))?;
+        let limits = Limits { deadline, bytes: most_bytes(scene, stepping), memory: None, threads: 1 };
+        let arguments = ["-in", &deck.files[0].0, "-log", LOG].map(str::to_owned);
+        let started =
+            Started { executable, arguments: &arguments, folder: folder.path(), at: None, errors_apart: false };
+        let ended = process::run(&started, limits).map_err(|(failure, last_lines)| fail(failure, last_lines))?;
+        let screen = ended.last_lines;
+        if ended.code != 0 {
+            return Err(fail(Failure::Crash(format!("exit status: {}", ended.code)), screen));
+        }
         let unusable = |failure: Failure| fail(failure, screen.clone());
         let mut observed = observe(scene, &deck, folder.path(), deadline).map_err(unusable)?;
-        let log = plain_file(folder.path(), process::LOG).and_then(|path| read_log(&path).map_err(output));
+        let log = plain_file(folder.path(), LOG).and_then(|path| read_log(&path).map_err(output));
         let log = log.map_err(unusable)?;
         for (column, values) in logged::read(&deck.logged, &log, &observed.series) {
             observed.add(scene, &column, values);
@@ -119,17 +124,9 @@ impl Solver for Live {
         complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing), screen.clone()))?;
         watch.progress(stepping.steps, stepping.steps);
         let seconds = log.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum();
-        let critical = scene.critical_time_step();
+        let options = log.version.into_iter().collect();
         Ok(Record {
-            provenance: Provenance {
-                scene: scene.title.clone(),
-                solver: self.name(),
-                resolution: resolution.to_string(),
-                time_step: stepping.time_step,
-                critical_time_step: critical.is_finite().then_some(critical),
-                effects: Effects::words(scene),
-                options: log.version.into_iter().collect(),
-            },
+            provenance: Provenance::of(scene, self.name(), resolution, stepping.time_step, options),
             series: observed.series,
             snapshots: observed.snapshots,
             cost: Cost::of_program(stepping.steps, scene.grains.len(), seconds),
@@ -139,13 +136,13 @@ impl Solver for Live {
 
 /// Most that a run may leave (B): room for a start, and for every sample 4 kB a grain, which is four times what its
 /// columns and a dozen contacts take.
-fn most_bytes(scene: &Scene, stepping: Stepping) -> u64 {
+pub(crate) fn most_bytes(scene: &Scene, stepping: Stepping) -> u64 {
     let samples = stepping.steps / stepping.interval + 2;
     (64 << 20) + samples.saturating_mul(4096).saturating_mul(scene.grains.len() as u64)
 }
 
 /// Refuses a series that lacks a sample that its deck asks for, and one with a value that is not finite.
-fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
+pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
     let due = (0..=stepping.steps / stepping.interval).map(|sample| sample * stepping.interval);
     let due = due.chain((!stepping.ends_on_a_sample()).then_some(stepping.steps));
     let mut found = series.step.iter().copied();
@@ -169,13 +166,13 @@ fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
 }
 
 /// What a file that cannot be read makes of a run.
-fn output(error: ReadError) -> Failure {
+pub(crate) fn output(error: ReadError) -> Failure {
     Failure::Output(error.to_string())
 }
 
 /// The path of a file that a run left in a folder. A pipe, which would be waited for without end, is refused, and so is
 /// a link.
-fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> {
+pub(crate) fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> {
     let path = folder.join(name);
     match fs::symlink_metadata(&path) {
         Ok(found) if !found.is_file() => Err(Failure::Output(format!("{name}: expected a plain file, found none"))),

@@ -42,6 +42,12 @@ impl Table {
         self.values.iter().skip(column).step_by(self.columns.len().max(1)).copied()
     }
 
+    /// The numbers of so many rows from one on, row after row.
+    pub(crate) fn rows_from(&self, row: usize, rows: usize) -> &[f64] {
+        let width = self.columns.len();
+        self.values.get(row * width..(row + rows) * width).unwrap_or_default()
+    }
+
     /// What all columns show together of the format.
     #[must_use]
     pub fn digits(&self) -> Digits {

@@ -111,17 +111,15 @@ impl StoredRun {
         }
         let stepping = Stepping::of(scene, resolution)
             .map_err(|reason| RunError::Resolution { solver: solver.clone(), reason })?;
-        let critical = scene.critical_time_step();
+        let options = vec![self.provenance.version.clone(), format!("stored run of {}", self.provenance.date)];
         Ok(Record {
-            provenance: grainbench_scene::record::Provenance {
-                scene: scene.title.clone(),
+            provenance: grainbench_scene::record::Provenance::of(
+                scene,
                 solver,
-                resolution: resolution.to_string(),
-                time_step: stepping.time_step,
-                critical_time_step: critical.is_finite().then_some(critical),
-                effects: grainbench_scene::effects::Effects::words(scene),
-                options: vec![self.provenance.version.clone(), format!("stored run of {}", self.provenance.date)],
-            },
+                resolution,
+                stepping.time_step,
+                options,
+            ),
             series: self.series(scene),
             snapshots: Vec::new(),
             cost: Cost::of_program(stepping.steps, scene.grains.len(), f64::NAN),

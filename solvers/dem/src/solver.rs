@@ -171,17 +171,8 @@ impl Dem {
         let mut running = Running { simulation, run, defect: self.defect };
         let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
         let Driven { series, snapshots, cost } = course.drive(&mut running, watch)?;
-        let critical = scene.critical_time_step();
         Ok(Record {
-            provenance: Provenance {
-                scene: scene.title.clone(),
-                solver: self.name(),
-                resolution: resolution.to_string(),
-                time_step,
-                critical_time_step: critical.is_finite().then_some(critical),
-                effects: Effects::words(scene),
-                options: self.convention.words(),
-            },
+            provenance: Provenance::of(scene, self.name(), resolution, time_step, self.convention.words()),
             series,
             snapshots,
             cost,

@@ -7,7 +7,6 @@ use crate::simulation::Simulation;
 use grainbench_scene::body::{BlockShape, Hold};
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
 use grainbench_scene::drive::{Course, Driven, Stepper};
-use grainbench_scene::effects::Effects;
 use grainbench_scene::memory;
 use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
@@ -164,13 +163,8 @@ impl Mpm {
         };
         Ok(Record {
             provenance: Provenance {
-                scene: scene.title.clone(),
-                solver: self.name(),
-                resolution: resolution.to_string(),
-                time_step: plan.time_step,
                 critical_time_step: Some(plan.critical),
-                effects: Effects::words(scene),
-                options: self.setting.words(),
+                ..Provenance::of(scene, self.name(), resolution, plan.time_step, self.setting.words())
             },
             series,
             snapshots,

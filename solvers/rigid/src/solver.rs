@@ -5,7 +5,6 @@ use crate::limits;
 use crate::settings::Settings;
 use crate::simulation::Simulation;
 use grainbench_scene::drive::{Course, Driven, Stepper};
-use grainbench_scene::effects::Effects;
 use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps};
@@ -142,13 +141,8 @@ impl Solver for Rigid {
         let Driven { series, snapshots, cost } = course.drive(&mut running, watch)?;
         Ok(Record {
             provenance: Provenance {
-                scene: scene.title.clone(),
-                solver: self.name(),
-                resolution: resolution.to_string(),
-                time_step,
                 critical_time_step: None,
-                effects: Effects::words(scene),
-                options: self.words(scene, &stepping),
+                ..Provenance::of(scene, self.name(), resolution, time_step, self.words(scene, &stepping))
             },
             series,
             snapshots,

@@ -74,6 +74,24 @@ impl Effect {
         }
     }
 
+    /// Its name in files.
+    #[must_use]
+    pub const fn key_word(self) -> &'static str {
+        match self {
+            Self::Friction => "friction",
+            Self::Cohesion => "cohesion",
+            Self::Hertz => "hertz",
+            Self::ContactDamping => "contact-damping",
+            Self::Restitution => "restitution",
+            Self::RollingResistance => "rolling-resistance",
+            Self::GlobalDamping => "global-damping",
+            Self::Gravity => "gravity",
+            Self::PeriodicAxes => "periodic-axes",
+            Self::MovingWalls => "moving-walls",
+            Self::Plasticity => "plasticity",
+        }
+    }
+
     /// What a negative control says that leaves it out.
     #[must_use]
     pub const fn absence(self) -> &'static str {

@@ -1,7 +1,9 @@
 //! What a run leaves behind: time series, snapshots, cost, provenance.
 
 use crate::budget::Budget;
+use crate::effects::Effects;
 use crate::scene::{Grain, Scene};
+use crate::solver::Resolution;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -402,6 +404,23 @@ pub struct Provenance {
     pub effects: Vec<String>,
     /// Solver options in words.
     pub options: Vec<String>,
+}
+
+impl Provenance {
+    /// Of a run of a scene at a time step (s), by a solver for which the scene's critical step is the critical one.
+    #[must_use]
+    pub fn of(scene: &Scene, solver: String, resolution: &Resolution, time_step: f64, options: Vec<String>) -> Self {
+        let critical = scene.critical_time_step();
+        Self {
+            scene: scene.title.clone(),
+            solver,
+            resolution: resolution.to_string(),
+            time_step,
+            critical_time_step: critical.is_finite().then_some(critical),
+            effects: Effects::words(scene),
+            options,
+        }
+    }
 }
 
 /// What there is of a run that broke or was ended.

@@ -5,30 +5,51 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use grainbench_scene::solver::Failure;
 use tempfile::TempDir;
 
-use super::deadline::Deadline;
-use crate::deck::Deck;
+use crate::deadline::Deadline;
 
-/// The log that a run leaves in its folder.
-pub(crate) const LOG: &str = "log.run";
-/// What the program prints.
-const SCREEN: &str = "screen";
+/// What a program prints.
+pub(crate) const SCREEN: &str = "screen";
+/// What it prints as errors, where that is kept apart.
+pub(crate) const ERRORS: &str = "errors";
 /// How many of its last lines are told.
 const LAST_LINES: usize = 4;
 /// How much of the end is looked at for them.
 const END: u64 = 4096;
 
-/// A folder with the files of a deck, which goes when it is dropped.
-pub(crate) fn scratch(deck: &Deck) -> io::Result<TempDir> {
+/// A folder with files of these names and texts, which goes when it is dropped.
+pub(crate) fn scratch<'f>(files: impl IntoIterator<Item = (&'f str, &'f str)>) -> io::Result<TempDir> {
     let folder = tempfile::Builder::new().prefix("grainbench-").tempdir()?;
-    for (name, text) in &deck.files {
+    for (name, text) in files {
         fs::write(folder.path().join(name), text)?;
     }
     Ok(folder)
+}
+
+/// How a program is started.
+pub(crate) struct Started<'s> {
+    /// The program.
+    pub(crate) executable: &'s Path,
+    /// Its words.
+    pub(crate) arguments: &'s [String],
+    /// The folder in which it leaves its files, and what it prints.
+    pub(crate) folder: &'s Path,
+    /// Where it is started, if not there.
+    pub(crate) at: Option<&'s Path>,
+    /// Whether errors that it prints go to [`ERRORS`] and not to [`SCREEN`].
+    pub(crate) errors_apart: bool,
+}
+
+/// How a program ended that no signal ended.
+pub(crate) struct Ended {
+    /// The code that it gave back.
+    pub(crate) code: i32,
+    /// The last lines that it printed, errors where it printed any apart.
+    pub(crate) last_lines: Vec<String>,
 }
 
 /// What a program may take.
@@ -38,6 +59,10 @@ pub(crate) struct Limits {
     pub(crate) deadline: Deadline,
     /// All that it may leave in its folder (B).
     pub(crate) bytes: u64,
+    /// Address space of each of its processes (KiB); any where none is named.
+    pub(crate) memory: Option<u64>,
+    /// Threads.
+    pub(crate) threads: u16,
 }
 
 /// Runs a program, and ends it with all that it has started when its own standard input closes: when we close it, and
@@ -45,30 +70,32 @@ pub(crate) struct Limits {
 /// Its process group is that of the shell, which keeps its number in use.
 const GUARD: &str = "exec 3<&0 </dev/null
 \"$0\" \"$@\" 3<&- & program=$!
-(read -r _ <&3 || rm -rf \"$PWD\"; kill -9 -$$) &
+(read -r _ <&3 || rm -rf \"$GRAINBENCH_FOLDER\"; kill -9 -$$) &
 wait $program";
 /// What the guard is told before its standard input closes and we go on.
 const WE_ARE_ALIVE: &[u8] = b"alive\n";
 
-/// Runs the program to its end and gives the last lines that it printed.
-pub(crate) fn run(
-    executable: &Path,
-    input: &str,
-    folder: &Path,
-    limits: Limits,
-) -> Result<Vec<String>, (Failure, Vec<String>)> {
+/// Runs a program to its end.
+pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failure, Vec<String>)> {
+    let Started { executable, arguments, folder, at, errors_apart } = *started;
     let not_run = |error: io::Error| (Failure::NotRun(format!("{}: {error}", executable.display())), Vec::new());
     fs::metadata(executable).map_err(not_run)?;
     let screen = File::create(folder.join(SCREEN)).map_err(not_run)?;
-    let errors = screen.try_clone().map_err(not_run)?;
+    let errors = if errors_apart { File::create(folder.join(ERRORS)) } else { screen.try_clone() };
+    let errors = errors.map_err(not_run)?;
+    let guarded = match limits.memory {
+        Some(most) => format!("ulimit -v {most} || exit 126\n{GUARD}"),
+        None => GUARD.to_owned(),
+    };
     let mut guard = Command::new("sh");
     guard
-        .args(["-c", GUARD])
+        .args(["-c", &guarded])
         .arg(executable)
-        .args(["-in", input, "-log", LOG])
-        .current_dir(folder)
-        // One process, one thread: sums in another order would end in other digits.
-        .env("OMP_NUM_THREADS", "1")
+        .args(arguments)
+        .current_dir(at.unwrap_or(folder))
+        .env("GRAINBENCH_FOLDER", folder)
+        // Of ours: sums in another order would end in other digits.
+        .env("OMP_NUM_THREADS", limits.threads.to_string())
         // Spares each start the daemon that would watch over several processes.
         .env("OMPI_MCA_ess_singleton_isolated", "1")
         // And the search for fabrics between machines, three quarters of the time of a start.
@@ -79,7 +106,7 @@ pub(crate) fn run(
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut guard, 0);
     let mut child = guard.spawn().map_err(not_run)?;
-    let mut pause = Duration::from_millis(1);
+    let start = Instant::now();
     let status = loop {
         let failure = match child.try_wait() {
             Ok(Some(status)) => break status,
@@ -88,8 +115,8 @@ pub(crate) fn run(
             Ok(None) => match limits.deadline.check() {
                 Err(time_out) => time_out,
                 Ok(()) => {
-                    sleep(pause);
-                    pause = (pause * 2).min(Duration::from_millis(20));
+                    // What is lost by looking late is a twentieth of what it takes.
+                    sleep((start.elapsed() / 20).clamp(Duration::from_micros(500), Duration::from_millis(20)));
                     continue;
                 }
             },
@@ -103,12 +130,12 @@ pub(crate) fn run(
     let last_lines = last_lines(folder);
     match status.code() {
         Some(0) if size(folder) > limits.bytes => Err((too_much(limits.bytes), last_lines)),
-        Some(0) => Ok(last_lines),
         // What a shell says of a program that it could not start.
         Some(126 | 127) => Err((Failure::NotRun(executable.display().to_string()), last_lines)),
         // And of one that a signal ended.
         Some(code @ 129..=192) => Err((Failure::Crash(format!("signal {}", code - 128)), last_lines)),
-        _ => Err((Failure::Crash(status.to_string()), last_lines)),
+        Some(code) => Ok(Ended { code, last_lines }),
+        None => Err((Failure::Crash(status.to_string()), last_lines)),
     }
 }
 
@@ -124,16 +151,27 @@ fn close(child: &mut Child) {
     }
 }
 
-/// All that is in a folder (B).
+/// All that is in a folder, and in those inside it (B); links are not followed.
 fn size(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    entries.filter_map(|entry| entry.metadata().ok()).map(|of| of.len()).sum()
+    let of = |entry: fs::DirEntry| match entry.metadata() {
+        Ok(found) if found.is_dir() => size(&entry.path()),
+        Ok(found) => found.len(),
+        Err(_) => 0,
+    };
+    entries.map(of).sum()
 }
 
-/// The last lines of what was printed; LIGGGHTS prints bytes that are not UTF-8.
+/// The last lines of what was printed: errors where there are some apart.
 fn last_lines(folder: &Path) -> Vec<String> {
+    let of_errors = last_lines_of(&folder.join(ERRORS));
+    if of_errors.is_empty() { last_lines_of(&folder.join(SCREEN)) } else { of_errors }
+}
+
+/// The last lines of a file; LIGGGHTS prints bytes that are not UTF-8.
+fn last_lines_of(path: &Path) -> Vec<String> {
     let read = || -> io::Result<Vec<u8>> {
-        let mut file = File::open(folder.join(SCREEN))?;
+        let mut file = File::open(path)?;
         let length = file.metadata()?.len();
         file.seek(SeekFrom::Start(length.saturating_sub(END)))?;
         let mut bytes = Vec::new();

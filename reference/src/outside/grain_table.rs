@@ -1,0 +1,60 @@
+//! Grains in a table: a row for each grain and sample, with the step or the time of the sample.
+
+use crate::observer::{Names, Observed, Observer};
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::snapshot::DumpSnapshot;
+use crate::read::table::{Table, read_table};
+use grainbench_scene::scene::Scene;
+use std::path::Path;
+
+/// What the table at a path, which errors call `name`, tells of a scene whose steps are so long (s).
+pub(super) fn observe(
+    scene: &Scene,
+    path: &Path,
+    name: &str,
+    names: &Names,
+    time_step: f64,
+) -> Result<Observed, ReadError> {
+    let table = read_table(path)?;
+    let steps = steps(&table, name, names, time_step)?;
+    let mut observer = Observer::new(scene);
+    let (mut row, mut last) = (0, None);
+    while row < table.rows() {
+        let step = steps[row];
+        let rows = steps[row..].iter().take_while(|other| **other == step).count();
+        if let Some(before) = last.filter(|before| step <= *before) {
+            let expected = format!("a step after {before}");
+            return Err(ReadError::at(name, row as u64 + 2, expected, step.to_string()));
+        }
+        let snapshot = DumpSnapshot {
+            step,
+            columns: table.columns.clone(),
+            first_line: row as u64 + 2,
+            values: table.rows_from(row, rows).to_vec(),
+            ..DumpSnapshot::default()
+        };
+        observer.take(name, &snapshot, names, step as f64 * time_step, None, last.is_none())?;
+        (row, last) = (row + rows, Some(step));
+    }
+    Ok(observer.finish())
+}
+
+/// The step of every row.
+fn steps(table: &Table, name: &str, names: &Names, time_step: f64) -> Result<Vec<u64>, ReadError> {
+    if let Some(column) = table.column(names.of("step")) {
+        let whole = |step: f64| if step >= 0.0 && step.fract() == 0.0 { Ok(step as u64) } else { Err(step) };
+        let steps: Result<Vec<u64>, f64> = table.values(column).map(whole).collect();
+        return steps.map_err(|step| ReadError::at(name, 1, "whole steps from zero on", step.to_string()));
+    }
+    let Some(column) = ["time", "t"].into_iter().find_map(|time| table.column(names.of(time))) else {
+        let have: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        return Err(ReadError::at(name, 1, "a column `step` or `time`", quoted(&have.join(" "))));
+    };
+    let step = |time: f64| {
+        let step = (time / time_step).round();
+        // A program that adds its steps up is off by their rounding.
+        if (time - step * time_step).abs() <= 1e-3 * time_step { Ok(step as u64) } else { Err(time) }
+    };
+    let steps: Result<Vec<u64>, f64> = table.values(column).map(step).collect();
+    steps.map_err(|time| ReadError::at(name, 1, format!("times on steps of {time_step} s"), format!("{time} s")))
+}

@@ -1,0 +1,271 @@
+//! `SOLVER.toml`: how a program is started, what it can, and what it leaves.
+
+use crate::observer::Names;
+use crate::read::read_error::{one_line, quoted};
+use grainbench_scene::effect::Effect;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path};
+use thiserror::Error;
+
+/// Most bytes of a manifest.
+const MOST: u64 = 1 << 20;
+/// Characters that a program's name may have beside letters and digits.
+const IN_NAMES: &str = "-_.+ ";
+
+/// What a manifest says, checked.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// What rows call the solver.
+    pub name: String,
+    /// The command that prints its version; the first line goes into the provenance of its runs.
+    #[serde(default)]
+    pub version: Vec<String>,
+    /// The command of a run. `{scene}` stands for the file with the scene, `{out}` for the fresh folder in which it is started,
+    /// `{here}` for the folder of the manifest; a word that names a file beside the manifest is that file.
+    pub run: Vec<String>,
+    /// A command that is run once in the manifest's folder before the first run, and is not timed.
+    #[serde(default)]
+    pub prepare: Vec<String>,
+    /// In which format it is given the scene.
+    #[serde(default)]
+    pub scene: SceneFormat,
+    /// What it can.
+    pub can: Can,
+    /// What it is run with to see how its error falls and what it costs.
+    #[serde(default)]
+    pub knobs: Knobs,
+    /// What it leaves.
+    pub output: Output,
+    /// What it may take.
+    #[serde(default)]
+    pub limits: Limits,
+}
+
+/// Formats of the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SceneFormat {
+    /// JSON.
+    #[default]
+    Json,
+    /// TOML.
+    Toml,
+}
+
+/// What a program declares that it can. A scene that calls for more is not given to it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Can {
+    /// Numbers of dimensions.
+    pub dimension: Vec<usize>,
+    /// Contact laws.
+    pub laws: Vec<Law>,
+    /// Kinds of walls.
+    #[serde(default)]
+    pub walls: Vec<Wall>,
+    /// Effects beside gravity, by the names of [`Effect::key_word`].
+    #[serde(default)]
+    pub effects: Vec<String>,
+    /// Whether grains can be driven.
+    #[serde(default)]
+    pub driven: bool,
+}
+
+/// Contact laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// Linear springs.
+    Linear,
+    /// Hertz along the normal, Mindlin's spring along the tangent.
+    HertzMindlin,
+    /// Coulomb friction and no spring.
+    Coulomb,
+}
+
+/// Kinds of walls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Wall {
+    /// Planes.
+    Plane,
+    /// Segments, in the plane.
+    Segment,
+    /// Rectangles, in space.
+    Rectangle,
+    /// Sides of cylinders and cones.
+    Round,
+}
+
+/// Knobs.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Knobs {
+    /// Time steps as parts of the critical one.
+    #[serde(default)]
+    pub critical_fraction: Vec<f64>,
+}
+
+/// Files that a run leaves, by their paths in the folder of the run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Output {
+    /// The grains at every sample.
+    pub grains: Grains,
+    /// The forces at contacts at the same steps, as a dump of LAMMPS' kind.
+    #[serde(default)]
+    pub contacts: Option<String>,
+    /// A table of further columns of the scene's series.
+    #[serde(default)]
+    pub series: Option<String>,
+    /// What the program says of itself.
+    #[serde(default)]
+    pub report: Option<String>,
+}
+
+/// The file with the grains.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grains {
+    /// Its path.
+    pub path: String,
+    /// Its format.
+    pub format: GrainFormat,
+    /// What its columns are called there: `x = "position_x"`.
+    #[serde(default)]
+    pub map: BTreeMap<String, String>,
+}
+
+impl Grains {
+    /// The names of columns.
+    #[must_use]
+    pub fn names(&self) -> Names {
+        Names(self.map.iter().map(|(ours, theirs)| (ours.clone(), theirs.clone())).collect())
+    }
+}
+
+/// Formats of grains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum GrainFormat {
+    /// A dump of LAMMPS' kind, which LIGGGHTS writes too.
+    #[serde(alias = "liggghts")]
+    Lammps,
+    /// A table with a row for each grain and sample.
+    Csv,
+}
+
+/// What a run may take.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Limits {
+    /// Time of a run (s).
+    pub seconds: u64,
+    /// Address space of its processes each (MiB); any where none is named.
+    pub memory_mib: Option<u64>,
+    /// Threads.
+    pub threads: u16,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { seconds: 600, memory_mib: None, threads: 1 }
+    }
+}
+
+/// A manifest that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{file}: {place}expected {expected}, found {found}")]
+pub struct ManifestError {
+    /// The file.
+    pub file: String,
+    /// The key or the place in the text, with a colon behind it; empty where it is the file.
+    pub place: String,
+    /// What was expected.
+    pub expected: String,
+    /// What stood there.
+    pub found: String,
+}
+
+impl Manifest {
+    /// Reads a manifest.
+    ///
+    /// # Errors
+    /// Names the key, what was expected and what stood there.
+    pub fn read(path: &Path) -> Result<Self, ManifestError> {
+        let file = one_line(&path.to_string_lossy());
+        let error = |place: &str, expected: &str, found: String| ManifestError {
+            file: file.clone(),
+            place: if place.is_empty() { String::new() } else { format!("{place}: ") },
+            expected: expected.to_owned(),
+            found,
+        };
+        let readable = |reason: std::io::Error| error("", "a file that can be read", reason.to_string());
+        let found = fs::metadata(path).map_err(readable)?;
+        if !found.is_file() || found.len() > MOST {
+            return Err(error("", "a plain file of at most a megabyte", "something else".to_owned()));
+        }
+        let text = fs::read(path).map_err(readable)?;
+        let text = String::from_utf8(text).map_err(|_| error("", "UTF-8", "other bytes".to_owned()))?;
+        let wrong = |reason: toml::de::Error| {
+            let line = reason.span().map(|span| text[..span.start.min(text.len())].lines().count().max(1));
+            let place = line.map(|line| format!("line {line}")).unwrap_or_default();
+            error(&place, "the keys of a manifest", one_line(reason.message()))
+        };
+        let manifest: Self = toml::from_str(&text).map_err(wrong)?;
+        manifest.check().map_err(|(place, expected, found)| error(place, &expected, found))?;
+        Ok(manifest)
+    }
+
+    /// What is wrong with a value: its key, what was expected, what was found.
+    fn check(&self) -> Result<(), (&'static str, String, String)> {
+        let wrong = |key, expected: &str, found: String| Err((key, expected.to_owned(), found));
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || IN_NAMES.contains(letter);
+        if self.name.trim().is_empty() || self.name.len() > 40 || !self.name.chars().all(is_plain) {
+            return wrong("name", "up to 40 letters, digits, `-`, `_`, `.` and blanks", quoted(&self.name));
+        }
+        if self.run.first().is_none_or(String::is_empty) {
+            return wrong("run", "a program and its words", "none".to_owned());
+        }
+        if !self.run.iter().any(|word| word.contains("{scene}")) {
+            return wrong("run", "a word with `{scene}`: what is to be run", quoted(&self.run.join(" ")));
+        }
+        if let Some(other) = self.can.dimension.iter().find(|count| ![2, 3].contains(*count)) {
+            return wrong("can.dimension", "2 and 3 alone", other.to_string());
+        }
+        if self.can.dimension.is_empty() {
+            return wrong("can.dimension", "2, 3 or both", "none".to_owned());
+        }
+        let names = || Effect::ALL.map(Effect::key_word);
+        if let Some(unknown) = self.can.effects.iter().find(|name| !names().contains(&name.as_str())) {
+            return wrong("can.effects", &format!("names among {}", names().join(", ")), quoted(unknown));
+        }
+        if let Some(other) = self.knobs.critical_fraction.iter().find(|part| !(**part > 0.0 && **part < 1.0)) {
+            return wrong(
+                "knobs.critical-fraction",
+                "parts of the critical step, above 0 and below 1",
+                other.to_string(),
+            );
+        }
+        let output = &self.output;
+        let files = [("output.grains.path", Some(&output.grains.path)), ("output.contacts", output.contacts.as_ref())];
+        let tables = [("output.series", output.series.as_ref()), ("output.report", output.report.as_ref())];
+        for (key, path) in files.into_iter().chain(tables).filter_map(|(key, path)| Some((key, path?))) {
+            let mut parts = Path::new(path).components();
+            if path.is_empty() || !parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
+                return wrong(key, "a path inside the folder of the run", quoted(path));
+            }
+        }
+        if output.contacts.is_some() && output.grains.format == GrainFormat::Csv {
+            return wrong("output.contacts", "grains as a dump beside it", "grains as a table".to_owned());
+        }
+        let Limits { seconds, memory_mib, threads } = self.limits;
+        if seconds == 0 || threads == 0 || memory_mib == Some(0) {
+            return wrong("limits", "numbers above zero", "0".to_owned());
+        }
+        Ok(())
+    }
+}

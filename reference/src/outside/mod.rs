@@ -1,0 +1,296 @@
+//! Programs as solvers, by a manifest: one process a run, files in, files out.
+//!
+//! The program is started in a fresh folder with the scene in a file, everything in it definite ([`Resolved`]). It ends with 0
+//! when it ran, with [`CANNOT`] when it cannot express the scene, the reason on its standard output, and else it failed. It
+//! leaves its grains at every sample; gates, controls, conformance and studies then judge it as they judge any solver.
+
+mod can;
+mod grain_table;
+mod manifest;
+mod report;
+mod resolved;
+
+pub use manifest::{Can, GrainFormat, Grains, Knobs, Law, Limits, Manifest, ManifestError, Output, SceneFormat, Wall};
+pub use resolved::{Resolved, schema};
+
+use crate::deadline::Deadline;
+use crate::deck::Stepping;
+use crate::live::{complete, most_bytes, output, plain_file};
+use crate::observer::Observed;
+use crate::outputs::{OutputError, Outputs, Sources};
+use crate::process::{self, ERRORS, Ended, SCREEN, Started};
+use crate::read::read_error::one_line;
+use crate::read::table::read_table;
+use grainbench_scene::record::{Cost, Provenance, Record};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
+use grainbench_scene::terms::Terms;
+use std::collections::BTreeMap;
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The code with which a program ends that cannot express a scene.
+pub const CANNOT: i32 = 64;
+/// The file with the scene, in the folder of the run.
+const SCENE: &str = "scene";
+/// How long a program may take to say its version.
+const FOR_VERSION: Duration = Duration::from_secs(20);
+/// How long what is to be done before the first run may take.
+const FOR_PREPARATION: Duration = Duration::from_secs(1800);
+/// Most that either may print (B).
+const MOST_PRINTED: u64 = 16 << 20;
+/// Resolution at which it is shown that a program owes nothing: a fiftieth of the critical step.
+const CONFORMING: Resolution = Resolution::CriticalFraction(0.02);
+
+/// A program by its manifest.
+#[derive(Debug)]
+pub struct Outside {
+    manifest: Manifest,
+    /// The folder of the manifest.
+    folder: PathBuf,
+    prepared: OnceLock<Result<(), String>>,
+    version: OnceLock<Option<String>>,
+    /// Time that a run of no steps takes (s), by the number of grains.
+    start_up: Mutex<BTreeMap<usize, f64>>,
+}
+
+impl Outside {
+    /// The program of the manifest at a path.
+    ///
+    /// # Errors
+    /// When the manifest cannot be used.
+    pub fn read(path: &Path) -> Result<Self, ManifestError> {
+        let manifest = Manifest::read(path)?;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
+        let start_up = Mutex::default();
+        Ok(Self { manifest, folder, prepared: OnceLock::new(), version: OnceLock::new(), start_up })
+    }
+
+    /// What the manifest says.
+    #[must_use]
+    pub const fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// What it claims of itself: nothing beyond what all owe.
+    #[must_use]
+    pub fn terms(&self) -> Terms {
+        let finest = self.manifest.knobs.critical_fraction.iter().copied().reduce(f64::min);
+        let terms = Terms::at(finest.map_or(CONFORMING, Resolution::CriticalFraction));
+        if self.manifest.can.dimension.contains(&3) { terms } else { terms.in_the_plane() }
+    }
+
+    /// A program by its name: a file beside the manifest, or what `PATH` finds.
+    fn executable(&self, name: &str) -> Result<PathBuf, String> {
+        let beside = self.folder.join(name);
+        if name.contains('/') || beside.is_file() {
+            return if beside.is_file() { Ok(beside) } else { Err(format!("{} is no file", beside.display())) };
+        }
+        env::var_os("PATH")
+            .and_then(|path| env::split_paths(&path).map(|folder| folder.join(name)).find(|path| path.is_file()))
+            .ok_or_else(|| format!("there is no `{}` beside the manifest or on PATH", one_line(name)))
+    }
+
+    /// The words of a command, with what stands in braces put in and files beside the manifest found.
+    fn words(&self, command: &[String], scene: &Path, out: &Path) -> Vec<String> {
+        let word = |word: &String| {
+            let beside = self.folder.join(word);
+            if !word.contains('{') && !Path::new(word).is_absolute() && beside.is_file() {
+                return beside.to_string_lossy().into_owned();
+            }
+            [("{scene}", scene), ("{out}", out), ("{here}", self.folder.as_path())]
+                .iter()
+                .fold(word.clone(), |word, (name, path)| word.replace(name, &path.to_string_lossy()))
+        };
+        command.iter().skip(1).map(word).collect()
+    }
+
+    fn limits(&self, time: Duration, bytes: u64) -> process::Limits {
+        let of = &self.manifest.limits;
+        let memory = of.memory_mib.map(|most| most.saturating_mul(1024));
+        process::Limits { deadline: Deadline::after(time), bytes, memory, threads: of.threads }
+    }
+
+    /// Runs one of the commands beside that of a run, and gives what it printed.
+    fn aside(&self, command: &[String], time: Duration) -> Result<String, String> {
+        let Some(name) = command.first() else { return Ok(String::new()) };
+        let executable = self.executable(name)?;
+        let scratch = process::scratch([]).map_err(|error| error.to_string())?;
+        let arguments = self.words(command, Path::new(""), &self.folder);
+        let started = Started {
+            executable: &executable,
+            arguments: &arguments,
+            folder: scratch.path(),
+            errors_apart: true,
+            at: Some(&self.folder),
+        };
+        let failed = |what: String, lines: Vec<String>| {
+            let said = if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) };
+            format!("`{}` {what}{said}", one_line(&command.join(" ")))
+        };
+        let ended = process::run(&started, self.limits(time, MOST_PRINTED))
+            .map_err(|(failure, lines)| failed(failure.to_string(), lines))?;
+        let printed = |name: &str| fs::read(scratch.path().join(name)).unwrap_or_default();
+        if ended.code != 0 {
+            return Err(failed(format!("ended with {}", ended.code), ended.last_lines));
+        }
+        let (screen, errors) = (printed(SCREEN), printed(ERRORS));
+        Ok(String::from_utf8_lossy(if screen.is_empty() { &errors } else { &screen }).into_owned())
+    }
+
+    /// Does what is to be done before the first run, once.
+    fn prepare(&self) -> Result<(), RunError> {
+        let done = self.prepared.get_or_init(|| self.aside(&self.manifest.prepare, FOR_PREPARATION).map(drop));
+        done.clone().map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
+    }
+
+    /// The first line that it prints of its version.
+    fn version(&self) -> Option<String> {
+        let ask = || {
+            let printed = self.aside(&self.manifest.version, FOR_VERSION).ok()?;
+            printed.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line)
+        };
+        self.version.get_or_init(ask).clone()
+    }
+
+    /// Starts the program with a scene and waits until it has ended; gives its folder, how it ended and how long it took (s).
+    fn start(&self, scene: &Scene, stepping: &Stepping) -> Result<(tempfile::TempDir, Ended, f64), RunError> {
+        let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
+        let not_run = |reason: String| fail(Failure::NotRun(reason), Vec::new());
+        let executable = self.executable(&self.manifest.run[0]);
+        let executable = executable.map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })?;
+        let format = self.manifest.scene;
+        let text = Resolved::of(scene, stepping).text(format).map_err(not_run)?;
+        let ending = if format == SceneFormat::Json { "json" } else { "toml" };
+        let name = format!("{SCENE}.{ending}");
+        let folder = process::scratch([(&*name, &*text)]).map_err(|error| not_run(error.to_string()))?;
+        let arguments = self.words(&self.manifest.run, &folder.path().join(&name), folder.path());
+        let started = Started {
+            executable: &executable,
+            arguments: &arguments,
+            folder: folder.path(),
+            errors_apart: true,
+            at: None,
+        };
+        let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(scene, *stepping);
+        let limits = self.limits(Duration::from_secs(self.manifest.limits.seconds), bytes);
+        let start = Instant::now();
+        let ended = process::run(&started, limits).map_err(|(failure, last_lines)| fail(failure, last_lines))?;
+        Ok((folder, ended, start.elapsed().as_secs_f64()))
+    }
+
+    /// Time of a run of no steps (s).
+    fn start_up(&self, scene: &Scene, stepping: &Stepping) -> f64 {
+        let grains = scene.grains.len();
+        let known = |of: &Self| of.start_up.lock().unwrap_or_else(PoisonError::into_inner).get(&grains).copied();
+        known(self).unwrap_or_else(|| {
+            let none = Stepping { steps: 0, interval: 1, ..*stepping };
+            let seconds = self.start(scene, &none).map_or(0.0, |(_, _, seconds)| seconds);
+            self.start_up.lock().unwrap_or_else(PoisonError::into_inner).insert(grains, seconds);
+            seconds
+        })
+    }
+
+    /// Reads what a run left.
+    fn observe(&self, scene: &Scene, stepping: &Stepping, folder: &Path) -> Result<Observed, Failure> {
+        let Output { grains, contacts, series, .. } = &self.manifest.output;
+        let path = plain_file(folder, &grains.path)?;
+        let names = grains.names();
+        let told = |error: OutputError| Failure::Output(without(folder, &error.to_string()));
+        let mut observed = match grains.format {
+            GrainFormat::Csv => {
+                grain_table::observe(scene, &path, &grains.path, &names, stepping.time_step).map_err(output)
+            }
+            GrainFormat::Lammps => {
+                let mut files = vec![path];
+                files.extend(contacts.as_ref().map(|name| plain_file(folder, name)).transpose()?);
+                let rows = scene.grains.len() * (16 + scene.walls.len());
+                let time_step = Some(stepping.time_step);
+                let sources = Sources { files, log: None, names, time_step, most_rows: Some(rows as u64) };
+                Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(told)
+            }
+        }
+        .map_err(|failure| match failure {
+            Failure::Output(reason) => Failure::Output(without(folder, &reason)),
+            other => other,
+        })?;
+        if let Some(name) = series {
+            let table = read_table(&plain_file(folder, name)?).map_err(output)?;
+            let wrong = |expected: String, found: String| {
+                Failure::Output(format!("{name}: expected {expected}, found {found}"))
+            };
+            if table.rows() != observed.series.time.len() {
+                let samples = observed.series.time.len();
+                return Err(wrong(format!("a row for each of {samples} samples"), table.rows().to_string()));
+            }
+            for (at, column) in table.columns.iter().enumerate() {
+                observed.add(scene, &column.name, table.values(at).collect());
+            }
+        }
+        Ok(observed)
+    }
+}
+
+/// A text in which no path of a folder that nobody knows stands.
+fn without(folder: &Path, text: &str) -> String {
+    text.replace(&format!("{}/", folder.display()), "")
+}
+
+impl Solver for Outside {
+    fn name(&self) -> String {
+        self.manifest.name.clone()
+    }
+
+    fn available(&self) -> Result<(), RunError> {
+        self.prepare()?;
+        let found = self.executable(&self.manifest.run[0]);
+        found.map(drop).map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let cannot = |reason: String| RunError::Unsupported { solver: self.name(), reason };
+        if let Some(reason) = can::lacks(&self.manifest.can, scene) {
+            return Err(cannot(reason));
+        }
+        let stepping =
+            Stepping::of(scene, resolution).map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
+        self.prepare()?;
+        watch.begin(stepping.time_step, stepping.steps);
+        let (folder, ended, seconds) = self.start(scene, &stepping)?;
+        let last_lines = ended.last_lines;
+        let fail = |failure| RunError::Program { solver: self.name(), failure, last_lines: last_lines.clone() };
+        if ended.code == CANNOT {
+            let said = fs::read(folder.path().join(SCREEN)).unwrap_or_default();
+            let said = String::from_utf8_lossy(&said).into_owned();
+            let reason = said.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
+            return Err(cannot(reason.unwrap_or_else(|| format!("it ended with {CANNOT} and gave no reason"))));
+        }
+        let own = self.manifest.output.report.as_ref();
+        let own = own.map(|name| report::read(&folder.path().join(name), name)).transpose();
+        let own = own.map_err(fail)?.unwrap_or_default();
+        if let Some(failed) = &own.failed {
+            return Err(fail(Failure::Crash(failed.words())));
+        }
+        if ended.code != 0 {
+            return Err(fail(Failure::Crash(format!("exit status: {}", ended.code))));
+        }
+        let observed = self.observe(scene, &stepping, folder.path()).map_err(fail)?;
+        complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing)))?;
+        watch.progress(stepping.steps, stepping.steps);
+        let seconds = match own.seconds {
+            Some(told) => told.solve,
+            None => (seconds - self.start_up(scene, &stepping)).max(0.0),
+        };
+        let options = self.version().into_iter().collect();
+        Ok(Record {
+            provenance: Provenance::of(scene, self.name(), resolution, stepping.time_step, options),
+            series: observed.series,
+            snapshots: observed.snapshots,
+            cost: Cost::of_program(stepping.steps, scene.grains.len(), seconds),
+        })
+    }
+}

@@ -1,0 +1,96 @@
+//! `grainbench conform`: what every solver owes, whatever its method.
+
+use super::cores::share;
+use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::provenance::provenance;
+use super::run::{exit_code, says_nothing};
+use super::solver;
+use grainbench::cases::solvers;
+use grainbench::harness::conformance;
+use grainbench::reports::results::results_json;
+use grainbench::reports::{Report, Section, summary_table, write_report};
+use grainbench::scene::solver::Solver;
+use grainbench::scene::terms::Terms;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Solvers, or manifests of programs; all of ours when none is named.
+    #[arg(value_name = "NAME|SOLVER.toml")]
+    solver: Vec<String>,
+    /// Everything that is not green is red.
+    #[arg(long)]
+    strict: bool,
+    /// Directory for the report.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
+    out: PathBuf,
+    /// Print the results as JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Tries the solvers and writes the report.
+pub(crate) fn conform(arguments: &Arguments) -> Outcome {
+    let start = Instant::now();
+    check_writable(&arguments.out)?;
+    let section = section(&arguments.solver)?;
+    let section = section.ok_or_else(|| {
+        let names: Vec<String> = solvers::with_terms().iter().map(|(solver, _)| solver.name()).collect();
+        let expected = "the path of a manifest (`SOLVER.toml`) or a solver of ours";
+        Fault::unknown(expected, &arguments.solver.join(", "), names.iter().map(String::as_str))
+    })?;
+    let mut words = vec!["conform".to_owned()];
+    words.extend(arguments.solver.iter().cloned());
+    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
+    write_report(&arguments.out, &report).map_err(Fault::writing)?;
+    if arguments.json {
+        print(&results_json(&report).map_err(Fault::input)?)?;
+    } else {
+        print(&format!("{}\n{}\n", summary_table(&report), arguments.out.join("index.html").display()))?;
+    }
+    if says_nothing(&report) { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, arguments.strict)) }
+}
+
+/// What every solver owes, of the solvers and manifests named; of all of ours when none is.
+pub(crate) fn section(named: &[String]) -> Result<Option<Section>, Fault> {
+    let wanted = |name: &String| named.is_empty() || named.contains(name);
+    let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
+    let mut solvers: Vec<(Arc<dyn Solver>, Terms)> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
+    for path in named.iter().filter(|name| solver::is_manifest(name)) {
+        let outside = solver::outside(path)?;
+        let terms = outside.terms();
+        solvers.push((outside, terms));
+    }
+    let judged: Vec<_> = solvers.iter().map(|_| OnceLock::new()).collect();
+    share(
+        solvers.len(),
+        1,
+        || true,
+        |number| {
+            let (solver, terms) = &solvers[number];
+            judged[number].get_or_init(|| conformance::judge(&**solver, terms));
+        },
+    );
+    let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().filter_map(OnceLock::into_inner).unzip();
+    Ok((!solvers.is_empty()).then(|| Section {
+        name: "conformance".to_owned(),
+        title: "What every solver owes".to_owned(),
+        claim: format!("Whatever its method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
+        derivation: "Each property is tried in scenes of its own: a grain that runs into four others, with friction and \
+                     without; two that fly apart; one held between two walls. The same solver with a flaw of a billionth \
+                     must turn the row red. What a method owes less is amber, with its physics, and red beyond the stated \
+                     size."
+            .to_owned(),
+        weak: "Properties hold of wrong answers too: a solver that conserves and is symmetric may have the wrong \
+               stiffness. Methods with a grid are run in the plane here, at two cells a radius."
+            .to_owned(),
+        figures: Vec::new(),
+        verdicts: verdicts.concat(),
+        controls: controls.concat(),
+        runs: Vec::new(),
+    }))
+}

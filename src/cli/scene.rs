@@ -1,0 +1,44 @@
+//! `grainbench scene`: a scene as programs are given it.
+
+use super::exit::{Fault, Outcome, print};
+use super::simulate::path_and_value;
+use super::step::Step;
+use super::subject;
+use grainbench::reference::deck::Stepping;
+use grainbench::reference::outside::{Resolved, SceneFormat};
+use std::process::ExitCode;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The case, one variant of it, or a scene file.
+    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
+    scene: String,
+    /// Override one key of the scene; may be given more than once.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
+    set: Vec<(String, String)>,
+    /// In which format.
+    #[arg(long, value_enum, default_value = "json")]
+    format: Format,
+    #[command(flatten)]
+    step: Step,
+}
+
+/// Formats.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Format {
+    Json,
+    Toml,
+}
+
+/// Prints the scene.
+pub(crate) fn scene(arguments: &Arguments) -> Outcome {
+    let (scene, _) = subject::scene(&arguments.scene, &arguments.set)?;
+    let stepping = Stepping::of(&scene, &arguments.step.resolution()).map_err(Fault::input)?;
+    let format = match arguments.format {
+        Format::Json => SceneFormat::Json,
+        Format::Toml => SceneFormat::Toml,
+    };
+    print(&(Resolved::of(&scene, &stepping).text(format).map_err(Fault::input)? + "\n"))?;
+    Ok(ExitCode::SUCCESS)
+}

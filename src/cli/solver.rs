@@ -1,0 +1,35 @@
+//! The solver that a command line names: one of the registry, or a program by its manifest.
+
+use super::exit::Fault;
+use grainbench::cases::solvers;
+use grainbench::reference::outside::Outside;
+use grainbench::scene::solver::Solver;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The solver of a name, or of the manifest at a path.
+pub(crate) fn find(name: &str) -> Result<Arc<dyn Solver>, Fault> {
+    if is_manifest(name) {
+        return Ok(outside(name)?);
+    }
+    let solver = solvers::by_name(name).ok_or_else(|| {
+        let names = solvers::names();
+        Fault::unknown("the path of a manifest (`SOLVER.toml`) or a solver", name, names.iter().map(String::as_str))
+    })?;
+    Ok(Arc::from(solver))
+}
+
+/// Whether it is the path of a manifest and not a name.
+pub(crate) fn is_manifest(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+}
+
+/// The program of the manifest at a path. Its name must be its own: rows are told apart by names.
+pub(crate) fn outside(path: &str) -> Result<Arc<Outside>, Fault> {
+    let outside = Outside::read(Path::new(path)).map_err(Fault::input)?;
+    let name = outside.manifest().name.as_str();
+    if solvers::by_name(name).is_some() {
+        return Err(Fault::input(format!("{path}: name: expected one that no solver has, found `{name}`")));
+    }
+    Ok(Arc::new(outside))
+}

@@ -1,0 +1,29 @@
+//! The time step of a command line.
+
+use super::simulate::positive;
+use grainbench::scene::solver::Resolution;
+
+/// A time step, as a fraction of the critical one or in seconds.
+#[derive(clap::Args)]
+pub(crate) struct Step {
+    /// Time step as a fraction of the critical one, 2√(m_min/k_max).
+    #[arg(
+        long,
+        value_name = "FRACTION",
+        default_value_t = 0.1,
+        value_parser = positive,
+        allow_hyphen_values = true,
+        conflicts_with = "time_step"
+    )]
+    time_step_fraction: f64,
+    /// Time step in seconds.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    time_step: Option<f64>,
+}
+
+impl Step {
+    /// As solvers take it.
+    pub(crate) fn resolution(&self) -> Resolution {
+        self.time_step.map_or(Resolution::CriticalFraction(self.time_step_fraction), Resolution::TimeStep)
+    }
+}

@@ -1,0 +1,269 @@
+//! Programs as solvers, by a manifest: one that moves a grain, and those that lie.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Answer, grainbench};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const MANIFEST: &str = r#"name = "liar"
+run = ["sh", "liar.sh", "{scene}", "{out}"]
+
+[can]
+dimension = [2, 3]
+laws = ["linear"]
+walls = ["plane"]
+effects = ["friction", "contact-damping"]
+
+[output]
+grains = { path = "grains.csv", format = "csv" }
+
+[limits]
+seconds = 2
+"#;
+const HEAD: &str = "step,id,x,y,z,vx,vy,vz,omegax,omegay,omegaz";
+const CASE: &str = "incline-disc/30deg-mu.5";
+
+fn write(folder: &Path, manifest: &str, script: &str) {
+    fs::write(folder.join("SOLVER.toml"), manifest).unwrap();
+    fs::write(folder.join("liar.sh"), script).unwrap();
+}
+
+fn judged(folder: &Path, further: &[&str]) -> (Answer, Value) {
+    let answer = grainbench(folder, &[&["run", CASE, "--solver", "SOLVER.toml", "--json"], further].concat());
+    let results = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    (answer, results)
+}
+
+/// Each lie is found out, in words that an author can act on: the script, the verdict of every row, and part of what is said.
+#[test]
+fn a_program_that_lies_is_found_out() {
+    let table = |row: &str| format!("printf '{HEAD}\\n{row}\\n' > \"$2/grains.csv\"");
+    let lies: [(&str, String, &str, &str); 11] = [
+        ("leaves nothing", "exit 0".to_owned(), "broken", "grains.csv"),
+        (
+            "garbage",
+            "echo 'a,b' > \"$2/grains.csv\"; echo 'x,y' >> \"$2/grains.csv\"".to_owned(),
+            "broken",
+            "grains.csv:2:1",
+        ),
+        ("no number", table("0,1,nan,0.4995,0,0,0,0,0,0,0"), "broken", "found `nan`"),
+        ("ends early", table("0,1,0,0.4995,0,0,0,0,0,0,0"), "broken", "expected samples to step"),
+        ("hangs", "sleep 1000".to_owned(), "broken", "not done after 2 s"),
+        ("leaves a child", "sleep 1234 & exit 0".to_owned(), "broken", "grains.csv"),
+        ("floods the disk", "head -c 10000000000 /dev/zero > \"$2/big\"".to_owned(), "broken", "found more"),
+        ("talks without end", "yes".to_owned(), "broken", "found more"),
+        ("breaks", "echo 'out of memory' >&2; exit 3".to_owned(), "broken", "it said last: out of memory"),
+        ("links elsewhere", "ln -s /dev/zero \"$2/grains.csv\"".to_owned(), "broken", "expected a plain file"),
+        ("cannot", "echo 'no friction here'; exit 64".to_owned(), "unsupported", "no friction here"),
+    ];
+    for (what, script, verdict, said) in lies {
+        let directory = tempfile::tempdir().unwrap();
+        write(directory.path(), MANIFEST, &script);
+        let (answer, results) = judged(directory.path(), &["--no-controls"]);
+        assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
+        let rows = results["verdicts"].as_array().unwrap();
+        assert!(!rows.is_empty(), "{what}");
+        for row in rows {
+            assert_eq!(row["verdict"], verdict, "{what}: {row}");
+            assert!(row["detail"].as_str().unwrap_or_default().contains(said), "{what}: {row}");
+        }
+    }
+    let running = Command::new("ps").args(["-eo", "args"]).output();
+    let running = running.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
+    assert!(!running.contains("sleep 1234"), "what it started goes with it");
+}
+
+/// A scene that calls for more than is declared is not given to the program, and a program that is not there is amber.
+#[test]
+fn what_is_not_declared_is_not_asked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let reason = |manifest: &str| {
+        write(path, manifest, "exit 0");
+        let (answer, results) = judged(path, &[]);
+        assert_eq!(answer.code, Some(1), "{}", answer.err);
+        assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be expressed has no control");
+        let row = &results["verdicts"][0];
+        (row["verdict"].as_str().unwrap().to_owned(), row["detail"].as_str().unwrap_or_default().to_owned())
+    };
+    let less = [
+        ("[2, 3]", "[3]", "scenes of 2 dimensions"),
+        ("[\"linear\"]", "[\"hertz-mindlin\"]", "the law `linear`"),
+        ("walls = [\"plane\"]", "", "walls that are a `plane`"),
+        ("\"friction\", ", "", "the effect `friction`"),
+    ];
+    for (declared, instead, said) in less {
+        let (verdict, detail) = reason(&MANIFEST.replace(declared, instead));
+        assert!(verdict == "unsupported" && detail.contains(said), "{verdict}: {detail}");
+    }
+    let (verdict, detail) = reason(&MANIFEST.replace("\"sh\"", "\"no-such-program\""));
+    assert!(verdict == "not-available" && detail.contains("there is no `no-such-program`"), "{verdict}: {detail}");
+}
+
+/// A manifest that is wrong is refused with file, place, what was expected and what stood there.
+#[test]
+fn a_wrong_manifest_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let refused = |manifest: &str| {
+        write(path, manifest, "exit 0");
+        let answer = grainbench(path, &["run", CASE, "--solver", "SOLVER.toml"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{manifest}");
+        answer.err
+    };
+    let wrong = [
+        ("name = \"liar\"", "name = \"dem\"", "SOLVER.toml: name: expected one that no solver has, found `dem`"),
+        ("name = \"liar\"", "name = \"\\u001b[2J\"", "SOLVER.toml: name: expected up to 40 letters"),
+        ("\"{scene}\", ", "", "SOLVER.toml: run: expected a word with `{scene}`"),
+        ("[2, 3]", "[4]", "SOLVER.toml: can.dimension: expected 2 and 3 alone, found 4"),
+        (
+            "[\"linear\"]",
+            "[\"liner\"]",
+            "SOLVER.toml: line 6: expected the keys of a manifest, found unknown variant `liner`",
+        ),
+        ("\"friction\"", "\"fiction\"", "SOLVER.toml: can.effects: expected names among friction, cohesion"),
+        ("\"grains.csv\"", "\"../grains.csv\"", "SOLVER.toml: output.grains.path: expected a path inside the folder"),
+        ("seconds = 2", "seconds = 0", "SOLVER.toml: limits: expected numbers above zero, found 0"),
+        (
+            "seconds = 2",
+            "second = 2",
+            "SOLVER.toml: line 13: expected the keys of a manifest, found unknown field `second`",
+        ),
+        (
+            "[limits]",
+            "[knobs]\ncritical-fraction = [1.5]\n[limits]",
+            "SOLVER.toml: knobs.critical-fraction: expected parts",
+        ),
+    ];
+    for (right, instead, said) in wrong {
+        let err = refused(&MANIFEST.replace(right, instead));
+        assert!(err.contains(said), "{err}");
+    }
+    assert!(refused("").contains("missing field `name`"));
+    assert!(refused(&MANIFEST[..40]).contains("SOLVER.toml: line 2"));
+    let missing = grainbench(path, &["run", CASE, "--solver", "nowhere.toml"]);
+    assert!(
+        missing.code == Some(2) && missing.err.contains("nowhere.toml: expected a file that can be read"),
+        "{}",
+        missing.err
+    );
+}
+
+/// What a program is given is definite, and the same in both formats.
+#[test]
+fn a_scene_is_printed_as_programs_are_given_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let print = |further: &[&str]| {
+        let answer = grainbench(directory.path(), &[&["scene", "incline-disc/60deg-mu.9"], further].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        answer.out
+    };
+    let json: Value = serde_json::from_str(&print(&[])).unwrap();
+    let toml: toml::Table = print(&["--format", "toml"]).parse().unwrap();
+    assert_eq!(json, serde_json::to_value(toml).unwrap());
+    assert!(
+        json["format"] == 1 && json["steps"]["count"].as_u64() > Some(0) && json["columns"][0] == "grain.x",
+        "{json}"
+    );
+    assert_eq!(json["laws"][0]["friction"], 0.9);
+    let other: Value = serde_json::from_str(&print(&["--set", "contacts.plane.friction=0.25"])).unwrap();
+    assert_eq!(other["laws"][0]["friction"], 0.25);
+}
+
+/// The files of an example in a folder of their own, with something in one of them spoiled.
+fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
+    for entry in fs::read_dir(from).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
+        let name = entry.file_name().unwrap();
+        let mut text = fs::read(&entry).unwrap();
+        if let Some((right, wrong)) = spoiled.filter(|_| name == file) {
+            let whole = String::from_utf8(text).unwrap();
+            assert!(whole.contains(right), "{right}");
+            text = whole.replace(right, wrong).into_bytes();
+        }
+        // Programs that were built there before are not those of these sources.
+        if name != "one_grain" {
+            fs::write(directory.path().join(name), text).unwrap();
+        }
+    }
+    directory
+}
+
+/// Whether a program is here; under CI it must be.
+fn is_here(program: &str) -> bool {
+    let is_here = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+    assert!(is_here || std::env::var_os("CI").is_none(), "{program} is not here");
+    is_here
+}
+
+/// How a run of an example ends, and how many rows pass.
+fn passes(folder: &Path, cases: &[&str], further: &[&str]) -> (Option<i32>, usize) {
+    let run = [&["run"], cases, &["--solver", "SOLVER.toml", "--json"], further].concat();
+    let answer = grainbench(folder, &run);
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let rows = results["verdicts"].as_array().unwrap();
+    (answer.code, rows.iter().filter(|row| row["verdict"] == "pass").count())
+}
+
+const EASY: [&str; 4] = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"];
+
+/// A grain in forty lines of Python is judged, controls and all; each line of its physics that is spoiled turns rows red.
+#[test]
+fn a_grain_in_python_is_judged_line_by_line() {
+    if !is_here("python3") {
+        return;
+    }
+    let whole = example("python", "", None);
+    let (code, passed) = passes(whole.path(), &EASY, &[]);
+    assert!(code == Some(0) && passed > 5, "{passed} pass");
+    let spoiled = [
+        ("mass * g for", "0.99 * mass * g for"),
+        ("radius - dot(plus", "0.99 * radius - dot(plus"),
+        ("[-radius * part", "[-0.99 * radius * part"),
+        ("plus(v, cross(spin, arm))", "plus(v, cross(spin, arm), 0.99)"),
+        ("plus(slip, n, -dot(slip, n))", "plus(slip, n, -0.9 * dot(slip, n))"),
+        ("stiffness[0] * overlap", "0.95 * stiffness[0] * overlap"),
+        ("- dashpot[0] * dot", "- 0.9 * dashpot[0] * dot"),
+        ("law[name] * mass", "0.9 * law[name] * mass"),
+        ("law[\"stiffness_damping\"] * k", "0.9 * law[\"stiffness_damping\"] * k"),
+        (
+            "drag = plus(springs[wall[\"name\"]], slip, stiffness[1] * dt), [dashpot[1]",
+            "drag = plus(springs[wall[\"name\"]], slip, stiffness[1] * dt), [0.9 * dashpot[1]",
+        ),
+        ("stiffness[1] * dt", "0.95 * stiffness[1] * dt"),
+        ("plus([-part for part in spring], drag, -1), law", "plus([-part for part in spring], drag, 1), law"),
+        ("law[\"friction\"] * max", "0.99 * law[\"friction\"] * max"),
+        ("factor = min(1.0, ", "factor = min(2.0, "),
+        ("plus(plus(force, n, push), friction)", "plus(plus(force, n, push), friction, 0.99)"),
+        ("plus(torque, cross(arm, friction))", "plus(torque, cross(arm, friction), 0.99)"),
+        ("dt / mass / 2", "dt / mass / 2.02"),
+        ("dt / inertia / 2", "dt / inertia / 2.02"),
+        ("x = plus(x, v, dt)", "x = plus(x, v, 0.999 * dt)"),
+    ];
+    for (right, wrong) in spoiled {
+        let folder = example("python", "one_grain.py", Some((right, wrong)));
+        let mut codes = EASY.iter().map(|case| passes(folder.path(), &[case], &["--no-controls"]).0);
+        assert!(codes.any(|code| code == Some(1)), "{wrong}: every row passes");
+    }
+}
+
+/// The same in C++, which is built by the manifest first.
+#[test]
+fn a_grain_in_cpp_is_built_and_judged() {
+    if !is_here("make") || !is_here("c++") {
+        return;
+    }
+    let whole = example("cpp", "", None);
+    assert!(matches!(passes(whole.path(), &EASY, &[]), (Some(0), 6..)));
+    let spoiled = example("cpp", "one_grain.cpp", Some(("dot(x + -1.0", "0.99 * dot(x + -1.0")));
+    assert_eq!(passes(spoiled.path(), &EASY, &["--no-controls"]).0, Some(1));
+    let broken = example("cpp", "one_grain.cpp", Some(("int main", "int mian")));
+    let answer = grainbench(broken.path(), &["run", "backspin", "--solver", "SOLVER.toml", "--json"]);
+    assert!(answer.code == Some(1) && answer.out.contains("`make --silent` ended with 2"), "{}", answer.out);
+}
