@@ -14,6 +14,7 @@ pub mod outside;
 mod pair_forces;
 mod process;
 mod read;
+mod run_files;
 pub mod stored;
 
 pub use read::atom::Atom;

@@ -1,8 +1,6 @@
 //! What some program left of a run, in dumps or in one table, read twice: once for what the files are, once for a
 //! record.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use grainbench_scene::record::{Column, Series};
@@ -12,17 +10,19 @@ use grainbench_scene::scene::Scene;
 use crate::observer::{Names, Observed, Observer};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
-use crate::read::dump::DumpReader;
-use crate::read::line_reader::LineReader;
 use crate::read::log::{Log, read_log};
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 use crate::read::table::{Table, read_table};
+use crate::run_files::{Kind, RunFile, Snapshots, in_order, kind, shown};
+
+/// Most files that are named one by one.
+const MOST_NAMED: usize = 3;
 
 /// Which files, and what they do not say themselves.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// Dumps that follow one another, or one table.
+    /// Dumps that follow one another, files of VTK's of a moment each or a collection of them, or one table.
     pub files: Vec<PathBuf>,
     /// The log of the run.
     pub log: Option<PathBuf>,
@@ -68,7 +68,9 @@ pub enum OutputError {
 #[derive(Debug, Clone)]
 pub struct Outputs {
     sources: Sources,
-    /// Of the columns of each dump, to its end.
+    /// The dumps and files of a moment, in their order.
+    files: Vec<RunFile>,
+    /// Of the columns of each, to its end.
     digits: Vec<Vec<Digits>>,
     table: Option<Table>,
     log: Option<Log>,
@@ -87,11 +89,18 @@ impl Outputs {
     /// A file is damaged, or they do not fit together.
     pub fn survey(sources: Sources) -> Result<Self, OutputError> {
         let log = sources.log.as_deref().map(read_log).transpose()?;
-        let mut outputs =
-            Self { digits: Vec::new(), table: None, log, time_step: None, significant: 0, ids: Vec::new(), sources };
-        let files = outputs.sources.files.clone();
-        if let [file] = &files[..]
-            && !is_dump(file)?
+        let mut outputs = Self {
+            files: Vec::new(),
+            digits: Vec::new(),
+            table: None,
+            log,
+            time_step: None,
+            significant: 0,
+            ids: Vec::new(),
+            sources,
+        };
+        if let [file] = &outputs.sources.files[..]
+            && kind(file)? == Kind::Table
         {
             let table = read_table(file)?;
             outputs.significant = table.digits().significant();
@@ -100,11 +109,12 @@ impl Outputs {
             return Ok(outputs);
         }
         let (mut first, mut last, mut units) = (None, None, None);
-        for file in &files {
-            if !is_dump(file)? {
-                return Err(OutputError::MixedFiles(shown(file)));
-            }
-            let mut reader = DumpReader::open(file)?.at_most(outputs.sources.most_rows.unwrap_or(u64::MAX));
+        if let Some(table) = first_table(&outputs.sources.files)? {
+            return Err(OutputError::MixedFiles(shown(table)));
+        }
+        outputs.files = in_order(&outputs.sources.files)?;
+        for file in &outputs.files {
+            let mut reader = Snapshots::open(file, outputs.sources.most_rows.unwrap_or(u64::MAX))?;
             let mut snapshot = DumpSnapshot::default();
             while reader.read(&mut snapshot)? {
                 if snapshot.kind == DumpKind::Atoms && outputs.ids.is_empty() {
@@ -115,16 +125,16 @@ impl Outputs {
                     last = Some((snapshot.step, time));
                 }
                 if let Some(said) = &snapshot.units
-                    && units.as_ref().is_none_or(|(known, _)| known != said)
+                    && units.as_ref() != Some(said)
                 {
-                    check_units(file, said)?;
-                    units = Some((said.clone(), file));
+                    check_units(&file.path, said)?;
+                    units = Some(said.clone());
                 }
             }
             outputs.significant = outputs.significant.max(snapshot.digits().significant());
             outputs.digits.push(snapshot.columns.iter().map(|column| column.digits).collect());
         }
-        if let (Some((of_dump, _)), Some(log), Some(path)) = (&units, &outputs.log, &outputs.sources.log)
+        if let (Some(of_dump), Some(log), Some(path)) = (&units, &outputs.log, &outputs.sources.log)
             && let Some(of_log) = log.units.as_ref().filter(|of_log| *of_log != of_dump)
         {
             let (of_dump, of_log) = (of_dump.clone(), of_log.clone());
@@ -154,7 +164,14 @@ impl Outputs {
     #[must_use]
     pub fn name(&self) -> String {
         let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        one_line(&self.sources.files.iter().map(name).collect::<Vec<_>>().join(", "))
+        let in_order: Vec<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
+        let files = if in_order.is_empty() { &self.sources.files } else { &in_order };
+        match &files[..] {
+            [first, .., last] if files.len() > MOST_NAMED => {
+                one_line(&format!("{} … {} ({} files)", name(first), name(last), files.len()))
+            }
+            files => one_line(&files.iter().map(name).collect::<Vec<_>>().join(", ")),
+        }
     }
 
     /// What they tell of a scene.
@@ -168,9 +185,9 @@ impl Outputs {
         let mut observer = Observer::new(scene).with_pairs(self.contacts(scene)?);
         let mut last = None;
         let mut any = false;
-        for (file, digits) in self.sources.files.iter().zip(&self.digits) {
-            let name = shown(file);
-            let mut reader = DumpReader::open(file)?;
+        for (file, digits) in self.files.iter().zip(&self.digits) {
+            let name = shown(&file.path);
+            let mut reader = Snapshots::open(file, u64::MAX)?;
             let mut snapshot = DumpSnapshot::default();
             while reader.read(&mut snapshot)? {
                 // Where one dump continues another, its first snapshot is the last of that.
@@ -198,14 +215,14 @@ impl Outputs {
     /// What dumps of contacts tell of the pairs that the scene asks for.
     fn contacts(&self, scene: &Scene) -> Result<PairForces, OutputError> {
         let mut pairs = PairForces::of(scene, &self.ids);
-        for (file, digits) in self.sources.files.iter().zip(&self.digits) {
-            let mut reader = DumpReader::open(file)?;
+        for (file, digits) in self.files.iter().zip(&self.digits) {
+            let mut reader = Snapshots::open(file, u64::MAX)?;
             let mut snapshot = DumpSnapshot::default();
             while pairs.is_asked() && reader.read(&mut snapshot)? {
                 if snapshot.kind != DumpKind::Entries {
                     break;
                 }
-                pairs.take(&shown(file), &snapshot, &self.sources.names, Some(digits))?;
+                pairs.take(&shown(&file.path), &snapshot, &self.sources.names, Some(digits))?;
             }
         }
         Ok(pairs)
@@ -270,21 +287,14 @@ fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
     ids
 }
 
-/// Whether a file begins as a dump does; an empty one does not say, and the reader of dumps then will.
-pub(crate) fn is_dump(path: &Path) -> Result<bool, ReadError> {
-    let name = shown(path);
-    let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
-    begins_as_dump(BufReader::new(file), &name)
-}
-
-fn begins_as_dump(reader: impl BufRead, name: &str) -> Result<bool, ReadError> {
-    let mut lines = LineReader::new(reader, name)?;
-    while let Some(line) = lines.next_line()? {
-        if !line.text.trim().is_empty() {
-            return Ok(line.text.starts_with("ITEM:"));
+/// The first table among several files.
+fn first_table(files: &[PathBuf]) -> Result<Option<&PathBuf>, ReadError> {
+    for file in files {
+        if kind(file)? == Kind::Table {
+            return Ok(Some(file));
         }
     }
-    Ok(true)
+    Ok(None)
 }
 
 fn check_units(file: &Path, units: &str) -> Result<(), OutputError> {
@@ -304,8 +314,4 @@ fn logged_step(log: &Log) -> Option<f64> {
         })
     };
     log.time_step.or_else(of_columns).filter(|step| step.is_finite() && *step > 0.0)
-}
-
-fn shown(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
 }

@@ -7,8 +7,8 @@ mod frames;
 use std::path::Path;
 
 use crate::observer::Names;
-use crate::outputs::is_dump;
 use crate::read::read_error::{ReadError, quoted};
+use crate::run_files::{Kind, kind};
 use column::Column;
 use frames::{Frame, Frames, Place};
 
@@ -87,12 +87,20 @@ const ONE_TIME: f64 = 1e-6;
 /// rows at a step.
 pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Comparison, ReadError> {
     let name = second.to_string_lossy().into_owned();
-    let kinds = [is_dump(first)?, is_dump(second)?];
-    if kinds[0] != kinds[1] {
-        let (kind, found) = if kinds[0] { ("dump", "a table") } else { ("table", "a dump") };
-        return Err(ReadError::at(&name, 1, format!("a {kind}, as the other file is"), found));
+    let kinds = [kind(first)?, kind(second)?];
+    let word = |kind: Kind| match kind {
+        Kind::Dump => "a dump",
+        Kind::Table => "a table",
+        Kind::Vtk(_) => "a file of VTK's",
+    };
+    if let Some(which) = kinds.iter().position(|kind| matches!(kind, Kind::Vtk(_))) {
+        let name = [first, second][which].to_string_lossy();
+        return Err(ReadError::at(&name, 1, "a dump or a table", word(kinds[which])));
     }
-    let open = |which: usize| Frames::open([first, second][which], kinds[0], which, options);
+    if kinds[0] != kinds[1] {
+        return Err(ReadError::at(&name, 1, format!("{}, as the other file is", word(kinds[0])), word(kinds[1])));
+    }
+    let open = |which: usize| Frames::open([first, second][which], kinds[0] == Kind::Dump, which, options);
     let (columns, places) = survey([open(0)?, open(1)?], options)?;
     let key = key(&places).ok_or_else(|| {
         let expected = format!("{} rows, as in the other file, or a column `step` or `time`", places[0].len());

@@ -16,9 +16,21 @@ pub struct Digits {
     decimals: Option<(u32, u32)>,
     /// Whether a number ended in a zero behind the point, which a general format never leaves.
     padded: bool,
+    /// Whether the numbers were single ones (f32), however many digits were printed of them.
+    single: bool,
 }
 
 impl Digits {
+    /// Of numbers that were written bit by bit.
+    pub(crate) fn exact() -> Self {
+        Self { significant: 17, ..Self::default() }
+    }
+
+    /// The same, of single numbers.
+    pub(crate) fn single(self) -> Self {
+        Self { single: true, ..self }
+    }
+
     /// Most significant digits of a number of the column.
     #[must_use]
     pub fn significant(&self) -> u32 {
@@ -70,12 +82,14 @@ impl Digits {
             let leading = value.abs().log10().floor();
             0.5 * 10_f64.powf(leading + 1.0 - f64::from(shown))
         };
-        match self.decimals {
+        let printed = match self.decimals {
             Some((fewest, most)) if fewest == most && self.padded => {
                 general.max(0.5 * 10_f64.powi(-(most.min(400) as i32)))
             }
             _ => general,
-        }
+        };
+        // The nearest of single numbers is at most this far away.
+        if self.single { printed.max(0.5 * f64::from(f32::EPSILON) * value.abs()) } else { printed }
     }
 
     /// What both have shown.
@@ -85,6 +99,7 @@ impl Digits {
         self.longest = self.longest.max(other.longest);
         self.significant = self.significant.max(other.significant);
         self.padded |= other.padded;
+        self.single |= other.single;
         self.decimals = match (self.decimals, other.decimals) {
             (Some(one), Some(two)) => Some((one.0.min(two.0), one.1.max(two.1))),
             (one, two) => one.or(two),

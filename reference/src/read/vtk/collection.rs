@@ -1,0 +1,46 @@
+//! Collections (`.pvd`): files with their times.
+
+use super::whole;
+use crate::read::read_error::{ReadError, quoted};
+use quick_xml::events::Event;
+use quick_xml::reader::Reader;
+use std::path::{Path, PathBuf};
+
+/// The files of a collection with their times (s), in its order.
+///
+/// # Errors
+/// It cannot be read, is no collection, or names a file outside its folder's reach.
+pub(crate) fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadError> {
+    let name = path.to_string_lossy();
+    let bytes = whole(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut reader = Reader::from_reader(&bytes[..]);
+    let mut files = Vec::new();
+    let line = |at: u64| memchr::memchr_iter(b'\n', &bytes[..(at as usize).min(bytes.len())]).count() as u64 + 1;
+    loop {
+        let at = reader.buffer_position();
+        match reader.read_event() {
+            Ok(Event::Start(tag) | Event::Empty(tag)) if tag.name().as_ref() == b"DataSet" => {
+                let value = |key: &str| {
+                    let found = tag.try_get_attribute(key).ok().flatten()?;
+                    found.normalized_value(quick_xml::XmlVersion::Implicit1_0).ok().map(|value| value.into_owned())
+                };
+                let time = value("timestep").unwrap_or_default();
+                let time = time
+                    .parse::<f64>()
+                    .ok()
+                    .filter(|time| time.is_finite())
+                    .ok_or_else(|| ReadError::at(&name, line(at), "a time in `timestep`", quoted(&time)))?;
+                let file = value("file").filter(|file| !file.is_empty());
+                let file = file.ok_or_else(|| ReadError::at(&name, line(at), "a name in `file`", "none"))?;
+                files.push((time, folder.join(file)));
+            }
+            Ok(Event::Eof) => break,
+            Ok(_) => {}
+            Err(error) => {
+                return Err(ReadError::at(&name, line(at), "a collection of VTK's", quoted(&error.to_string())));
+            }
+        }
+    }
+    if files.is_empty() { Err(ReadError::at(&name, 1, "at least one file", "none")) } else { Ok(files) }
+}

@@ -1,0 +1,180 @@
+//! Legacy files: three lines of header, then sections that begin with a word; binary numbers have the big end first.
+
+use super::bytes::Bytes;
+use super::number::Number;
+use super::points::{Array, Points};
+use crate::read::digits::Digits;
+use crate::read::read_error::{ReadError, quoted};
+
+/// Reads points and what is told of each.
+pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
+    let mut reader = Reader { bytes, is_binary: false };
+    reader.header()?;
+    reader.body()
+}
+
+/// Which entities the arrays of a section belong to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Of {
+    /// The data set as a whole.
+    All,
+    Points,
+    Cells,
+}
+
+struct Reader<'b> {
+    bytes: Bytes<'b>,
+    is_binary: bool,
+}
+
+impl<'b> Reader<'b> {
+    /// Two lines of the version and the title, and how numbers stand.
+    fn header(&mut self) -> Result<(), ReadError> {
+        let _ = (self.bytes.line(), self.bytes.line());
+        self.is_binary = match self.bytes.next_words().as_deref() {
+            Some(["ASCII"]) => false,
+            Some(["BINARY"]) => true,
+            _ => return Err(self.bytes.error("`ASCII` or `BINARY`")),
+        };
+        self.words();
+        Ok(())
+    }
+
+    /// The words of the next line that has any.
+    fn words(&mut self) -> Option<Vec<&'b str>> {
+        let words = self.bytes.next_words()?;
+        while self.bytes.line()?.iter().all(u8::is_ascii_whitespace) {}
+        Some(words)
+    }
+
+    fn body(&mut self) -> Result<Points, ReadError> {
+        let (mut positions, mut arrays, mut time) = (None, Vec::new(), None);
+        let (mut of, mut cells) = (Of::All, 0);
+        let mut points = 0;
+        while let Some(words) = self.bytes.next_words() {
+            let here = self.bytes;
+            self.words();
+            let wrong = |expected: &str| here.error(expected);
+            let entities = if of == Of::Cells { cells } else { points };
+            match words[..] {
+                ["DATASET", "POLYDATA" | "UNSTRUCTURED_GRID"] => {}
+                ["DATASET", ..] => return Err(wrong("`DATASET POLYDATA` or `DATASET UNSTRUCTURED_GRID`")),
+                ["METADATA"] => while self.bytes.line().is_some_and(|line| !line.trim_ascii().is_empty()) {},
+                ["POINTS", count, kind] => {
+                    points = number(count, &here)?;
+                    positions = Some(self.array("points", kind, 3, points, &here)?);
+                }
+                ["VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" | "CELLS", count, size] => {
+                    cells += self.connectivity(number(count, &here)?, number(size, &here)?, &here)?;
+                }
+                ["CELL_TYPES", count] => {
+                    self.array("types", "int", 1, number(count, &here)?, &here)?;
+                }
+                ["POINT_DATA", count] => {
+                    of = Of::Points;
+                    if number(count, &here)? != points {
+                        return Err(wrong(&format!("`POINT_DATA {points}`, for there are so many points")));
+                    }
+                }
+                ["CELL_DATA", count] => (of, cells) = (Of::Cells, number(count, &here)?),
+                ["SCALARS", name, kind, ref rest @ ..] => {
+                    let components = rest.first().map_or(Ok(1), |count| number(count, &here))?;
+                    if matches!(self.bytes.next_words().as_deref(), Some(["LOOKUP_TABLE", _])) {
+                        self.words();
+                    }
+                    keep(&mut arrays, of, self.array(name, kind, components, entities, &here)?);
+                }
+                ["LOOKUP_TABLE", _, count] => {
+                    let kind = if self.is_binary { "unsigned_char" } else { "float" };
+                    self.array("table", kind, 4, number(count, &here)?, &here)?;
+                }
+                ["COLOR_SCALARS", name, components] => {
+                    let kind = if self.is_binary { "unsigned_char" } else { "float" };
+                    keep(&mut arrays, of, self.array(name, kind, number(components, &here)?, entities, &here)?);
+                }
+                ["VECTORS" | "NORMALS", name, kind] => {
+                    keep(&mut arrays, of, self.array(name, kind, 3, entities, &here)?);
+                }
+                ["TENSORS", name, kind] => keep(&mut arrays, of, self.array(name, kind, 9, entities, &here)?),
+                ["TENSORS6", name, kind] => keep(&mut arrays, of, self.array(name, kind, 6, entities, &here)?),
+                ["TEXTURE_COORDINATES", name, components, kind] => {
+                    keep(&mut arrays, of, self.array(name, kind, number(components, &here)?, entities, &here)?);
+                }
+                ["FIELD", _, count] => {
+                    for _ in 0..number(count, &here)? {
+                        let Some([name, components, tuples, kind]) =
+                            self.bytes.next_words().and_then(|words| <[&str; 4]>::try_from(words).ok())
+                        else {
+                            return Err(self.bytes.error("the name, components, tuples and type of an array"));
+                        };
+                        let here = self.bytes;
+                        self.words();
+                        let (components, tuples) = (number(components, &here)?, number(tuples, &here)?);
+                        let array = self.array(name, kind, components, tuples, &here)?;
+                        if of == Of::All && ["time", "timevalue"].contains(&name.to_lowercase().as_str()) {
+                            time = array.numbers.first().copied();
+                        }
+                        keep(&mut arrays, of, array);
+                    }
+                }
+                _ => return Err(wrong("a section of points and of what is told of them")),
+            }
+        }
+        let positions = positions.ok_or_else(|| self.bytes.error("`POINTS`"))?;
+        Ok(Points { time, positions, arrays })
+    }
+
+    /// Passes over cells; gives how many there are.
+    fn connectivity(&mut self, count: usize, size: usize, here: &Bytes<'b>) -> Result<usize, ReadError> {
+        let Some(["OFFSETS", kind]) =
+            self.bytes.next_words().as_deref().map(|words| <[&str; 2]>::try_from(words).unwrap_or_default())
+        else {
+            self.array("cells", "int", 1, size, here)?;
+            return Ok(count);
+        };
+        self.words();
+        self.array("offsets", kind, 1, count, here)?;
+        let Some(["CONNECTIVITY", kind]) =
+            self.bytes.next_words().as_deref().map(|words| <[&str; 2]>::try_from(words).unwrap_or_default())
+        else {
+            return Err(self.bytes.error("`CONNECTIVITY`"));
+        };
+        self.words();
+        self.array("connectivity", kind, 1, size, here)?;
+        Ok(count.saturating_sub(1))
+    }
+
+    /// The numbers of an array.
+    fn array(
+        &mut self,
+        name: &str,
+        kind: &str,
+        components: usize,
+        tuples: usize,
+        here: &Bytes<'b>,
+    ) -> Result<Array, ReadError> {
+        let kind =
+            Number::of_legacy(kind).ok_or_else(|| here.error(format!("a type of numbers, found {}", quoted(kind))))?;
+        let count = components.checked_mul(tuples).ok_or_else(|| here.error("a number of numbers"))?;
+        let (numbers, digits) = if self.is_binary {
+            let size = count.checked_mul(kind.size()).ok_or_else(|| here.error("a number of numbers"))?;
+            (kind.decode(self.bytes.take(size)?, true), kind.digits())
+        } else {
+            let mut digits = Digits::default();
+            let numbers = self.bytes.printed(count, &mut digits)?;
+            (numbers, if kind == Number::F32 { digits.single() } else { digits })
+        };
+        Ok(Array { name: name.to_owned(), components, numbers, digits })
+    }
+}
+
+/// Keeps what is told of points.
+fn keep(arrays: &mut Vec<Array>, of: Of, array: Array) {
+    if of == Of::Points {
+        arrays.push(array);
+    }
+}
+
+fn number(word: &str, here: &Bytes<'_>) -> Result<usize, ReadError> {
+    word.parse().map_err(|_| here.error(format!("a whole number for {}", quoted(word))))
+}

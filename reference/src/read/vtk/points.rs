@@ -1,0 +1,92 @@
+//! Points and what is told of each, of either form of file, and a snapshot of grains of them.
+
+use crate::read::digits::Digits;
+use crate::read::numbers::NumberColumn;
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::snapshot::DumpSnapshot;
+
+/// Numbers of every point, component by component, point after point.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Array {
+    pub(super) name: String,
+    pub(super) components: usize,
+    pub(super) numbers: Vec<f64>,
+    pub(super) digits: Digits,
+}
+
+/// Points.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Points {
+    /// The time, where the file says it.
+    pub(super) time: Option<f64>,
+    /// Where they are.
+    pub(super) positions: Array,
+    /// What is told of each.
+    pub(super) arrays: Vec<Array>,
+}
+
+/// What programs call a velocity.
+const VELOCITY: [&str; 7] =
+    ["v", "velocity", "vel", "velocity_lin", "linvelocity", "linear_velocity", "linear velocity"];
+/// What they call a spin.
+const SPIN: [&str; 8] =
+    ["omega", "spin", "angvel", "velocity_ang", "angvelocity", "angular_velocity", "angular velocity", "w"];
+/// What they call the number of a grain.
+const ID: [&str; 4] = ["id", "particle_id", "particleid", "particle id"];
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Array {
+    /// The names of its columns.
+    fn columns(&self) -> Vec<String> {
+        let lower = self.name.to_lowercase();
+        let is = |names: &[&str]| names.contains(&lower.as_str());
+        let vector = |prefix: &str| AXES.map(|axis| format!("{prefix}{axis}")).to_vec();
+        match self.components {
+            1 if is(&ID) => vec!["id".to_owned()],
+            1 => vec![self.name.clone()],
+            3 if is(&VELOCITY) => vector("v"),
+            3 if is(&SPIN) => vector("omega"),
+            3 => vector(&format!("{}_", self.name)),
+            other => (0..other).map(|at| format!("{}_{at}", self.name)).collect(),
+        }
+    }
+}
+
+impl Points {
+    /// A snapshot of grains, its step open.
+    pub(super) fn snapshot(self, file: &str) -> Result<DumpSnapshot, ReadError> {
+        let points = self.positions.numbers.len() / 3;
+        let mut columns: Vec<NumberColumn> = Vec::new();
+        let mut parts: Vec<(&Array, usize)> = Vec::new();
+        for array in [&self.positions].into_iter().chain(&self.arrays) {
+            let names = if std::ptr::eq(array, &raw const self.positions) {
+                AXES.map(str::to_owned).to_vec()
+            } else {
+                array.columns()
+            };
+            if array.numbers.len() != points * array.components {
+                let expected = format!("{points} of {} numbers in the array {}", array.components, quoted(&array.name));
+                return Err(ReadError::at(file, 1, expected, array.numbers.len().to_string()));
+            }
+            if let Some(at) = array.numbers.iter().position(|number| !number.is_finite()) {
+                let expected = format!("finite numbers in the array {}", quoted(&array.name));
+                let found = format!("{} at point {}", array.numbers[at], at / array.components.max(1) + 1);
+                return Err(ReadError::at(file, 1, expected, found));
+            }
+            for (component, name) in names.into_iter().enumerate() {
+                // Of two arrays of one meaning the first is taken.
+                if columns.iter().all(|column| column.name != name) {
+                    columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(&name) });
+                    parts.push((array, component));
+                }
+            }
+        }
+        let row = |point: usize| {
+            let parts = &parts;
+            parts.iter().map(move |(array, component)| array.numbers[point * array.components + component])
+        };
+        let values = (0..points).flat_map(row).collect();
+        Ok(DumpSnapshot { time: self.time, columns, first_line: 1, values, ..DumpSnapshot::default() })
+    }
+}

@@ -1,0 +1,332 @@
+//! XML files of points: `PolyData` and `UnstructuredGrid`, their numbers printed, encoded in place or appended.
+
+use super::bytes::Bytes;
+use super::number::Number;
+use super::points::{Array, Points};
+use crate::read::digits::Digits;
+use crate::read::read_error::{ReadError, quoted};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::read::ZlibDecoder;
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::reader::Reader;
+use std::io::Read;
+
+/// What begins the part that is no XML.
+const APPENDED: &[u8] = b"<AppendedData";
+/// The last of every file.
+const END: &[u8] = b"</VTKFile>";
+/// The one compression that is read.
+const ZLIB: &str = "vtkZLibDataCompressor";
+
+/// Reads points and what is told of each.
+pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
+    let all = bytes.all();
+    if !all.trim_ascii_end().ends_with(END) {
+        return Err(bytes.error_at(all.len(), "`</VTKFile>`", "the end of the file"));
+    }
+    let cut = memchr::memmem::find(all, APPENDED);
+    let appended = cut.map(|cut| appended(&bytes, cut)).transpose()?;
+    let xml = Bytes::new(bytes.file(), &all[..cut.unwrap_or(all.len())]);
+    let mut file = File { bytes: xml, appended, is_big: false, wide: false, compressor: None };
+    file.points()
+}
+
+/// What stands behind the XML.
+#[derive(Clone, Copy)]
+struct Appended<'b> {
+    /// From behind the underscore on.
+    data: &'b [u8],
+    is_text: bool,
+}
+
+fn appended<'b>(bytes: &Bytes<'b>, cut: usize) -> Result<Appended<'b>, ReadError> {
+    let all = &bytes.all()[cut..];
+    let fault = |expected: &str, found: &str| bytes.error_at(cut, expected, found);
+    let head = memchr::memchr(b'>', all).ok_or_else(|| fault("`<AppendedData …>`", "the end of the file"))?;
+    let is_text = memchr::memmem::find(&all[..head], b"base64").is_some();
+    let start = memchr::memchr(b'_', &all[head..]).ok_or_else(|| fault("`_` before the data", "none"))?;
+    let end = memchr::memmem::rfind(all, b"</AppendedData>");
+    let end = end.ok_or_else(|| bytes.error_at(usize::MAX, "`</AppendedData>`", "the end of the file"))?;
+    Ok(Appended { data: all.get(head + start + 1..end).unwrap_or_default(), is_text })
+}
+
+/// An array as its tag announces it.
+struct Announced {
+    name: String,
+    kind: Option<Number>,
+    kind_word: String,
+    components: usize,
+    format: String,
+    offset: usize,
+    at: usize,
+}
+
+struct File<'b> {
+    bytes: Bytes<'b>,
+    appended: Option<Appended<'b>>,
+    is_big: bool,
+    /// Whether lengths have eight bytes.
+    wide: bool,
+    compressor: Option<String>,
+}
+
+impl File<'_> {
+    fn points(&mut self) -> Result<Points, ReadError> {
+        let all = self.bytes.all();
+        let mut reader = Reader::from_reader(all);
+        let mut path: Vec<Vec<u8>> = Vec::new();
+        let mut array: Option<(Announced, String)> = None;
+        let (mut positions, mut arrays, mut time): (Option<Array>, Vec<Array>, Option<f64>) = (None, Vec::new(), None);
+        let mut pieces = 0_usize;
+        loop {
+            let at = reader.buffer_position() as usize;
+            let event =
+                reader.read_event().map_err(|error| self.bytes.error_at(at, "XML", quoted(&error.to_string())))?;
+            match event {
+                Event::Start(tag) => {
+                    self.open(&tag, &mut array, at)?;
+                    pieces += usize::from(tag.name().as_ref() == b"Piece");
+                    path.push(tag.name().as_ref().to_vec());
+                }
+                Event::Empty(tag) => {
+                    self.open(&tag, &mut array, at)?;
+                    if tag.name().as_ref() == b"DataArray" {
+                        let of = path.last().cloned().unwrap_or_default();
+                        self.close(&of, pieces, array.take(), &mut positions, &mut arrays, &mut time)?;
+                    }
+                }
+                Event::Text(text) if path.last().is_some_and(|name| name == b"DataArray") => {
+                    if let Some((_, numbers)) = &mut array {
+                        numbers.push_str(&String::from_utf8_lossy(&text));
+                        numbers.push(' ');
+                    }
+                }
+                Event::End(_) => {
+                    let name = path.pop().unwrap_or_default();
+                    if name == b"DataArray" {
+                        let of = path.last().cloned().unwrap_or_default();
+                        self.close(&of, pieces, array.take(), &mut positions, &mut arrays, &mut time)?;
+                    }
+                }
+                Event::Eof => break,
+                _ => {}
+            }
+        }
+        let positions = positions.ok_or_else(|| self.bytes.error_at(0, "an array in `<Points>`", "none"))?;
+        Ok(Points { time, positions, arrays })
+    }
+
+    /// Takes the attributes of a tag.
+    fn open(
+        &mut self,
+        tag: &BytesStart<'_>,
+        array: &mut Option<(Announced, String)>,
+        at: usize,
+    ) -> Result<(), ReadError> {
+        let value = |key: &str| {
+            tag.try_get_attribute(key).ok().flatten().map(|found| String::from_utf8_lossy(&found.value).into_owned())
+        };
+        match tag.name().as_ref() {
+            b"VTKFile" => {
+                let kind = value("type").unwrap_or_default();
+                if !["PolyData", "UnstructuredGrid"].contains(&kind.as_str()) {
+                    return Err(self.bytes.error_at(
+                        at,
+                        "a file of the type `PolyData` or `UnstructuredGrid`",
+                        quoted(&kind),
+                    ));
+                }
+                self.is_big = value("byte_order").is_some_and(|order| order == "BigEndian");
+                self.wide = value("header_type").is_some_and(|header| header == "UInt64");
+                self.compressor = value("compressor");
+            }
+            b"DataArray" => {
+                let count = |key: &str, usual: usize| match value(key) {
+                    None => Ok(usual),
+                    Some(text) => text
+                        .parse()
+                        .map_err(|_| self.bytes.error_at(at, format!("a whole number in `{key}`"), quoted(&text))),
+                };
+                let kind_word = value("type").unwrap_or_default();
+                let announced = Announced {
+                    name: value("Name").unwrap_or_default(),
+                    kind: Number::of_xml(&kind_word),
+                    kind_word,
+                    components: count("NumberOfComponents", 1)?,
+                    format: value("format").unwrap_or_else(|| "ascii".to_owned()),
+                    offset: count("offset", 0)?,
+                    at,
+                };
+                *array = Some((announced, String::new()));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Reads an array that ends, where it is told of points, and puts it behind what other pieces have of it.
+    fn close(
+        &self,
+        of: &[u8],
+        pieces: usize,
+        array: Option<(Announced, String)>,
+        positions: &mut Option<Array>,
+        arrays: &mut Vec<Array>,
+        time: &mut Option<f64>,
+    ) -> Result<(), ReadError> {
+        let Some((announced, text)) = array else { return Ok(()) };
+        let is_time = of == b"FieldData" && pieces == 0 && announced.name.eq_ignore_ascii_case("TimeValue");
+        if !(of == b"Points" || of == b"PointData" || is_time) {
+            return Ok(());
+        }
+        let (at, name) = (announced.at, announced.name.clone());
+        let read = self.numbers(&announced, &text)?;
+        let components = if of == b"Points" { 3 } else { announced.components };
+        if components == 0 || read.numbers.len() % components != 0 {
+            let expected = format!("a whole number of points of {components} numbers in {}", quoted(&name));
+            return Err(self.bytes.error_at(at, expected, read.numbers.len().to_string()));
+        }
+        let read = Array { components, ..read };
+        let known = if of == b"Points" {
+            positions.as_mut()
+        } else if is_time {
+            *time = read.numbers.first().copied();
+            return Ok(());
+        } else {
+            arrays.iter_mut().find(|known| known.name == name)
+        };
+        match known {
+            Some(known) if known.components == components => {
+                known.numbers.extend(read.numbers);
+                known.digits = known.digits.with(&read.digits);
+            }
+            Some(_) => {
+                return Err(self.bytes.error_at(
+                    at,
+                    "as many components as in the piece before",
+                    components.to_string(),
+                ));
+            }
+            None if of == b"Points" => *positions = Some(read),
+            None => arrays.push(read),
+        }
+        Ok(())
+    }
+
+    fn numbers(&self, announced: &Announced, text: &str) -> Result<Array, ReadError> {
+        let Announced { name, components, at, .. } = announced;
+        let fault = |expected: &str, found: String| {
+            self.bytes.error_at(*at, format!("{expected} in the array {}", quoted(name)), found)
+        };
+        let kind = announced.kind.ok_or_else(|| fault("a type of numbers", quoted(&announced.kind_word)))?;
+        let (numbers, digits) = match announced.format.as_str() {
+            "ascii" => {
+                let mut digits = Digits::default();
+                let number = |word: &str| {
+                    digits.see(word.as_bytes());
+                    fast_float2::parse::<f64, _>(word).map_err(|_| fault("a number", quoted(word)))
+                };
+                let numbers = text.split_ascii_whitespace().map(number).collect::<Result<_, _>>()?;
+                (numbers, if kind == Number::F32 { digits.single() } else { digits })
+            }
+            "binary" | "appended" => {
+                let encoded: Vec<u8>;
+                let stream = if announced.format == "binary" {
+                    encoded = text.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
+                    Stream { data: &encoded, is_text: true }
+                } else {
+                    let appended = self.appended.ok_or_else(|| fault("`<AppendedData>`", "none".to_owned()))?;
+                    let data = appended.data.get(announced.offset..);
+                    let data =
+                        data.ok_or_else(|| fault("an offset inside the appended data", announced.offset.to_string()))?;
+                    Stream { data, is_text: appended.is_text }
+                };
+                let bytes = self.unpacked(stream).map_err(|what| fault("whole encoded data", what))?;
+                if bytes.len() % kind.size() != 0 {
+                    return Err(fault("a whole number of numbers", format!("{} bytes", bytes.len())));
+                }
+                (kind.decode(&bytes, self.is_big), kind.digits())
+            }
+            other => return Err(fault("the format `ascii`, `binary` or `appended`", quoted(other))),
+        };
+        Ok(Array { name: name.clone(), components: *components, numbers, digits })
+    }
+
+    /// The bytes of numbers, from their lengths and blocks.
+    fn unpacked(&self, mut stream: Stream<'_>) -> Result<Vec<u8>, String> {
+        let size = if self.wide { 8 } else { 4 };
+        let kind = if self.wide { Number::U64 } else { Number::U32 };
+        let lengths = |bytes: &[u8]| -> Vec<usize> {
+            kind.decode(bytes, self.is_big).iter().map(|length| *length as usize).collect()
+        };
+        let Some(compressor) = &self.compressor else {
+            let whole = stream.clone_at_start().take(size)?;
+            let length = lengths(&whole)[0];
+            return if stream.is_apart(size) {
+                stream.take(size)?;
+                stream.take(length)
+            } else {
+                let whole = length.checked_add(size).ok_or("a length without bound")?;
+                Ok(stream.take(whole)?.split_off(size))
+            };
+        };
+        if compressor != ZLIB {
+            return Err(format!("a compression by {}, and {ZLIB} alone is read", quoted(compressor)));
+        }
+        let blocks = lengths(&stream.clone_at_start().take(size)?)[0];
+        let head = blocks.checked_add(3).and_then(|words| words.checked_mul(size)).ok_or("blocks without number")?;
+        let head = lengths(&stream.take(head)?);
+        let (most, packed) = (head[1].max(head[2]), &head[3..]);
+        let total =
+            packed.iter().try_fold(0_usize, |sum, length| sum.checked_add(*length)).ok_or("blocks without bound")?;
+        let mut data = &stream.take(total)?[..];
+        let mut bytes = Vec::new();
+        for length in packed {
+            let (block, rest) = data.split_at(*length);
+            let decoder = ZlibDecoder::new(block);
+            decoder.take(most as u64).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+            if bytes.len() as u64 > super::MOST {
+                return Err(format!("more than {} bytes", super::MOST));
+            }
+            data = rest;
+        }
+        Ok(bytes)
+    }
+}
+
+/// Bytes as they are, or in base 64, each piece encoded by itself.
+#[derive(Clone, Copy)]
+struct Stream<'s> {
+    data: &'s [u8],
+    is_text: bool,
+}
+
+impl Stream<'_> {
+    const fn clone_at_start(&self) -> Self {
+        *self
+    }
+
+    /// Whether the first so many bytes were encoded by themselves.
+    fn is_apart(&self, count: usize) -> bool {
+        !self.is_text || !count.is_multiple_of(3) && self.data.get(count.div_ceil(3) * 4 - 1) == Some(&b'=')
+    }
+
+    /// The next so many bytes; of text all that belong to the letters of the last, cut off there.
+    fn take(&mut self, count: usize) -> Result<Vec<u8>, String> {
+        let length = if self.is_text { count.div_ceil(3).saturating_mul(4) } else { count };
+        let Some(piece) = self.data.get(..length) else {
+            return Err(format!("{} bytes of {length}", self.data.len()));
+        };
+        self.data = &self.data[length..];
+        if !self.is_text {
+            return Ok(piece.to_vec());
+        }
+        let mut bytes = STANDARD.decode(piece).map_err(|error| error.to_string())?;
+        if bytes.len() < count {
+            return Err(format!("{} bytes of {count}", bytes.len()));
+        }
+        bytes.truncate(count);
+        Ok(bytes)
+    }
+}

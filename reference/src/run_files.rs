@@ -1,0 +1,138 @@
+//! The files that a run left, snapshot by snapshot, whatever their format.
+
+use crate::read::decoding::{Decoded, decoded};
+use crate::read::dump::DumpReader;
+use crate::read::line_reader::LineReader;
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::snapshot::DumpSnapshot;
+use crate::read::vtk;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+
+/// How many bytes of a file tell what it is.
+const HEAD: u64 = 512;
+
+/// What a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// A dump of LAMMPS' kind.
+    Dump,
+    /// A table.
+    Table,
+    /// One of VTK's.
+    Vtk(vtk::Kind),
+}
+
+/// What a file is by its beginning; an empty one does not say, and the reader of dumps then will.
+pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
+    let name = shown(path);
+    let opened = || File::open(path).map_err(|error| ReadError::opening(&name, error));
+    let reading = |error| ReadError::reading(&name, 1, error);
+    let mut head = Vec::new();
+    if let Decoded::Text(reader) = decoded(BufReader::new(opened()?)).map_err(reading)? {
+        reader.take(HEAD).read_to_end(&mut head).map_err(reading)?;
+    }
+    if let Some(kind) = vtk::kind(&head) {
+        return Ok(Kind::Vtk(kind));
+    }
+    let mut lines = LineReader::new(BufReader::new(opened()?), &name)?;
+    while let Some(line) = lines.next_line()? {
+        if !line.text.trim().is_empty() {
+            return Ok(if line.text.starts_with("ITEM:") { Kind::Dump } else { Kind::Table });
+        }
+    }
+    Ok(Kind::Dump)
+}
+
+/// A file, and which moment it is of where it holds one only.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RunFile {
+    pub(crate) path: PathBuf,
+    moment: Option<Moment>,
+}
+
+/// A moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Moment {
+    step: u64,
+    /// The time (s), where a collection tells it.
+    time: Option<f64>,
+}
+
+impl RunFile {
+    pub(crate) fn of(path: &Path) -> Self {
+        Self { path: path.to_owned(), moment: None }
+    }
+}
+
+/// The files that were named: collections as what they list, files of one moment each in the order of their steps.
+pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
+    let mut files = Vec::new();
+    for path in named.iter().filter(|path| !is_box(path)) {
+        match kind(path)? {
+            Kind::Dump | Kind::Table => files.push(RunFile::of(path)),
+            Kind::Vtk(vtk::Kind::Points) => files.push(of_moment(path, None)?),
+            Kind::Vtk(vtk::Kind::Collection) => {
+                for (time, path) in vtk::read_collection(path)? {
+                    files.push(of_moment(&path, Some(time))?);
+                }
+            }
+        }
+    }
+    files.sort_by_key(|file| file.moment.map(|moment| moment.step));
+    Ok(files)
+}
+
+/// LIGGGHTS leaves the box beside each file of grains, under a name that a pattern of theirs catches too.
+fn is_box(path: &Path) -> bool {
+    path.file_stem().is_some_and(|stem| stem.to_string_lossy().contains("boundingBox"))
+}
+
+/// A file whose name tells the step: its last whole number.
+fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let last = stem.trim_end_matches(|letter: char| !letter.is_ascii_digit());
+    let digits = last.len() - last.bytes().rev().take_while(u8::is_ascii_digit).count();
+    let step = last[digits..].parse();
+    let step = step.map_err(|_| {
+        ReadError::at(&shown(path), 1, "the step in the file's name, as in `dump_5000.vtk`", quoted(&stem))
+    })?;
+    Ok(RunFile { path: path.to_owned(), moment: Some(Moment { step, time }) })
+}
+
+/// Snapshot after snapshot of a file.
+pub(crate) enum Snapshots {
+    Dump(Box<DumpReader<'static>>),
+    /// Of a file that holds one, until it was read.
+    One(Option<RunFile>),
+}
+
+impl Snapshots {
+    /// Of a file, whose snapshots may have so many rows.
+    pub(crate) fn open(file: &RunFile, most_rows: u64) -> Result<Self, ReadError> {
+        Ok(match file.moment {
+            None => Self::Dump(Box::new(DumpReader::open(&file.path)?.at_most(most_rows))),
+            Some(_) => Self::One(Some(file.clone())),
+        })
+    }
+
+    /// Reads the next snapshot in the place of the last; false at the end of the file.
+    pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
+        match self {
+            Self::Dump(reader) => reader.read(snapshot),
+            Self::One(file) => {
+                let Some((path, moment)) = file.take().and_then(|file| Some((file.path, file.moment?))) else {
+                    return Ok(false);
+                };
+                let read = vtk::read_points(&path)?;
+                *snapshot = DumpSnapshot { step: moment.step, time: read.time.or(moment.time), ..read };
+                Ok(true)
+            }
+        }
+    }
+}
+
+pub(crate) fn shown(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
