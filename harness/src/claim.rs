@@ -29,6 +29,7 @@ use crate::run::{Done, Missing, Run, Set, Standing};
 use crate::scope::Scope;
 use crate::source::{Cited, Source};
 use crate::tolerance::{Tolerance, exactly};
+use grainbench_scene::scene::Scene;
 use std::sync::Arc;
 
 /// Reads the records of a claim's runs, in their order.
@@ -76,6 +77,19 @@ pub struct Claim {
     pub trace: Option<Trace>,
     /// The graph that it is drawn in, and its label there.
     pub drawn: Option<(&'static Plate, String)>,
+    /// How far it may be off where a scene of its kind has other numbers; none where that is not known.
+    pub elsewhere: Option<Elsewhere>,
+}
+
+/// What is claimed of scenes of a kind whatever their numbers, with a tolerance that follows the scene.
+#[derive(Clone)]
+pub struct Elsewhere {
+    /// What is measured, in words.
+    pub quantity: &'static str,
+    /// Largest |error| that passes.
+    pub allowed: Arc<dyn Fn(&Scene) -> f64 + Send + Sync>,
+    /// Why, with the formula.
+    pub because: &'static str,
 }
 
 /// Begins a claim: a quantity in words, and its unit.
@@ -284,8 +298,8 @@ impl Tolerated {
     pub fn refuses(self, control: Control) -> Claim {
         let Self { expecting: Expecting { quantity, expectation, source, measure, trace }, tolerance } = self;
         let Quantity { quantity, unit, runs } = quantity;
-        let (scope, drawn) = (Scope::Named, None);
-        Claim { quantity, unit, scope, runs, expectation, source, tolerance, measure, control, trace, drawn }
+        let (scope, drawn, elsewhere) = (Scope::Named, None, None);
+        Claim { quantity, unit, scope, runs, expectation, source, tolerance, measure, control, trace, drawn, elsewhere }
     }
 
     /// Wrong physics that ends the run, or leaves nothing to read.
@@ -300,6 +314,17 @@ impl Claim {
     #[must_use]
     pub fn fair_to_any(self) -> Self {
         Self { scope: Scope::AnySolver, ..self }
+    }
+
+    /// The claim as one that holds of scenes of its kind with other numbers too, within a tolerance that follows them.
+    #[must_use]
+    pub fn at_other_numbers(
+        self,
+        quantity: &'static str,
+        because: &'static str,
+        allowed: impl Fn(&Scene) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self { elsewhere: Some(Elsewhere { quantity, allowed: Arc::new(allowed), because }), ..self }
     }
 
     /// Draws what is compared, of a claim of a whole course.

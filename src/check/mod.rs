@@ -6,15 +6,15 @@ mod exact;
 mod figures;
 mod ours;
 mod stored;
+mod subject;
+
+pub use subject::Subject;
 
 use covered::Covered;
 use exact::exact;
 use figures::figures;
-use grainbench_harness::case::{Case, PLAIN};
-use grainbench_harness::claim::Claim;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Measured;
-use grainbench_harness::scope::Scope;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::{OutputError, Outputs};
@@ -23,6 +23,7 @@ use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{ProbeTarget, Scene};
 use grainbench_scene::solver::Resolution;
 use ours::{compare, ours};
+use subject::Candidate;
 use thiserror::Error;
 
 /// Why outputs cannot be judged.
@@ -60,30 +61,17 @@ pub enum NotChecked {
 
 /// How far a start may be off, in radii, beside the printed digits.
 const START: f64 = 1e-9;
-/// A scene that the outputs may be of.
-struct Candidate {
-    variant: String,
-    scene: Scene,
-    /// The gates whose scene it is.
-    claims: Vec<Claim>,
-}
-
-/// Judges the outputs of a case's scene, of one variant or of whichever they start as.
+/// Judges outputs of a case's scene, of one variant or of whichever they start as, or of a scene of the user's own.
 ///
 /// Where they do not reach the end of the run, a row of its own is red, or amber where `partial` says that a part is
 /// meant, and claims of the whole run are not judged.
 ///
 /// # Errors
 /// When the files cannot be read, or start as no scene of the case does.
-pub fn check(
-    case: &'static Case,
-    variant: Option<&str>,
-    outputs: &Outputs,
-    partial: bool,
-) -> Result<Section, NotChecked> {
+pub fn check(subject: &Subject<'_>, outputs: &Outputs, partial: bool) -> Result<Section, NotChecked> {
     let mut first_miss = None;
     let mut matching: Vec<(Candidate, Observed)> = Vec::new();
-    for candidate in candidates(case, variant)? {
+    for candidate in subject.candidates()? {
         let observed = outputs.observe(&candidate.scene);
         let observed = match (observed, &first_miss) {
             (Ok(observed), _) => observed,
@@ -97,8 +85,8 @@ pub fn check(
         match misplaced(&candidate.scene, &observed) {
             None => matching.push((candidate, observed)),
             Some((expected, found)) if first_miss.is_none() => {
-                let place = variant.map_or_else(|| case.name.to_owned(), |variant| format!("{}/{variant}", case.name));
-                first_miss = Some(NotChecked::OtherScene { file: outputs.name(), case: place, expected, found });
+                first_miss =
+                    Some(NotChecked::OtherScene { file: outputs.name(), case: subject.place(), expected, found });
             }
             Some(_) => {}
         }
@@ -107,47 +95,18 @@ pub fn check(
     variants.dedup();
     if variants.len() > 1 {
         let variants = variants.join(", ");
-        return Err(NotChecked::Ambiguous { file: outputs.name(), case: case.name.to_owned(), variants });
+        return Err(NotChecked::Ambiguous { file: outputs.name(), case: subject.name(), variants });
     }
     if let Some((candidate, observed)) = matching.first_mut() {
         let covered = Covered::of(&candidate.scene, outputs.time_step(), observed);
-        return Ok(section(case, candidate, outputs, observed, &covered, partial));
+        return Ok(section(subject, candidate, outputs, observed, &covered, partial));
     }
     Err(first_miss.unwrap_or_else(|| NotChecked::OtherScene {
         file: outputs.name(),
-        case: case.name.to_owned(),
+        case: subject.name(),
         expected: "a variant with a scene".to_owned(),
         found: "none".to_owned(),
     }))
-}
-
-/// The scenes as they stand, and those that gates fair to any solver adjust.
-fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidate>, SceneError> {
-    let mut names = case.variants()?;
-    if !names.iter().any(|name| name == PLAIN) {
-        names.push(PLAIN.to_owned());
-    }
-    names.retain(|name| variant.is_none_or(|variant| variant == name));
-    let mut candidates: Vec<Candidate> = Vec::new();
-    for name in names {
-        candidates.push(Candidate { scene: case.variant(&name)?, variant: name, claims: Vec::new() });
-    }
-    for claim in (case.claims)() {
-        let [run] = &claim.runs[..] else { continue };
-        if claim.scope != Scope::AnySolver || variant.is_some_and(|variant| variant != run.variant) {
-            continue;
-        }
-        let mut scene = case.variant(run.variant)?;
-        if let Some((_, change)) = &run.adjustment {
-            change(&mut scene);
-        }
-        let variant = run.variant.to_owned();
-        match candidates.iter_mut().find(|other| other.variant == variant && other.scene == scene) {
-            Some(candidate) => candidate.claims.push(claim),
-            None => candidates.push(Candidate { variant, scene, claims: vec![claim] }),
-        }
-    }
-    Ok(candidates)
 }
 
 /// Where the first grain that does not start as in the scene should be, and where it is.
@@ -174,7 +133,7 @@ fn misplaced(scene: &Scene, observed: &Observed) -> Option<(String, String)> {
 }
 
 fn section(
-    case: &'static Case,
+    subject: &Subject<'_>,
     candidate: &Candidate,
     outputs: &Outputs,
     observed: &Observed,
@@ -191,7 +150,7 @@ fn section(
             resolution,
             evidence: Evidence::OtherCode,
             outcome: Outcome::NoReference,
-            ..Verdict::open(case.name, quantity, unit)
+            ..Verdict::open(subject.name(), quantity, unit)
         }
     };
     let mut verdicts = vec![covered.row(partial, row("time of the last sample".to_owned(), "s"))];
@@ -214,17 +173,23 @@ fn section(
             verdicts.push(row.left(Outcome::NoReference, reason));
         }
     }
-    verdicts.extend(stored::compare(case, candidate, outputs, observed, &row));
+    if let Some(case) = subject.as_stored() {
+        verdicts.extend(stored::compare(case, candidate, outputs, observed, &row));
+    }
+    let (derivation, weak) = match subject.case() {
+        Some(case) => (case.derivation, case.weakness),
+        None => ("", "Of a scene that is no case there is no exact answer here: our solvers alone are the measure."),
+    };
     Section {
-        name: case.name.to_owned(),
-        title: format!("{}: {file}", case.title),
+        name: subject.name(),
+        title: format!("{}: {file}", subject.title()),
         claim: format!(
-            "The output of another program, `{file}`, printed with up to {} significant digits, against the exact answers of \
-             this case, against our solvers on the same scene, and against stored runs of it where there are some.",
+            "The output of another program, `{file}`, printed with up to {} significant digits, against exact answers where \
+             they hold, against our solvers on the same scene, and against stored runs of it where there are some.",
             outputs.significant_digits()
         ),
-        derivation: case.derivation.to_owned(),
-        weak: case.weakness.to_owned(),
+        derivation: derivation.to_owned(),
+        weak: weak.to_owned(),
         figures,
         verdicts,
         controls: Vec::new(),

@@ -4,29 +4,37 @@ use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
 use super::run::{exit_code, is_judged};
 use super::simulate::{path_and_value, positive};
-use super::subject::Variant;
-use grainbench::check::check as judge;
-use grainbench::harness::case::Case;
+use super::subject::{self, Variant};
+use grainbench::check::{Subject, check as judge};
 use grainbench::harness::verdict;
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources};
 use grainbench::reports::results::results_json;
-use grainbench::reports::{Report, line, write_report};
-use std::path::PathBuf;
+use grainbench::reports::{Report, Section, line, write_report};
+use grainbench::scene::scene::Scene;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 /// What the command takes.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(crate) struct Arguments {
-    /// The case, or one variant of it.
-    #[arg(value_name = "CASE|CASE/VARIANT")]
-    case: String,
-    /// Dumps of grains that follow one another, dumps of their contacts (`dump local`) at the same steps beside them;
-    /// or one CSV table; plain, gzip or zstd.
-    #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
+    /// The case, one variant of it, or a scene of your own.
+    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml", required_unless_present = "all")]
+    scene: Option<String>,
+    /// Override one key of the scene, where your run has other numbers than the case: exact answers follow them. May be given
+    /// more than once.
+    #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
+    set: Vec<(String, String)>,
+    /// Dumps of grains that follow one another, dumps of their contacts (`dump local`) at the same steps beside them; VTK
+    /// files of a step each (`.vtk`, `.vtp`, `.vtu`), or their collection (`.pvd`); or one CSV table. Plain, gzip or zstd.
+    #[arg(long, value_name = "FILE", required_unless_present = "all", num_args = 1..)]
     dump: Vec<PathBuf>,
-    /// The run's log.
+    /// Everything in this folder: what lies in `DIR/CASE` and `DIR/CASE/VARIANT` is of that.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "dump", "log", "map"])]
+    all: Option<PathBuf>,
+    /// The run's log; a file `log.lammps` or `log.liggghts` beside the first dump where none is named.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     /// Time step in seconds, where neither dump nor log tells it.
@@ -53,38 +61,119 @@ pub(crate) struct Arguments {
 
 /// Judges and writes the report.
 pub(crate) fn check(arguments: &Arguments) -> Outcome {
-    let named = Variant::read(&arguments.case)?;
     let start = Instant::now();
-    let sources = Sources {
-        files: arguments.dump.clone(),
-        log: arguments.log.clone(),
-        names: Names(arguments.map.clone()),
-        time_step: arguments.dt,
-        most_rows: Some(most_rows(named.case)?),
+    let mut words = vec!["check".to_owned()];
+    let sections = match (&arguments.scene, &arguments.all) {
+        (Some(scene), _) => {
+            let (section, name) = one(arguments, scene)?;
+            words.extend([scene.clone(), name]);
+            words.extend(arguments.set.iter().map(|(path, value)| format!("--set {path}={value}")));
+            vec![section]
+        }
+        (None, Some(folder)) => {
+            words.push(format!("--all {}", folder.display()));
+            all(arguments, folder)?
+        }
+        (None, None) => Vec::new(),
     };
-    let outputs = Outputs::survey(sources).map_err(Fault::input)?;
     check_writable(&arguments.out)?;
-    let section = judge(named.case, named.variant, &outputs, arguments.partial).map_err(Fault::input)?;
-    let words = vec!["check".to_owned(), arguments.case.clone(), outputs.name()];
-    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
+    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {
         print(&format!("{}{}\n", rows(&report), arguments.out.join("index.html").display()))?;
     }
-    // That a file reaches the end says nothing of what is in it.
-    let mut of_quantities = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(1));
-    if of_quantities.any(is_judged) { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
+    // That a file reaches the end says nothing of what is in it: each output must have a row of a quantity that is judged.
+    let mut sections = report.sections.iter();
+    let is_told = sections.all(|section| section.verdicts.iter().skip(1).any(is_judged));
+    if is_told { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
 }
 
-/// Most rows that a snapshot of a case can have: a grain has a dozen contacts at most, and walls.
-fn most_rows(case: &Case) -> Result<u64, Fault> {
-    let mut most = 0;
-    for variant in case.variants()? {
-        let scene = case.variant(&variant)?;
-        most = most.max(scene.grains.len() * (16 + scene.walls.len()));
+/// Judges the outputs that were named; gives what a page calls them too.
+fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
+    let is_file = Path::new(scene).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
+    let subject = if is_file {
+        let (own, _) = subject::scene(scene, &arguments.set)?;
+        let name = Path::new(scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Subject::Scene { name, scene: Box::new(own) }
+    } else {
+        let Variant { case, variant } = Variant::read(scene)?;
+        Subject::Case { case, variant, set: &arguments.set }
+    };
+    let beside = || {
+        arguments
+            .dump
+            .first()
+            .and_then(|dump| LOGS.map(|log| dump.with_file_name(log)).into_iter().find(|log| log.is_file()))
+    };
+    let sources = Sources {
+        files: arguments.dump.clone(),
+        log: arguments.log.clone().or_else(beside),
+        names: Names(arguments.map.clone()),
+        time_step: arguments.dt,
+        most_rows: Some(most_rows(&subject)?),
+    };
+    let outputs = Outputs::survey(sources).map_err(Fault::input)?;
+    let section = judge(&subject, &outputs, arguments.partial).map_err(Fault::input)?;
+    Ok((section, outputs.name()))
+}
+
+/// What a program calls its log where nothing else is said.
+const LOGS: [&str; 2] = ["log.lammps", "log.liggghts"];
+
+/// Judges what lies in the folders of cases and of their variants.
+fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
+    let found = |folder: &Path| -> Result<(Vec<PathBuf>, Vec<PathBuf>), Fault> {
+        let entries = fs::read_dir(folder).map_err(|error| {
+            Fault::input(format!("{}: expected a folder that can be read, found {error}", folder.display()))
+        })?;
+        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        paths.sort();
+        Ok(paths.into_iter().partition(|path| path.is_dir()))
+    };
+    let mut sections = Vec::new();
+    let mut judge = |scene: &str, files: Vec<PathBuf>| -> Result<(), Fault> {
+        let dump: Vec<PathBuf> = files.into_iter().filter(|file| looks_like_output(file)).collect();
+        if !dump.is_empty() {
+            let arguments = Arguments { dump, ..arguments.clone() };
+            sections.push(one(&arguments, scene)?.0);
+        }
+        Ok(())
+    };
+    for of_case in found(folder)?.0 {
+        let name = of_case.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let (variants, files) = found(&of_case)?;
+        judge(&name, files)?;
+        for of_variant in variants {
+            let variant = of_variant.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            judge(&format!("{name}/{variant}"), found(&of_variant)?.1)?;
+        }
     }
+    if sections.is_empty() {
+        let folder = folder.display();
+        return Err(Fault::input(format!("{folder}: expected outputs in `CASE` or `CASE/VARIANT` of it, found none")));
+    }
+    Ok(sections)
+}
+
+/// Whether a file is an output by the end of its name, compressed or not.
+fn looks_like_output(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let name = name.trim_end_matches(".gz").trim_end_matches(".zst");
+    [".dump", ".local", ".lammpstrj", ".csv", ".vtk", ".vtp", ".vtu", ".pvd"].iter().any(|end| name.ends_with(end))
+}
+
+/// Most rows that a snapshot can have: a grain has a dozen contacts at most, and walls.
+fn most_rows(subject: &Subject<'_>) -> Result<u64, Fault> {
+    let of = |scene: &Scene| scene.grains.len() * (16 + scene.walls.len());
+    let most = match subject {
+        Subject::Scene { scene, .. } => of(scene),
+        Subject::Case { case, .. } => {
+            let scenes = case.variants()?.into_iter().map(|variant| case.variant(&variant).map(|scene| of(&scene)));
+            scenes.collect::<Result<Vec<_>, _>>()?.into_iter().max().unwrap_or(0)
+        }
+    };
     Ok(most as u64)
 }
 

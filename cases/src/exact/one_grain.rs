@@ -15,6 +15,7 @@
 use grainbench_harness::run::{Done, Missing};
 use grainbench_scene::contact_law::Springs;
 use grainbench_scene::scene::{Dimension, Scene};
+use std::f64::consts::PI;
 
 /// The grain, the plane and the law between them.
 #[derive(Clone, Copy, Debug)]
@@ -31,12 +32,14 @@ pub struct OneGrain {
     pub onto: f64,
     /// Friction μ.
     pub friction: f64,
-    /// Tangential stiffness k_t (N/m).
+    /// Tangential stiffness k_t (N/m), at the static overlap.
     pub tangential_stiffness: f64,
     /// Initial spin Ω₀ in the direction that drives the grain down the slope (rad/s).
     pub spin: f64,
     /// Static overlap divided by the radius.
     pub overlap_ratio: f64,
+    /// Normal stiffness about the static overlap (N/m).
+    pub normal_stiffness: f64,
 }
 
 /// Displacement (m), velocity (m/s) and spin in the rolling direction (rad/s).
@@ -57,6 +60,8 @@ impl OneGrain {
         let grain = &scene.grains[0];
         let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
         let onto = -scene.gravity[normal_axis(scene)];
+        let overlap = static_overlap(&law.springs, grain.mass * onto, grain.radius);
+        let (normal_stiffness, tangential_stiffness) = law.springs.stiffness(overlap, grain.radius);
         Self {
             radius: grain.radius,
             mass: grain.mass,
@@ -64,13 +69,16 @@ impl OneGrain {
             along: scene.gravity.x,
             onto,
             friction: law.friction,
-            tangential_stiffness: law.tangential_stiffness(),
+            tangential_stiffness,
             spin: rolling_spin(scene, &grain.spin),
-            overlap_ratio: grain.mass * onto / law.normal_stiffness() / grain.radius,
+            overlap_ratio: overlap / grain.radius,
+            normal_stiffness,
         }
     }
 
-    fn share(&self) -> f64 {
+    /// f = i/(1+i): the share of gravity along the plane that friction takes up where the grain rolls.
+    #[must_use]
+    pub fn share(&self) -> f64 {
         self.inertia_factor / (1.0 + self.inertia_factor)
     }
 
@@ -96,6 +104,25 @@ impl OneGrain {
     /// Frequency of the tangential spring, ω² = (k_t/m)(1 + 1/i) (rad/s).
     fn tangential_frequency(&self) -> f64 {
         (self.tangential_stiffness / self.mass * (1.0 + 1.0 / self.inertia_factor)).sqrt()
+    }
+
+    /// When friction acts in full at the latest (s), wherever the grain was let go within its static overlap: half a period
+    /// of the spring along the plane, and half of that along the normal.
+    #[must_use]
+    pub fn onset(&self) -> f64 {
+        PI / self.tangential_frequency() + PI / (self.normal_stiffness / self.mass).sqrt()
+    }
+
+    /// Slip velocity (m/s) with which an undamped spring would ring about rolling under a force per mass a (m/s²): a/ω.
+    #[must_use]
+    pub fn ringing(&self, acceleration: f64) -> f64 {
+        acceleration / self.tangential_frequency()
+    }
+
+    /// Stretch (m) of the spring under a force per mass a (m/s²): m a/k_t.
+    #[must_use]
+    pub fn stretch(&self, acceleration: f64) -> f64 {
+        self.mass * acceleration / self.tangential_stiffness
     }
 
     /// When the undamped spring reaches Coulomb's limit, arccos(1 − μ g_n/(f g_t))/ω (s); not a number if it never
@@ -155,6 +182,18 @@ impl OneGrain {
     pub fn backspin_velocity(&self, arm: f64) -> f64 {
         let moment = self.inertia_factor * self.radius * self.radius;
         moment * self.spin * arm / (arm * arm + moment)
+    }
+}
+
+/// Overlap (m) at which springs carry a force (N), of a grain of this radius (m) on a plane: F/k_n, or by Hertz's law
+/// (3F/(4E*√R))^{2/3}.
+fn static_overlap(springs: &Springs, force: f64, radius: f64) -> f64 {
+    match *springs {
+        Springs::Absent => 0.0,
+        Springs::Linear { normal, .. } => force / normal,
+        Springs::Hertz { effective_modulus, .. } => {
+            (0.75 * force / (effective_modulus * radius.sqrt())).max(0.0).cbrt().powi(2)
+        }
     }
 }
 

@@ -186,6 +186,14 @@ pub enum Duration {
     Cycles(u64),
 }
 
+impl Duration {
+    /// The time (s), where it is one.
+    #[must_use]
+    pub const fn seconds(self) -> Option<f64> {
+        if let Self::Seconds(seconds) = self { Some(seconds) } else { None }
+    }
+}
+
 /// How often probes are sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {

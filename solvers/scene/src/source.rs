@@ -162,11 +162,12 @@ impl SceneSource {
     }
 
     fn lay_over(&self, table: &mut toml::Table, key: &str, value: &str) -> Result<(), SceneError> {
-        let parsed = format!("value = {value}")
-            .parse::<toml::Table>()
-            .ok()
-            .and_then(|mut table| table.remove("value"))
-            .unwrap_or_else(|| toml::Value::String(value.to_owned()));
+        if value.is_empty() {
+            return self.take_away(table, key);
+        }
+        let read = |value: &str| format!("value = {value}").parse::<toml::Table>().ok()?.remove("value");
+        let parsed = read(value).or_else(|| read(&with_zeros(value)));
+        let parsed = parsed.unwrap_or_else(|| toml::Value::String(value.to_owned()));
         let mut nested = parsed;
         for part in key.rsplit('.') {
             if part.is_empty() {
@@ -178,6 +179,17 @@ impl SceneSource {
             merge(table, overlay);
         }
         Ok(())
+    }
+
+    /// Takes a key away that the file has: `--set key=`.
+    fn take_away(&self, table: &mut toml::Table, key: &str) -> Result<(), SceneError> {
+        let (path, last) = key.rsplit_once('.').map_or((None, key), |(path, last)| (Some(path), last));
+        let mut parts = path.into_iter().flat_map(|path| path.split('.'));
+        let within = parts.try_fold(table, |table, part| table.get_mut(part)?.as_table_mut());
+        match within.and_then(|table| table.remove(last)) {
+            Some(_) => Ok(()),
+            None => Err(self.error(key, "a key of the scene, which an empty value takes away", "none", None)),
+        }
     }
 
     /// Where a key was written: the `--set`, or file and line of the key or of its nearest parent.
@@ -251,6 +263,20 @@ impl SceneSource {
         let found = value_at(table, path).map_or_else(|| "something else".to_owned(), describe);
         self.error(path, message, &found, None)
     }
+}
+
+/// `.5` as TOML has it, `0.5`, wherever a number begins so.
+fn with_zeros(value: &str) -> String {
+    let mut text = String::new();
+    for (at, letter) in value.char_indices() {
+        let begins =
+            text.chars().next_back().is_none_or(|before| !before.is_alphanumeric() && !"._\"'".contains(before));
+        if letter == '.' && begins && value[at + 1..].starts_with(|next: char| next.is_ascii_digit()) {
+            text.push('0');
+        }
+        text.push(letter);
+    }
+    text
 }
 
 /// The value at a dotted path, where there is one.
