@@ -199,8 +199,9 @@ fn near_rigid(slope: Slope) -> Vec<Claim> {
 }
 
 /// Why the tolerance at other numbers is what it is.
-const ELSEWHERE: &str = "rolling: overlap/R for the torque arm, beside it the spring's stretch over the way, or the speed at which it would \
-     ring undamped; slipping: half a period of each spring before friction acts in full, over the time";
+const ELSEWHERE: &str = "rolling: overlap/R for the torque arm, beside it the spring's stretch over the way, or the \
+     speed at which it would ring undamped; slipping: half a period of each spring before friction acts in full, over \
+     the time";
 
 /// How far the rigid answer may be off on a slope with any numbers, of displacement, velocity and spin, as fractions.
 fn elsewhere(scene: &Scene) -> State {
