@@ -16,6 +16,10 @@ impl Solver for Rigid {
         "my-rigid-grain".to_owned()
     }
 
+    fn has_springs(&self) -> bool {
+        false
+    }
+
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         let unsupported = |reason: &str| RunError::Unsupported { solver: self.name(), reason: reason.to_owned() };
         let ([grain], [wall]) = (&scene.grains[..], &scene.walls[..]) else {

@@ -6,7 +6,6 @@ use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::harness::control::Wrong;
-use grainbench::harness::scope::Scope;
 use grainbench::own::NotJudged;
 use std::collections::BTreeSet;
 use std::fs;
@@ -19,7 +18,7 @@ use std::process::{Command, Output};
 fn every_convention_passes_what_is_fair_to_any_solver() {
     let has_fair_gates = |name: &&str| {
         let case = CASES.iter().find(|case| case.name == *name).unwrap();
-        (case.claims)().iter().any(|claim| claim.scope == Scope::AnySolver)
+        (case.claims)().iter().any(|claim| claim.scope.is_open())
     };
     let cases: Vec<&str> = CASES.iter().map(|case| case.name).filter(has_fair_gates).collect();
     for convention in Convention::ALL {
@@ -31,7 +30,7 @@ fn every_convention_passes_what_is_fair_to_any_solver() {
 #[test]
 fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
     for case in CASES {
-        for claim in (case.claims)().iter().filter(|claim| claim.scope == Scope::AnySolver) {
+        for claim in (case.claims)().iter().filter(|claim| claim.scope.is_open()) {
             assert!(matches!(claim.control.wrong, Wrong::Scene(_)), "{}: {}", case.name, claim.quantity);
             let solvers: BTreeSet<&str> = claim.runs.iter().map(|run| run.solver).collect();
             assert_eq!(solvers.len(), 1, "{}: {} compares solvers", case.name, claim.quantity);

@@ -316,6 +316,12 @@ impl Claim {
         Self { scope: Scope::AnySolver, ..self }
     }
 
+    /// The claim as one that is fair to any solver with the springs of the scene.
+    #[must_use]
+    pub fn fair_to_any_springs(self) -> Self {
+        Self { scope: Scope::AnySprings, ..self }
+    }
+
     /// The claim as one that holds of scenes of its kind with other numbers too, within a tolerance that follows them.
     #[must_use]
     pub fn at_other_numbers(

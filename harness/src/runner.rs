@@ -119,8 +119,9 @@ impl Runner {
     #[must_use]
     pub fn claims(&self) -> Vec<Claim> {
         let mut claims = (self.case.claims)();
-        if self.stranger.is_some() {
-            claims.retain(|claim| claim.scope == Scope::AnySolver);
+        if let Some(stranger) = &self.stranger {
+            let has_springs = stranger.has_springs();
+            claims.retain(|claim| claim.scope.is_open() && (has_springs || claim.scope != Scope::AnySprings));
         }
         claims
     }

@@ -10,4 +10,15 @@ pub enum Scope {
     /// room for what the scene leaves open (torque arm, cap on the dashpot), and the negative control is a wrong scene,
     /// so that it can be tried on a stranger too.
     AnySolver,
+    /// The same of any solver whose contacts have the springs and dashpots of the scene: what rigid contacts do not have is not
+    /// asked of them.
+    AnySprings,
+}
+
+impl Scope {
+    /// Whether solvers may be judged that the case does not name.
+    #[must_use]
+    pub const fn is_open(self) -> bool {
+        matches!(self, Self::AnySolver | Self::AnySprings)
+    }
 }

@@ -2,7 +2,6 @@
 
 use grainbench_harness::case::{Case, PLAIN};
 use grainbench_harness::claim::{Claim, Elsewhere};
-use grainbench_harness::scope::Scope;
 use grainbench_harness::tolerance::computed;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
@@ -100,7 +99,7 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
     }
     for claim in (case.claims)() {
         let [run] = &claim.runs[..] else { continue };
-        if claim.scope != Scope::AnySolver || variant.is_some_and(|variant| variant != run.variant) {
+        if !claim.scope.is_open() || variant.is_some_and(|variant| variant != run.variant) {
             continue;
         }
         let mut scene = case.variant(run.variant)?;
@@ -140,6 +139,6 @@ fn with_other_numbers(
 fn elsewhere(mut claim: Claim, scene: &Scene) -> Option<Claim> {
     let Elsewhere { quantity, allowed, because } = claim.elsewhere.take()?;
     let allowed = allowed(scene);
-    let is_known = claim.scope == Scope::AnySolver && allowed.is_finite();
+    let is_known = claim.scope.is_open() && allowed.is_finite();
     is_known.then(|| Claim { quantity: quantity.to_owned(), tolerance: computed(allowed, because), ..claim })
 }

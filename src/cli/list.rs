@@ -10,9 +10,26 @@ use std::process::ExitCode;
 /// What the command takes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
+    /// Cases whose rows are listed; all when none is named.
+    #[arg(value_name = "CASE|CASE/VARIANT", requires = "rows")]
+    cases: Vec<String>,
+    /// List the rows that are fair to any solver, with their controls, and not the cases.
+    #[arg(long)]
+    rows: bool,
     /// Print the list as JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// One row that is fair to any solver.
+#[derive(Serialize)]
+struct Row {
+    case: &'static str,
+    variant: &'static str,
+    quantity: String,
+    unit: &'static str,
+    /// The wrong physics that must turn it red.
+    control: &'static str,
 }
 
 /// One case of the list.
@@ -30,11 +47,36 @@ struct Entry {
 
 /// Prints the cases.
 pub(crate) fn list(arguments: &Arguments) -> Outcome {
+    if arguments.rows {
+        return list_rows(arguments);
+    }
     let entries = CASES.iter().map(|case| entry(case)).collect::<Result<Vec<_>, _>>()?;
     if arguments.json {
         print_json(&entries)?;
     } else {
         print(&table(&entries))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints the rows that `run --solver SOLVER.toml` judges.
+fn list_rows(arguments: &Arguments) -> Outcome {
+    let mut rows = Vec::new();
+    for selected in select::select_fair(&arguments.cases, &[])? {
+        for claim in &selected.claims {
+            let variant = claim.runs.first().map_or("", |run| run.variant);
+            let (quantity, control) = (claim.quantity.clone(), claim.control.name);
+            rows.push(Row { case: selected.case.name, variant, quantity, unit: claim.unit, control });
+        }
+    }
+    if arguments.json {
+        print_json(&rows)?;
+    } else {
+        let line = |row: &Row| {
+            let Row { case, variant, quantity, control, .. } = row;
+            format!("{case}/{variant} · {quantity} [control: {control}]\n")
+        };
+        print(&rows.iter().map(line).collect::<String>())?;
     }
     Ok(ExitCode::SUCCESS)
 }

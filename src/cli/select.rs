@@ -7,7 +7,6 @@ use grainbench::cases::registry::CASES;
 use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::{Run, Set};
-use grainbench::harness::scope::Scope;
 use grainbench::reference::outside::Outside;
 use std::sync::Arc;
 
@@ -29,10 +28,8 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
         if names.is_empty() && !manifests.is_empty() { Vec::new() } else { of_registry(cases, &names, levels)? };
     for path in manifests {
         let stranger = solver::outside(path)?;
-        for mut of_case in of_registry(cases, &[], levels)? {
-            of_case.claims.retain(|claim| claim.scope == Scope::AnySolver);
-            of_case.stranger = Some(Arc::clone(&stranger));
-            selected.push(of_case);
+        for of_case in select_fair(cases, levels)? {
+            selected.push(Selected { stranger: Some(Arc::clone(&stranger)), ..of_case });
         }
     }
     selected.retain(|selected| !selected.claims.is_empty());
@@ -40,6 +37,15 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
         return Err(Fault::input(
             "expected at least one gate that is fair to any solver, found none in the cases named",
         ));
+    }
+    Ok(selected)
+}
+
+/// The claims of the cases that are fair to any solver.
+pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
+    let mut selected = of_registry(cases, &[], levels)?;
+    for of_case in &mut selected {
+        of_case.claims.retain(|claim| claim.scope.is_open());
     }
     Ok(selected)
 }

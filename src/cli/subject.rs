@@ -5,7 +5,6 @@ use super::select;
 use grainbench::cases::registry::{CASES, read_grains};
 use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
-use grainbench::harness::scope::Scope;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
@@ -64,7 +63,7 @@ pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Opti
 /// The scene of the first gate of a case or variant that is fair to any solver, and its resolution.
 pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
     let named = Variant::read(text)?;
-    let fair = |claim: &Claim| claim.scope == Scope::AnySolver && claim.runs.len() == 1;
+    let fair = |claim: &Claim| claim.scope.is_open() && claim.runs.len() == 1;
     let run = (named.case.claims)()
         .into_iter()
         .filter(fair)

@@ -34,7 +34,7 @@ pub enum Dashpots {
 }
 
 /// Static overlap over the radius.
-const RATIO: f64 = 1e-3;
+const RATIO: f64 = 1e-4;
 /// Start over static overlap.
 const DEEPER: f64 = 1.5;
 /// Damping ratio along the normal.
@@ -177,7 +177,7 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
             .within(judged(0.01, BECAUSE))
     };
     vec![
-        overlap().refuses(Control::scene("springs ×1.05", stiffer)).fair_to_any().drawn(&SPRINGS, variant),
-        slip().refuses(weaker).fair_to_any(),
+        overlap().refuses(Control::scene("springs ×1.05", stiffer)).fair_to_any_springs().drawn(&SPRINGS, variant),
+        slip().refuses(weaker).fair_to_any_springs(),
     ]
 }

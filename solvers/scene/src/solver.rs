@@ -484,6 +484,12 @@ pub trait Solver: Send + Sync {
         Ok(())
     }
 
+    /// Whether its contacts have the springs and dashpots of a scene. Of one with rigid contacts rows are not asked that look
+    /// at those.
+    fn has_springs(&self) -> bool {
+        true
+    }
+
     /// Runs a scene.
     ///
     /// # Errors
