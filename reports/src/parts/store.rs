@@ -1,5 +1,6 @@
 //! The snapshots of a run as they come: a few in memory, all that are more in closed parts on disk.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
@@ -78,11 +79,11 @@ pub struct SnapshotStore {
 
 /// What a checkpoint keeps of the snapshots before it: those that waited, and where the others are.
 #[derive(Serialize, Deserialize)]
-struct Kept {
-    waiting: Vec<Snapshot>,
-    closed: Vec<Seal>,
+struct Kept<'s> {
+    waiting: Cow<'s, [Snapshot]>,
+    closed: Cow<'s, [Seal]>,
     snapshots: u64,
-    end: Option<(End, u64)>,
+    end: Cow<'s, Option<(End, u64)>>,
     rows: u64,
     left_out: bool,
 }
@@ -128,13 +129,13 @@ impl SnapshotStore {
     /// # Errors
     /// When a part is gone or changed, or cannot be brought here.
     pub fn resume(mut self, checkpoint: &Path, kept: &[u8]) -> Result<Self, StoreError> {
-        let kept: Kept = postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
+        let kept: Kept<'_> = postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
         if kept.left_out && !self.in_short {
             return Err(StoreError::LeftOut);
         }
         self.left_out = kept.left_out;
         let source = parts_of(checkpoint);
-        for seal in &kept.closed {
+        for seal in kept.closed.iter() {
             let from = source.join(&seal.name);
             let lost = |found| StoreError::Lost { path: from.clone(), found };
             if !from.is_dir() {
@@ -154,8 +155,8 @@ impl SnapshotStore {
         }
         self.waiting_bytes = kept.waiting.iter().map(bytes).sum();
         self.rows = kept.rows;
-        (self.waiting, self.closed, self.snapshots) = (kept.waiting, kept.closed, kept.snapshots);
-        self.end = kept.end;
+        (self.waiting, self.closed) = (kept.waiting.into_owned(), kept.closed.into_owned());
+        (self.snapshots, self.end) = (kept.snapshots, kept.end.into_owned());
         Ok(self)
     }
 
@@ -189,9 +190,9 @@ impl SnapshotStore {
     /// When the disk refuses.
     pub fn keep(&mut self) -> Result<Vec<u8>, WriteError> {
         self.settle()?;
-        let &mut Self { ref waiting, ref closed, snapshots, ref end, rows, left_out, .. } = self;
-        let kept =
-            Kept { waiting: waiting.clone(), closed: closed.clone(), snapshots, end: end.clone(), rows, left_out };
+        let (waiting, closed, end) = (Cow::from(&self.waiting), Cow::from(&self.closed), Cow::Borrowed(&self.end));
+        let &mut Self { snapshots, rows, left_out, .. } = self;
+        let kept = Kept { waiting, closed, snapshots, end, rows, left_out };
         postcard::to_allocvec(&kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
     }
 

@@ -19,7 +19,7 @@ use parquet::schema::types::{ColumnPath, Type};
 use super::columns::{Gathered, Row, Scattered, Values};
 
 /// Rows that are turned into columns together: they are in memory twice while they are written.
-const GROUP: usize = 1 << 15;
+const GROUP: usize = 1 << 13;
 
 /// Columns with few different values, which a dictionary makes small.
 const REPEATED: [&str; 8] = ["snapshot", "step", "time", "material", "radius", "mass", "partner", "owner"];
