@@ -105,7 +105,9 @@ impl Outputs {
             let table = read_table(file)?;
             outputs.significant = table.digits().significant();
             outputs.table = Some(table);
-            outputs.time_step = outputs.sources.time_step.or_else(|| outputs.log.as_ref().and_then(logged_step));
+            let logged = outputs.log.as_ref().and_then(logged_step);
+            let told = outputs.table.as_ref().and_then(|table| table_step(table, &outputs.sources.names));
+            outputs.time_step = outputs.sources.time_step.or(logged).or(told);
             return Ok(outputs);
         }
         let (mut first, mut last, mut units) = (None, None, None);
@@ -134,6 +136,7 @@ impl Outputs {
             outputs.significant = outputs.significant.max(snapshot.digits().significant());
             outputs.digits.push(snapshot.columns.iter().map(|column| column.digits).collect());
         }
+        share(&mut outputs.digits, outputs.files.iter().all(RunFile::is_of_a_moment));
         if let (Some(of_dump), Some(log), Some(path)) = (&units, &outputs.log, &outputs.sources.log)
             && let Some(of_log) = log.units.as_ref().filter(|of_log| *of_log != of_dump)
         {
@@ -144,6 +147,7 @@ impl Outputs {
             (last_step > step).then(|| (last_time - time) / (last_step - step) as f64)
         });
         let from_log = outputs.log.as_ref().and_then(logged_step);
+        let from_times = from_times.filter(|_| outputs.files.iter().all(RunFile::tells_steps));
         outputs.time_step = outputs.sources.time_step.or(from_log).or(from_times);
         Ok(outputs)
     }
@@ -233,7 +237,7 @@ impl Outputs {
     fn observe_table(&self, scene: &Scene, table: &Table) -> Result<Observed, OutputError> {
         let name = shown(&self.sources.files[0]);
         let names = &self.sources.names;
-        let time = ["time", "t"].into_iter().find_map(|name| table.column(names.of(name)));
+        let time = time_column(table, names);
         let step = table.column(names.of("step"));
         let times: Vec<f64> = match (time, step, self.time_step) {
             (Some(time), _, _) => table.values(time).collect(),
@@ -259,7 +263,9 @@ impl Outputs {
         for Column { name: full, unit } in &columns {
             let short = full.rsplit_once('.').map_or(full.as_str(), |(_, short)| short);
             let alone = columns.iter().filter(|other| other.name.ends_with(&format!(".{short}"))).count() == 1;
-            let found = table.column(names.of(full)).or_else(|| table.column(names.of(short)).filter(|_| alone));
+            let in_si = format!("{full} ({unit})");
+            let found = table.column(names.of(full)).or_else(|| table.column(&in_si));
+            let found = found.or_else(|| table.column(names.of(short)).filter(|_| alone));
             let Some(at) = found else { continue };
             let digits = table.columns[at].digits;
             let values: Vec<f64> = table.values(at).collect();
@@ -275,6 +281,31 @@ impl Outputs {
         }
         Ok(observed)
     }
+}
+
+/// The column of a table with the times.
+fn time_column(table: &Table, names: &Names) -> Option<usize> {
+    ["time", "t", "time (s)"].into_iter().find_map(|name| table.column(names.of(name)))
+}
+
+/// The time step that a table with steps and times tells.
+fn table_step(table: &Table, names: &Names) -> Option<f64> {
+    let ends = |column: usize| {
+        let mut values = table.values(column);
+        values.next().map(|first| values.last().unwrap_or(first) - first)
+    };
+    let length = ends(time_column(table, names)?)? / ends(table.column(names.of("step"))?)?;
+    (length.is_finite() && length > 0.0).then_some(length)
+}
+
+/// Files of one moment each show together how their columns were printed.
+fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
+    let Some((first, rest)) = digits.split_first().filter(|_| are_of_a_moment) else { return };
+    if rest.iter().any(|of_file| of_file.len() != first.len()) {
+        return;
+    }
+    let all = rest.iter().fold(first.clone(), |all, of_file| all.iter().zip(of_file).map(|(a, b)| a.with(b)).collect());
+    digits.fill(all);
 }
 
 /// The ids of a snapshot, in their order.

@@ -3,6 +3,7 @@
 use crate::read::decoding::{Decoded, decoded};
 use crate::read::dump::DumpReader;
 use crate::read::line_reader::LineReader;
+use crate::read::npz::{self, Course};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 use crate::read::vtk;
@@ -22,12 +23,21 @@ pub(crate) enum Kind {
     Table,
     /// One of VTK's.
     Vtk(vtk::Kind),
+    /// Arrays of NumPy's.
+    Npz,
 }
 
 /// What a file is by its beginning; an empty one does not say, and the reader of dumps then will.
 pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     let name = shown(path);
     let opened = || File::open(path).map_err(|error| ReadError::opening(&name, error));
+    let mut mark = Vec::new();
+    let marked = opened()?.take(npz::MARK.len() as u64).read_to_end(&mut mark);
+    marked.map_err(|error| ReadError::reading(&name, 1, error))?;
+    // Other archives are refused where their text is looked for.
+    if mark == npz::MARK && path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz")) {
+        return Ok(Kind::Npz);
+    }
     let reading = |error| ReadError::reading(&name, 1, error);
     let mut head = Vec::new();
     if let Decoded::Text(reader) = decoded(BufReader::new(opened()?)).map_err(reading)? {
@@ -49,6 +59,7 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunFile {
     pub(crate) path: PathBuf,
+    kind: Kind,
     moment: Option<Moment>,
 }
 
@@ -61,8 +72,14 @@ struct Moment {
 }
 
 impl RunFile {
-    pub(crate) fn of(path: &Path) -> Self {
-        Self { path: path.to_owned(), moment: None }
+    /// Whether it holds one moment alone.
+    pub(crate) const fn is_of_a_moment(&self) -> bool {
+        self.moment.is_some()
+    }
+
+    /// Whether its steps are those of the run: what stands in a name may be a number of files.
+    pub(crate) fn tells_steps(&self) -> bool {
+        self.kind == Kind::Dump
     }
 }
 
@@ -71,7 +88,9 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     let mut files = Vec::new();
     for path in named.iter().filter(|path| !is_box(path)) {
         match kind(path)? {
-            Kind::Dump | Kind::Table => files.push(RunFile::of(path)),
+            kind @ (Kind::Dump | Kind::Table | Kind::Npz) => {
+                files.push(RunFile { path: path.clone(), kind, moment: None });
+            }
             Kind::Vtk(vtk::Kind::Points) => files.push(of_moment(path, None)?),
             Kind::Vtk(vtk::Kind::Collection) => {
                 for (time, path) in vtk::read_collection(path)? {
@@ -98,7 +117,8 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     let step = step.map_err(|_| {
         ReadError::at(&shown(path), 1, "the step in the file's name, as in `dump_5000.vtk`", quoted(&stem))
     })?;
-    Ok(RunFile { path: path.to_owned(), moment: Some(Moment { step, time }) })
+    let kind = Kind::Vtk(vtk::Kind::Points);
+    Ok(RunFile { path: path.to_owned(), kind, moment: Some(Moment { step, time }) })
 }
 
 /// Snapshot after snapshot of a file.
@@ -106,12 +126,22 @@ pub(crate) enum Snapshots {
     Dump(Box<DumpReader<'static>>),
     /// Of a file that holds one, until it was read.
     One(Option<RunFile>),
+    /// Of arrays, and the moment that comes next.
+    Arrays(Box<Course>, usize),
 }
 
 impl Snapshots {
     /// Of a file, whose snapshots may have so many rows.
     pub(crate) fn open(file: &RunFile, most_rows: u64) -> Result<Self, ReadError> {
         Ok(match file.moment {
+            None if file.kind == Kind::Npz => {
+                let course = npz::read_course(&file.path)?;
+                if course.grains() as u64 > most_rows {
+                    let expected = format!("at most {most_rows} grains, for no more can belong to the scene");
+                    return Err(ReadError::at(course.name(), 1, expected, course.grains().to_string()));
+                }
+                Self::Arrays(Box::new(course), 0)
+            }
             None => Self::Dump(Box::new(DumpReader::open(&file.path)?.at_most(most_rows))),
             Some(_) => Self::One(Some(file.clone())),
         })
@@ -121,6 +151,12 @@ impl Snapshots {
     pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         match self {
             Self::Dump(reader) => reader.read(snapshot),
+            Self::Arrays(course, moment) => {
+                let Some(next) = course.snapshot(*moment) else { return Ok(false) };
+                *snapshot = next;
+                *moment += 1;
+                Ok(true)
+            }
             Self::One(file) => {
                 let Some((path, moment)) = file.take().and_then(|file| Some((file.path, file.moment?))) else {
                     return Ok(false);

@@ -92,8 +92,9 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
         Kind::Dump => "a dump",
         Kind::Table => "a table",
         Kind::Vtk(_) => "a file of VTK's",
+        Kind::Npz => "arrays of NumPy's",
     };
-    if let Some(which) = kinds.iter().position(|kind| matches!(kind, Kind::Vtk(_))) {
+    if let Some(which) = kinds.iter().position(|kind| matches!(kind, Kind::Vtk(_) | Kind::Npz)) {
         let name = [first, second][which].to_string_lossy();
         return Err(ReadError::at(&name, 1, "a dump or a table", word(kinds[which])));
     }

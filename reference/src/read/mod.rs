@@ -2,6 +2,7 @@
 //! there and what was found.
 
 pub(crate) mod atom;
+mod binary;
 mod blocks;
 pub(crate) mod contacts;
 pub(crate) mod data_file;
@@ -14,6 +15,7 @@ mod dump_header;
 mod fields;
 pub(crate) mod line_reader;
 pub(crate) mod log;
+pub(crate) mod npz;
 pub(crate) mod numbers;
 pub(crate) mod read_error;
 pub(crate) mod snapshot;

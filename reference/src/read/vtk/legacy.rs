@@ -1,8 +1,8 @@
 //! Legacy files: three lines of header, then sections that begin with a word; binary numbers have the big end first.
 
 use super::bytes::Bytes;
-use super::number::Number;
 use super::points::{Array, Points};
+use crate::read::binary::Number;
 use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
 

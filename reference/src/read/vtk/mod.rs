@@ -5,7 +5,6 @@
 mod bytes;
 mod collection;
 mod legacy;
-mod number;
 mod points;
 mod xml;
 

@@ -1,8 +1,8 @@
 //! XML files of points: `PolyData` and `UnstructuredGrid`, their numbers printed, encoded in place or appended.
 
 use super::bytes::Bytes;
-use super::number::Number;
 use super::points::{Array, Points};
+use crate::read::binary::Number;
 use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
 use base64::Engine;

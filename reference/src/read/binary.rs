@@ -1,10 +1,10 @@
-//! The kinds of numbers that VTK's files hold.
+//! Kinds of numbers in files of VTK and of NumPy.
 
 use crate::read::digits::Digits;
 
 /// A kind of number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Number {
+pub(crate) enum Number {
     I8,
     U8,
     I16,
@@ -19,7 +19,7 @@ pub(super) enum Number {
 
 impl Number {
     /// By the word of a legacy file.
-    pub(super) fn of_legacy(word: &str) -> Option<Self> {
+    pub(crate) fn of_legacy(word: &str) -> Option<Self> {
         Some(match word {
             "char" | "vtktypechar" => Self::I8,
             "unsigned_char" | "bit" => Self::U8,
@@ -36,7 +36,7 @@ impl Number {
     }
 
     /// By the word of an XML file.
-    pub(super) fn of_xml(word: &str) -> Option<Self> {
+    pub(crate) fn of_xml(word: &str) -> Option<Self> {
         Some(match word {
             "Int8" => Self::I8,
             "UInt8" => Self::U8,
@@ -52,8 +52,25 @@ impl Number {
         })
     }
 
+    /// By the word of NumPy, without the order of bytes.
+    pub(crate) fn of_numpy(word: &str) -> Option<Self> {
+        Some(match word {
+            "i1" => Self::I8,
+            "u1" | "b1" => Self::U8,
+            "i2" => Self::I16,
+            "u2" => Self::U16,
+            "i4" => Self::I32,
+            "u4" => Self::U32,
+            "i8" => Self::I64,
+            "u8" => Self::U64,
+            "f4" => Self::F32,
+            "f8" => Self::F64,
+            _ => return None,
+        })
+    }
+
     /// Bytes of one.
-    pub(super) const fn size(self) -> usize {
+    pub(crate) const fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -63,12 +80,12 @@ impl Number {
     }
 
     /// What is known of the digits of numbers that were not printed.
-    pub(super) fn digits(self) -> Digits {
+    pub(crate) fn digits(self) -> Digits {
         if self == Self::F32 { Digits::exact().single() } else { Digits::exact() }
     }
 
     /// Numbers from their bytes, of which there are a whole number of times the size.
-    pub(super) fn decode(self, bytes: &[u8], is_big: bool) -> Vec<f64> {
+    pub(crate) fn decode(self, bytes: &[u8], is_big: bool) -> Vec<f64> {
         let one = |chunk: &[u8]| {
             let mut wide = [0_u8; 8];
             for (at, byte) in chunk.iter().enumerate() {

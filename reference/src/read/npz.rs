@@ -1,0 +1,270 @@
+//! Arrays of NumPy's files (`.npz`): a ZIP of one `.npy` an array.
+//!
+//! Source: "numpy.lib.format", versions 1.0 to 3.0 of `.npy`.
+
+use super::binary::Number;
+use super::digits::Digits;
+use super::numbers::NumberColumn;
+use super::read_error::{ReadError, quoted};
+use super::snapshot::DumpSnapshot;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use zip::ZipArchive;
+
+/// How a file begins.
+pub(crate) const MARK: &[u8] = b"PK\x03\x04";
+/// How an array begins.
+const ARRAY: &[u8] = b"\x93NUMPY";
+/// Most bytes of all arrays together.
+const MOST: u64 = 1 << 30;
+
+/// An array, the last index running fastest.
+#[derive(Clone, Debug, PartialEq)]
+struct Array {
+    shape: Vec<usize>,
+    numbers: Vec<f64>,
+    digits: Digits,
+}
+
+/// Grains at several moments.
+#[derive(Debug)]
+pub(crate) struct Course {
+    name: String,
+    /// Step of every moment; their places where the file does not tell.
+    steps: Vec<u64>,
+    /// Times (s), where the file tells them.
+    times: Option<Vec<f64>>,
+    grains: usize,
+    columns: Vec<NumberColumn>,
+    /// Of each column its numbers, and whether they are of every moment.
+    numbers: Vec<(Vec<f64>, bool)>,
+}
+
+/// Arrays of grains: the name, the columns that they are, whether there must be one. Of three numbers a grain the array has
+/// the shape (moments, grains, 3), of one (moments, grains) or (grains).
+const KNOWN: [(&str, &[&str], bool); 5] = [
+    ("position", &["x", "y", "z"], true),
+    ("velocity", &["vx", "vy", "vz"], false),
+    ("spin", &["omegax", "omegay", "omegaz"], false),
+    ("id", &["id"], false),
+    ("radius", &["radius"], false),
+];
+
+/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, and `step` or `time` of every moment.
+///
+/// # Errors
+/// The file cannot be read, lacks what it must have, or has arrays of other shapes.
+pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
+    let name = path.to_string_lossy().into_owned();
+    let arrays = arrays(path, &name)?;
+    let fault = |expected: String, found: String| ReadError::at(&name, 1, expected, found);
+    let have = || quoted(&arrays.keys().cloned().collect::<Vec<_>>().join(" "));
+    let of_moments = |key: &str| -> Result<Option<Vec<f64>>, ReadError> {
+        match arrays.get(key) {
+            Some(array) if array.shape.len() == 1 => Ok(Some(array.numbers.clone())),
+            Some(array) => {
+                Err(fault(format!("one number a moment in the array `{key}`"), format!("the shape {:?}", array.shape)))
+            }
+            None => Ok(None),
+        }
+    };
+    let (steps, times) = (of_moments("step")?, of_moments("time")?);
+    let moments = steps.as_ref().or(times.as_ref()).map(Vec::len);
+    let moments = moments.ok_or_else(|| fault("an array `step` or `time`".to_owned(), have()))?;
+    if times.as_ref().is_some_and(|times| times.len() != moments) {
+        return Err(fault("as many times as steps".to_owned(), "others".to_owned()));
+    }
+    let steps = match steps {
+        None => (0..moments as u64).collect(),
+        Some(steps) => {
+            let whole = |step: f64| if step >= 0.0 && step.fract() == 0.0 { Ok(step as u64) } else { Err(step) };
+            let steps: Result<Vec<u64>, f64> = steps.into_iter().map(whole).collect();
+            steps.map_err(|step| fault("whole steps from zero on".to_owned(), step.to_string()))?
+        }
+    };
+    if let Some(at) = steps.windows(2).position(|pair| pair[1] <= pair[0]) {
+        return Err(fault(format!("a step after {}", steps[at]), steps[at + 1].to_string()));
+    }
+    let mut course = Course { name: name.clone(), steps, times, grains: 0, columns: Vec::new(), numbers: Vec::new() };
+    for (key, columns, must) in KNOWN {
+        let Some(array) = arrays.get(key) else {
+            if must {
+                return Err(fault(format!("an array `{key}`"), have()));
+            }
+            continue;
+        };
+        let width = columns.len();
+        let inner: &[usize] =
+            if width == 1 { &array.shape } else { array.shape.split_last().map_or(&[], |(_, rest)| rest) };
+        let is_wide = width == 1 || array.shape.last() == Some(&width);
+        let (grains, of_moments) = match *inner {
+            [all, grains] if all == moments => (grains, true),
+            [grains] if width == 1 => (grains, false),
+            _ => (0, true),
+        };
+        let expected = if must { grains } else { course.grains };
+        if !is_wide || grains != expected || (must && inner.len() != 2) {
+            let words = if width == 1 { "grains" } else { "grains, 3" };
+            let grains = if must { "grains".to_owned() } else { course.grains.to_string() };
+            let words = words.replace("grains", &grains);
+            return Err(fault(
+                format!("the shape ({moments}, {words}) of the array `{key}`"),
+                format!("{:?}", array.shape),
+            ));
+        }
+        if let Some(wrong) = array.numbers.iter().find(|number| !number.is_finite()) {
+            return Err(fault(format!("finite numbers in the array `{key}`"), wrong.to_string()));
+        }
+        course.grains = expected;
+        for (component, column) in columns.iter().enumerate() {
+            course.columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(column) });
+            course.numbers.push((array.numbers.iter().skip(component).step_by(width).copied().collect(), of_moments));
+        }
+    }
+    Ok(course)
+}
+
+impl Course {
+    /// What errors call it.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How many grains there are.
+    pub(crate) const fn grains(&self) -> usize {
+        self.grains
+    }
+
+    /// The grains at a moment; none after the last.
+    pub(crate) fn snapshot(&self, moment: usize) -> Option<DumpSnapshot> {
+        let (grains, step) = (self.grains, *self.steps.get(moment)?);
+        let number = |grain: usize, of: &(Vec<f64>, bool)| of.0[if of.1 { moment * grains + grain } else { grain }];
+        let values = (0..grains).flat_map(|grain| self.numbers.iter().map(move |of| number(grain, of))).collect();
+        let time = self.times.as_ref().map(|times| times[moment]);
+        let columns = self.columns.clone();
+        Some(DumpSnapshot { step, time, columns, first_line: 1, values, ..DumpSnapshot::default() })
+    }
+}
+
+/// All arrays of a file by their names.
+fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError> {
+    let file = File::open(path).map_err(|error| ReadError::opening(name, error))?;
+    let damaged = |error: zip::result::ZipError| ReadError::at(name, 1, "a whole `.npz`", quoted(&error.to_string()));
+    let mut archive = ZipArchive::new(file).map_err(damaged)?;
+    let mut arrays = BTreeMap::new();
+    let mut left = MOST;
+    for place in 0..archive.len() {
+        let entry = archive.by_index(place).map_err(damaged)?;
+        let entry_name = entry.name().map_err(damaged)?.into_owned();
+        let Some(key) = entry_name.strip_suffix(".npy").map(str::to_owned) else { continue };
+        let mut bytes = Vec::new();
+        // What an entry says of its size is a claim.
+        entry.take(left + 1).read_to_end(&mut bytes).map_err(|error| ReadError::reading(name, 1, error))?;
+        left = left
+            .checked_sub(bytes.len() as u64)
+            .ok_or_else(|| ReadError::at(name, 1, format!("at most {MOST} bytes of arrays"), "more"))?;
+        let array = array(&bytes).map_err(|(expected, found)| {
+            ReadError::at(name, 1, format!("{expected} in the array {}", quoted(&key)), found)
+        })?;
+        if let Some(array) = array {
+            arrays.insert(key, array);
+        }
+    }
+    Ok(arrays)
+}
+
+/// An array of numbers; none where it is of something else. Errors say what was expected and what was found.
+fn array(bytes: &[u8]) -> Result<Option<Array>, (String, String)> {
+    let short = || ("a whole header".to_owned(), "the end of the file".to_owned());
+    let rest = bytes.strip_prefix(ARRAY).ok_or_else(|| ("`.npy`".to_owned(), "something else".to_owned()))?;
+    let (version, rest) = rest.split_at_checked(2).ok_or_else(short)?;
+    let (length, rest) = rest.split_at_checked(if version[0] == 1 { 2 } else { 4 }).ok_or_else(short)?;
+    let length = length.iter().rev().fold(0_usize, |sum, byte| sum << 8 | usize::from(*byte));
+    let (head, data) = rest.split_at_checked(length).ok_or_else(short)?;
+    let head = String::from_utf8_lossy(head).into_owned();
+    let value = |key: &str| {
+        let (_, rest) = head.split_once(&format!("'{key}':"))?;
+        Some(rest.trim_start())
+    };
+    let kind = value("descr").and_then(|rest| rest.strip_prefix('\'')?.split_once('\'')).map(|(kind, _)| kind);
+    let (Some(kind), Some(order), Some(shape)) = (kind, value("fortran_order"), value("shape")) else {
+        return Ok(None);
+    };
+    if order.starts_with("True") {
+        return Err(("the last index to run fastest".to_owned(), "`fortran_order`".to_owned()));
+    }
+    let shape = shape.strip_prefix('(').and_then(|rest| rest.split_once(')')).map_or("", |(shape, _)| shape);
+    let lengths = shape.split(',').map(str::trim).filter(|length| !length.is_empty()).map(str::parse);
+    let shape: Vec<usize> = lengths.collect::<Result<_, _>>().map_err(|_| ("a shape".to_owned(), quoted(shape)))?;
+    let Some(number) = Number::of_numpy(kind.trim_start_matches(['<', '>', '|', '='])) else { return Ok(None) };
+    let count = shape.iter().try_fold(1_usize, |product, length| product.checked_mul(*length));
+    if count.and_then(|count| count.checked_mul(number.size())) != Some(data.len()) {
+        return Err((format!("numbers for the shape {shape:?}"), format!("{} bytes", data.len())));
+    }
+    Ok(Some(Array { numbers: number.decode(data, kind.starts_with('>')), shape, digits: number.digits() }))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use std::fs;
+
+    fn read(name: &str) -> Result<Course, String> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/npz").join(name);
+        read_course(&path).map_err(|error| error.to_string().rsplit('/').next().unwrap_or_default().to_owned())
+    }
+
+    #[test]
+    fn arrays_of_numpy_are_read() {
+        for name in ["grains.npz", "grains-compressed.npz"] {
+            let course = read(name).unwrap();
+            assert_eq!(course.grains(), 2);
+            let last = course.snapshot(2).unwrap();
+            assert_eq!((last.step, last.time), (25, Some(0.25)));
+            assert!(course.snapshot(3).is_none());
+            let value = |column: &str, row: usize| last.row(row)[last.column(column).unwrap()];
+            assert_eq!([value("id", 0), value("id", 1)], [2.0, 1.0]);
+            assert_eq!([value("x", 0), value("z", 1)], [12.0 / 7.0, 17.0 / 7.0]);
+            assert_eq!(value("vx", 0), f64::from(-12.0_f32 / 7.0));
+            assert_eq!([value("omegaz", 0), value("omegax", 1)], [5.0, 0.0]);
+            let digits = |column: &str| last.columns[last.column(column).unwrap()].digits;
+            assert!(digits("vx").uncertainty(1.0, &last.digits()) > 1e-8, "a single number is not exact");
+            assert!(digits("x").uncertainty(1.0, &last.digits()) < 1e-15);
+        }
+    }
+
+    #[test]
+    fn other_shapes_are_refused_in_words() {
+        assert_eq!(
+            read("flat.npz").unwrap_err(),
+            "flat.npz:1: expected the shape (3, grains, 3) of the array `position`, found [3, 3]"
+        );
+        assert_eq!(
+            read("fortran.npz").unwrap_err(),
+            "fortran.npz:1: expected the last index to run fastest in the array `position`, found `fortran_order`"
+        );
+    }
+
+    #[test]
+    fn damaged_files_are_refused_or_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let damaged = folder.path().join("damaged.npz");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/npz/grains.npz");
+        let whole = fs::read(path).unwrap();
+        for cut in 0..whole.len() {
+            fs::write(&damaged, &whole[..cut]).unwrap();
+            assert!(read_course(&damaged).is_err(), "cut at {cut}");
+        }
+        for at in 0..whole.len() {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 1 << (at % 8);
+            fs::write(&damaged, &bytes).unwrap();
+            // Read or refused, never a panic.
+            let _ = read_course(&damaged);
+        }
+    }
+}
