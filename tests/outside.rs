@@ -33,6 +33,12 @@ fn write(folder: &Path, manifest: &str, script: &str) {
     fs::write(folder.join("liar.sh"), script).unwrap();
 }
 
+/// What runs on this machine.
+fn running() -> String {
+    let running = Command::new("ps").args(["-eo", "args"]).output();
+    running.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default()
+}
+
 fn judged(folder: &Path, further: &[&str]) -> (Answer, Value) {
     let answer = grainbench(folder, &[&["run", CASE, "--solver", "SOLVER.toml", "--json"], further].concat());
     let results = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
@@ -73,9 +79,40 @@ fn a_program_that_lies_is_found_out() {
             assert!(row["detail"].as_str().unwrap_or_default().contains(said), "{what}: {row}");
         }
     }
-    let running = Command::new("ps").args(["-eo", "args"]).output();
-    let running = running.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
-    assert!(!running.contains("sleep 1234"), "what it started goes with it");
+    assert!(!running().contains("sleep 1234"), "what it started goes with it");
+}
+
+/// A program that stays is found out as well, and what it leaves behind goes with it.
+#[test]
+fn a_worker_that_lies_is_found_out() {
+    let manifest =
+        MANIFEST.replace("run = [\"sh\", \"liar.sh\", \"{scene}\", \"{out}\"]", "worker = [\"sh\", \"liar.sh\"]");
+    let lies: [(&str, &str, &str, &str); 8] = [
+        ("leaves nothing", "echo '{\"ran\": {}}'", "broken", "grains.csv"),
+        ("nonsense", "echo nonsense", "broken", "found `nonsense`"),
+        ("ends", "exit 0", "broken", "the worker ended"),
+        ("hangs", "sleep 1000", "broken", "not done after 2 s"),
+        ("floods the disk", "head -c 10000000000 /dev/zero > big", "broken", "found more"),
+        ("breaks", "echo '{\"failed\": {\"why\": \"a nail\", \"when\": 0.5}}'", "broken", "when 0.5, where not told"),
+        (
+            "tells no time",
+            "echo '{\"ran\": {\"seconds\": -1}}'",
+            "broken",
+            "expected seconds of zero or more, found -1",
+        ),
+        ("cannot", "echo '{\"cannot\": \"no friction here\"}'", "unsupported", "no friction here"),
+    ];
+    for (what, script, verdict, said) in lies {
+        let directory = tempfile::tempdir().unwrap();
+        write(directory.path(), &manifest, &format!("sleep 4321 &\nwhile read -r line; do\n{script}\ndone"));
+        let (answer, results) = judged(directory.path(), &["--no-controls"]);
+        assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
+        for row in results["verdicts"].as_array().unwrap() {
+            assert_eq!(row["verdict"], verdict, "{what}: {row}");
+            assert!(row["detail"].as_str().unwrap_or_default().contains(said), "{what}: {row}");
+        }
+    }
+    assert!(!running().contains("sleep 4321"), "what it started goes with it");
 }
 
 /// A scene that calls for more than is declared is not given to the program, and a program that is not there is amber.
@@ -128,6 +165,7 @@ fn a_wrong_manifest_is_refused() {
         ),
         ("\"friction\"", "\"fiction\"", "SOLVER.toml: can.effects: expected names among friction, cohesion"),
         ("\"grains.csv\"", "\"../grains.csv\"", "SOLVER.toml: output.grains.path: expected a path inside the folder"),
+        ("run = [", "worker = [\"sh\"]\nrun = [", "SOLVER.toml: run: expected one of `run` and `worker`, found both"),
         ("seconds = 2", "seconds = 0", "SOLVER.toml: limits: expected numbers above zero, found 0"),
         (
             "seconds = 2",

@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -83,29 +83,9 @@ pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failu
     let screen = File::create(folder.join(SCREEN)).map_err(not_run)?;
     let errors = if errors_apart { File::create(folder.join(ERRORS)) } else { screen.try_clone() };
     let errors = errors.map_err(not_run)?;
-    let guarded = match limits.memory {
-        Some(most) => format!("ulimit -v {most} || exit 126\n{GUARD}"),
-        None => GUARD.to_owned(),
-    };
-    let mut guard = Command::new("sh");
-    guard
-        .args(["-c", &guarded])
-        .arg(executable)
-        .args(arguments)
-        .current_dir(at.unwrap_or(folder))
-        .env("GRAINBENCH_FOLDER", folder)
-        // Of ours: sums in another order would end in other digits.
-        .env("OMP_NUM_THREADS", limits.threads.to_string())
-        // Spares each start the daemon that would watch over several processes.
-        .env("OMPI_MCA_ess_singleton_isolated", "1")
-        // And the search for fabrics between machines, three quarters of the time of a start.
-        .env("OMPI_MCA_pml", "ob1")
-        .stdin(Stdio::piped())
-        .stdout(screen)
-        .stderr(errors);
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(&mut guard, 0);
-    let mut child = guard.spawn().map_err(not_run)?;
+    let mut command = guard(GUARD, executable, arguments, folder, limits);
+    command.current_dir(at.unwrap_or(folder)).stdout(screen).stderr(errors);
+    let mut child = command.spawn().map_err(not_run)?;
     let start = Instant::now();
     let status = loop {
         let failure = match child.try_wait() {
@@ -139,20 +119,50 @@ pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failu
     }
 }
 
+/// A shell that guards a program by a script, in the folder and within what it may take.
+pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folder: &Path, limits: Limits) -> Command {
+    let guarded = match limits.memory {
+        Some(most) => format!("ulimit -v {most} || exit 126\n{script}"),
+        None => script.to_owned(),
+    };
+    let mut command = Command::new("sh");
+    command
+        .args(["-c", &guarded])
+        .arg(executable)
+        .args(arguments)
+        .current_dir(folder)
+        .env("GRAINBENCH_FOLDER", folder)
+        // Of ours: sums in another order would end in other digits.
+        .env("OMP_NUM_THREADS", limits.threads.to_string())
+        // Spares each start the daemon that would watch over several processes.
+        .env("OMPI_MCA_ess_singleton_isolated", "1")
+        // And the search for fabrics between machines, three quarters of the time of a start.
+        .env("OMPI_MCA_pml", "ob1")
+        .stdin(Stdio::piped());
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    command
+}
+
 /// The failure of a run that left more bytes than it may.
-fn too_much(most: u64) -> Failure {
+pub(crate) fn too_much(most: u64) -> Failure {
     Failure::Output(format!("expected at most {} MB for the samples of this scene, found more", most / 1_000_000))
 }
 
 /// Closes the standard input of the guard, which is told that the folder is still looked at. It may have ended.
 fn close(child: &mut Child) {
     if let Some(mut input) = child.stdin.take() {
-        let _ = input.write_all(WE_ARE_ALIVE);
+        say_alive(&mut input);
     }
 }
 
+/// Tells a guard that we are still there. It may have ended.
+pub(crate) fn say_alive(input: &mut ChildStdin) {
+    let _ = input.write_all(WE_ARE_ALIVE);
+}
+
 /// All that is in a folder, and in those inside it (B); links are not followed.
-fn size(folder: &Path) -> u64 {
+pub(crate) fn size(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let of = |entry: fs::DirEntry| match entry.metadata() {
         Ok(found) if found.is_dir() => size(&entry.path()),
@@ -163,7 +173,7 @@ fn size(folder: &Path) -> u64 {
 }
 
 /// The last lines of what was printed: errors where there are some apart.
-fn last_lines(folder: &Path) -> Vec<String> {
+pub(crate) fn last_lines(folder: &Path) -> Vec<String> {
     let of_errors = last_lines_of(&folder.join(ERRORS));
     if of_errors.is_empty() { last_lines_of(&folder.join(SCREEN)) } else { of_errors }
 }

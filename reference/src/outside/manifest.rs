@@ -25,7 +25,11 @@ pub struct Manifest {
     pub version: Vec<String>,
     /// The command of a run. `{scene}` stands for the file with the scene, `{out}` for the fresh folder in which it is started,
     /// `{here}` for the folder of the manifest; a word that names a file beside the manifest is that file.
+    #[serde(default)]
     pub run: Vec<String>,
+    /// In its place, the command of a program that stays and takes a run a line.
+    #[serde(default)]
+    pub worker: Vec<String>,
     /// A command that is run once in the manifest's folder before the first run, and is not timed.
     #[serde(default)]
     pub prepare: Vec<String>,
@@ -156,6 +160,10 @@ pub enum GrainFormat {
     Lammps,
     /// A table with a row for each grain and sample.
     Csv,
+    /// Arrays of NumPy: `position`, `velocity` and `spin` of the shape (samples, grains, 3), and `step`.
+    Npz,
+    /// VTK's files, one a sample; `*` in the path stands for the step.
+    Vtk,
 }
 
 /// What a run may take.
@@ -191,6 +199,12 @@ pub struct ManifestError {
 }
 
 impl Manifest {
+    /// The command that is started, for each run or once.
+    #[must_use]
+    pub fn command(&self) -> &[String] {
+        if self.worker.is_empty() { &self.run } else { &self.worker }
+    }
+
     /// Reads a manifest.
     ///
     /// # Errors
@@ -227,10 +241,12 @@ impl Manifest {
         if self.name.trim().is_empty() || self.name.len() > 40 || !self.name.chars().all(is_plain) {
             return wrong("name", "up to 40 letters, digits, `-`, `_`, `.` and blanks", quoted(&self.name));
         }
-        if self.run.first().is_none_or(String::is_empty) {
-            return wrong("run", "a program and its words", "none".to_owned());
+        match (self.run.is_empty(), self.worker.is_empty()) {
+            (true, true) => return wrong("run", "a program and its words, or a `worker`", "neither".to_owned()),
+            (false, false) => return wrong("run", "one of `run` and `worker`", "both".to_owned()),
+            _ => {}
         }
-        if !self.run.iter().any(|word| word.contains("{scene}")) {
+        if !self.run.is_empty() && !self.run.iter().any(|word| word.contains("{scene}")) {
             return wrong("run", "a word with `{scene}`: what is to be run", quoted(&self.run.join(" ")));
         }
         if let Some(other) = self.can.dimension.iter().find(|count| ![2, 3].contains(*count)) {
@@ -259,8 +275,8 @@ impl Manifest {
                 return wrong(key, "a path inside the folder of the run", quoted(path));
             }
         }
-        if output.contacts.is_some() && output.grains.format == GrainFormat::Csv {
-            return wrong("output.contacts", "grains as a dump beside it", "grains as a table".to_owned());
+        if output.contacts.is_some() && output.grains.format != GrainFormat::Lammps {
+            return wrong("output.contacts", "grains as a dump beside it", "grains in another format".to_owned());
         }
         let Limits { seconds, memory_mib, threads } = self.limits;
         if seconds == 0 || threads == 0 || memory_mib == Some(0) {

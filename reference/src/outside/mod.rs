@@ -9,6 +9,7 @@ mod grain_table;
 mod manifest;
 mod report;
 mod resolved;
+mod worker;
 
 pub use manifest::{Can, GrainFormat, Grains, Knobs, Law, Limits, Manifest, ManifestError, Output, SceneFormat, Wall};
 pub use resolved::{Resolved, schema};
@@ -25,12 +26,14 @@ use grainbench_scene::record::{Cost, Provenance, Record};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 use grainbench_scene::terms::Terms;
+use report::{OwnReport, Seconds};
 use std::collections::BTreeMap;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
+use worker::{Answer, Worker};
 
 /// The code with which a program ends that cannot express a scene.
 pub const CANNOT: i32 = 64;
@@ -53,6 +56,8 @@ pub struct Outside {
     folder: PathBuf,
     prepared: OnceLock<Result<(), String>>,
     version: OnceLock<Option<String>>,
+    /// Programs that stay and wait for a run.
+    idle: Mutex<Vec<Worker>>,
     /// Time that a run of no steps takes (s), by the number of grains.
     start_up: Mutex<BTreeMap<usize, f64>>,
 }
@@ -66,8 +71,14 @@ impl Outside {
         let manifest = Manifest::read(path)?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
-        let start_up = Mutex::default();
-        Ok(Self { manifest, folder, prepared: OnceLock::new(), version: OnceLock::new(), start_up })
+        Ok(Self {
+            manifest,
+            folder,
+            prepared: OnceLock::new(),
+            version: OnceLock::new(),
+            idle: Mutex::default(),
+            start_up: Mutex::default(),
+        })
     }
 
     /// What the manifest says.
@@ -157,30 +168,52 @@ impl Outside {
         self.version.get_or_init(ask).clone()
     }
 
-    /// Starts the program with a scene and waits until it has ended; gives its folder, how it ended and how long it took (s).
-    fn start(&self, scene: &Scene, stepping: &Stepping) -> Result<(tempfile::TempDir, Ended, f64), RunError> {
+    /// Gives the program a scene and waits until it is done.
+    fn start(&self, scene: &Scene, stepping: &Stepping) -> Result<Finished, RunError> {
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let not_run = |reason: String| fail(Failure::NotRun(reason), Vec::new());
-        let executable = self.executable(&self.manifest.run[0]);
-        let executable = executable.map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })?;
         let format = self.manifest.scene;
         let text = Resolved::of(scene, stepping).text(format).map_err(not_run)?;
         let ending = if format == SceneFormat::Json { "json" } else { "toml" };
         let name = format!("{SCENE}.{ending}");
         let folder = process::scratch([(&*name, &*text)]).map_err(|error| not_run(error.to_string()))?;
-        let arguments = self.words(&self.manifest.run, &folder.path().join(&name), folder.path());
-        let started = Started {
-            executable: &executable,
-            arguments: &arguments,
-            folder: folder.path(),
-            errors_apart: true,
-            at: None,
-        };
+        let file = folder.path().join(&name);
+        let executable = self.program()?;
+        let arguments = self.words(self.manifest.command(), &file, folder.path());
         let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(scene, *stepping);
         let limits = self.limits(Duration::from_secs(self.manifest.limits.seconds), bytes);
         let start = Instant::now();
-        let ended = process::run(&started, limits).map_err(|(failure, last_lines)| fail(failure, last_lines))?;
-        Ok((folder, ended, start.elapsed().as_secs_f64()))
+        let (said, last_lines) = if self.manifest.worker.is_empty() {
+            let started = Started {
+                executable: &executable,
+                arguments: &arguments,
+                folder: folder.path(),
+                errors_apart: true,
+                at: None,
+            };
+            let ended = process::run(&started, limits).map_err(|(failure, last_lines)| fail(failure, last_lines))?;
+            let failed = |failure| fail(failure, ended.last_lines.clone());
+            let own = self.manifest.output.report.as_ref();
+            let own = own.map(|name| report::read(&folder.path().join(name), name)).transpose().map_err(failed)?;
+            (Said::by_process(&ended, own.unwrap_or_default(), folder.path()), ended.last_lines)
+        } else {
+            let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+            let waiting = idle().pop();
+            let worker = waiting.map_or_else(|| Worker::start(&executable, &arguments, limits), Ok);
+            let mut worker = worker.map_err(|failure| fail(failure, Vec::new()))?;
+            let answer = worker.ask(&file, folder.path(), limits);
+            let answer = answer.map_err(|(failure, last_lines)| fail(failure, last_lines))?;
+            let last_lines = worker.last_lines();
+            idle().push(worker);
+            (Said::by_worker(answer), last_lines)
+        };
+        Ok(Finished { folder, said, last_lines, seconds: start.elapsed().as_secs_f64() })
+    }
+
+    /// The program that is started.
+    fn program(&self) -> Result<PathBuf, RunError> {
+        let found = self.executable(&self.manifest.command()[0]);
+        found.map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
     }
 
     /// Time of a run of no steps (s).
@@ -189,7 +222,7 @@ impl Outside {
         let known = |of: &Self| of.start_up.lock().unwrap_or_else(PoisonError::into_inner).get(&grains).copied();
         known(self).unwrap_or_else(|| {
             let none = Stepping { steps: 0, interval: 1, ..*stepping };
-            let seconds = self.start(scene, &none).map_or(0.0, |(_, _, seconds)| seconds);
+            let seconds = self.start(scene, &none).map_or(0.0, |finished| finished.seconds);
             self.start_up.lock().unwrap_or_else(PoisonError::into_inner).insert(grains, seconds);
             seconds
         })
@@ -198,15 +231,19 @@ impl Outside {
     /// Reads what a run left.
     fn observe(&self, scene: &Scene, stepping: &Stepping, folder: &Path) -> Result<Observed, Failure> {
         let Output { grains, contacts, series, .. } = &self.manifest.output;
-        let path = plain_file(folder, &grains.path)?;
-        let names = grains.names();
         let told = |error: OutputError| Failure::Output(without(folder, &error.to_string()));
+        let names = grains.names();
         let mut observed = match grains.format {
             GrainFormat::Csv => {
+                let path = plain_file(folder, &grains.path)?;
                 grain_table::observe(scene, &path, &grains.path, &names, stepping.time_step).map_err(output)
             }
-            GrainFormat::Lammps => {
-                let mut files = vec![path];
+            GrainFormat::Lammps | GrainFormat::Npz | GrainFormat::Vtk => {
+                let mut files = if grains.format == GrainFormat::Vtk {
+                    of_pattern(folder, &grains.path)?
+                } else {
+                    vec![plain_file(folder, &grains.path)?]
+                };
                 files.extend(contacts.as_ref().map(|name| plain_file(folder, name)).transpose()?);
                 let rows = scene.grains.len() * (16 + scene.walls.len());
                 let time_step = Some(stepping.time_step);
@@ -235,6 +272,64 @@ impl Outside {
     }
 }
 
+/// How a run ended that ended in order.
+struct Finished {
+    folder: tempfile::TempDir,
+    said: Said,
+    last_lines: Vec<String>,
+    /// How long it took (s).
+    seconds: f64,
+}
+
+/// What a program says of its run.
+enum Said {
+    /// It ran; the times of its parts, where it tells them.
+    Ran(Option<Seconds>),
+    /// It cannot express the scene, and why.
+    Cannot(String),
+    Failed(Failure),
+}
+
+impl Said {
+    /// By the code that it ended with, its own report and what it printed in the folder.
+    fn by_process(ended: &Ended, own: OwnReport, folder: &Path) -> Self {
+        if ended.code == CANNOT {
+            let said = fs::read(folder.join(SCREEN)).unwrap_or_default();
+            let said = String::from_utf8_lossy(&said).into_owned();
+            let reason = said.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
+            return Self::Cannot(reason.unwrap_or_else(|| format!("it ended with {CANNOT} and gave no reason")));
+        }
+        match own.failed {
+            Some(failed) => Self::Failed(Failure::Crash(failed.words())),
+            None if ended.code != 0 => Self::Failed(Failure::Crash(format!("exit status: {}", ended.code))),
+            None => Self::Ran(own.seconds),
+        }
+    }
+
+    /// By the answer of one that stays.
+    fn by_worker(answer: Answer) -> Self {
+        match answer {
+            Answer::Ran(times) => times.seconds().map_or_else(Self::Failed, Self::Ran),
+            Answer::Cannot(reason) => Self::Cannot(one_line(&reason)),
+            Answer::Failed(failed) => Self::Failed(Failure::Crash(failed.words())),
+        }
+    }
+}
+
+/// The files of a pattern with a `*` in the folder, or the one file of a path without.
+fn of_pattern(folder: &Path, pattern: &str) -> Result<Vec<PathBuf>, Failure> {
+    let Some((before, after)) = pattern.split_once('*') else { return Ok(vec![plain_file(folder, pattern)?]) };
+    let entries = fs::read_dir(folder).map_err(|error| Failure::Output(error.to_string()))?;
+    let names = entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let is_one =
+        |name: &String| name.len() > before.len() + after.len() && name.starts_with(before) && name.ends_with(after);
+    let files: Result<Vec<PathBuf>, Failure> = names.filter(is_one).map(|name| plain_file(folder, &name)).collect();
+    match files? {
+        files if files.is_empty() => Err(Failure::Output(format!("{pattern}: expected a file, found none"))),
+        files => Ok(files),
+    }
+}
+
 /// A text in which no path of a folder that nobody knows stands.
 fn without(folder: &Path, text: &str) -> String {
     text.replace(&format!("{}/", folder.display()), "")
@@ -247,8 +342,7 @@ impl Solver for Outside {
 
     fn available(&self) -> Result<(), RunError> {
         self.prepare()?;
-        let found = self.executable(&self.manifest.run[0]);
-        found.map(drop).map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
+        self.program().map(drop)
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
@@ -260,28 +354,17 @@ impl Solver for Outside {
             Stepping::of(scene, resolution).map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
         self.prepare()?;
         watch.begin(stepping.time_step, stepping.steps);
-        let (folder, ended, seconds) = self.start(scene, &stepping)?;
-        let last_lines = ended.last_lines;
+        let Finished { folder, said, last_lines, seconds } = self.start(scene, &stepping)?;
         let fail = |failure| RunError::Program { solver: self.name(), failure, last_lines: last_lines.clone() };
-        if ended.code == CANNOT {
-            let said = fs::read(folder.path().join(SCREEN)).unwrap_or_default();
-            let said = String::from_utf8_lossy(&said).into_owned();
-            let reason = said.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
-            return Err(cannot(reason.unwrap_or_else(|| format!("it ended with {CANNOT} and gave no reason"))));
-        }
-        let own = self.manifest.output.report.as_ref();
-        let own = own.map(|name| report::read(&folder.path().join(name), name)).transpose();
-        let own = own.map_err(fail)?.unwrap_or_default();
-        if let Some(failed) = &own.failed {
-            return Err(fail(Failure::Crash(failed.words())));
-        }
-        if ended.code != 0 {
-            return Err(fail(Failure::Crash(format!("exit status: {}", ended.code))));
-        }
+        let told = match said {
+            Said::Ran(told) => told,
+            Said::Cannot(reason) => return Err(cannot(reason)),
+            Said::Failed(failure) => return Err(fail(failure)),
+        };
         let observed = self.observe(scene, &stepping, folder.path()).map_err(fail)?;
         complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing)))?;
         watch.progress(stepping.steps, stepping.steps);
-        let seconds = match own.seconds {
+        let seconds = match told {
             Some(told) => told.solve,
             None => (seconds - self.start_up(scene, &stepping)).max(0.0),
         };

@@ -26,6 +26,13 @@ pub(super) struct Seconds {
     pub(super) solve: f64,
 }
 
+impl Seconds {
+    /// Whether it is a time.
+    pub(super) fn is_a_time(self) -> bool {
+        self.solve.is_finite() && self.solve >= 0.0
+    }
+}
+
 /// When, where and why a run broke: a number, a text or a place.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Failed {
@@ -58,10 +65,8 @@ pub(super) fn read(path: &Path, name: &str) -> Result<OwnReport, Failure> {
     let text = fs::read(path).map_err(|error| wrong("a file that can be read", error.to_string()))?;
     let report: OwnReport =
         serde_json::from_slice(&text).map_err(|error| wrong("a report", one_line(&error.to_string())))?;
-    match report.seconds {
-        Some(Seconds { solve }) if !(solve.is_finite() && solve >= 0.0) => {
-            Err(wrong("seconds.solve of zero or more", solve.to_string()))
-        }
-        _ => Ok(report),
+    match report.seconds.filter(|seconds| !seconds.is_a_time()) {
+        Some(Seconds { solve }) => Err(wrong("seconds.solve of zero or more", solve.to_string())),
+        None => Ok(report),
     }
 }

@@ -1,0 +1,162 @@
+//! A program that stays: it is started once, takes a run a line on its standard input and answers each with a line, so that
+//! the start of an interpreter is not paid for by every run.
+//!
+//! A request is `{"scene": FILE, "out": FOLDER}`. The answer is `{"ran": {"seconds": …}}`, where the time of the solution (s)
+//! may be left out, `{"cannot": REASON}`, or `{"failed": {"when": …, "where": …, "why": …}}`. Arrays go as files in the folder.
+
+use super::report::{Failed, Seconds};
+use crate::process::{self, ERRORS, Limits};
+use crate::read::read_error::{one_line, quoted};
+use grainbench_scene::solver::Failure;
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::thread;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Longest answer (B).
+const LONGEST: u64 = 1 << 16;
+/// How often the limits are looked at.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Hands every line of its own standard input on to the program, and ends the program with all that it has started when that
+/// closes or says that we are alive and done with it. Where nothing was said we are no more, and the folder goes too. What the
+/// program has started ends with it too.
+const GUARD: &str = "exec 3<&0 4>&1 </dev/null >/dev/null
+{ while IFS= read -r line <&3; do
+    [ \"$line\" = alive ] && kill -9 -$$
+    printf '%s\\n' \"$line\"
+  done
+  rm -rf \"$GRAINBENCH_FOLDER\"; kill -9 -$$; } 4>&- | { \"$0\" \"$@\" >&4 3<&- 4>&-; kill -9 -$$; } &
+exec 4>&-
+wait";
+
+/// What a worker is asked.
+#[derive(Serialize)]
+struct Request<'r> {
+    scene: &'r Path,
+    out: &'r Path,
+}
+
+/// What it answers.
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub(super) enum Answer {
+    /// It ran.
+    Ran(Times),
+    /// It cannot express the scene.
+    Cannot(String),
+    /// It broke.
+    Failed(Failed),
+}
+
+/// What it says of the time that it took.
+#[derive(Deserialize)]
+pub(super) struct Times {
+    /// Time of the solution (s).
+    pub(super) seconds: Option<f64>,
+}
+
+impl Times {
+    /// As a report has it.
+    pub(super) fn seconds(&self) -> Result<Option<Seconds>, Failure> {
+        match self.seconds.map(|solve| Seconds { solve }) {
+            Some(seconds) if !seconds.is_a_time() => {
+                Err(Failure::Output(format!("expected seconds of zero or more, found {}", seconds.solve)))
+            }
+            seconds => Ok(seconds),
+        }
+    }
+}
+
+/// A program that stays.
+#[derive(Debug)]
+pub(super) struct Worker {
+    guard: Child,
+    requests: ChildStdin,
+    answers: Receiver<String>,
+    /// Its own folder, with what it prints as errors.
+    folder: TempDir,
+}
+
+impl Worker {
+    /// Starts a program.
+    pub(super) fn start(executable: &Path, arguments: &[String], limits: Limits) -> Result<Self, Failure> {
+        let not_run = |error: io::Error| Failure::NotRun(format!("{}: {error}", executable.display()));
+        let folder = process::scratch([]).map_err(not_run)?;
+        let errors = File::create(folder.path().join(ERRORS)).map_err(not_run)?;
+        let mut command = process::guard(GUARD, executable, arguments, folder.path(), limits);
+        let mut guard = command.stdout(Stdio::piped()).stderr(errors).spawn().map_err(not_run)?;
+        let piped = || not_run(io::Error::other("no pipe"));
+        let (requests, lines) = (guard.stdin.take().ok_or_else(piped)?, guard.stdout.take().ok_or_else(piped)?);
+        let (send, answers) = sync_channel(1);
+        // It ends when the program does, or when nobody listens any more.
+        thread::spawn(move || {
+            let mut lines = BufReader::new(lines);
+            loop {
+                let mut line = Vec::new();
+                let read = lines.by_ref().take(LONGEST).read_until(b'\n', &mut line);
+                let is_over = read.is_ok_and(|count| count == 0) || line.is_empty();
+                if is_over || send.send(String::from_utf8_lossy(&line).into_owned()).is_err() {
+                    break;
+                }
+            }
+        });
+        Ok(Self { guard, requests, answers, folder })
+    }
+
+    /// Asks for a run and waits for the answer. A worker that did not answer as it should is not asked again.
+    pub(super) fn ask(&mut self, scene: &Path, out: &Path, limits: Limits) -> Result<Answer, (Failure, Vec<String>)> {
+        let request = serde_json::to_string(&Request { scene, out }).unwrap_or_default();
+        let sent = writeln!(self.requests, "{request}").and_then(|()| self.requests.flush());
+        let ended = || Failure::Crash("the worker ended".to_owned());
+        let answer = sent.map_err(|_| ended()).and_then(|()| {
+            loop {
+                match self.answers.recv_timeout(LOOK) {
+                    Ok(line) => break parsed(&line),
+                    Err(RecvTimeoutError::Disconnected) => break Err(ended()),
+                    Err(RecvTimeoutError::Timeout) => {
+                        if process::size(out) > limits.bytes || process::size(self.folder.path()) > limits.bytes {
+                            break Err(process::too_much(limits.bytes));
+                        }
+                        if let Err(time_out) = limits.deadline.check() {
+                            break Err(time_out);
+                        }
+                    }
+                }
+            }
+        });
+        let answer = answer.and_then(|answer| {
+            let is_small = process::size(out) <= limits.bytes;
+            if is_small { Ok(answer) } else { Err(process::too_much(limits.bytes)) }
+        });
+        answer.map_err(|failure| (failure, process::last_lines(self.folder.path())))
+    }
+
+    /// The last lines that it has printed as errors.
+    pub(super) fn last_lines(&self) -> Vec<String> {
+        process::last_lines(self.folder.path())
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        process::say_alive(&mut self.requests);
+        let _ = self.guard.wait();
+        let _ = fs::remove_dir_all(self.folder.path());
+    }
+}
+
+/// An answer from its line.
+fn parsed(line: &str) -> Result<Answer, Failure> {
+    let text = line.trim();
+    serde_json::from_str(text).map_err(|error| {
+        let expected =
+            "`{\"ran\": {}}`, `{\"cannot\": REASON}` or `{\"failed\": {…}}` on the standard output of the worker";
+        Failure::Output(format!("expected {expected}, found {} ({})", quoted(text), one_line(&error.to_string())))
+    })
+}
