@@ -1,0 +1,121 @@
+"""Judging a function by the rows that are fair to any solver."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import socketserver
+import sys
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ._binary import run
+from ._read import Results
+from ._serve import answer
+from ._solver import Solver
+
+# Hands what grainbench asks to the process of the function, and its answers back; it needs nothing that takes long to import.
+_RELAY = """
+import os, socket, sys, threading
+far = socket.socket(socket.AF_UNIX); far.connect(sys.argv[1])
+def back():
+    while data := far.recv(65536):
+        sys.stdout.buffer.write(data); sys.stdout.buffer.flush()
+    os._exit(1)
+threading.Thread(target=back, daemon=True).start()
+for line in sys.stdin.buffer:
+    far.sendall(line)
+"""
+
+
+class _Server(socketserver.ForkingMixIn, socketserver.UnixStreamServer):
+    """Every connection has a process of its own, in which the function is what it is here: a closure or a cell of a notebook too."""
+
+    solver: Solver
+    max_children = 1024
+
+
+class _Handler(socketserver.StreamRequestHandler):
+    server: _Server
+
+    def handle(self) -> None:
+        # Answers alone go to grainbench; what the function prints goes where errors go.
+        os.dup2(2, 1)
+        for line in self._lines():
+            self.wfile.write((answer(self.server.solver, line) + "\n").encode())
+            self.wfile.flush()
+
+    def _lines(self) -> Iterator[str]:
+        """The requests. When the other side goes during a run, so does this process: grainbench does not wait for it any more."""
+        pending: list[bytes] = []
+        ready = threading.Condition()
+
+        def listen() -> None:
+            for line in self.rfile:
+                with ready:
+                    pending.append(line)
+                    ready.notify()
+            os._exit(0)
+
+        threading.Thread(target=listen, daemon=True).start()
+        while True:
+            with ready:
+                while not pending:
+                    ready.wait()
+                line = pending.pop(0)
+            yield line.decode()
+
+
+@contextmanager
+def _served(solver: Solver) -> Iterator[Path]:
+    """A manifest of the function, while it is served from this process."""
+    with tempfile.TemporaryDirectory(prefix="grainbench-") as folder:
+        address = os.path.join(folder, "socket")
+        with _Server(address, _Handler) as server:
+            server.solver = solver
+            thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05}, daemon=True)
+            thread.start()
+            manifest = Path(folder) / "SOLVER.toml"
+            manifest.write_text(solver.manifest([sys.executable, "-I", "-S", "-c", _RELAY, address]), encoding="utf-8")
+            try:
+                yield manifest
+            finally:
+                server.shutdown()
+                thread.join()
+
+
+class Judgement(Results):
+    """Rows and controls of a function. It prints as a table, red where it is red."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether something passed, nothing failed or broke, and every control turned red."""
+        outcomes = [row["verdict"] for row in self.verdicts]
+        controls = all(control["turned_red"] for control in self.of_controls)
+        return "pass" in outcomes and not {"fail", "broken", "stale"} & set(outcomes) and controls
+
+    def require(self) -> Judgement:
+        """Itself, where it passed; else an AssertionError with the rows that did not."""
+        if not self.passed:
+            raise AssertionError("\n" + self.table(only_red=True))
+        return self
+
+
+def judge(solver: Solver, cases: Sequence[str] = (), *, controls: bool = True) -> Judgement:
+    """Judges a solver by the rows of some cases (`CASE` or `CASE/VARIANT`), of all where none is named.
+
+    ValueError: there is no such case, or what the solver declares is wrong.
+    """
+    if not isinstance(solver, Solver):
+        raise TypeError(f"expected a function under @grainbench.solver, found {type(solver).__name__}")
+    if not hasattr(socket, "AF_UNIX") or not hasattr(os, "fork"):
+        raise OSError("expected a system with fork and sockets of Unix; a SOLVER.toml goes everywhere")
+    with _served(solver) as manifest, tempfile.TemporaryDirectory(prefix="grainbench-") as out:
+        words = ["run", *cases, "--solver", str(manifest), "--json", "--out", os.path.join(out, "out")]
+        results: dict[str, Any] = json.loads(run(words if controls else [*words, "--no-controls"]))
+    return Judgement(results)

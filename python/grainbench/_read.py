@@ -1,0 +1,169 @@
+"""Results and records that grainbench left, as dataframes and arrays."""
+
+from __future__ import annotations
+
+import csv
+import html
+import importlib.util
+import json
+from pathlib import Path
+from typing import Any
+
+import narwhals as nw
+import numpy as np
+
+from ._scene import Floats
+
+_BACKENDS = ("pandas", "polars", "pyarrow")
+_SHOWN = ("verdict", "case", "variant", "quantity", "value", "expected", "error", "allowed", "detail")
+_RED = ("fail", "broken", "stale")
+
+
+class Results:
+    """Rows of a run of gates and their controls."""
+
+    def __init__(self, results: dict[str, Any]) -> None:
+        self.raw = results
+        self.verdicts: list[dict[str, Any]] = results["verdicts"]
+        self.of_controls: list[dict[str, Any]] = results["controls"]
+
+    @property
+    def rows(self) -> Any:
+        """A row a gate, as a dataframe of pandas, polars or pyarrow, whichever is installed first in this order."""
+        return frame(self.verdicts)
+
+    @property
+    def controls(self) -> Any:
+        """A row a control of wrong physics, which must have turned red; as `rows`."""
+        return frame(self.of_controls)
+
+    def table(self, *, only_red: bool = False) -> str:
+        """A line a row, and one for each control that stayed green."""
+        rows = [row for row in self.verdicts if not only_red or row["verdict"] in _RED or only_red and not self._any_red()]
+        lines = [_line(row) for row in rows]
+        green = [control for control in self.of_controls if not control["turned_red"]]
+        lines += [
+            f"control stayed green  {control['case']} · {control['variant']} · {control['quantity']}: {control['wrong_physics']}"
+            for control in green
+        ]
+        count = {name: sum(row["verdict"] == name for row in self.verdicts) for name in ("pass", "fail", "broken")}
+        red = len(self.of_controls) - len(green)
+        said = ", ".join(f"{number} {name}" for name, number in count.items() if number or name != "broken")
+        return "\n".join([*lines, f"{said}; {red} of {len(self.of_controls)} controls turned red"])
+
+    def _any_red(self) -> bool:
+        return any(row["verdict"] in _RED for row in self.verdicts)
+
+    def __repr__(self) -> str:
+        return self.table()
+
+    def _repr_html_(self) -> str:
+        colours = {"pass": "#1a7f37", "fail": "#cf222e", "broken": "#cf222e", "stale": "#cf222e"}
+
+        def cell(row: dict[str, Any], name: str) -> str:
+            text = html.escape(_shown(row.get(name)))
+            style = f' style="color:{colours.get(row["verdict"], "#9a6700")};font-weight:bold"' if name == "verdict" else ""
+            return f"<td{style}>{text}</td>"
+
+        head = "".join(f"<th>{name}</th>" for name in _SHOWN)
+        body = "".join("<tr>" + "".join(cell(row, name) for name in _SHOWN) + "</tr>" for row in self.verdicts)
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+class Run:
+    """One run of a scene, as `grainbench simulate` leaves it."""
+
+    def __init__(self, folder: Path) -> None:
+        with open(folder / "record.json", encoding="utf-8") as file:
+            self.raw: dict[str, Any] = json.load(file)
+        self.provenance: dict[str, Any] = self.raw["provenance"]
+        self.cost: dict[str, Any] = self.raw["cost"]
+        with open(folder / "series.csv", encoding="utf-8", newline="") as file:
+            names, *rows = csv.reader(file)
+        table = np.array(rows, dtype=np.float64).reshape((len(rows), len(names)))
+        self.units = {name.split(" (")[0]: name.split(" (")[1].rstrip(")") for name in names if " (" in name}
+        """Unit of every column of the series."""
+        self.series: dict[str, Floats] = {name.split(" (")[0]: table[:, place] for place, name in enumerate(names)}
+        """The probes' columns and `step`, `time`, each of the shape (samples,), in SI."""
+        self.snapshots: list[dict[str, Any]] = _snapshots(folder)
+        """Of every snapshot `step`, `time` (s), `id` (grains,) and `position`, `velocity`, `spin` (grains, 3), in SI."""
+
+
+def read(path: str | Path) -> Results | Run:
+    """What lies in a folder that grainbench left: results of gates, or a run.
+
+    ValueError: it is neither.
+    """
+    folder = Path(path)
+    if (folder / "results.json").is_file():
+        with open(folder / "results.json", encoding="utf-8") as file:
+            return Results(json.load(file))
+    if (folder / "record.json").is_file():
+        return Run(folder)
+    raise ValueError(f"{folder}: expected `results.json` of gates or `record.json` of a run, found neither")
+
+
+def frame(rows: list[dict[str, Any]]) -> Any:
+    """Rows as a dataframe of whatever is installed; numbers that are not told are missing."""
+    backend = next((name for name in _BACKENDS if importlib.util.find_spec(name)), None)
+    if backend is None:
+        raise ImportError("expected pandas, polars or pyarrow, found none; `raw` has everything without them")
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    columns = {name: [_plain(row.get(name)) for row in rows] for name in names}
+    return nw.from_dict(columns, backend=backend).to_native()  # type: ignore[arg-type]
+
+
+def _plain(value: Any) -> Any:
+    """A bound is a text among numbers: columns hold one kind."""
+    return json.dumps(value) if isinstance(value, (dict, list)) else value
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return ""
+    return f"{value:.6g}" if isinstance(value, float) else str(_plain(value))
+
+
+def _line(row: dict[str, Any]) -> str:
+    place = f"{row['case']} · {row['variant']} · {row['quantity']}"
+    if row.get("value") is None:
+        return f"{row['verdict']:<12} {place}: {row.get('detail') or ''}"
+    parts = f"{_shown(row['value'])} {row['unit']}, expected {_shown(row['expected'])}"
+    return f"{row['verdict']:<12} {place}: {parts}, off {_shown(row['error'])}, allowed {_shown(row['allowed'])}"
+
+
+def _snapshots(folder: Path) -> list[dict[str, Any]]:
+    """The snapshots of a dump; none where they were written in another form."""
+    path = folder / "snapshots.dump"
+    if not path.is_file():
+        return []
+    found: list[dict[str, Any]] = []
+    with open(path, encoding="utf-8") as file:
+        step, time = 0, float("nan")
+        for line in file:
+            if line.startswith("ITEM: TIMESTEP"):
+                step = int(next(file))
+            elif line.startswith("ITEM: TIME"):
+                time = float(next(file))
+            elif line.startswith("ITEM: NUMBER OF"):
+                count = int(next(file))
+            elif line.startswith("ITEM: ATOMS"):
+                names = line.split()[2:]
+                rows = [next(file).split() for _ in range(count)]
+                table = np.array(rows, dtype=np.float64).reshape((count, len(names)))
+                at = {name: place for place, name in enumerate(names)}
+
+                def vector(*wanted: str, table: Floats = table, at: dict[str, int] = at) -> Floats:
+                    return table[:, [at[name] for name in wanted]]
+
+                found.append(
+                    {
+                        "step": step,
+                        "time": time,
+                        "id": table[:, at["id"]].astype(np.int64),
+                        "position": vector("x", "y", "z"),
+                        "velocity": vector("vx", "vy", "vz"),
+                        "spin": vector("omegax", "omegay", "omegaz"),
+                    }
+                )
+    return found

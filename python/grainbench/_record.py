@@ -1,0 +1,78 @@
+"""What a solver leaves: the grains at every sample."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._scene import Floats, Scene
+
+
+@dataclass(frozen=True)
+class Record:
+    """The grains at every sample, in the order of the scene."""
+
+    step: NDArray[np.int64]
+    """Steps taken, shape (samples,)."""
+    position: Floats
+    """(m), shape (samples, grains, 3)."""
+    velocity: Floats | None = None
+    """(m/s), shape (samples, grains, 3)."""
+    spin: Floats | None = None
+    """(rad/s), shape (samples, grains, 3)."""
+    seconds: float | None = None
+    """Time of the solution alone (s), where it is told."""
+
+    def __post_init__(self) -> None:
+        samples = np.shape(self.step)
+        if len(samples) != 1:
+            raise ValueError(f"step: expected the shape (samples,), found {samples}")
+        shape = np.shape(self.position)
+        if len(shape) != 3 or shape[0] != samples[0] or shape[2] != 3:
+            raise ValueError(f"position: expected the shape ({samples[0]}, grains, 3), found {shape}")
+        for name in ("velocity", "spin"):
+            array = getattr(self, name)
+            if array is not None and np.shape(array) != shape:
+                raise ValueError(f"{name}: expected the shape {shape} of the positions, found {np.shape(array)}")
+
+    def write(self, folder: str | Path) -> None:
+        """Leaves `grains.npz` in a folder."""
+        arrays: dict[str, ArrayLike] = {"step": np.asarray(self.step, dtype=np.int64), "position": _floats(self.position)}
+        if self.velocity is not None:
+            arrays["velocity"] = _floats(self.velocity)
+        if self.spin is not None:
+            arrays["spin"] = _floats(self.spin)
+        with open(Path(folder) / "grains.npz", "wb") as file:
+            np.savez(file, **arrays)  # type: ignore[arg-type]
+
+
+def _floats(array: ArrayLike) -> Floats:
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+class Recorder:
+    """Gathers samples: `take` after every step keeps those that the scene asks for."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._steps = scene.steps
+        self._taken: list[int] = []
+        self._states: list[tuple[Floats, Floats, Floats]] = []
+
+    def take(self, step: int, position: ArrayLike, velocity: ArrayLike, spin: ArrayLike) -> None:
+        """Takes the grains after so many steps, each an array of the shape (grains, 3), where a sample is due."""
+        if self._steps.is_sample(step):
+            self._taken.append(step)
+            self._states.append((_copy(position), _copy(velocity), _copy(spin)))
+
+    def record(self) -> Record:
+        """All that was taken."""
+        position, velocity, spin = (np.array(part) for part in zip(*self._states, strict=True))
+        return Record(np.array(self._taken, dtype=np.int64), position, velocity, spin)
+
+
+def _copy(array: ArrayLike) -> Floats:
+    copied = np.array(array, dtype=np.float64)
+    return copied.reshape((-1, 3))

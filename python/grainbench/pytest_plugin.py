@@ -1,0 +1,132 @@
+"""`pytest --grainbench MODULE:NAME` or `FILE.py:NAME`: an item a row that is fair to any solver, and one for its control."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ._binary import run
+from ._read import _line
+from .worker import load
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Options of the plugin."""
+    group = parser.getgroup("grainbench", "solvers of grains, judged by grainbench")
+    group.addoption("--grainbench", metavar="MODULE:NAME", help="judge the function under @grainbench.solver of this name")
+    group.addoption("--grainbench-cases", metavar="CASE,…", default="", help="by these cases alone (CASE or CASE/VARIANT)")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Checks the name before anything is collected."""
+    target: str | None = config.getoption("--grainbench")
+    if target is not None and ":" not in target:
+        raise pytest.UsageError(f"--grainbench: expected MODULE:NAME or FILE.py:NAME, found {target!r}")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Adds the rows."""
+    target: str | None = config.getoption("--grainbench")
+    if target is None:
+        return
+    wanted = [name for name in config.getoption("--grainbench-cases").split(",") if name]
+    try:
+        solver = load(_absolute(target, config))
+        rows = json.loads(run(["list", "--rows", "--json", *wanted]))
+    except (SystemExit, ValueError, FileNotFoundError) as error:
+        raise pytest.UsageError(str(error)) from None
+    if not any(config.args_source is source for source in (config.ArgsSource.ARGS,)):
+        # Nothing else was asked for.
+        items.clear()
+    folder = config._tmp_path_factory.mktemp("grainbench") if hasattr(config, "_tmp_path_factory") else None
+    judged = _Judged(solver.manifest([sys.executable, "-m", "grainbench.worker", _absolute(target, config)]), folder, config)
+    seen: dict[tuple[str, str, str], int] = {}
+    for row in rows:
+        key = (row["case"], row["variant"], row["quantity"])
+        place = seen[key] = seen.get(key, -1) + 1
+        for control in (None, row["control"]):
+            items.append(_Row.from_parent(session, name=(name := _name(row, control)), nodeid=name, judged=judged, key=(*key, place), control=control))
+
+
+def pytest_report_collectionfinish(config: pytest.Config, items: list[pytest.Item]) -> str | None:
+    """How many items are rows and controls."""
+    rows = sum(isinstance(item, _Row) for item in items)
+    return f"grainbench: {rows} rows and controls of {config.getoption('--grainbench')}" if rows else None
+
+
+def _absolute(target: str, config: pytest.Config) -> str:
+    """A file is named from where pytest was started: the solver runs elsewhere."""
+    place, _, name = target.rpartition(":")
+    path = Path(config.invocation_params.dir) / place
+    return f"{path}:{name}" if place.endswith(".py") else target
+
+
+def _name(row: dict[str, Any], control: str | None) -> str:
+    name = f"{row['case']}/{row['variant']}::{row['quantity']}"
+    return name if control is None else f"{name} [control: {control}]"
+
+
+class _Judged:
+    """Results of the cases that items were asked of, each judged when its first item is."""
+
+    def __init__(self, manifest: str, folder: Path | None, config: pytest.Config) -> None:
+        import tempfile
+
+        self._folder = folder or Path(tempfile.mkdtemp(prefix="grainbench-"))
+        (self._folder / "SOLVER.toml").write_text(manifest, encoding="utf-8")
+        places = [str(config.invocation_params.dir), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+        os.environ["PYTHONPATH"] = os.pathsep.join(place for place in places if place)
+        self._results: dict[str, dict[str, Any]] = {}
+
+    def of(self, case: str) -> dict[str, Any]:
+        """Results of a case."""
+        if case not in self._results:
+            words = ["run", case, "--solver", str(self._folder / "SOLVER.toml"), "--json"]
+            self._results[case] = json.loads(run([*words, "--out", str(self._folder / case)]))
+        return self._results[case]
+
+
+class _Row(pytest.Item):
+    """A row, or its control."""
+
+    def __init__(self, *, judged: _Judged, key: tuple[str, str, str, int], control: str | None, **words: Any) -> None:
+        super().__init__(**words)
+        self._judged, self._key, self._control = judged, key, control
+
+    def runtest(self) -> None:
+        """Green where the row passed, or its control turned red."""
+        case, variant, quantity, place = self._key
+        results = self._judged.of(case)
+        of_kind = results["verdicts" if self._control is None else "controls"]
+        found = [row for row in of_kind if (row["variant"], row["quantity"]) == (variant, quantity)]
+        if place >= len(found):
+            pytest.skip("what cannot be expressed has no control")
+        row = found[place]
+        if self._control is not None:
+            if not row["turned_red"]:
+                raise _Red(f"the row stays green under wrong physics: {self._control}")
+            return
+        if row["verdict"] in ("unsupported", "not-available", "no-reference"):
+            pytest.skip(f"{row['verdict']}: {row.get('detail') or ''}")
+        if row["verdict"] != "pass":
+            raise _Red(_line(row) + (f"\n{row['detail']}" if row.get("detail") else ""))
+
+    def repr_failure(self, excinfo: Any, style: Any = None) -> Any:
+        """The row in words; what else went wrong with its place."""
+        if isinstance(excinfo.value, (_Red, ValueError)):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[str, int | None, str]:
+        """Where it is listed."""
+        return ("grainbench", None, self.name)
+
+
+class _Red(Exception):
+    """A row that is red."""

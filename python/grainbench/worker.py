@@ -1,0 +1,53 @@
+"""`python -m grainbench.worker MODULE:NAME` or `FILE.py:NAME`: a solver as a program that stays.
+
+It is what `worker` of a `SOLVER.toml` names.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import sys
+from pathlib import Path
+
+from ._serve import answer
+from ._solver import Solver
+
+
+def load(target: str) -> Solver:
+    """The solver of `MODULE:NAME` or `FILE.py:NAME`."""
+    place, colon, name = target.rpartition(":")
+    if not colon:
+        raise SystemExit(f"expected MODULE:NAME or FILE.py:NAME, found {target!r}")
+    if place.endswith(".py"):
+        path = Path(place).resolve()
+        spec = importlib.util.spec_from_file_location(path.stem, path)
+        if spec is None or spec.loader is None or not path.is_file():
+            raise SystemExit(f"expected a file of Python, found {place!r}")
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[path.stem] = module
+        sys.path.insert(0, str(path.parent))
+        spec.loader.exec_module(module)
+    else:
+        sys.path.insert(0, os.getcwd())
+        module = importlib.import_module(place)
+    found = getattr(module, name, None)
+    if not isinstance(found, Solver):
+        raise SystemExit(f"expected a function under @grainbench.solver as {name!r} of {place}, found {type(found).__name__}")
+    return found
+
+
+def main() -> None:
+    """Answers requests until there are no more. What the solver prints goes to the errors: answers alone go out."""
+    if len(sys.argv) != 2:
+        raise SystemExit("usage: python -m grainbench.worker MODULE:NAME")
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    solver = load(sys.argv[1])
+    for line in sys.stdin:
+        print(answer(solver, line), file=answers, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,194 @@
+"""The package as its users have it: installed, with the program beside it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import grainbench as gb
+from grainbench._binary import binary
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "python" / "sphere.py"
+CASES = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"]
+
+# Each line of the example's physics, and the same spoiled.
+SPOILED = [
+    ("force, torque = mass * scene.gravity", "force, torque = 0.99 * mass * scene.gravity"),
+    ("overlap, arm = radius - ", "overlap, arm = 0.99 * radius - "),
+    ('@ n, -radius * n', '@ n, -0.99 * radius * n'),
+    ("k, kt = law.normal_stiffness", "k, kt = 0.95 * law.normal_stiffness"),
+    (", law.tangential_stiffness", ", 0.95 * law.tangential_stiffness"),
+    ("c, ct = law.normal_damping", "c, ct = 0.9 * law.normal_damping"),
+    (", law.tangential_damping", ", 0.9 * law.tangential_damping"),
+    ("(c + law.stiffness_damping", "(c + 0.9 * law.stiffness_damping"),
+    ("slip = v + cross(spin, arm)", "slip = 0.99 * v + cross(spin, arm)"),
+    ("slip - (slip @ n) * n", "slip - 0.9 * (slip @ n) * n"),
+    ("(ct + law.stiffness_damping", "(ct + 0.9 * law.stiffness_damping"),
+    ("friction = -spring - drag", "friction = -spring + drag"),
+    ("law.friction * max", "0.99 * law.friction * max"),
+    ("min(1.0, law", "min(2.0, law"),
+    ("force + push * n + friction", "force + push * n + 0.99 * friction"),
+    ("torque + cross(arm, friction)", "torque + 0.99 * cross(arm, friction)"),
+    ("0.5 * dt / mass", "0.495 * dt / mass"),
+    ("0.5 * dt / inertia", "0.495 * dt / inertia"),
+    ("x + dt * (v + kick)", "x + 0.999 * dt * (v + kick)"),
+]
+
+
+def example(folder: Path, spoiled: tuple[str, str] | None = None) -> Path:
+    text = EXAMPLE.read_text(encoding="utf-8")
+    if spoiled is not None:
+        assert text.count(spoiled[0]) == 1, spoiled[0]
+        text = text.replace(*spoiled)
+    (folder / "sphere.py").write_text(text, encoding="utf-8")
+    return folder / "sphere.py"
+
+
+def by_pytest(folder: Path, *words: str, cases: list[str] = CASES) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--grainbench", "sphere.py:sphere"]
+    command += ["--grainbench-cases", ",".join(cases), *words]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def test_pytest_has_an_item_a_row_and_one_a_control(tmp_path: Path) -> None:
+    example(tmp_path)
+    done = by_pytest(tmp_path, "-v", cases=["incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"])
+    assert done.returncode == 0, done.stdout
+    lines = [line for line in done.stdout.splitlines() if "PASSED" in line]
+    controls = [line for line in lines if "[control: " in line]
+    assert len(lines) == 2 * len(controls) >= 20, done.stdout
+    assert f"grainbench: {len(lines)} rows and controls" in done.stdout
+
+
+@pytest.mark.parametrize("spoiled", SPOILED, ids=[wrong for _, wrong in SPOILED])
+def test_each_line_of_the_physics_is_felt(tmp_path: Path, spoiled: tuple[str, str]) -> None:
+    path = example(tmp_path, spoiled)
+    solver = load(path)
+    for case in CASES:
+        if not gb.judge(solver, [case], controls=False).passed:
+            return
+    raise AssertionError(f"{spoiled[1]}: every row passes")
+
+
+def load(path: Path) -> gb.Solver:
+    from grainbench.worker import load
+
+    return load(f"{path}:sphere")
+
+
+def test_pytest_says_which_row_is_red_and_why(tmp_path: Path) -> None:
+    example(tmp_path, ("mass * scene.gravity", "0.9 * mass * scene.gravity"))
+    done = by_pytest(tmp_path, cases=CASES[1:2])
+    assert done.returncode == 1
+    assert "fail         incline-sphere · 45deg-mu.495 · " in done.stdout, done.stdout
+    assert "allowed" in done.stdout
+
+
+def test_what_is_wrong_is_said_in_a_line(tmp_path: Path) -> None:
+    example(tmp_path)
+    for words, said in [
+        (["--grainbench", "sphere.py"], "expected MODULE:NAME or FILE.py:NAME"),
+        (["--grainbench", "nothing.py:sphere"], "expected a file of Python"),
+        (["--grainbench", "sphere.py:np"], "expected a function under @grainbench.solver"),
+        (["--grainbench", "sphere.py:sphere", "--grainbench-cases", "backspinn"], "did you mean `backspin`?"),
+    ]:
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *words]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 4 and said in done.stderr + done.stdout, done.stdout + done.stderr
+
+
+def test_a_closure_is_judged_where_it_is() -> None:
+    slower = 0.5
+
+    @gb.solver(dimension=[2, 3], laws=["linear"], effects=["friction", "contact-damping"])
+    def free(scene: gb.Scene, steps: gb.Steps) -> gb.Record:
+        """Falls through everything, at half its weight."""
+        time = steps.samples * steps.time_step
+        fall = slower * scene.gravity * time[:, None]
+        velocity = scene.velocity + fall[:, None, :]
+        position = scene.position + scene.velocity * time[:, None, None] + 0.5 * (fall * time[:, None])[:, None, :]
+        return gb.Record(steps.samples, position, velocity, np.repeat(scene.spin[None], len(time), axis=0))
+
+    judgement = gb.judge(free, ["backspin"])
+    assert not judgement.passed
+    rows = judgement.rows
+    assert set(rows["verdict"]) == {"fail"} and "fail" in repr(judgement) and "#cf222e" in judgement._repr_html_()
+    with pytest.raises(AssertionError, match="backspin"):
+        judgement.require()
+
+
+@pytest.mark.parametrize(
+    ("body", "verdict", "said"),
+    [
+        ("raise gb.Cannot('no springs here')", "unsupported", "no springs here"),
+        ("raise gb.Broken('it flew away', when=0.5)", "broken", "it flew away"),
+        ("return 1 / 0", "broken", "ZeroDivisionError"),
+        ("return None", "broken", "expected a Record"),
+        ("import time; time.sleep(30)", "broken", "not done after 1 s"),
+        ("import os; os._exit(3)", "broken", "the worker ended"),
+        ("return gb.Record(steps.samples[:1], scene.position[None])", "broken", "expected samples to step"),
+        ("return gb.Record(steps.samples, np.full((len(steps.samples), 1, 3), np.nan))", "broken", "finite numbers"),
+    ],
+)
+def test_what_goes_wrong_stands_in_the_row(body: str, verdict: str, said: str) -> None:
+    names = {"gb": gb, "np": np}
+    exec(f"def function(scene, steps):\n    {body}", names)
+    words = {"dimension": [2, 3], "laws": ["linear"], "effects": ["friction", "contact-damping"], "seconds": 1}
+    judgement = gb.judge(gb.solver(name="odd", **words)(names["function"]), ["backspin/sphere"], controls=False)
+    assert [row["verdict"] for row in judgement.verdicts] == [verdict] * len(judgement.verdicts), judgement
+    assert all(said in row["detail"] for row in judgement.verdicts), judgement
+
+
+def test_what_is_not_declared_is_not_asked_for() -> None:
+    @gb.solver(dimension=[3], laws=["linear"])
+    def nothing(scene: gb.Scene, steps: gb.Steps) -> gb.Record:
+        raise AssertionError("it was asked")
+
+    rows = gb.judge(nothing, ["backspin/disc"]).verdicts
+    assert {row["verdict"] for row in rows} == {"unsupported"}
+    assert "scenes of 2 dimensions" in rows[0]["detail"]
+
+
+def test_arrays_have_the_shapes_that_they_say() -> None:
+    with pytest.raises(ValueError, match=r"position: expected the shape \(2, grains, 3\), found \(2, 3\)"):
+        gb.Record(np.array([0, 1]), np.zeros((2, 3)))
+    with pytest.raises(ValueError, match=r"spin: expected the shape \(2, 1, 3\)"):
+        gb.Record(np.array([0, 1]), np.zeros((2, 1, 3)), spin=np.zeros((2, 1)))
+    with pytest.raises(TypeError, match="expected a function under @grainbench.solver"):
+        gb.judge(len)  # type: ignore[arg-type]
+
+
+def test_what_grainbench_left_is_read(tmp_path: Path) -> None:
+    out = tmp_path / "gates"
+    subprocess.run([binary(), "run", "backspin", "--out", str(out)], check=True, capture_output=True)
+    results = gb.read(out)
+    assert isinstance(results, gb.Results)
+    assert set(results.rows["verdict"]) == {"pass", "known"} and len(results.controls) == len(results.rows)
+    scene = Path(__file__).parents[2] / "cases" / "backspin" / "scene.toml"
+    run = tmp_path / "run"
+    words = ["simulate", str(scene), "--solver", "dem", "--variant", "sphere", "--out", str(run)]
+    subprocess.run([binary(), *words], check=True, capture_output=True)
+    record = gb.read(run)
+    assert isinstance(record, gb.Run)
+    # A sphere that was set down with ten turns a second rolls on at two sevenths of its rim's speed.
+    radius = record.snapshots[0]["position"][0, 2]
+    rim = abs(record.snapshots[0]["spin"][0]).max() * radius
+    assert record.snapshots[-1]["velocity"][0, 0] == pytest.approx(2 / 7 * rim, rel=2e-3)
+    assert record.series["grain.vx"][-1] == record.snapshots[-1]["velocity"][0, 0]
+    assert record.units["grain.vx"] == "m/s" and record.series["time"].shape == record.series["grain.vx"].shape
+    with pytest.raises(ValueError, match="expected `results.json`"):
+        gb.read(tmp_path)
+
+
+def test_a_scene_is_read_as_it_is_printed(tmp_path: Path) -> None:
+    path = tmp_path / "scene.json"
+    path.write_text(subprocess.run([binary(), "scene", "nine-discs/kappa-0"], check=True, capture_output=True, text=True).stdout)
+    scene = gb.Scene.read(path)
+    assert scene.position.shape == (9, 3) and scene.mass.shape == (9,) and scene.dimension == 2
+    assert scene.steps.samples[0] == 0 and scene.steps.samples[-1] == scene.steps.count
+    wall = scene.walls[0]
+    assert scene.law(scene.material[0], wall.material).normal_stiffness > 0
