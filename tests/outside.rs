@@ -305,3 +305,31 @@ fn a_grain_in_cpp_is_built_and_judged() {
     let answer = grainbench(broken.path(), &["run", "backspin", "--solver", "SOLVER.toml", "--json"]);
     assert!(answer.code == Some(1) && answer.out.contains("`make --silent` ended with 2"), "{}", answer.out);
 }
+
+/// Studies take a program as they take our own solvers; what it did before is never taken for what it does now.
+#[test]
+fn a_program_is_timed_and_its_longest_stable_step_is_found() {
+    if !is_here("make") || !is_here("c++") {
+        return;
+    }
+    let folder = example("cpp", "", None);
+    let study = |words: &[&str], out: &str| {
+        let further = ["--solver", "SOLVER.toml", "--json", "--out", out];
+        let answer = grainbench(folder.path(), &[words, &further].concat());
+        serde_json::from_str::<Value>(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err))
+    };
+    let cost = study(&["cost", "incline-disc/60deg-mu.9"], "cost");
+    let points: Vec<&Value> = cost["points"].as_array().unwrap().iter().collect();
+    assert!(points.len() >= 12 && points.iter().all(|point| point["solver"] == "one-grain-cpp"), "{points:#?}");
+    let closest = points.iter().filter_map(|point| point["error"].as_f64()).fold(f64::INFINITY, f64::min);
+    assert!(closest < 1e-4, "stiff contacts are rigid ones: {closest}");
+    let page = fs::read_to_string(folder.path().join("cost/index.html")).unwrap();
+    assert!(page.contains("<th scope=\"col\">one-grain-cpp</th>"), "it has its column beside ours");
+    let stability = study(&["stability", "disc-on-a-wall"], "stability");
+    for limit in stability["stability"]["limits"].as_array().unwrap() {
+        assert!(limit["error"].as_f64().is_some_and(|error| error.abs() < 5e-3), "{limit}");
+    }
+    let again =
+        grainbench(folder.path(), &["cost", "incline-disc/60deg-mu.9", "--solver", "SOLVER.toml", "--out", "cost"]);
+    assert!(again.out.contains("\n0 of "), "{}", again.out);
+}

@@ -40,6 +40,17 @@ pub trait Solvers: Send + Sync {
         false
     }
 
+    /// Programs beside the solvers of the registry, by their names, with the time steps that they are asked for, parts of the
+    /// critical one.
+    fn strangers(&self) -> Vec<(String, Vec<f64>)> {
+        Vec::new()
+    }
+
+    /// What tells finished runs of a name apart beside it: of a program that may change, when it was read.
+    fn edition(&self, _name: &str) -> String {
+        String::new()
+    }
+
     /// The stored record of a run of another program; none where nothing is stored.
     fn stored(&self, _case: &Case, _run: &Run, _scene: &Scene) -> Option<Result<Record, RunError>> {
         None

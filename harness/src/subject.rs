@@ -9,6 +9,7 @@ use crate::case::Case;
 use crate::claim::{Claim, Measure};
 use crate::evidence::Evidence;
 use crate::run::{Change, Standing};
+use crate::scope::Scope;
 use grainbench_scene::solver::{Method, Resolution};
 
 /// The scene in which one kind of solver is asked.
@@ -86,7 +87,7 @@ fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<Subject>) {
         about,
     };
     let mut lanes = vec![lane(method, run.resolution)];
-    if claim.scope.is_open() && method == Method::Dem {
+    if claim.scope == Scope::AnySolver && method == Method::Dem {
         lanes.push(lane(Method::Rigid, Resolution::substeps(8)));
     }
     match subjects.iter_mut().find(|known| known.variant == run.variant && known.quantity == quantity) {

@@ -3,9 +3,10 @@
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::progress::Progress;
 use super::provenance::provenance;
+use super::strangers::WithStrangers;
 use super::subject::Variant;
 use grainbench::cases::registry::{self, CASES};
-use grainbench::cases::solvers;
+use grainbench::cases::solvers::Registry;
 use grainbench::harness::subject::Subject;
 use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, write_study};
 use grainbench::studies::Follow;
@@ -23,8 +24,8 @@ pub(crate) struct Arguments {
     /// Cases to measure; all that have an exact answer when none is named.
     #[arg(value_name = "CASE|CASE/VARIANT")]
     cases: Vec<String>,
-    /// Only this solver; may be given more than once.
-    #[arg(long, value_name = "NAME")]
+    /// Only this solver, or the program of this manifest; may be given more than once.
+    #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
     /// Points that take more than twenty seconds too.
     #[arg(long, alias = "rungs", value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
@@ -52,12 +53,12 @@ const ROUNDS: u32 = 5;
 /// Measures and writes the report, after every quantity as far as it is.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let subjects = subjects(&arguments.cases)?;
-    refuse_unknown(&arguments.solver)?;
+    let (solvers, named) = WithStrangers::read(&arguments.solver)?;
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
     check_writable(&arguments.out)?;
     let cache = ResultCache::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::writing)?;
-    let wanted = Wanted { solvers: arguments.solver.clone(), all: arguments.levels == "all" };
-    let meter = Meter::new(&cache, wanted, &solvers::Registry);
+    let wanted = Wanted { solvers: named, all: arguments.levels == "all" };
+    let meter = Meter::new(&cache, wanted, &solvers);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
     if pieces == 0 {
         return Err(Fault::input("expected at least one point, found none of the cases and solvers named"));
@@ -67,7 +68,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let mut follower = Follower::new(pieces as u64 + if prices { step::pieces(ROUNDS) } else { 0 }, "points");
     let mut study = Study::new(provenance(words(arguments), 0.0));
     if prices {
-        study.model = Some(step::measure(&solvers::Registry, ROUNDS, &mut follower).map_err(Fault::input)?);
+        study.model = Some(step::measure(&Registry, ROUNDS, &mut follower).map_err(Fault::input)?);
     }
     for (at, subject) in subjects.iter().enumerate() {
         let diagram = meter.diagram(subject, &mut follower).map_err(Fault::writing)?;
@@ -119,13 +120,6 @@ fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
         ));
     }
     Ok(found)
-}
-
-fn refuse_unknown(names: &[String]) -> Result<(), Fault> {
-    match names.iter().find(|name| solvers::by_name(name).is_none()) {
-        Some(name) => Err(Fault::unknown("a solver", name, solvers::names().iter().map(String::as_str))),
-        None => Ok(()),
-    }
 }
 
 /// The options that are not the default, in words.

@@ -25,6 +25,7 @@ mod simulate;
 mod solver;
 mod stability;
 mod step;
+mod strangers;
 mod subject;
 
 use clap::{Parser, Subcommand};

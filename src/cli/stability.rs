@@ -3,8 +3,10 @@
 use super::cost::Follower;
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
-use grainbench::cases::{registry, solvers};
+use super::strangers::WithStrangers;
+use grainbench::cases::registry;
 use grainbench::harness::case::PLAIN;
+use grainbench::harness::solvers::Solvers;
 use grainbench::harness::study::stability::{Hardness, Limit};
 use grainbench::reports::number;
 use grainbench::reports::study::{Study, study_json, write_study};
@@ -30,8 +32,8 @@ pub(crate) struct Arguments {
     /// Assemblies and hard cases, by name or the beginning of one; all when none is named.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Only this solver; may be given more than once.
-    #[arg(long, value_name = "NAME")]
+    /// Only this solver, or the program of this manifest; may be given more than once.
+    #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
     /// Do everything anew, also what was finished before.
     #[arg(long)]
@@ -46,16 +48,18 @@ pub(crate) struct Arguments {
 
 /// One piece of work.
 enum Piece<'a> {
-    Assembly(&'a Assembly, &'static str),
+    Assembly(&'a Assembly, &'a str),
     Bar(&'static str, f64),
-    Hard(&'a HardCase, &'static str),
+    Hard(&'a HardCase, &'a str),
 }
 
 /// Finds the limits, tries the hard cases and writes the report, now and then as far as it is.
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let assemblies = assembly::all()?;
     let hard = hard::all();
-    let pieces = select(arguments, &assemblies, &hard)?;
+    let (solvers, named) = WithStrangers::read(&arguments.solver)?;
+    let strangers = solvers.names();
+    let pieces = select(&arguments.cases, [&named, &strangers], &assemblies, &hard)?;
     check_writable(&arguments.out)?;
     let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::writing)?;
     let program = identity::of_this_program();
@@ -67,7 +71,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
     let mut study = Study::new(provenance(words.clone(), 0.0));
     for (at, piece) in pieces.iter().enumerate() {
-        let reused = do_piece(piece, &program, &cache, &mut study, &mut follower)?;
+        let reused = do_piece(piece, (&program, &solvers), &cache, &mut study, &mut follower)?;
         follower.done(reused);
         let last = at + 1 == pieces.len();
         if last || written.elapsed() > EVERY {
@@ -88,14 +92,14 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
             format!("{reused} of {} were done before\n{}\n", pieces.len(), arguments.out.join("index.html").display());
         print(&(text(&study) + &end))?;
     }
-    let red = |solver: &str| !solvers::is_program(solver) && solver != "rigid";
+    let red = |solver: &str| !solvers.is_program(solver) && solver != "rigid";
     let wrong = study.hard.iter().any(|row| row.standing == Hardness::QuietlyWrong && red(&row.solver));
     Ok(if wrong { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
 fn do_piece(
     piece: &Piece<'_>,
-    program: &str,
+    (program, solvers): (&str, &WithStrangers),
     cache: &ResultCache,
     study: &mut Study,
     follower: &mut Follower,
@@ -103,7 +107,12 @@ fn do_piece(
     match *piece {
         Piece::Assembly(assembly, solver) => {
             follower.now(&format!("{} · {solver}", assembly.name));
-            let asked = limit::of_assembly(program, assembly, (&solvers::Registry, solver), cache);
+            let asked = limit::of_assembly(
+                &(program.to_owned() + &solvers.edition(solver)),
+                assembly,
+                (solvers, solver),
+                cache,
+            );
             let (limit, reused) = asked.map_err(Fault::writing)?;
             study.limits.push(limit);
             Ok(reused)
@@ -112,14 +121,14 @@ fn do_piece(
             follower.now(&format!("{BAR} · {setting}"));
             let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;
             let scene = bar.variant(PLAIN)?;
-            let asked = limit::of_bar(program, &scene, (&solvers::Registry, setting), cells, cache);
+            let asked = limit::of_bar(program, &scene, (solvers, setting), cells, cache);
             let (limit, reused) = asked.map_err(Fault::writing)?;
             study.limits.push(limit);
             Ok(reused)
         }
         Piece::Hard(case, solver) => {
             follower.now(&format!("{} · {solver}", case.name));
-            let asked = hard::verdict(program, case, (&solvers::Registry, solver), cache);
+            let asked = hard::verdict(&(program.to_owned() + &solvers.edition(solver)), case, (solvers, solver), cache);
             let (row, reused) = asked.map_err(Fault::writing)?;
             study.hard.push(row);
             Ok(reused)
@@ -127,9 +136,10 @@ fn do_piece(
     }
 }
 
-/// What the command line means: names are those of assemblies, with `-` for spaces, of the bar, and of hard cases.
+/// What the command line means, of the solvers named and the programs among them: names are those of assemblies, with `-` for spaces, of the bar, and of hard cases.
 fn select<'a>(
-    arguments: &Arguments,
+    cases: &[String],
+    [solvers, strangers]: [&'a [String]; 2],
     assemblies: &'a [Assembly],
     hard: &'a [HardCase],
 ) -> Result<Vec<Piece<'a>>, Fault> {
@@ -138,27 +148,24 @@ fn select<'a>(
     known.push(BAR.to_owned());
     known.extend(hard.iter().map(|case| case.name.clone()));
     known.dedup();
-    if let Some(name) =
-        arguments.cases.iter().find(|name| name.is_empty() || !known.iter().any(|known| known.starts_with(*name)))
+    if let Some(name) = cases.iter().find(|name| name.is_empty() || !known.iter().any(|known| known.starts_with(*name)))
     {
         return Err(Fault::unknown("an assembly or a hard case", name, known.iter().map(String::as_str)));
     }
-    let solvers = solvers::names();
-    if let Some(name) = arguments.solver.iter().find(|name| solvers::by_name(name).is_none()) {
-        return Err(Fault::unknown("a solver", name, solvers.iter().map(String::as_str)));
-    }
-    let case = |name: &str| arguments.cases.is_empty() || arguments.cases.iter().any(|wanted| name.starts_with(wanted));
-    let solver = |name: &str| arguments.solver.is_empty() || arguments.solver.iter().any(|wanted| wanted == name);
+    let case = |name: &str| cases.is_empty() || cases.iter().any(|wanted| name.starts_with(wanted));
+    let solver = |name: &str| solvers.is_empty() || solvers.iter().any(|wanted| wanted == name);
+    let theirs = || strangers.iter().map(String::as_str);
     let mut pieces = Vec::new();
     for assembly in assemblies.iter().filter(|assembly| case(&named(assembly.name))) {
-        pieces
-            .extend(limit::SPRINGS.into_iter().filter(|name| solver(name)).map(|name| Piece::Assembly(assembly, name)));
+        let asked = limit::SPRINGS.into_iter().filter(|name| solver(name)).chain(theirs());
+        pieces.extend(asked.map(|name| Piece::Assembly(assembly, name)));
     }
     for setting in limit::GRIDS.into_iter().filter(|name| case(BAR) && solver(name)) {
         pieces.extend(BAR_CELLS.map(|cells| Piece::Bar(setting, cells)));
     }
     for hard in hard.iter().filter(|hard| case(&hard.name)) {
-        pieces.extend(hard::SOLVERS.into_iter().filter(|name| solver(name)).map(|name| Piece::Hard(hard, name)));
+        let asked = hard::SOLVERS.into_iter().filter(|name| solver(name)).chain(theirs());
+        pieces.extend(asked.map(|name| Piece::Hard(hard, name)));
     }
     if pieces.is_empty() {
         return Err(Fault::input(

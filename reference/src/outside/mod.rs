@@ -182,7 +182,7 @@ impl Outside {
         let arguments = self.words(self.manifest.command(), &file, folder.path());
         let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(scene, *stepping);
         let limits = self.limits(Duration::from_secs(self.manifest.limits.seconds), bytes);
-        let start = Instant::now();
+        let mut start = Instant::now();
         let (said, last_lines) = if self.manifest.worker.is_empty() {
             let started = Started {
                 executable: &executable,
@@ -201,6 +201,8 @@ impl Outside {
             let waiting = idle().pop();
             let worker = waiting.map_or_else(|| Worker::start(&executable, &arguments, limits), Ok);
             let mut worker = worker.map_err(|failure| fail(failure, Vec::new()))?;
+            // What it took to begin is not the run's, for the next one will not pay it.
+            start = Instant::now();
             let answer = worker.ask(&file, folder.path(), limits);
             let answer = answer.map_err(|(failure, last_lines)| fail(failure, last_lines))?;
             let last_lines = worker.last_lines();

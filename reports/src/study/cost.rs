@@ -5,8 +5,8 @@ use crate::number;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::study::point::{Counts, Diagram, Point, Standing};
 
-/// Lines of every diagram, in one order, so that a solver has the same colour in all.
-pub const LINES: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
+/// The solvers that every diagram has, in one order, so that each has the same colour in all.
+const OWN: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
 /// Errors that a sentence is said about.
 pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
 /// Errors below this are drawn here: rounding.
@@ -27,6 +27,17 @@ pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> 
     sorted.into_iter().map(|(_, _, point)| point).collect()
 }
 
+/// The lines of some diagrams: our own, and after them whoever else was measured.
+pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str> {
+    let mut lines = OWN.to_vec();
+    for point in diagrams.into_iter().flat_map(|diagram| &diagram.points) {
+        if !lines.contains(&point.solver.as_str()) {
+            lines.push(&point.solver);
+        }
+    }
+    lines
+}
+
 /// The points of a line.
 pub fn of_line<'a>(diagram: &'a Diagram, line: &'a str) -> impl Iterator<Item = &'a Point> {
     diagram.points.iter().filter(move |point| point.solver == line)
@@ -42,8 +53,9 @@ pub fn cheapest<'a>(diagram: &'a Diagram, line: &'a str, target: f64) -> Option<
 /// One sentence for a target: the cheapest setting of each solver, and how many times the cheapest of all it costs.
 #[must_use]
 pub fn sentence(diagram: &Diagram, target: f64) -> String {
+    let lines = lines([diagram]);
     let mut reached: Vec<(&str, &Point)> =
-        LINES.iter().filter_map(|line| cheapest(diagram, line, target).map(|point| (*line, point))).collect();
+        lines.iter().filter_map(|line| cheapest(diagram, line, target).map(|point| (*line, point))).collect();
     reached.sort_by(|a, b| a.1.wall_seconds.unwrap_or(0.0).total_cmp(&b.1.wall_seconds.unwrap_or(0.0)));
     let best = reached.first().and_then(|(_, point)| point.wall_seconds).unwrap_or(f64::NAN);
     let mut parts: Vec<String> = reached
@@ -58,7 +70,7 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
     if parts.is_empty() {
         parts.push("no solver reaches it".to_owned());
     }
-    for line in LINES {
+    for line in lines {
         let best = of_line(diagram, line).filter_map(Point::place).map(|(error, _)| error).min_by(f64::total_cmp);
         if let (Some(best), None) = (best, cheapest(diagram, line, target)) {
             parts.push(format!("{line} not, at best {}", number::fraction(best)));
@@ -75,7 +87,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
     let top = 10.0 * errors().fold(LEAST, f64::max);
     let mut curves = Vec::new();
     let mut bars = Vec::new();
-    for line in LINES {
+    for line in lines([diagram]) {
         let own = front(of_line(diagram, line));
         let is_own = |point: &Point| own.iter().any(|other| std::ptr::eq(*other, point));
         let label = match of_line(diagram, line).next() {
@@ -195,7 +207,7 @@ pub fn bias(points: &[&Point]) -> Option<(f64, f64)> {
 fn scatter(study: &Study, unit: &str) -> Option<Figure> {
     let mut curves = Vec::new();
     let mut span = (f64::INFINITY, 0.0_f64);
-    for line in LINES {
+    for line in lines(&study.diagrams) {
         let points = best(study, unit, line);
         let label = match bias(&points) {
             Some((factor, spread)) => {

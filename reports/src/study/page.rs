@@ -86,21 +86,22 @@ fn changes(study: &Study, old: &str) -> Markup {
 
 /// One row a diagram: for each solver its cheapest setting at 1 %.
 fn which(study: &Study) -> Markup {
+    let lines = cost::lines(&study.diagrams);
     let table = html! {
         table.cases {
             thead {
                 tr {
                     th scope="col" { "Scene and quantity" }
-                    @for line in cost::LINES { th scope="col" { (line) } }
+                    @for line in &lines { th scope="col" { (line) } }
                 }
             }
             tbody {
                 @for diagram in &study.diagrams {
-                    @let best = cost::LINES.iter().filter_map(|line| cost::cheapest(diagram, line, 0.01)?.wall_seconds)
+                    @let best = lines.iter().filter_map(|line| cost::cheapest(diagram, line, 0.01)?.wall_seconds)
                         .fold(f64::INFINITY, f64::min);
                     tr {
                         th scope="row" { (diagram.case) "/" (diagram.variant) span.title { (diagram.quantity) } }
-                        @for line in cost::LINES {
+                        @for line in &lines {
                             @match cost::cheapest(diagram, line, 0.01) {
                                 Some(point) => {
                                     @let wall = point.wall_seconds.unwrap_or(f64::NAN);

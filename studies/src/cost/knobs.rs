@@ -10,7 +10,7 @@ pub struct Turn {
     /// Solver, by name; settings of the material point method are spelt out in it.
     pub solver: String,
     /// Line of the diagram that the point belongs to: the solver without its settings.
-    pub line: &'static str,
+    pub line: String,
     /// Resolution.
     pub resolution: Resolution,
     /// What else was turned, in words.
@@ -43,9 +43,21 @@ const SETTINGS: [(&str, &str); 8] = [
     ("mpm:penalty", "hat functions, FLIP, springs at surfaces"),
 ];
 
-/// All turns of a lane.
+/// All turns of a lane; programs beside the registry are asked where grains on springs are, by their names and the time steps
+/// that they name.
 #[must_use]
-pub fn turns(lane: &Lane) -> Vec<Turn> {
+pub fn turns(lane: &Lane, strangers: &[(String, Vec<f64>)]) -> Vec<Turn> {
+    let theirs = strangers.iter().filter(|_| lane.method == Method::Dem).flat_map(|(name, fractions)| {
+        let fractions = if fractions.is_empty() { &PROGRAM_FRACTIONS[..] } else { fractions };
+        let at = |&fraction: &f64| {
+            turn(name, name, Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction))
+        };
+        fractions.iter().map(at).collect::<Vec<_>>()
+    });
+    own(lane).into_iter().chain(theirs).collect()
+}
+
+fn own(lane: &Lane) -> Vec<Turn> {
     match lane.method {
         Method::Dem => dem(lane),
         Method::Rigid => rigid(lane),
@@ -53,8 +65,8 @@ pub fn turns(lane: &Lane) -> Vec<Turn> {
     }
 }
 
-fn turn(solver: &str, line: &'static str, resolution: Resolution, knobs: &str, sequence: Option<f64>) -> Turn {
-    Turn { solver: solver.to_owned(), line, resolution, knobs: knobs.to_owned(), sequence }
+fn turn(solver: &str, line: &str, resolution: Resolution, knobs: &str, sequence: Option<f64>) -> Turn {
+    Turn { solver: solver.to_owned(), line: line.to_owned(), resolution, knobs: knobs.to_owned(), sequence }
 }
 
 fn dem(lane: &Lane) -> Vec<Turn> {

@@ -63,6 +63,8 @@ struct Task {
     start: Arc<OnceLock<f64>>,
     /// Whether the solver is another program.
     is_program: bool,
+    /// Whether it may be one that stays from run to run.
+    stays: bool,
 }
 
 impl Task {
@@ -167,9 +169,9 @@ impl<'a> Meter<'a> {
             }
             let scene = Arc::new(scene);
             let mut starts: BTreeMap<String, Arc<OnceLock<f64>>> = BTreeMap::new();
-            for turn in knobs::turns(lane) {
+            for turn in knobs::turns(lane, &self.solvers.strangers()) {
                 let named = &self.wanted.solvers;
-                if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || name == turn.line) {
+                if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || *name == turn.line) {
                     continue;
                 }
                 let is_program = self.solvers.is_program(&turn.solver);
@@ -180,12 +182,14 @@ impl<'a> Meter<'a> {
                 let solver = solvers.entry(turn.solver.clone()).or_insert_with(|| self.solvers.find(&turn.solver));
                 let Some(solver) = solver.clone() else { continue };
                 let read = format!("{}|{}|{}", subject.quantity, subject.variant, turn.knobs);
-                let name = identity::of_run(&self.program, &turn.solver, &scene, &turn.resolution, &read);
+                let program = self.program.clone() + &self.solvers.edition(&turn.solver);
+                let name = identity::of_run(&program, &turn.solver, &scene, &turn.resolution, &read);
                 // Two lanes may lead to the same run.
                 if tasks.iter().all(|task: &Task| task.name != name) {
                     let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
                     let scene = Arc::clone(&scene);
-                    tasks.push(Task { turn, method: lane.method, scene, solver, name, start, is_program });
+                    let stays = !self.solvers.edition(&turn.solver).is_empty();
+                    tasks.push(Task { turn, method: lane.method, scene, solver, name, start, is_program, stays });
                 }
             }
         }
@@ -201,7 +205,12 @@ fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>
     let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
     // A run that broke left no record: all of its time is that of the loop.
     let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
-    let cpu = if record.is_ok() { (cpu - task.start()).max(0.0) } else { cpu };
+    let cpu = match (&record, task.stays) {
+        // Time of a program that stays is not told before it ends: of one thread it is that of the clock.
+        (Ok(_), true) => wall,
+        (Ok(_), false) => (cpu - task.start()).max(0.0),
+        (Err(_), _) => cpu,
+    };
     (ran.then_some(Timing { wall, cpu, start_up: (whole - wall).max(0.0), reference }), record)
 }
 
@@ -226,7 +235,7 @@ fn first(subject: &Subject, task: &Task) -> Point {
     let mut point = Point {
         case: subject.case.name.to_owned(),
         variant: subject.variant.to_owned(),
-        solver: task.turn.line.to_owned(),
+        solver: task.turn.line.clone(),
         resolution: task.turn.resolution.to_string(),
         knobs: task.turn.knobs.clone(),
         quantity: subject.quantity.clone(),

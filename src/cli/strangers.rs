@@ -1,0 +1,97 @@
+//! The solvers of the registry, and programs by their manifests beside them.
+
+use super::exit::Fault;
+use super::solver;
+use grainbench::cases::solvers::{self, Registry};
+use grainbench::harness::case::Case;
+use grainbench::harness::claim::Claim;
+use grainbench::harness::run::Run;
+use grainbench::harness::solvers::{Kept, Solvers};
+use grainbench::reference::outside::Outside;
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Defect, RunError, Solver};
+use std::process;
+use std::sync::Arc;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// Solvers that a command line may name.
+pub(crate) struct WithStrangers {
+    strangers: Vec<Arc<Outside>>,
+    /// When they were read: what they did before need not be what they do now.
+    read: String,
+}
+
+impl WithStrangers {
+    /// Reads the manifests among some names; gives the solvers, and the names with those of the programs in their places.
+    pub(crate) fn read(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
+        let (mut strangers, mut known) = (Vec::new(), Vec::new());
+        for name in names {
+            if solver::is_manifest(name) {
+                let stranger = solver::outside(name)?;
+                known.push(stranger.name());
+                strangers.push(stranger);
+            } else {
+                solver::find(name)?;
+                known.push(name.clone());
+            }
+        }
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let read = format!("{}-{}", now.as_nanos(), process::id());
+        Ok((Self { strangers, read }, known))
+    }
+
+    /// Names of the programs.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.strangers.iter().map(|stranger| stranger.name()).collect()
+    }
+
+    fn stranger(&self, name: &str) -> Option<&Arc<Outside>> {
+        self.strangers.iter().find(|stranger| stranger.manifest().name == name)
+    }
+}
+
+impl Solvers for WithStrangers {
+    fn find(&self, name: &str) -> Option<Arc<dyn Solver>> {
+        let stranger = self.stranger(name).map(|stranger| Arc::<Outside>::clone(stranger) as Arc<dyn Solver>);
+        stranger.or_else(|| Registry.find(name))
+    }
+
+    fn find_within(&self, name: &str, limit: Duration) -> Option<Arc<dyn Solver>> {
+        // What a program may take stands in its manifest.
+        if self.stranger(name).is_some() { self.find(name) } else { Registry.find_within(name, limit) }
+    }
+
+    fn with_defect(&self, name: &str, defect: Defect) -> Option<Arc<dyn Solver>> {
+        Registry.with_defect(name, defect)
+    }
+
+    fn is_program(&self, name: &str) -> bool {
+        self.stranger(name).is_some() || solvers::is_program(name)
+    }
+
+    fn strangers(&self) -> Vec<(String, Vec<f64>)> {
+        let of = |stranger: &Arc<Outside>| (stranger.name(), stranger.manifest().knobs.critical_fraction.clone());
+        self.strangers.iter().map(of).collect()
+    }
+
+    fn edition(&self, name: &str) -> String {
+        self.stranger(name).map_or_else(String::new, |_| self.read.clone())
+    }
+
+    fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
+        Registry.stored(case, run, scene)
+    }
+
+    fn kept(&self, case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
+        Registry.kept(case, run, scene, control)
+    }
+
+    fn uncertainty(&self, case: &Case, claim: &Claim) -> Option<f64> {
+        Registry.uncertainty(case, claim)
+    }
+
+    fn is_stored(&self, case: &Case, run: &Run) -> bool {
+        Registry.is_stored(case, run)
+    }
+}
