@@ -136,7 +136,8 @@ fn do_piece(
     }
 }
 
-/// What the command line means, of the solvers named and the programs among them: names are those of assemblies, with `-` for spaces, of the bar, and of hard cases.
+/// What the command line means, of the solvers named and the programs among them: names are those of assemblies, with `-` for
+/// spaces, of the bar, and of hard cases.
 fn select<'a>(
     cases: &[String],
     [solvers, strangers]: [&'a [String]; 2],
