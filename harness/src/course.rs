@@ -184,7 +184,7 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
         let curve = thinned(traced.expected);
         if !curve.is_empty() && !expected.iter().any(|drawn| looks_alike(&drawn.points, &curve)) {
             let rounded = |power: f64| format!("slope {}", (power * 1e3).round() / 1e3);
-            let label = traced.slope.map_or_else(|| format!("{label}, exact"), rounded);
+            let label = traced.slope.map_or_else(|| format!("{label}, {}", expected_word(claim.source)), rounded);
             // One guide for a slope is enough for all curves that have it.
             if !expected.iter().any(|guide| guide.label == label) {
                 expected.push(Curve::new(label, Stroke::Dashed, curve));
@@ -194,11 +194,19 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
     let figure = |(plate, measured, mut expected): (&Plate, Vec<Curve>, Vec<Curve>)| {
         let axis = |label| if plate.logarithmic { Axis::log(label) } else { Axis::linear(label) };
         if let ([exact], [_, _, ..], false) = (expected.as_mut_slice(), measured.as_slice(), plate.logarithmic) {
-            "exact".clone_into(&mut exact.label);
+            exact.label = exact.label.rsplit(", ").next().unwrap_or_default().to_owned();
         }
         Figure::graph(plate.name, plate.title, plate.caption, plate.axes.map(axis), [measured, expected].concat())
     };
     Ok(graphs.into_iter().map(figure).collect())
+}
+
+/// What an expected curve is called: exact where it is derived.
+const fn expected_word(source: Source) -> &'static str {
+    match source {
+        Source::Derived(_) => "exact",
+        Source::Printed(..) | Source::Program | Source::Ourselves(_) | Source::Regression(_) => "expected",
+    }
 }
 
 /// Whether two curves would be drawn on top of each other: they differ by less than a line is wide.
