@@ -27,7 +27,7 @@ pub(crate) static CASE: Case = Case {
                a wrong friction law. Displacement does depend on μ. One contact, constant load.",
     levels: LEVELS,
     default_level: LEVELS[2],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -26,7 +26,7 @@ pub(crate) static CASE: Case = Case {
                v, and is not seen otherwise.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -33,7 +33,7 @@ pub(crate) static CASE: Case = Case {
                contacts, not their law.",
     levels: LEVELS,
     default_level: LEVELS[3],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -30,7 +30,7 @@ pub(crate) static CASE: Case = Case {
                limit soon passes, so Mindlin's stiffness is not gated here, only drawn.",
     levels: LEVELS,
     default_level: STEP,
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

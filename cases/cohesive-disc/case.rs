@@ -21,7 +21,7 @@ pub(crate) static CASE: Case = Case {
                tension, which this law does not have.",
     levels: LEVELS,
     default_level: STEP,
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -22,7 +22,7 @@ pub(crate) static CASE: Case = Case {
                this speed. Two grains of similar mass; no wall.",
     levels: LEVELS,
     default_level: LEVELS[3],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

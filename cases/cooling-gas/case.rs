@@ -19,7 +19,7 @@ pub(crate) static CASE: Case = Case {
                a disc; clusters, which come later, are not looked at.",
     levels: LEVELS,
     default_level: LEVELS[0],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

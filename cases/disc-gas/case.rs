@@ -17,7 +17,7 @@ pub(crate) static CASE: Case = Case {
                touch at a time.",
     levels: LEVELS,
     default_level: LEVELS[2],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

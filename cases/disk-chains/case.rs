@@ -41,7 +41,7 @@ pub(crate) static CASE: Case = Case {
                fringes, and prints no arrival times.",
     levels: LEVELS,
     default_level: STEP,
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

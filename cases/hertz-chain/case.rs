@@ -25,7 +25,7 @@ pub(crate) static CASE: Case = Case {
                coefficient only by its cube root.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

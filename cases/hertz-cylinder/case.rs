@@ -31,7 +31,7 @@ pub(crate) static CASE: Case = Case {
                two, and stresses of material points a cell below the surface are not the traction on it.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -38,7 +38,7 @@ pub(crate) static CASE: Case = Case {
                felt only where the disc slips, a wrong inertia mostly where it rolls: read the four together.",
     levels: LEVELS,
     default_level: LEVELS[2],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

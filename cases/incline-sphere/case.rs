@@ -35,7 +35,7 @@ pub(crate) static CASE: Case = Case {
                felt only where the sphere slips, a wrong inertia mostly where it rolls: read the two together.",
     levels: LEVELS,
     default_level: LEVELS[2],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

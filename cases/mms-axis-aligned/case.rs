@@ -22,7 +22,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "Periodic and along the grid: no boundary, no shear, no rotation.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -29,7 +29,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "One material law, no contact, and edges at which nothing happens.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -40,7 +40,7 @@ pub(crate) static CASE: Case = Case {
                wrongly in less regular packings would pass.",
     levels: LEVELS,
     default_level: LEVELS[0],
-    claims,
+    claims: &claims,
     figures: figures::figures,
     home: &crate::registry::HOME,
 };

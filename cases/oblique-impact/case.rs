@@ -18,7 +18,7 @@ pub(crate) static CASE: Case = Case {
                remember. One plane wall, one angle.",
     levels: LEVELS,
     default_level: LEVELS[2],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

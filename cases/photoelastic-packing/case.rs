@@ -33,7 +33,7 @@ pub(crate) static CASE: Case = Case {
                forces cannot be compared. The range of F_H/F_V is wide, and stage A fixes much of it.",
     levels: LEVELS,
     default_level: LEVELS[0],
-    claims,
+    claims: &claims,
     figures: figures::figures,
     home: &crate::registry::HOME,
 };

@@ -26,7 +26,7 @@ pub(crate) static CASE: Case = Case {
                means themselves.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

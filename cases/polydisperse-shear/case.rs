@@ -47,7 +47,7 @@ pub(crate) static CASE: Case = Case {
                five packings in the long set; grains of two cells across do not resolve the stress inside them.",
     levels: LEVELS,
     default_level: LEVELS[0],
-    claims,
+    claims: &claims,
     figures: figures::figures,
     home: &crate::registry::HOME,
 };

@@ -24,7 +24,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "One direction of flow and no turn: rates that turn with the material are not seen.",
     levels: LEVELS,
     default_level: LEVELS[0],
-    claims,
+    claims: &claims,
     figures: no_more,
     home: &crate::registry::HOME,
 };

@@ -16,7 +16,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "The elastic answer comes from a prototype of the same family of methods, not in closed form.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -21,7 +21,7 @@ pub(crate) static CASE: Case = Case {
                differently, changes how a grain comes to rest and nothing that is gated here.",
     levels: LEVELS,
     default_level: STEP,
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

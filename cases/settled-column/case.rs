@@ -19,7 +19,7 @@ pub(crate) static CASE: Case = Case {
                them in so short a column. The height is that of the centre of mass.",
     levels: LEVELS,
     default_level: LEVELS[0],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -16,7 +16,7 @@ pub(crate) static CASE: Case = Case {
     weakness: WEAKNESS,
     levels: LEVELS,
     default_level: LEVELS[0],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -23,7 +23,7 @@ pub(crate) static CASE: Case = Case {
                closed form.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

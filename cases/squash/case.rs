@@ -31,7 +31,7 @@ pub(crate) static CASE: Case = Case {
                a cycle and nothing about contact detection: a code may pass and still find contacts one step late.",
     levels: LEVELS,
     default_level: LEVELS[0],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -26,7 +26,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "At the squeeze of .01 R patches are narrower than cells, and the force hangs on how the grid lies.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures,
     home: &crate::registry::HOME,
 };

@@ -4,6 +4,7 @@
 //! has a `scene.toml` is in the registry.
 
 pub mod exact;
+pub mod folder;
 pub mod kept;
 pub mod registry;
 pub mod rows;

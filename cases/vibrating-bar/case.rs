@@ -29,7 +29,7 @@ pub(crate) static CASE: Case = Case {
     weakness: "Small strain, one direction, no contact.",
     levels: LEVELS,
     default_level: LEVELS[1],
-    claims,
+    claims: &claims,
     figures: no_more,
     home: &crate::registry::HOME,
 };

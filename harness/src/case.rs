@@ -50,7 +50,7 @@ pub struct Case {
     /// The level that most claims take.
     pub default_level: Level,
     /// The claims.
-    pub claims: fn() -> Vec<Claim>,
+    pub claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
     /// The figures, from runs of the case.
     pub figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
     /// Where its files are, and who reads grains from them.

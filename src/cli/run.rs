@@ -25,8 +25,9 @@ use std::time::Instant;
 /// What the command takes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases to run; all when none is named.
-    #[arg(value_name = "CASE|CASE/VARIANT")]
+    /// Cases to run, of the registry or of your own in a folder with `scene.toml` and `claims.toml`; all of the registry when
+    /// none is named.
+    #[arg(value_name = "CASE|CASE/VARIANT|FOLDER")]
     pub(crate) cases: Vec<String>,
     #[command(flatten)]
     pub(crate) options: Options,

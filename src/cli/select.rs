@@ -50,13 +50,15 @@ pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Sel
     Ok(selected)
 }
 
-/// The claims of the cases (`CASE` or `CASE/VARIANT`; all when none is named) whose rows are of one of the solvers and
-/// that need one of the levels, in the order of the registry.
+/// The claims of the cases (`CASE`, `CASE/VARIANT` or a folder; all of the registry when none is named) whose rows are of one
+/// of the solvers and that need one of the levels, in the order of the registry.
 fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
-    let named = cases.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
+    let named = cases.iter().map(|name| Variant::read_with_folders(name)).collect::<Result<Vec<_>, _>>()?;
+    let in_registry = |named: &&Variant<'_>| CASES.iter().any(|case| std::ptr::eq(*case, named.case));
+    let folders = named.iter().filter(|named| !in_registry(named)).map(|named| named.case);
     let mut selected = Vec::new();
-    for case in CASES {
-        let mine: Vec<&Variant<'_>> = named.iter().filter(|named| named.case.name == case.name).collect();
+    for case in CASES.iter().copied().chain(folders) {
+        let mine: Vec<&Variant<'_>> = named.iter().filter(|named| std::ptr::eq(named.case, case)).collect();
         if mine.is_empty() && !named.is_empty() {
             continue;
         }

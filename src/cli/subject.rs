@@ -2,6 +2,7 @@
 
 use super::exit::Fault;
 use super::select;
+use grainbench::cases::folder;
 use grainbench::cases::registry::{CASES, read_grains};
 use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
@@ -19,6 +20,15 @@ pub(crate) struct Variant<'a> {
 }
 
 impl<'a> Variant<'a> {
+    /// Reads `CASE`, `CASE/VARIANT`, or the path of a folder with a case in it.
+    pub(crate) fn read_with_folders(text: &'a str) -> Result<Self, Fault> {
+        let is_named = CASES.iter().any(|case| text.split('/').next() == Some(case.name));
+        if is_named || !Path::new(text).is_dir() {
+            return Self::read(text);
+        }
+        Ok(Self { case: folder::read(Path::new(text)).map_err(Fault::input)?, variant: None })
+    }
+
     /// Reads `CASE` or `CASE/VARIANT`.
     pub(crate) fn read(text: &'a str) -> Result<Self, Fault> {
         let (name, variant) = text.split_once('/').map_or((text, None), |(name, variant)| (name, Some(variant)));

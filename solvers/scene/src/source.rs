@@ -100,8 +100,24 @@ impl SceneSource {
         self.scene_file_of(&self.parse()?)
     }
 
-    /// The same of the text as a table.
+    /// The same as a table, of which nothing but that it is TOML is known.
+    ///
+    /// # Errors
+    /// When the text is not TOML, the variant is unknown, or an override has no place.
+    pub fn table(&self) -> Result<toml::Table, SceneError> {
+        self.laid_over(&self.parse()?)
+    }
+
+    /// The file of the text as a table.
     fn scene_file_of(&self, text: &toml::Table) -> Result<SceneFile, SceneError> {
+        let table = self.laid_over(text)?;
+        serde_path_to_error::deserialize(toml::Value::Table(table.clone())).map_err(|error| {
+            let path = error.path().to_string();
+            self.explain(&path, error.inner().message(), &table)
+        })
+    }
+
+    fn laid_over(&self, text: &toml::Table) -> Result<toml::Table, SceneError> {
         let plain = text.iter().filter(|(key, _)| *key != "variants");
         let mut table: toml::Table = plain.map(|(key, value)| (key.clone(), value.clone())).collect();
         if let Some(variant) = &self.variant {
@@ -128,10 +144,7 @@ impl SceneSource {
         for (key, value) in &self.overrides {
             self.lay_over(&mut table, key, value)?;
         }
-        serde_path_to_error::deserialize(toml::Value::Table(table.clone())).map_err(|error| {
-            let path = error.path().to_string();
-            self.explain(&path, error.inner().message(), &table)
-        })
+        Ok(table)
     }
 
     /// An error about a key of this scene.

@@ -1,0 +1,311 @@
+//! Arithmetic over named numbers, as a claim in a file has it.
+//!
+//! `+ - * /`, `^` that binds more tightly than a sign before it and from right to left (−2^2 = −4, 2^3^2 = 512), parentheses,
+//! `pi`, and functions by name. A name is a path of keys such as `grains.ball.radius`; one with other letters stands in braces,
+//! `{contacts.ball-plane.friction}`. Angles are in radians. Crates that were tried take −2^2 for 4 or do not read `1e-3`.
+
+use std::f64::consts::PI;
+
+/// Deepest nesting.
+const DEEPEST: usize = 100;
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Expression {
+    Number(f64),
+    Name(String),
+    Negative(Box<Self>),
+    Of(Operator, Box<[Self; 2]>),
+    Call(Function, Vec<Self>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Operator {
+    Plus,
+    Minus,
+    Times,
+    Over,
+    Power,
+}
+
+/// A function: its name, how many arguments it takes, and what it does.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Function {
+    name: &'static str,
+    arguments: usize,
+    of: fn(&[f64]) -> f64,
+}
+
+impl PartialEq for Function {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+const FUNCTIONS: [Function; 17] = {
+    const fn one(name: &'static str, of: fn(&[f64]) -> f64) -> Function {
+        Function { name, arguments: 1, of }
+    }
+    const fn two(name: &'static str, of: fn(&[f64]) -> f64) -> Function {
+        Function { name, arguments: 2, of }
+    }
+    [
+        one("sin", |x| x[0].sin()),
+        one("cos", |x| x[0].cos()),
+        one("tan", |x| x[0].tan()),
+        one("asin", |x| x[0].asin()),
+        one("acos", |x| x[0].acos()),
+        one("atan", |x| x[0].atan()),
+        two("atan2", |x| x[0].atan2(x[1])),
+        one("sinh", |x| x[0].sinh()),
+        one("cosh", |x| x[0].cosh()),
+        one("tanh", |x| x[0].tanh()),
+        one("exp", |x| x[0].exp()),
+        one("ln", |x| x[0].ln()),
+        one("sqrt", |x| x[0].sqrt()),
+        one("cbrt", |x| x[0].cbrt()),
+        one("abs", |x| x[0].abs()),
+        // What is not a number is never the smaller or the larger of two.
+        two("min", |x| if x[0].is_nan() || x[0] < x[1] { x[0] } else { x[1] }),
+        two("max", |x| if x[0].is_nan() || x[0] > x[1] { x[0] } else { x[1] }),
+    ]
+};
+
+impl Expression {
+    /// Reads one.
+    ///
+    /// # Errors
+    /// What was expected and what was found, with the column.
+    pub(super) fn read(text: &str) -> Result<Self, String> {
+        let mut reader = Reader { text, at: 0, depth: 0 };
+        let expression = reader.sum()?;
+        match reader.next() {
+            None => Ok(expression),
+            Some(_) => Err(reader.expected("an operator or the end")),
+        }
+    }
+
+    /// The names in it.
+    pub(super) fn names(&self) -> Vec<&str> {
+        match self {
+            Self::Number(_) => Vec::new(),
+            Self::Name(name) => vec![name],
+            Self::Negative(inner) => inner.names(),
+            Self::Of(_, sides) => sides.iter().flat_map(Self::names).collect(),
+            Self::Call(_, arguments) => arguments.iter().flat_map(Self::names).collect(),
+        }
+    }
+
+    /// Its value, where names have theirs; what has none is not a number.
+    pub(super) fn value(&self, of: &dyn Fn(&str) -> Option<f64>) -> f64 {
+        match self {
+            Self::Number(value) => *value,
+            Self::Name(name) => of(name).unwrap_or(f64::NAN),
+            Self::Negative(inner) => -inner.value(of),
+            Self::Of(operator, sides) => {
+                let [left, right] = [sides[0].value(of), sides[1].value(of)];
+                match operator {
+                    Operator::Plus => left + right,
+                    Operator::Minus => left - right,
+                    Operator::Times => left * right,
+                    Operator::Over => left / right,
+                    Operator::Power => left.powf(right),
+                }
+            }
+            Self::Call(function, arguments) => {
+                (function.of)(&arguments.iter().map(|argument| argument.value(of)).collect::<Vec<_>>())
+            }
+        }
+    }
+}
+
+/// Reads from the left to the right.
+struct Reader<'a> {
+    text: &'a str,
+    at: usize,
+    depth: usize,
+}
+
+impl Reader<'_> {
+    fn rest(&self) -> &str {
+        &self.text[self.at..]
+    }
+
+    /// The next letter that is no blank, which is not taken.
+    fn next(&mut self) -> Option<char> {
+        self.at += self.rest().len() - self.rest().trim_start().len();
+        self.rest().chars().next()
+    }
+
+    /// Takes the next letter where it is this one.
+    fn takes(&mut self, letter: char) -> bool {
+        let is_there = self.next() == Some(letter);
+        if is_there {
+            self.at += letter.len_utf8();
+        }
+        is_there
+    }
+
+    fn expected(&mut self, what: &str) -> String {
+        let found = self.next().map_or_else(|| "the end".to_owned(), |letter| format!("`{}`", letter.escape_default()));
+        format!("expected {what} at column {}, found {found}", self.text[..self.at].chars().count() + 1)
+    }
+
+    /// Sums of products.
+    fn sum(&mut self) -> Result<Expression, String> {
+        self.operators(&[('+', Operator::Plus), ('-', Operator::Minus)], |reader| {
+            reader.operators(&[('*', Operator::Times), ('/', Operator::Over)], Self::signed)
+        })
+    }
+
+    /// Operators of one rank, from the left to the right.
+    fn operators(
+        &mut self,
+        rank: &[(char, Operator)],
+        side: impl Fn(&mut Self) -> Result<Expression, String>,
+    ) -> Result<Expression, String> {
+        let mut left = side(self)?;
+        while let Some((_, operator)) = rank.iter().find(|(letter, _)| self.takes(*letter)) {
+            left = Expression::Of(*operator, Box::new([left, side(self)?]));
+        }
+        Ok(left)
+    }
+
+    /// A power, with signs before it.
+    fn signed(&mut self) -> Result<Expression, String> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(format!("expected at most {DEEPEST} levels, found more"));
+        }
+        let signed = if self.takes('-') {
+            Expression::Negative(Box::new(self.signed()?))
+        } else {
+            let base = self.atom()?;
+            if self.takes('^') { Expression::Of(Operator::Power, Box::new([base, self.signed()?])) } else { base }
+        };
+        self.depth -= 1;
+        Ok(signed)
+    }
+
+    fn atom(&mut self) -> Result<Expression, String> {
+        match self.next() {
+            Some('(') => {
+                self.takes('(');
+                let inner = self.sum()?;
+                if self.takes(')') { Ok(inner) } else { Err(self.expected("`)`")) }
+            }
+            Some('{') => self.braced(),
+            Some(letter) if letter.is_ascii_digit() || letter == '.' => self.number(),
+            Some(letter) if letter.is_alphabetic() => self.named(),
+            _ => Err(self.expected("a number, a name or `(`")),
+        }
+    }
+
+    fn braced(&mut self) -> Result<Expression, String> {
+        let inner = self.rest().get(1..).and_then(|rest| rest.split_once('}')).map(|(inner, _)| inner.to_owned());
+        let Some(inner) = inner else { return Err(self.expected("a name in braces, with `}` after it")) };
+        self.at += inner.len() + 2;
+        Ok(Expression::Name(inner.trim().to_owned()))
+    }
+
+    fn number(&mut self) -> Result<Expression, String> {
+        let digits = |text: &str| text.len() - text.trim_start_matches(|letter: char| letter.is_ascii_digit()).len();
+        let rest = self.rest();
+        let mut end = digits(rest);
+        if rest[end..].starts_with('.') {
+            end += 1 + digits(&rest[end + 1..]);
+        }
+        if rest[end..].starts_with(['e', 'E']) {
+            let sign = usize::from(rest[end + 1..].starts_with(['+', '-']));
+            let power = digits(&rest[end + 1 + sign..]);
+            end += if power > 0 { 1 + sign + power } else { 0 };
+        }
+        match rest[..end].parse() {
+            Ok(value) if f64::is_finite(value) => {
+                self.at += end;
+                Ok(Expression::Number(value))
+            }
+            _ => Err(self.expected("a finite number")),
+        }
+    }
+
+    fn named(&mut self) -> Result<Expression, String> {
+        let is_part = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '.';
+        let rest = self.rest();
+        let name = rest[..rest.find(|letter| !is_part(letter)).unwrap_or(rest.len())].to_owned();
+        let before = self.at;
+        self.at += name.len();
+        if self.next() != Some('(') {
+            return Ok(if name == "pi" { Expression::Number(PI) } else { Expression::Name(name) });
+        }
+        let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
+            self.at = before;
+            let names: Vec<&str> = FUNCTIONS.iter().map(|function| function.name).collect();
+            return Err(self.expected(&format!("a function, one of {},", names.join(", "))));
+        };
+        self.takes('(');
+        let mut arguments = vec![self.sum()?];
+        while self.takes(',') {
+            arguments.push(self.sum()?);
+        }
+        if !self.takes(')') {
+            return Err(self.expected("`,` or `)`"));
+        }
+        if arguments.len() != function.arguments {
+            return Err(format!("expected {} of `{name}`, found {}", function.arguments, arguments.len()));
+        }
+        Ok(Expression::Call(*function, arguments))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(text: &str) -> Result<f64, String> {
+        Expression::read(text).map(|read| read.value(&|name| if name == "a.b" { Some(3.0) } else { None }))
+    }
+
+    #[test]
+    fn operators_bind_as_they_are_written_on_paper() {
+        let known = [
+            ("-2^2", -4.0),
+            ("2^3^2", 512.0),
+            ("2^-1", 0.5),
+            ("1 - 2 - 3", -4.0),
+            ("8/2/2", 2.0),
+            ("2*-3", -6.0),
+            ("-a.b^2 + {a.b}", -6.0),
+            ("1e-3 + 1.5E3 + .5", 1500.501),
+            ("max(1, 2) * sqrt(4) - abs(-1)", 3.0),
+            ("atan2(1, 1) * 4 - pi", 0.0),
+            ("5/7 * (1 + 1)", 10.0 / 7.0),
+        ];
+        for (text, expected) in known {
+            assert!(value(text).is_ok_and(|found| (found - expected).abs() < 1e-14), "{text}: {:?}", value(text));
+        }
+        assert!(value("max(nothing, 1)").is_ok_and(f64::is_nan), "what has no value is no number");
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_its_column() {
+        let deep = "(".repeat(1000);
+        for (text, said) in [
+            ("", "expected a number, a name or `(` at column 1, found the end"),
+            ("1 +", "at column 4, found the end"),
+            ("(1", "expected `)` at column 3"),
+            ("1 2", "expected an operator or the end at column 3, found `2`"),
+            ("{a", "expected a name in braces"),
+            ("sine(1)", "expected a function, one of sin, cos"),
+            ("min(1)", "expected 2 of `min`, found 1"),
+            ("1e999", "expected a finite number"),
+            ("1 $", "found `$`"),
+            ("µ", "`µ`"),
+            (deep.as_str(), "expected at most 100 levels"),
+        ] {
+            let found = value(text);
+            let is_said = found.as_ref().is_err_and(|error| error.contains(said));
+            assert!(is_said || (text == "µ" && found.is_ok_and(f64::is_nan)), "{text}: {:?}", value(text));
+        }
+    }
+}

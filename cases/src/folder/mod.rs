@@ -1,0 +1,119 @@
+//! A case of anybody's, without Rust: a folder with `scene.toml` and `claims.toml`.
+//!
+//! A claim says what is measured, what is expected and from which source, how far it may be off and why, and which wrong scene
+//! it must refuse, as a claim in Rust does. Expected values are arithmetic over the numbers of the scene.
+
+mod claims_file;
+mod expression;
+mod numbers;
+mod read;
+mod row;
+
+use crate::registry::HOME;
+use claims_file::ClaimsFile;
+use grainbench_harness::case::{Case, Home, fraction};
+use grainbench_harness::claim::Claim;
+use grainbench_harness::course::no_more;
+use grainbench_scene::source::SceneSource;
+use row::Reader;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The scene.
+const SCENE: &str = "scene.toml";
+/// What is claimed of it.
+const CLAIMS: &str = "claims.toml";
+/// Where expected values come from, at more length; it may be absent.
+const DERIVATION: &str = "derivation.md";
+/// Largest file of words (B).
+const MOST: u64 = 1 << 20;
+
+/// A folder that is no case: which file, where in it, what was expected and what stood there.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {what}", file.display())]
+pub struct NoCase {
+    file: PathBuf,
+    what: String,
+}
+
+/// What is wrong with a claim.
+enum Wrong {
+    /// A key, and what is wrong with it.
+    Key(String, String),
+    /// A file beside it, in words that name the place.
+    Scene(String),
+}
+
+fn wrong(key: &str, expected: impl Into<String>, found: impl Into<String>) -> Wrong {
+    Wrong::Key(key.to_owned(), format!("expected {}, found {}", expected.into(), found.into()))
+}
+
+/// Text for as long as the program runs: cases are named on a command line, and there are few.
+fn kept(text: String) -> &'static str {
+    text.leak()
+}
+
+/// The case in a folder.
+///
+/// # Errors
+/// Names the file, the claim and the key, what was expected and what stood there.
+pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
+    let file = folder.join(CLAIMS);
+    let no_case = |what: String| NoCase { file: file.clone(), what };
+    let text = text_of(&file)?;
+    let claims: ClaimsFile = toml::from_str(&text).map_err(|error| {
+        let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].lines().count().max(1));
+        no_case(format!("line {line}: expected the keys of claims, found {}", error.message().replace('\n', " ")))
+    })?;
+    let words = [&claims.title, &claims.claim, &claims.weakness];
+    if claims.title.trim().is_empty() || words.iter().any(|text| text.chars().any(char::is_control)) {
+        return Err(no_case("expected a title, and words without control characters, found others".to_owned()));
+    }
+    if claims.claims.is_empty() {
+        return Err(no_case("expected at least one `[[claims]]`, found none".to_owned()));
+    }
+    let scene = text_of(&folder.join(SCENE))?;
+    let source = SceneSource::read(&folder.join(SCENE)).map_err(|error| no_case(error.to_string()))?;
+    let reader = Reader { folder, source: &source };
+    let mut rows: Vec<Claim> = Vec::new();
+    for (place, claimed) in claims.claims.into_iter().enumerate() {
+        let quantity = claimed.quantity.clone();
+        let row = reader.claim(claimed).map_err(|wrong| match wrong {
+            Wrong::Key(key, what) => no_case(format!("claim {} ({quantity}): {key}: {what}", place + 1)),
+            Wrong::Scene(what) => no_case(format!("claim {} ({quantity}): {what}", place + 1)),
+        })?;
+        rows.push(row);
+    }
+    let whole = fs::canonicalize(folder).map_err(|error| no_case(error.to_string()))?;
+    let is_plain = |name: &&std::ffi::OsStr| !name.to_string_lossy().chars().any(char::is_control);
+    let (Some(name), Some(parent)) = (whole.file_name().filter(is_plain), whole.parent()) else {
+        return Err(no_case("expected a folder with a plain name, found another".to_owned()));
+    };
+    let derivation = folder.join(DERIVATION);
+    let derivation = if derivation.exists() { text_of(&derivation)? } else { String::new() };
+    let home = Home { folder: kept(parent.to_string_lossy().into_owned()), read_grains: HOME.read_grains };
+    Ok(Box::leak(Box::new(Case {
+        name: kept(name.to_string_lossy().into_owned()),
+        title: kept(claims.title),
+        claim: kept(claims.claim),
+        scene: kept(scene),
+        derivation: kept(derivation),
+        weakness: kept(claims.weakness),
+        levels: &[],
+        default_level: fraction("dt=.1", 0.1),
+        claims: Box::leak(Box::new(move || rows.clone())),
+        figures: no_more,
+        home: Box::leak(Box::new(home)),
+    })))
+}
+
+/// The text of a file.
+fn text_of(file: &Path) -> Result<String, NoCase> {
+    let no_case = |what: String| NoCase { file: file.to_owned(), what };
+    let readable = |error: std::io::Error| no_case(format!("expected a file that can be read, found {error}"));
+    let found = fs::metadata(file).map_err(readable)?;
+    if !found.is_file() || found.len() > MOST {
+        return Err(no_case("expected a plain file of at most a megabyte, found something else".to_owned()));
+    }
+    fs::read_to_string(file).map_err(readable)
+}

@@ -1,0 +1,302 @@
+//! A claim of a file as the harness has it.
+
+use super::claims_file::{Claimed, Controlled, CourseFile, Formula, Knobs, Over, Place};
+use super::expression::Expression;
+use super::numbers::Numbers;
+use super::read::{Read, TIME, follow, interpolated};
+use super::{Wrong, kept, wrong};
+use crate::registry::read_grains;
+use crate::solvers;
+use grainbench_harness::case::PLAIN;
+use grainbench_harness::claim::{Claim, Expecting, Quantity, claim};
+use grainbench_harness::control::Control;
+use grainbench_harness::course::{Plate, Points};
+use grainbench_harness::expect::Measured;
+use grainbench_harness::run::Run;
+use grainbench_harness::source::{Kind, Source, Work};
+use grainbench_harness::tolerance::{Tolerance, computed, judged};
+use grainbench_reference::read_table;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Method, Resolution};
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What a claim is read with.
+pub(super) struct Reader<'a> {
+    /// The folder.
+    pub(super) folder: &'a Path,
+    /// The scene file.
+    pub(super) source: &'a SceneSource,
+}
+
+impl Reader<'_> {
+    /// The claim.
+    ///
+    /// # Errors
+    /// Names the key, what was expected and what was found.
+    pub(super) fn claim(&self, claimed: Claimed) -> Result<Claim, Wrong> {
+        let variant = claimed.variant.as_deref().unwrap_or(PLAIN);
+        let source = if variant == PLAIN { self.source.clone() } else { self.source.clone().variant(variant) };
+        let in_scene = |error: grainbench_scene::error::SceneError| Wrong::Scene(error.to_string());
+        let scene = source.scene(&read_grains).map_err(in_scene)?;
+        let numbers = Numbers::of(source.table().map_err(in_scene)?, &scene).map_err(Wrong::Scene)?;
+        let numbers = Arc::new(numbers);
+        for (key, text) in [("quantity", &claimed.quantity), ("unit", &claimed.unit), ("because", &claimed.because)] {
+            in_words(key, text)?;
+        }
+        let resolution = resolution(&claimed.resolution, &claimed.solver, &scene)?;
+        let run = Run::new(kept(variant.to_owned()), kept(claimed.solver.clone()), resolution);
+        let quantity = claim(claimed.quantity.clone(), kept(claimed.unit.clone())).of(run);
+        let tolerance = tolerance(&claimed, &numbers)?;
+        let control = control(&claimed.control, &source, &scene)?;
+        let is_dem = Method::of(&claimed.solver) == Some(Method::Dem);
+        let expecting = self.expecting(quantity, &claimed, &numbers, is_dem)?;
+        let claim = expecting.within(tolerance).refuses(control);
+        let claim = match (&claim.trace, claimed.quantity) {
+            (Some(_), words) => {
+                let plate = Plate {
+                    name: kept(words.replace(|letter: char| !letter.is_alphanumeric(), "-").to_lowercase()),
+                    title: kept(words),
+                    caption: "",
+                    axes: ["time (s)", kept(format!("value ({})", claim.unit))],
+                    logarithmic: false,
+                };
+                let label = claim.runs.first().map_or_else(String::new, |run| run.solver.to_owned());
+                claim.drawn(Box::leak(Box::new(plate)), label)
+            }
+            (None, _) => claim,
+        };
+        // What grains on springs are claimed to do, another program of the kind can be asked.
+        Ok(if is_dem { claim.fair_to_any_springs() } else { claim })
+    }
+
+    /// The claim with what is expected of it.
+    fn expecting(
+        &self,
+        quantity: Quantity,
+        claimed: &Claimed,
+        numbers: &Arc<Numbers>,
+        knows_columns: bool,
+    ) -> Result<Expecting, Wrong> {
+        let value = expression("value", &claimed.value)?;
+        let known = |name: &&str| *name == TIME || numbers.columns.iter().any(|column| column == name);
+        let unknown = value.names().into_iter().find(|name| !known(name) && numbers.get(name).is_none());
+        if let Some(unknown) = unknown.filter(|_| knows_columns) {
+            let columns = numbers.columns.join(", ");
+            return Err(wrong("value", format!("columns of the record, among {columns}"), quoted(unknown)));
+        }
+        if !value.names().iter().any(|name| *name != TIME && numbers.get(name).is_none()) {
+            return Err(wrong("value", "a column of the record", "none: it would be the same whatever is run"));
+        }
+        let source = source(claimed)?;
+        let scale = claimed.scale.as_ref().map(|scale| constant("scale", scale, numbers)).transpose()?;
+        if scale.is_some_and(|scale| scale <= 0.0) {
+            return Err(wrong("scale", "a number above zero", "another"));
+        }
+        let over = claimed.over;
+        if over.is_some() && claimed.at.is_some() {
+            return Err(wrong("at", "a moment, or a reading `over` samples", "both"));
+        }
+        let read = Read { value, numbers: Arc::clone(numbers), at: claimed.at, over };
+        let Claimed { equals, follows, at_least, at_most, between, .. } = claimed;
+        match (equals, follows, at_least, at_most, between) {
+            (Some(formula), None, None, None, None) => {
+                let exact = formula_of("equals", formula)?;
+                check_names("equals", &exact, numbers, matches!(over, None | Some(Over::Course)))?;
+                let at = |t: f64| value_at(&exact, numbers, t);
+                if over != Some(Over::Course) && scale.is_none() && at(1.0) == 0.0 {
+                    return Err(wrong("scale", "a number, for zero is expected", "none"));
+                }
+                let of_scene = Arc::clone(numbers);
+                let exact = move |t: f64| value_at(&exact, &of_scene, t);
+                if over == Some(Over::Course) {
+                    return Ok(follow(quantity, source, read.samples(None), exact, scale));
+                }
+                Ok(quantity.equals(source, move |done| {
+                    let (t, value) = read.one(&done[0])?;
+                    let expected = exact(t);
+                    Ok(Measured::new(value, expected, scale.unwrap_or(expected.abs())))
+                }))
+            }
+            (None, Some(file), None, None, None) => {
+                if claimed.at.is_some() || !matches!(over, None | Some(Over::Course)) {
+                    return Err(wrong("follows", "every sample", "a moment or a reading `over` samples"));
+                }
+                let table = self.course(file)?;
+                let within = [table[0].0, table[table.len() - 1].0];
+                let read = Read { at: None, over: Some(Over::Course), ..read };
+                let read = read.samples(Some(within));
+                Ok(follow(quantity, source, read, move |t| interpolated(&table, t), scale))
+            }
+            (None, None, Some(bound), None, None) => {
+                let bound = constant("at_least", bound, numbers)?;
+                Ok(quantity.at_least(bound, source, read.bounded()?))
+            }
+            (None, None, None, Some(bound), None) => {
+                let bound = constant("at_most", bound, numbers)?;
+                Ok(quantity.at_most(bound, source, read.bounded()?))
+            }
+            (None, None, None, None, Some([low, high])) => {
+                let band = [constant("between", low, numbers)?, constant("between", high, numbers)?];
+                if band[0] >= band[1] {
+                    return Err(wrong("between", "the smaller number first", format!("{} and {}", band[0], band[1])));
+                }
+                Ok(quantity.between(band, source, read.bounded()?))
+            }
+            _ => {
+                Err(wrong("equals", "one of `equals`, `follows`, `at_least`, `at_most`, `between`", "none or several"))
+            }
+        }
+    }
+
+    /// Points of a course in a table.
+    fn course(&self, file: &CourseFile) -> Result<Points, Wrong> {
+        let table = read_table(&self.folder.join(&file.file)).map_err(|error| Wrong::Scene(error.to_string()))?;
+        let column = |key: &'static str, name: &str| {
+            let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+            let found = table.column(name).map(|at| table.values(at).collect::<Vec<_>>());
+            found.ok_or_else(|| wrong(key, format!("one of the columns {}", names.join(", ")), quoted(name)))
+        };
+        let (time, values) = (column("follows.time", &file.time)?, column("follows.value", &file.value)?);
+        if time.len() < 2 || time.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return Err(wrong("follows.time", "at least two times that rise", "others"));
+        }
+        Ok(time.into_iter().zip(values).collect())
+    }
+}
+
+fn value_at(expression: &Expression, numbers: &Numbers, t: f64) -> f64 {
+    expression.value(&|name| if name == TIME { Some(t) } else { numbers.get(name) })
+}
+
+fn expression(key: &'static str, text: &str) -> Result<Expression, Wrong> {
+    Expression::read(text).map_err(|error| Wrong::Key(key.to_owned(), error))
+}
+
+fn formula_of(key: &'static str, formula: &Formula) -> Result<Expression, Wrong> {
+    match formula {
+        Formula::Number(value) => Ok(Expression::Number(*value)),
+        Formula::Text(text) => expression(key, text),
+    }
+}
+
+fn check_names(key: &'static str, of: &Expression, numbers: &Numbers, with_time: bool) -> Result<(), Wrong> {
+    let known = |name: &&str| numbers.get(name).is_some() || (with_time && *name == TIME);
+    match of.names().into_iter().find(|name| !known(name)) {
+        None => Ok(()),
+        Some(unknown) => Err(wrong(key, "numbers of the scene, by their keys", quoted(unknown))),
+    }
+}
+
+/// A number of the scene, finite.
+fn constant(key: &'static str, formula: &Formula, numbers: &Numbers) -> Result<f64, Wrong> {
+    let expression = formula_of(key, formula)?;
+    check_names(key, &expression, numbers, false)?;
+    let value = value_at(&expression, numbers, f64::NAN);
+    if value.is_finite() { Ok(value) } else { Err(wrong(key, "a finite number", value.to_string())) }
+}
+
+fn tolerance(claimed: &Claimed, numbers: &Numbers) -> Result<Tolerance, Wrong> {
+    let allowed = constant("allowed", &claimed.allowed, numbers)?;
+    if allowed < 0.0 {
+        return Err(wrong("allowed", "zero or more", allowed.to_string()));
+    }
+    // A number that stands there is somebody's judgement; what follows the scene can be computed again.
+    let follows = !formula_of("allowed", &claimed.allowed)?.names().is_empty();
+    Ok(match &claimed.allowed {
+        Formula::Text(formula) if follows => computed(allowed, format!("{formula}: {}", claimed.because)),
+        _ => judged(allowed, claimed.because.clone()),
+    })
+}
+
+fn source(claimed: &Claimed) -> Result<Source, Wrong> {
+    let printed = |kind: Kind, place: &Place| {
+        in_words("work", &place.work)?;
+        in_words("place", &place.place)?;
+        let work = Work { kind, id: "", cited: kept(place.work.clone()) };
+        Ok(Source::Printed(Box::leak(Box::new(work)), kept(place.place.clone())))
+    };
+    match (&claimed.derived, &claimed.printed, &claimed.measured) {
+        (Some(words), None, None) => {
+            in_words("derived", words)?;
+            Ok(Source::Derived(kept(words.clone())))
+        }
+        (None, Some(place), None) => printed(Kind::Literature, place),
+        (None, None, Some(place)) => printed(Kind::Experiment, place),
+        _ => Err(wrong("derived", "one source: `derived`, `printed` or `measured`", "none or several")),
+    }
+}
+
+fn control(controlled: &Controlled, source: &SceneSource, scene: &Scene) -> Result<Control, Wrong> {
+    in_words("control.name", &controlled.name)?;
+    let set = controlled.set.iter().fold(source.clone(), |source, (key, value)| source.set(key, &value.to_string()));
+    let given = set.scene(&read_grains).map_err(|error| wrong("control.set", "another scene", error.to_string()))?;
+    if given == *scene {
+        return Err(wrong("control.set", "what makes another scene", "what leaves it as it is"));
+    }
+    let given = Arc::new(given);
+    Ok(Control::scene(kept(controlled.name.clone()), move |scene| (*given).clone_into(scene)))
+}
+
+/// How finely a solver works, from the knobs that it has.
+fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, Wrong> {
+    let Some(method) = solvers::by_name(solver).and(Method::of(solver)) else {
+        return Err(wrong("solver", format!("one of {}", solvers::names().join(", ")), quoted(solver)));
+    };
+    let Knobs { time_step_fraction, time_step, cells, points, courant, substeps, iterations } = *knobs;
+    let (step, grid) = (time_step_fraction.is_some() || time_step.is_some(), cells.is_some() || points.is_some());
+    let (grid, rigid) = (grid || courant.is_some(), substeps.is_some() || iterations.is_some());
+    let others = match method {
+        Method::Dem => grid || rigid || (time_step.is_some() && time_step_fraction.is_some()),
+        Method::Grid => step || rigid,
+        Method::Rigid => step || grid,
+    };
+    let numbers = [time_step_fraction, time_step, cells, courant, substeps.map(f64::from), iterations.map(f64::from)];
+    let is_positive =
+        numbers.into_iter().flatten().all(|number| number.is_finite() && number > 0.0) && points != Some(0);
+    if others || !is_positive {
+        let expected = match method {
+            Method::Dem => "`time_step_fraction` or `time_step`, above zero",
+            Method::Grid => "`cells`, `points` and `courant`, above zero",
+            Method::Rigid => "`substeps` and `iterations`, above zero",
+        };
+        return Err(wrong("resolution", expected, "others"));
+    }
+    match method {
+        Method::Dem => {
+            let critical = scene.critical_time_step();
+            let step = time_step.unwrap_or_else(|| time_step_fraction.unwrap_or(0.1) * critical);
+            if step >= critical {
+                return Err(wrong(
+                    "resolution",
+                    format!("less than the critical step, {critical:.6e} s"),
+                    step.to_string(),
+                ));
+            }
+            Ok(time_step.map_or(Resolution::CriticalFraction(time_step_fraction.unwrap_or(0.1)), Resolution::TimeStep))
+        }
+        Method::Grid => Ok(Resolution::Grid {
+            cells: cells.unwrap_or(8.0),
+            points: points.unwrap_or(3),
+            courant: courant.unwrap_or(Resolution::COURANT),
+        }),
+        Method::Rigid => Ok(Resolution::Rigid {
+            step: Resolution::RIGID_STEP,
+            substeps: substeps.unwrap_or(8),
+            iterations: iterations.unwrap_or(Resolution::RIGID_ITERATIONS),
+        }),
+    }
+}
+
+/// Words that a table and a page can hold.
+fn in_words(key: &'static str, text: &str) -> Result<(), Wrong> {
+    const LONGEST: usize = 500;
+    let is_plain = !text.trim().is_empty() && text.len() <= LONGEST && !text.chars().any(char::is_control);
+    if is_plain { Ok(()) } else { Err(wrong(key, "words on one line", quoted(text))) }
+}
+
+fn quoted(text: &str) -> String {
+    let text: String = text.chars().take(60).flat_map(char::escape_debug).collect();
+    format!("`{text}`")
+}

@@ -1,0 +1,175 @@
+//! A case of anybody's: a scene, claims in a file, no Rust.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Answer, grainbench};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// The example in a folder of its own, with something in one of its files replaced.
+fn case(file: &str, replaced: &[(&str, &str)]) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/case");
+    fs::create_dir(directory.path().join("slope")).unwrap();
+    for name in ["scene.toml", "claims.toml"] {
+        let mut text = fs::read_to_string(example.join(name)).unwrap();
+        for (right, wrong) in replaced.iter().filter(|_| name == file) {
+            assert!(text.contains(right), "{right}");
+            text = text.replacen(right, wrong, 1);
+        }
+        fs::write(directory.path().join("slope").join(name), text).unwrap();
+    }
+    directory
+}
+
+fn run(folder: &Path) -> (Answer, Vec<Value>, Vec<Value>) {
+    let answer = grainbench(folder, &["run", "slope", "--json"]);
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let list = |name: &str| results[name].as_array().unwrap().clone();
+    let (verdicts, controls) = (list("verdicts"), list("controls"));
+    (answer, verdicts, controls)
+}
+
+#[test]
+fn claims_in_a_file_are_judged_as_those_in_rust_are() {
+    let whole = case("", &[]);
+    let (answer, verdicts, controls) = run(whole.path());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(verdicts.len() == 3 && verdicts.iter().all(|row| row["verdict"] == "pass"), "{verdicts:#?}");
+    assert!(controls.len() == 3 && controls.iter().all(|control| control["turned_red"] == true), "{controls:#?}");
+    assert_eq!(
+        [&verdicts[0]["tolerance"], &verdicts[2]["tolerance"], &verdicts[0]["evidence"]],
+        ["computed", "judged", "analytic"]
+    );
+    // By hand: 5/2 · .1 · 9.81 · cos 30° / .005 at the time of the last sample.
+    let spin = 2.5 * 0.1 * 9.81 * 30.0_f64.to_radians().cos() / 0.005;
+    let found = verdicts[1]["expected"].as_f64().unwrap() / spin;
+    assert!((0.199..0.201).contains(&found), "{found}");
+    let page = fs::read_to_string(whole.path().join("grainbench-out/index.html")).unwrap();
+    assert!(page.contains("A ball on a slope") && page.contains("velocity, rolling"));
+}
+
+/// A wrong scene, a wrong expectation and a control that changes too little are each red.
+#[test]
+fn what_is_wrong_is_red() {
+    let red = |file: &str, replaced: &[(&str, &str)], verdicts_red: usize, controls_green: usize| {
+        let folder = case(file, replaced);
+        let (answer, verdicts, controls) = run(folder.path());
+        assert_eq!(answer.code, Some(1), "{replaced:?}");
+        let of = |rows: &[Value], key: &str, is: Value| rows.iter().filter(|row| row[key] == is).count();
+        assert_eq!(of(&verdicts, "verdict", "fail".into()), verdicts_red, "{replaced:?}: {verdicts:#?}");
+        assert_eq!(of(&controls, "turned_red", false.into()), controls_green, "{replaced:?}: {controls:#?}");
+    };
+    red("claims.toml", &[("5/7 *", "0.71 *")], 1, 0);
+    red("claims.toml", &[("5/2 *", "2.51 *")], 1, 0);
+    red("claims.toml", &[("allowed = 1e-6", "allowed = 0.1")], 0, 1);
+    red("claims.toml", &[("29.9 }", "29.99999 }")], 0, 1);
+    // A slope on which it rolls where slipping is claimed.
+    red("scene.toml", &[("friction = 0.1", "friction = 0.3")], 1, 0);
+}
+
+/// A course in a table, a moment, and bounds.
+#[test]
+fn a_claim_may_be_a_course_a_moment_or_a_bound() {
+    let claims = |expected: &str| {
+        format!(
+            "title = \"A slope\"\n[[claims]]\nquantity = \"velocity\"\nunit = \"m/s\"\nvalue = \"ball.vx\"\n{expected}\n\
+             allowed = 0.001\nbecause = \"the springs yield\"\n\
+             control = {{ name = \"half the weight\", set = {{ gravity.magnitude = 4.9 }} }}\n"
+        )
+    };
+    let acceleration = 5.0 / 7.0 * 9.81 * 0.5;
+    let course: String = (0..=10).map(|k| f64::from(k) / 50.0).map(|t| format!("{t},{}\n", t * acceleration)).collect();
+    let column = "follows = { file = \"v.csv\", time = \"t (s)\", value = \"v (m/s)\" }";
+    let printed = "printed = { work = \"Somebody (2001)\", place = \"eq. 3\" }";
+    let half = 0.5 * 0.2 * acceleration;
+    for (expected, evidence) in [
+        (format!("{column}\nmeasured = {{ work = \"A\", place = \"B\" }}"), "experiment"),
+        (format!("at = 0.1\nequals = \"{acceleration} * t\"\n{printed}"), "paper"),
+        (format!("over = \"mean\"\nequals = {half}\nderived = \"v = at\""), "analytic"),
+        (format!("over = \"max\"\nbetween = [{}, {}]\n{printed}", 0.19 * acceleration, 0.21 * acceleration), "paper"),
+        (format!("at_least = {}\nderived = \"v = at\"", 0.199 * acceleration), "analytic"),
+    ] {
+        let folder = case("", &[]);
+        fs::write(folder.path().join("slope/claims.toml"), claims(&expected)).unwrap();
+        fs::write(folder.path().join("slope/v.csv"), format!("t (s),v (m/s)\n{course}")).unwrap();
+        let (answer, verdicts, controls) = run(folder.path());
+        assert_eq!(answer.code, Some(0), "{expected}: {}{}", answer.err, answer.out);
+        assert!(verdicts[0]["verdict"] == "pass" && verdicts[0]["evidence"] == evidence, "{expected}: {verdicts:#?}");
+        assert_eq!(controls[0]["turned_red"], true, "{expected}: {controls:#?}");
+    }
+}
+
+/// A slip is refused with the file, the claim, the key, what was expected and what stood there, and nothing is run.
+#[test]
+fn a_wrong_file_is_refused() {
+    let slips: [(&str, &str, &str); 19] = [
+        ("title = ", "titel = ", "line 1: expected the keys of claims, found unknown field `titel`"),
+        (
+            "value = \"ball.vx\"",
+            "value = \"ball.vq\"",
+            "claim 1 (velocity, rolling): value: expected columns of the record, among ball.x",
+        ),
+        ("value = \"ball.vx\"", "value = \"duration\"", "value: expected a column of the record, found none"),
+        (
+            "gravity.magnitude * sin",
+            "gravity.size * sin",
+            "equals: expected numbers of the scene, by their keys, found `gravity.size`",
+        ),
+        ("sin(gravity", "sine(gravity", "equals: expected a function, one of sin"),
+        ("* t\"", "* t +\"", "equals: expected a number, a name or `(` at column"),
+        ("over = \"course\"", "over = \"most\"", "unknown variant `most`"),
+        ("over = \"course\"", "over = \"max\"", "equals: expected numbers of the scene, by their keys, found `t`"),
+        (
+            "over = \"course\"",
+            "over = \"course\"\nat = 0.1",
+            "at: expected a moment, or a reading `over` samples, found both",
+        ),
+        ("derived = \"rolling", "at_least = 1.0\nderived = \"rolling", "equals: expected one of `equals`, `follows`"),
+        (
+            "derived = \"rolling",
+            "measured = { work = \"A\", place = \"B\" }\nderived = \"rolling",
+            "derived: expected one source",
+        ),
+        (
+            "because = \"friction swings",
+            "because = \"\\u001b[2J",
+            "because: expected words on one line, found `\\u{1b}[2J",
+        ),
+        ("allowed = 1e-6", "allowed = nan", "allowed: expected a finite number, found NaN"),
+        ("allowed = 1e-6", "allowed = -1.0", "allowed: expected zero or more, found -1"),
+        ("{ time_step_fraction = 0.02 }", "{ cells = 8 }", "resolution: expected `time_step_fraction` or `time_step`"),
+        (
+            "{ time_step_fraction = 0.02 }",
+            "{ time_step_fraction = 2 }",
+            "resolution: expected less than the critical step",
+        ),
+        ("variant = \"slips\"", "variant = \"slides\"", "expected one of the variants slips, found `slides`"),
+        ("gravity.slope_deg = 29.9", "gravity.slope_deg = 30.0", "control.set: expected what makes another scene"),
+        ("gravity.slope_deg = 29.9", "gravity.slop_deg = 29.9", "control.set: expected another scene, found"),
+    ];
+    for (right, instead, said) in slips {
+        let folder = case("claims.toml", &[(right, instead)]);
+        let answer = grainbench(folder.path(), &["run", "slope"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{instead}: {}", answer.err);
+        assert!(answer.err.contains("slope/claims.toml: ") && answer.err.contains(said), "{instead}: {}", answer.err);
+        assert!(!answer.err.contains('\u{1b}'), "{}", answer.err);
+    }
+    let said = |text: &str, said: &str| {
+        let folder = case("", &[]);
+        fs::write(folder.path().join("slope/claims.toml"), text).unwrap();
+        let answer = grainbench(folder.path(), &["run", "slope"]);
+        assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
+    };
+    let whole = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/case/claims.toml")).unwrap();
+    said("", "missing field `title`");
+    said("title = \"A\"\nclaims = []\n", "expected at least one `[[claims]]`, found none");
+    said(&whole[..whole.len() / 2], "claims.toml: ");
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let answer = grainbench(folder.path(), &["run", "empty"]);
+    assert!(answer.code == Some(2) && answer.err.contains("empty/claims.toml: expected a file"), "{}", answer.err);
+}
