@@ -157,6 +157,7 @@ fn run_leaves_its_files_and_a_summary() {
         "points.csv",
         "report.json",
         "results.json",
+        "rows.csv",
     ];
     assert_eq!(files(&out), expected);
     assert_eq!(files(directory.path()).len(), expected.len());

@@ -13,6 +13,7 @@ use crate::page;
 use crate::plot;
 use crate::report::Report;
 use crate::results::{points_csv, results_json};
+use crate::rows::{ROWS_PARQUET, rows_csv, rows_parquet};
 use crate::staged::StagedDir;
 use crate::write::WriteError;
 
@@ -71,7 +72,7 @@ pub enum LoadError {
     },
 }
 
-/// Writes `index.html`, `results.json`, `report.json`, `points.csv`, `junit.xml` and `figures/CASE-NAME.svg` into
+/// Writes `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml` and `figures/CASE-NAME.svg` into
 /// `dir`, films as `figures/CASE-NAME.png` too, all of them or none.
 ///
 /// # Errors
@@ -79,6 +80,20 @@ pub enum LoadError {
 pub fn write_report(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveError> {
     let mut out = StagedDir::new(dir.as_ref())?;
     add_report(&mut out, report)?;
+    out.commit()?;
+    Ok(())
+}
+
+/// The same, with the rows as Parquet too.
+///
+/// # Errors
+/// When the disk refuses or a figure cannot be drawn.
+pub fn write_report_and_parquet(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveError> {
+    let mut out = StagedDir::new(dir.as_ref())?;
+    add_report(&mut out, report)?;
+    let rows =
+        rows_parquet(report).map_err(|error| SaveError::Encode { file: ROWS_PARQUET, reason: error.to_string() })?;
+    out.write(ROWS_PARQUET, rows)?;
     out.commit()?;
     Ok(())
 }
@@ -95,6 +110,8 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
     out.write("results.json", results)?;
     let points = points_csv(report).map_err(|error| encode("points.csv")(error.to_string()))?;
     out.write("points.csv", points)?;
+    let rows = rows_csv(report).map_err(|error| encode("rows.csv")(error.to_string()))?;
+    out.write("rows.csv", rows)?;
     let junit = junit_xml(report).map_err(|error| encode("junit.xml")(error.to_string()))?;
     out.write("junit.xml", junit)?;
     out.write("index.html", page::render(report)?)?;
@@ -170,6 +187,7 @@ mod tests {
         assert_eq!(fs::read_to_string(out.join("index.html")).unwrap(), first);
         for name in [
             "results.json",
+            "rows.csv",
             "points.csv",
             "junit.xml",
             "figures/backspin-convergence.svg",

@@ -15,7 +15,7 @@ use grainbench::harness::runner::Runner;
 use grainbench::harness::verdict::{self, Control, Verdict};
 use grainbench::reference::outside::Outside;
 use grainbench::reports::results::results_json;
-use grainbench::reports::{Report, RunCost, Section, summary_table, write_report};
+use grainbench::reports::{Report, RunCost, Section, summary_table, write_report, write_report_and_parquet};
 use grainbench::scene::solver::RunError;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -49,6 +49,9 @@ pub(crate) struct Options {
     /// Print the results as JSON instead of a table.
     #[arg(long)]
     json: bool,
+    /// Leave the rows as `rows.parquet` beside `rows.csv`.
+    #[arg(long)]
+    parquet: bool,
     /// Run `lammps` and `liggghts` even where a run of theirs is stored.
     #[arg(long)]
     live: bool,
@@ -82,7 +85,8 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     }
     let provenance = provenance(words, start.elapsed().as_secs_f64());
     let report = Report { provenance, sections };
-    write_report(&options.out, &report).map_err(Fault::writing)?;
+    let write = if options.parquet { write_report_and_parquet } else { write_report };
+    write(&options.out, &report).map_err(Fault::writing)?;
     if options.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {

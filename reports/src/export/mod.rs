@@ -3,6 +3,7 @@
 pub mod dump;
 pub mod record_json;
 pub mod series_csv;
+pub mod series_parquet;
 pub mod vtk;
 
 #[cfg(test)]
@@ -25,7 +26,7 @@ pub enum Format {
     Dump,
     /// Under `vtk/` a file a snapshot of grains, of contacts and of material points, with a collection of each.
     Vtk,
-    /// Under `snapshots/` parts with a Parquet file a kind of row, see [`crate::parts`].
+    /// Under `snapshots/` parts with a Parquet file a kind of row, see [`crate::parts`], and the series as `series.parquet` too.
     Parquet,
 }
 
@@ -49,7 +50,7 @@ pub fn write_run(
 ) -> Result<(), WriteError> {
     snapshots.settle()?;
     out.write_with(record_json::RECORD_FILE, |file| record_json::write(record, snapshots, file))?;
-    write_series(&record.series, out)?;
+    write_series(&record.series, formats, out)?;
     write_snapshots(snapshots, formats, out)
 }
 
@@ -84,12 +85,16 @@ pub fn write_remains(
     let (step, time) = snapshots.end().map_or((0, 0.0), |end| (end.step, end.time));
     let text = serde_json::to_string_pretty(&Broken { error, step, time }).map_err(|error| at(error.into()))?;
     out.write(BROKEN_FILE, text + "\n")?;
-    write_series(series, out)?;
+    write_series(series, formats, out)?;
     write_snapshots(snapshots, formats, out)
 }
 
-fn write_series(series: &Series, out: &mut StagedDir) -> Result<(), WriteError> {
-    out.write_with("series.csv", |file| series_csv::write(series, file))
+fn write_series(series: &Series, formats: &BTreeSet<Format>, out: &mut StagedDir) -> Result<(), WriteError> {
+    out.write_with("series.csv", |file| series_csv::write(series, file))?;
+    if formats.contains(&Format::Parquet) {
+        out.write_with("series.parquet", |file| series_parquet::write(series, file))?;
+    }
+    Ok(())
 }
 
 fn write_snapshots(

@@ -24,8 +24,8 @@ pub fn write(series: &Series, out: impl Write) -> io::Result<()> {
     table.flush()
 }
 
-/// A head that no spreadsheet takes for a formula: probes are named by whoever wrote the scene.
-fn harmless(head: String) -> String {
+/// A cell that no spreadsheet takes for a formula: probes are named by whoever wrote the scene.
+pub(crate) fn harmless(head: String) -> String {
     if head.starts_with(['=', '+', '-', '@']) { format!("'{head}") } else { head }
 }
 

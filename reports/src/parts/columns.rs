@@ -49,7 +49,7 @@ pub(super) trait Row: Sized {
 
 /// The values of one column.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Values {
+pub(crate) enum Values {
     Whole(Vec<i64>),
     Number(Vec<f64>),
     Told(Vec<Option<f64>>),

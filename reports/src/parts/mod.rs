@@ -11,6 +11,8 @@ mod rows;
 mod store;
 mod table;
 
+pub(crate) use columns::Values;
 pub use end::End;
 pub use folder::each_snapshot;
 pub use store::{READABLE, SnapshotStore, StoreError};
+pub(crate) use table::whole;

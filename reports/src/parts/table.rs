@@ -40,10 +40,8 @@ impl<R: Row> TableWriter<R> {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
         let columns = Gathered::of::<R>(&mut []).columns;
-        let fields =
-            columns.iter().map(|(name, values)| field(name, values)).collect::<Result<_, _>>().map_err(told)?;
-        let schema = Type::group_type_builder(R::TABLE).with_fields(fields).build().map_err(told)?;
-        let file = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties.build())).map_err(told)?;
+        let schema = schema(R::TABLE, columns.iter().map(|(name, values)| (*name, values))).map_err(told)?;
+        let file = SerializedFileWriter::new(file, schema, Arc::new(properties.build())).map_err(told)?;
         Ok(Self { file, row: PhantomData })
     }
 
@@ -137,6 +135,25 @@ impl<R: Row> TableReader<R> {
 /// Name of the file of a table.
 pub(super) fn file_name(table: &str) -> String {
     format!("{table}.parquet")
+}
+
+/// A whole table in a file: columns of one length, by their names.
+pub(crate) fn whole(table: &str, columns: &[(String, Values)], file: impl Write + Send) -> io::Result<()> {
+    let write_all = || -> Result<(), ParquetError> {
+        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
+        let schema = schema(table, columns.iter().map(|(name, values)| (name.as_str(), values)))?;
+        let mut file = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
+        let mut group = file.next_row_group()?;
+        columns.iter().try_for_each(|(_, values)| write(&mut group, values))?;
+        group.close()?;
+        file.close().map(drop)
+    };
+    write_all().map_err(told)
+}
+
+fn schema<'a>(table: &str, columns: impl Iterator<Item = (&'a str, &'a Values)>) -> Result<Arc<Type>, ParquetError> {
+    let fields = columns.map(|(name, values)| field(name, values)).collect::<Result<_, _>>()?;
+    Type::group_type_builder(table).with_fields(fields).build().map(Arc::new)
 }
 
 fn field(name: &str, values: &Values) -> Result<Arc<Type>, ParquetError> {
