@@ -23,6 +23,8 @@ pub(crate) enum Kind {
     Table,
     /// One of VTK's.
     Vtk(vtk::Kind),
+    /// One of VTK's in HDF5.
+    VtkHdf,
     /// Arrays of NumPy's.
     Npz,
 }
@@ -32,10 +34,13 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     let name = shown(path);
     let opened = || File::open(path).map_err(|error| ReadError::opening(&name, error));
     let mut mark = Vec::new();
-    let marked = opened()?.take(npz::MARK.len() as u64).read_to_end(&mut mark);
+    let marked = opened()?.take(vtk::MARK.len() as u64).read_to_end(&mut mark);
     marked.map_err(|error| ReadError::reading(&name, 1, error))?;
+    if mark == vtk::MARK {
+        return Ok(Kind::VtkHdf);
+    }
     // Other archives are refused where their text is looked for.
-    if mark == npz::MARK && path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz")) {
+    if mark.starts_with(npz::MARK) && path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz")) {
         return Ok(Kind::Npz);
     }
     let reading = |error| ReadError::reading(&name, 1, error);
@@ -91,7 +96,10 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
             kind @ (Kind::Dump | Kind::Table | Kind::Npz) => {
                 files.push(RunFile { path: path.clone(), kind, moment: None });
             }
-            Kind::Vtk(vtk::Kind::Points) => files.push(of_moment(path, None)?),
+            Kind::VtkHdf if vtk::has_steps(path)? => {
+                files.push(RunFile { path: path.clone(), kind: Kind::VtkHdf, moment: None });
+            }
+            Kind::VtkHdf | Kind::Vtk(vtk::Kind::Points) => files.push(of_moment(path, None)?),
             Kind::Vtk(vtk::Kind::Collection) => {
                 for (time, path) in vtk::read_collection(path)? {
                     files.push(of_moment(&path, Some(time))?);
@@ -117,8 +125,7 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     let step = step.map_err(|_| {
         ReadError::at(&shown(path), 1, "the step in the file's name, as in `dump_5000.vtk`", quoted(&stem))
     })?;
-    let kind = Kind::Vtk(vtk::Kind::Points);
-    Ok(RunFile { path: path.to_owned(), kind, moment: Some(Moment { step, time }) })
+    Ok(RunFile { path: path.to_owned(), kind: kind(path)?, moment: Some(Moment { step, time }) })
 }
 
 /// Snapshot after snapshot of a file.
@@ -128,6 +135,8 @@ pub(crate) enum Snapshots {
     One(Option<RunFile>),
     /// Of arrays, and the moment that comes next.
     Arrays(Box<Course>, usize),
+    /// Of moments that were read together, those that are left.
+    Moments(std::vec::IntoIter<DumpSnapshot>),
 }
 
 impl Snapshots {
@@ -142,6 +151,7 @@ impl Snapshots {
                 }
                 Self::Arrays(Box::new(course), 0)
             }
+            None if file.kind == Kind::VtkHdf => Self::Moments(vtk::read_moments(&file.path)?.into_iter()),
             None => Self::Dump(Box::new(DumpReader::open(&file.path)?.at_most(most_rows))),
             Some(_) => Self::One(Some(file.clone())),
         })
@@ -157,11 +167,19 @@ impl Snapshots {
                 *moment += 1;
                 Ok(true)
             }
+            Self::Moments(moments) => {
+                let Some(next) = moments.next() else { return Ok(false) };
+                *snapshot = next;
+                Ok(true)
+            }
             Self::One(file) => {
-                let Some((path, moment)) = file.take().and_then(|file| Some((file.path, file.moment?))) else {
-                    return Ok(false);
+                let Some(file) = file.take() else { return Ok(false) };
+                let Some(moment) = file.moment else { return Ok(false) };
+                let read = if file.kind == Kind::VtkHdf {
+                    vtk::read_moments(&file.path)?.into_iter().next().unwrap_or_default()
+                } else {
+                    vtk::read_points(&file.path)?
                 };
-                let read = vtk::read_points(&path)?;
                 *snapshot = DumpSnapshot { step: moment.step, time: read.time.or(moment.time), ..read };
                 Ok(true)
             }

@@ -28,7 +28,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
     /// Dumps of grains that follow one another, dumps of their contacts (`dump local`) at the same steps beside them; VTK
-    /// files of a step each (`.vtk`, `.vtp`, `.vtu`), or their collection (`.pvd`); or one CSV table. Plain, gzip or zstd.
+    /// files of a step each (`.vtk`, `.vtp`, `.vtu`, `.vtkhdf`), their collection (`.pvd`), or one of all steps (`.vtkhdf`); or
+    /// one CSV table. Plain, gzip or zstd.
     #[arg(long, value_name = "FILE", required_unless_present = "all", num_args = 1..)]
     dump: Vec<PathBuf>,
     /// Everything in this folder: what lies in `DIR/CASE` and `DIR/CASE/VARIANT` is of that.
@@ -161,7 +162,9 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
 fn looks_like_output(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let name = name.trim_end_matches(".gz").trim_end_matches(".zst");
-    [".dump", ".local", ".lammpstrj", ".csv", ".vtk", ".vtp", ".vtu", ".pvd"].iter().any(|end| name.ends_with(end))
+    [".dump", ".local", ".lammpstrj", ".csv", ".vtk", ".vtkhdf", ".vtp", ".vtu", ".pvd"]
+        .iter()
+        .any(|end| name.ends_with(end))
 }
 
 /// Most rows that a snapshot can have: a grain has a dozen contacts at most, and walls.

@@ -91,10 +91,10 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
     let word = |kind: Kind| match kind {
         Kind::Dump => "a dump",
         Kind::Table => "a table",
-        Kind::Vtk(_) => "a file of VTK's",
+        Kind::Vtk(_) | Kind::VtkHdf => "a file of VTK's",
         Kind::Npz => "arrays of NumPy's",
     };
-    if let Some(which) = kinds.iter().position(|kind| matches!(kind, Kind::Vtk(_) | Kind::Npz)) {
+    if let Some(which) = kinds.iter().position(|kind| matches!(kind, Kind::Vtk(_) | Kind::VtkHdf | Kind::Npz)) {
         let name = [first, second][which].to_string_lossy();
         return Err(ReadError::at(&name, 1, "a dump or a table", word(kinds[which])));
     }

@@ -162,7 +162,8 @@ pub enum GrainFormat {
     Csv,
     /// Arrays of NumPy: `position`, `velocity` and `spin` of the shape (samples, grains, 3), and `step`.
     Npz,
-    /// VTK's files, one a sample; `*` in the path stands for the step.
+    /// VTK's files, one a sample; `*` in the path stands for the step. Or one of HDF5 with all samples.
+    #[serde(alias = "vtkhdf")]
     Vtk,
 }
 

@@ -1,14 +1,17 @@
-//! Points with their arrays from VTK's files: legacy ones (`.vtk`) and XML ones (`.vtp`, `.vtu`), as text or binary.
+//! Points with their arrays from VTK's files: legacy ones (`.vtk`), XML ones (`.vtp`, `.vtu`), as text or binary, and HDF5
+//! (`.vtkhdf`).
 //!
 //! Source: "VTK File Formats" of the VTK documentation, versions to 5.1 of the legacy form and to 2.2 of the XML form.
 
 mod bytes;
 mod collection;
+mod hdf;
 mod legacy;
 mod points;
 mod xml;
 
 pub(crate) use collection::read_collection;
+pub(crate) use hdf::{MARK, has_steps, read_moments};
 
 use super::decoding::{Decoded, decoded};
 use super::read_error::ReadError;

@@ -24,6 +24,9 @@ fn every_form_tells_the_same() {
         ("appended_zlib_7.vtp", 0.0),
         ("appended_raw_7.vtp", 0.0),
         ("appended_raw_zlib_7.vtp", 0.0),
+        ("hdf_7.vtkhdf", 0.0),
+        ("hdf_zlib_7.vtkhdf", 0.0),
+        ("hdf_grid_7.vtkhdf", 0.0),
     ];
     let expected = [
         ("id", [3.0, 1.0, 2.0]),
@@ -36,7 +39,9 @@ fn every_form_tells_the_same() {
         ("omegaz", [1.0, 2.0, 3.0]),
     ];
     for (name, rounding) in files {
-        let snapshot = read_points(&data(name)).unwrap();
+        let is_hdf = name.ends_with("hdf");
+        let snapshot =
+            if is_hdf { read_moments(&data(name)).unwrap().remove(0) } else { read_points(&data(name)).unwrap() };
         assert_eq!((snapshot.rows(), snapshot.time), (3, Some(0.625)), "{name}");
         for (column, values) in expected {
             let place = snapshot.column(column).unwrap();
@@ -121,4 +126,53 @@ fn faults_name_their_place() {
     assert!(fault(&format!("{head}POINTS 99999999999 double\n")).contains("found the end of the file"));
     let grid = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\n";
     assert!(fault(grid).starts_with("f.vtk:4: expected `DATASET POLYDATA`"), "{}", fault(grid));
+}
+
+/// Moments have parts, and arrays that do not change are there once.
+#[test]
+fn moments_are_cut_out_of_the_arrays() {
+    let path = data("hdf_times.vtkhdf");
+    assert!(has_steps(&path).unwrap() && !has_steps(&data("hdf_7.vtkhdf")).unwrap());
+    // By hand: one point of 2, 1 first; the second moment is read where three points of `radius` are.
+    let moments = read_moments(&path).unwrap();
+    let column = |at: usize, name: &str| -> Vec<f64> {
+        let place = moments[at].column(name).unwrap();
+        moments[at].values(place).collect()
+    };
+    assert_eq!(
+        moments.iter().map(|moment| (moment.step, moment.time)).collect::<Vec<_>>(),
+        [(0, Some(0.0)), (1, Some(0.5))]
+    );
+    assert_eq!((column(0, "id"), column(1, "id")), (vec![2.0, 1.0], vec![1.0, 2.0, 3.0]));
+    assert_eq!((column(0, "x"), column(1, "z")), (vec![0.0, 1.0], vec![3.0, 4.0, 5.0]));
+    assert_eq!((column(0, "vy"), column(1, "vx")), (vec![1.0, 4.0], vec![6.0, 9.0, 12.0]));
+    assert_eq!((column(0, "radius"), column(1, "radius")), (vec![0.5, 0.5], vec![0.5, 0.5, 0.25]));
+}
+
+/// A damaged file is refused with its name, or read as what it still says, and never ends the program.
+#[test]
+fn a_damaged_hdf_file_is_an_error() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("damaged_7.vtkhdf");
+    let try_it = |bytes: &[u8]| {
+        fs::write(&path, bytes).unwrap();
+        has_steps(&path).and_then(|_| read_moments(&path))
+    };
+    let whole = fs::read(data("hdf_times.vtkhdf")).unwrap();
+    for cut in [8, 100, whole.len() / 2, whole.len() - 1] {
+        let error = try_it(&whole[..cut]).unwrap_err().to_string();
+        assert!(error.contains("damaged_7.vtkhdf:1: expected"), "{error}");
+    }
+    let mut random = 1_u64;
+    for _ in 0..500 {
+        let mut bytes = whole.clone();
+        for _ in 0..4 {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let (at, byte) = ((random >> 33) as usize % bytes.len(), random as u8);
+            bytes[at] = byte;
+        }
+        if let Err(error) = try_it(&bytes) {
+            assert!(!error.to_string().contains('\n'), "{error}");
+        }
+    }
 }
