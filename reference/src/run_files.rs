@@ -135,8 +135,8 @@ pub(crate) enum Snapshots {
     One(Option<RunFile>),
     /// Of arrays, and the moment that comes next.
     Arrays(Box<Course>, usize),
-    /// Of moments that were read together, those that are left.
-    Moments(std::vec::IntoIter<DumpSnapshot>),
+    /// Of a file of VTK's in HDF5, and the moment that comes next.
+    Moments(Box<vtk::Moments>, usize),
 }
 
 impl Snapshots {
@@ -145,13 +145,14 @@ impl Snapshots {
         Ok(match file.moment {
             None if file.kind == Kind::Npz => {
                 let course = npz::read_course(&file.path)?;
-                if course.grains() as u64 > most_rows {
-                    let expected = format!("at most {most_rows} grains, for no more can belong to the scene");
-                    return Err(ReadError::at(course.name(), 1, expected, course.grains().to_string()));
-                }
+                check_grains(course.name(), course.grains(), most_rows)?;
                 Self::Arrays(Box::new(course), 0)
             }
-            None if file.kind == Kind::VtkHdf => Self::Moments(vtk::read_moments(&file.path)?.into_iter()),
+            None if file.kind == Kind::VtkHdf => {
+                let moments = vtk::read_moments(&file.path)?;
+                check_grains(moments.name(), moments.grains(), most_rows)?;
+                Self::Moments(Box::new(moments), 0)
+            }
             None => Self::Dump(Box::new(DumpReader::open(&file.path)?.at_most(most_rows))),
             Some(_) => Self::One(Some(file.clone())),
         })
@@ -167,24 +168,42 @@ impl Snapshots {
                 *moment += 1;
                 Ok(true)
             }
-            Self::Moments(moments) => {
-                let Some(next) = moments.next() else { return Ok(false) };
+            Self::Moments(moments, moment) => {
+                let Some(next) = moments.snapshot(*moment)? else { return Ok(false) };
                 *snapshot = next;
+                *moment += 1;
                 Ok(true)
             }
             Self::One(file) => {
                 let Some(file) = file.take() else { return Ok(false) };
                 let Some(moment) = file.moment else { return Ok(false) };
-                let read = if file.kind == Kind::VtkHdf {
-                    vtk::read_moments(&file.path)?.into_iter().next().unwrap_or_default()
-                } else {
-                    vtk::read_points(&file.path)?
-                };
+                let read =
+                    if file.kind == Kind::VtkHdf { only_moment(&file.path)? } else { vtk::read_points(&file.path)? };
                 *snapshot = DumpSnapshot { step: moment.step, time: read.time.or(moment.time), ..read };
                 Ok(true)
             }
         }
     }
+}
+
+/// The grains of a file that may hold one moment alone.
+fn only_moment(path: &Path) -> Result<DumpSnapshot, ReadError> {
+    let moments = vtk::read_moments(path)?;
+    match (moments.count(), moments.snapshot(0)?) {
+        (1, Some(snapshot)) => Ok(snapshot),
+        (count, _) => {
+            Err(ReadError::at(&shown(path), 1, "one moment, as a list of files tells its time", count.to_string()))
+        }
+    }
+}
+
+/// Refuses more grains than a scene has.
+fn check_grains(name: &str, grains: usize, most_rows: u64) -> Result<(), ReadError> {
+    if grains as u64 <= most_rows {
+        return Ok(());
+    }
+    let expected = format!("at most {most_rows} grains, for no more can belong to the scene");
+    Err(ReadError::at(name, 1, expected, grains.to_string()))
 }
 
 pub(crate) fn shown(path: &Path) -> String {

@@ -8,15 +8,17 @@ use super::points::{Array, Points};
 use crate::read::binary::Number;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::DumpSnapshot;
+use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, Hdf5File, OpenOptions};
+use std::cell::Cell;
 use std::fs;
 use std::path::Path;
 
 /// How a file begins.
 pub(crate) const MARK: &[u8] = b"\x89HDF\r\n\x1a\n";
-/// Most bytes of a file, and of an array that is unpacked from it.
+/// Most bytes of a file, and of all arrays together that are unpacked from it.
 const MOST: usize = 1 << 30;
 /// The time of a file of one moment.
 const TIME: &str = "TimeValue";
@@ -29,6 +31,8 @@ const KINDS: [&str; 2] = ["PolyData", "UnstructuredGrid"];
 struct File {
     name: String,
     root: Group,
+    /// Bytes that may still be unpacked: a small file may hold large arrays, and one array under many names.
+    left: Cell<usize>,
 }
 
 /// Whether a file holds several moments, or one.
@@ -40,11 +44,29 @@ pub(crate) fn has_steps(path: &Path) -> Result<bool, ReadError> {
     Ok(file.group(&file.root, "Steps")?.is_some())
 }
 
-/// The grains of a file moment after moment; the steps are the places of the moments where there are several.
+/// Grains at one moment or several.
+#[derive(Debug)]
+pub(crate) struct Moments {
+    name: String,
+    positions: Array,
+    arrays: Vec<Array>,
+    moments: Vec<Moment>,
+}
+
+/// Where a moment stands in the arrays.
+#[derive(Debug)]
+struct Moment {
+    time: Option<f64>,
+    points: usize,
+    position: usize,
+    of: Vec<usize>,
+}
+
+/// Reads the grains of a file; they are cut out of its arrays moment by moment, for moments may share them.
 ///
 /// # Errors
 /// The file cannot be read, breaks off, or is not such a file.
-pub(crate) fn read_moments(path: &Path) -> Result<Vec<DumpSnapshot>, ReadError> {
+pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
     let file = File::open(path)?;
     let positions = file.array(&file.root, "Points", Some(3))?;
     let counts = file.whole(&file.root, "NumberOfPoints")?;
@@ -54,59 +76,60 @@ pub(crate) fn read_moments(path: &Path) -> Result<Vec<DumpSnapshot>, ReadError> 
             arrays.push(file.array(&told, &name, None)?);
         }
     }
-    let Some(steps) = file.group(&file.root, "Steps")? else {
-        let field = file.group(&file.root, "FieldData")?;
-        let time = match field {
-            Some(field) if file.has(&field, TIME)? => file.array(&field, TIME, None)?.numbers.first().copied(),
-            _ => None,
-        };
-        let points: usize = counts.iter().sum();
-        let moment = Moment { time, points, position: 0, of: vec![0; arrays.len()] };
-        return Ok(vec![file.snapshot(0, &moment, &positions, &arrays)?]);
-    };
-    let times = file.array(&steps, "Values", Some(1))?.numbers;
-    let moments = times.len();
-    let per_moment = |group: &Group, name: &str| -> Result<Vec<usize>, ReadError> {
-        let list = file.whole(group, name)?;
-        if list.len() == moments {
-            return Ok(list);
+    let moments = match file.group(&file.root, "Steps")? {
+        Some(steps) => file.moments(&steps, &counts, &arrays)?,
+        None => {
+            let points: usize = counts.iter().sum();
+            // What is there beyond the points that are counted belongs to nobody knows what.
+            for array in [&positions].into_iter().chain(&arrays) {
+                let rows = array.numbers.len() / array.components;
+                if rows != points {
+                    let expected = format!("{points} points in the array {}", quoted(&array.name));
+                    return Err(file.fault(&expected, &rows.to_string()));
+                }
+            }
+            vec![Moment { time: file.time()?, points, position: 0, of: vec![0; arrays.len()] }]
         }
-        Err(file.fault(&format!("{moments} numbers in `{name}`, one a step"), &list.len().to_string()))
     };
-    // One part a moment where nothing is said of parts.
-    let parts =
-        if file.has(&steps, "NumberOfParts")? { per_moment(&steps, "NumberOfParts")? } else { vec![1; moments] };
-    let first_part = per_moment(&steps, "PartOffsets")?;
-    let first_point = per_moment(&steps, "PointOffsets")?;
-    let of_data = file.group(&steps, "PointDataOffsets")?;
-    let mut first = Vec::new();
-    for array in &arrays {
-        first.push(match &of_data {
-            Some(group) if file.has(group, &array.name)? => per_moment(group, &array.name)?,
-            _ => first_point.clone(),
-        });
-    }
-    let mut snapshots = Vec::new();
-    for at in 0..moments {
-        let last = first_part[at].checked_add(parts[at]);
-        let counts = last.and_then(|last| counts.get(first_part[at]..last)).ok_or_else(|| {
-            file.fault(&format!("{} parts from {} on in `NumberOfPoints`", parts[at], first_part[at]), "fewer")
-        })?;
-        let points = counts.iter().try_fold(0_usize, |sum, count| sum.checked_add(*count));
-        let points = points.ok_or_else(|| file.fault("a number of points", "more than can be counted"))?;
-        let of = first.iter().map(|first| first[at]).collect();
-        let moment = Moment { time: Some(times[at]), points, position: first_point[at], of };
-        snapshots.push(file.snapshot(at as u64, &moment, &positions, &arrays)?);
-    }
-    if snapshots.is_empty() { Err(file.fault("at least one step", "none")) } else { Ok(snapshots) }
+    Ok(Moments { name: file.name, positions, arrays, moments })
 }
 
-/// Where a moment stands in the arrays.
-struct Moment {
-    time: Option<f64>,
-    points: usize,
-    position: usize,
-    of: Vec<usize>,
+impl Moments {
+    /// What errors call it.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.moments.len()
+    }
+
+    /// Most grains at one of them.
+    pub(crate) fn grains(&self) -> usize {
+        self.moments.iter().map(|moment| moment.points).max().unwrap_or(0)
+    }
+
+    /// The grains at a moment, whose place is the step; none after the last.
+    ///
+    /// # Errors
+    /// An array is too short, or holds what is no finite number.
+    pub(crate) fn snapshot(&self, at: usize) -> Result<Option<DumpSnapshot>, ReadError> {
+        let Some(moment) = self.moments.get(at) else { return Ok(None) };
+        let cut = |array: &Array, first: usize| -> Result<Array, ReadError> {
+            let last = first.checked_add(moment.points).and_then(|last| last.checked_mul(array.components));
+            let numbers = last.and_then(|last| array.numbers.get(first.saturating_mul(array.components)..last));
+            let numbers = numbers.map(<[f64]>::to_vec).ok_or_else(|| {
+                let expected = format!("{} points from {first} on in the array {}", moment.points, quoted(&array.name));
+                ReadError::at(&self.name, 1, expected, format!("{} in all", array.numbers.len() / array.components))
+            })?;
+            Ok(Array { numbers, name: array.name.clone(), ..*array })
+        };
+        let told: Result<Vec<Array>, ReadError> =
+            self.arrays.iter().zip(&moment.of).map(|(array, first)| cut(array, *first)).collect();
+        let points = Points { time: moment.time, positions: cut(&self.positions, moment.position)?, arrays: told? };
+        Ok(Some(DumpSnapshot { step: at as u64, ..points.snapshot(&self.name)? }))
+    }
 }
 
 impl File {
@@ -133,7 +156,7 @@ impl File {
         if !KINDS.contains(&kind.trim_end_matches('\0').trim()) {
             return Err(fault(&format!("points: {}", KINDS.join(" or ")), &quoted(&kind)));
         }
-        Ok(Self { name, root })
+        Ok(Self { name, root, left: Cell::new(MOST) })
     }
 
     fn fault(&self, expected: &str, found: &str) -> ReadError {
@@ -162,12 +185,16 @@ impl File {
     /// An array: a row an entry, with so many numbers each where it is known.
     fn array(&self, group: &Group, name: &str, components: Option<usize>) -> Result<Array, ReadError> {
         let expected = format!("the array `{name}`");
-        let read = || -> Result<(Dataset, Vec<u8>), hdf5_reader::error::Error> {
+        let read = || -> Result<(Dataset, usize), Error> {
             let dataset = group.dataset(name)?;
-            let bytes = dataset.read_native_bytes()?;
-            Ok((dataset, bytes))
+            let length = dataset.raw_byte_len()?;
+            Ok((dataset, length))
         };
-        let (dataset, bytes) = read().map_err(|error| self.fault(&expected, &error.to_string()))?;
+        let told = |error: Error| self.fault(&expected, &error.to_string());
+        let (dataset, length) = read().map_err(told)?;
+        let left = self.left.get().checked_sub(length);
+        self.left.set(left.ok_or_else(|| self.fault(&format!("at most {MOST} bytes in all arrays"), "more"))?);
+        let bytes = dataset.read_native_bytes().map_err(told)?;
         let kind = number(dataset.dtype());
         let kind = kind.ok_or_else(|| self.fault(&format!("numbers in `{name}`"), "something else"))?;
         let width = match *dataset.shape() {
@@ -191,27 +218,47 @@ impl File {
         }
     }
 
-    /// The grains of a moment.
-    fn snapshot(
-        &self,
-        step: u64,
-        moment: &Moment,
-        positions: &Array,
-        arrays: &[Array],
-    ) -> Result<DumpSnapshot, ReadError> {
-        let cut = |array: &Array, first: usize| -> Result<Array, ReadError> {
-            let last = first.checked_add(moment.points).and_then(|last| last.checked_mul(array.components));
-            let numbers = last.and_then(|last| array.numbers.get(first.saturating_mul(array.components)..last));
-            let numbers = numbers.map(<[f64]>::to_vec).ok_or_else(|| {
-                let expected = format!("{} points from {first} on in the array {}", moment.points, quoted(&array.name));
-                self.fault(&expected, &format!("{} in all", array.numbers.len() / array.components))
-            })?;
-            Ok(Array { numbers, name: array.name.clone(), ..*array })
+    /// The time of a file of one moment, where it says it.
+    fn time(&self) -> Result<Option<f64>, ReadError> {
+        match self.group(&self.root, "FieldData")? {
+            Some(field) if self.has(&field, TIME)? => Ok(self.array(&field, TIME, None)?.numbers.first().copied()),
+            _ => Ok(None),
+        }
+    }
+
+    /// The moments of a file of several.
+    fn moments(&self, steps: &Group, counts: &[usize], arrays: &[Array]) -> Result<Vec<Moment>, ReadError> {
+        let times = self.array(steps, "Values", Some(1))?.numbers;
+        let per_moment = |group: &Group, name: &str| -> Result<Vec<usize>, ReadError> {
+            let list = self.whole(group, name)?;
+            if list.len() == times.len() {
+                return Ok(list);
+            }
+            Err(self.fault(&format!("{} numbers in `{name}`, one a step", times.len()), &list.len().to_string()))
         };
-        let told: Result<Vec<Array>, ReadError> =
-            arrays.iter().zip(&moment.of).map(|(array, first)| cut(array, *first)).collect();
-        let points = Points { time: moment.time, positions: cut(positions, moment.position)?, arrays: told? };
-        Ok(DumpSnapshot { step, ..points.snapshot(&self.name)? })
+        // One part a moment where nothing is said of parts.
+        let parts = "NumberOfParts";
+        let parts = if self.has(steps, parts)? { per_moment(steps, parts)? } else { vec![1; times.len()] };
+        let first_part = per_moment(steps, "PartOffsets")?;
+        let first_point = per_moment(steps, "PointOffsets")?;
+        let of_data = self.group(steps, "PointDataOffsets")?;
+        let mut first = Vec::new();
+        for array in arrays {
+            first.push(match &of_data {
+                Some(group) if self.has(group, &array.name)? => per_moment(group, &array.name)?,
+                _ => first_point.clone(),
+            });
+        }
+        let moment = |(at, time): (usize, &f64)| {
+            let last = first_part[at].checked_add(parts[at]);
+            let counts = last.and_then(|last| counts.get(first_part[at]..last)).ok_or_else(|| {
+                self.fault(&format!("{} parts from {} on in `NumberOfPoints`", parts[at], first_part[at]), "fewer")
+            })?;
+            let of = first.iter().map(|first| first[at]).collect();
+            Ok(Moment { time: Some(*time), points: counts.iter().sum(), position: first_point[at], of })
+        };
+        let moments: Vec<Moment> = times.iter().enumerate().map(moment).collect::<Result<_, ReadError>>()?;
+        if moments.is_empty() { Err(self.fault("at least one step", "none")) } else { Ok(moments) }
     }
 }
 

@@ -40,8 +40,8 @@ fn every_form_tells_the_same() {
     ];
     for (name, rounding) in files {
         let is_hdf = name.ends_with("hdf");
-        let snapshot =
-            if is_hdf { read_moments(&data(name)).unwrap().remove(0) } else { read_points(&data(name)).unwrap() };
+        let of_hdf = || read_moments(&data(name)).unwrap().snapshot(0).unwrap().unwrap();
+        let snapshot = if is_hdf { of_hdf() } else { read_points(&data(name)).unwrap() };
         assert_eq!((snapshot.rows(), snapshot.time), (3, Some(0.625)), "{name}");
         for (column, values) in expected {
             let place = snapshot.column(column).unwrap();
@@ -134,7 +134,9 @@ fn moments_are_cut_out_of_the_arrays() {
     let path = data("hdf_times.vtkhdf");
     assert!(has_steps(&path).unwrap() && !has_steps(&data("hdf_7.vtkhdf")).unwrap());
     // By hand: one point of 2, 1 first; the second moment is read where three points of `radius` are.
-    let moments = read_moments(&path).unwrap();
+    let file = read_moments(&path).unwrap();
+    assert_eq!((file.count(), file.grains(), file.snapshot(2).unwrap()), (2, 3, None));
+    let moments = [0, 1].map(|at| file.snapshot(at).unwrap().unwrap());
     let column = |at: usize, name: &str| -> Vec<f64> {
         let place = moments[at].column(name).unwrap();
         moments[at].values(place).collect()
@@ -149,6 +151,13 @@ fn moments_are_cut_out_of_the_arrays() {
     assert_eq!((column(0, "radius"), column(1, "radius")), (vec![0.5, 0.5], vec![0.5, 0.5, 0.25]));
 }
 
+/// Points beyond those that the file counts are not left out in silence.
+#[test]
+fn more_points_than_are_counted_are_refused() {
+    let error = read_moments(&data("hdf_longer_7.vtkhdf")).unwrap_err().to_string();
+    assert!(error.contains("expected 2 points in the array `Points`, found 3"), "{error}");
+}
+
 /// A damaged file is refused with its name, or read as what it still says, and never ends the program.
 #[test]
 fn a_damaged_hdf_file_is_an_error() {
@@ -156,7 +165,7 @@ fn a_damaged_hdf_file_is_an_error() {
     let path = directory.path().join("damaged_7.vtkhdf");
     let try_it = |bytes: &[u8]| {
         fs::write(&path, bytes).unwrap();
-        has_steps(&path).and_then(|_| read_moments(&path))
+        has_steps(&path).and_then(|_| read_moments(&path)).and_then(|file| file.snapshot(0).map(|_| file))
     };
     let whole = fs::read(data("hdf_times.vtkhdf")).unwrap();
     for cut in [8, 100, whole.len() / 2, whole.len() - 1] {
