@@ -100,13 +100,25 @@ fn a_claim_may_be_a_course_a_moment_or_a_bound() {
         assert_eq!(answer.code, Some(0), "{expected}: {}{}", answer.err, answer.out);
         assert!(verdicts[0]["verdict"] == "pass" && verdicts[0]["evidence"] == evidence, "{expected}: {verdicts:#?}");
         assert_eq!(controls[0]["turned_red"], true, "{expected}: {controls:#?}");
+        let says_how_far = verdicts[0]["quantity"] == "velocity, 0 to 0.2 s";
+        assert_eq!(says_how_far, expected.contains("follows"), "{expected}: a row of a table says what it has");
     }
 }
 
 /// A slip is refused with the file, the claim, the key, what was expected and what stood there, and nothing is run.
 #[test]
 fn a_wrong_file_is_refused() {
-    let slips: [(&str, &str, &str); 19] = [
+    let slips: [(&str, &str, &str); 21] = [
+        (
+            "gravity.slope_deg = 29.9",
+            "duration = 0.1",
+            "control.set: expected wrong physics in a run of the same length",
+        ),
+        (
+            "equals = \"5/7 * gravity.magnitude * sin(gravity.slope_deg * pi/180) * t\"",
+            "follows = { file = \"late.csv\", time = \"t\", value = \"v\" }",
+            "follows.time: expected times within the run, 0 to 0.2 s, found 0 to 10 s",
+        ),
         ("title = ", "titel = ", "line 1: expected the keys of claims, found unknown field `titel`"),
         (
             "value = \"ball.vx\"",
@@ -153,6 +165,7 @@ fn a_wrong_file_is_refused() {
     ];
     for (right, instead, said) in slips {
         let folder = case("claims.toml", &[(right, instead)]);
+        fs::write(folder.path().join("slope/late.csv"), "t,v\n0,0\n10,35\n").unwrap();
         let answer = grainbench(folder.path(), &["run", "slope"]);
         assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{instead}: {}", answer.err);
         assert!(answer.err.contains("slope/claims.toml: ") && answer.err.contains(said), "{instead}: {}", answer.err);

@@ -40,16 +40,16 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     step: Step,
     /// Cells per reference length, of solvers with a grid: per radius, where there are grains.
-    #[arg(long, value_name = "NUMBER", default_value_t = 8.0, value_parser = positive)]
+    #[arg(long, value_name = "NUMBER", default_value_t = Resolution::CELLS, value_parser = positive)]
     cells: f64,
     /// Material points per cell and axis, of solvers with a grid.
-    #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "NUMBER", default_value_t = Resolution::POINTS, value_parser = clap::value_parser!(u32).range(1..=64))]
     points: u32,
     /// Courant number c Δt/h, of solvers with a grid.
     #[arg(long, value_name = "NUMBER", default_value_t = Resolution::COURANT, value_parser = positive)]
     courant: f64,
     /// Time steps in each sixtieth of a second, of solvers for rigid bodies.
-    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "NUMBER", default_value_t = Resolution::SUBSTEPS, value_parser = clap::value_parser!(u32).range(1..))]
     substeps: u32,
     /// Iterations of the constraint solver in each time step, of solvers for rigid bodies.
     #[arg(

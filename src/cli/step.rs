@@ -10,7 +10,7 @@ pub(crate) struct Step {
     #[arg(
         long,
         value_name = "FRACTION",
-        default_value_t = 0.1,
+        default_value_t = Resolution::FRACTION,
         value_parser = positive,
         allow_hyphen_values = true,
         conflicts_with = "time_step"

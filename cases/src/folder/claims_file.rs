@@ -64,8 +64,11 @@ pub(super) struct Claimed {
     pub(super) control: Controlled,
 }
 
+/// The solver of claims that name none.
+pub(super) const DEM: &str = "dem";
+
 fn dem() -> String {
-    "dem".to_owned()
+    DEM.to_owned()
 }
 
 /// A number, or arithmetic over the scene.

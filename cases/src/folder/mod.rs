@@ -72,7 +72,6 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
     if claims.claims.is_empty() {
         return Err(no_case("expected at least one `[[claims]]`, found none".to_owned()));
     }
-    let scene = text_of(&folder.join(SCENE))?;
     let source = SceneSource::read(&folder.join(SCENE)).map_err(|error| no_case(error.to_string()))?;
     let reader = Reader { folder, source: &source };
     let mut rows: Vec<Claim> = Vec::new();
@@ -96,7 +95,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
         name: kept(name.to_string_lossy().into_owned()),
         title: kept(claims.title),
         claim: kept(claims.claim),
-        scene: kept(scene),
+        scene: kept(source.text().to_owned()),
         derivation: kept(derivation),
         weakness: kept(claims.weakness),
         levels: &[],

@@ -5,6 +5,8 @@ use grainbench_reference::outside::Resolved;
 use grainbench_scene::scene::Scene;
 use toml::{Table, Value};
 
+/// The time, in expressions.
+pub(super) const TIME: &str = "t";
 /// The prefix of what the scene makes definite: masses, moments of inertia, springs by restitution.
 const DEFINITE: &str = "scene.";
 
@@ -33,26 +35,26 @@ impl Numbers {
         Ok(Self { file: Value::Table(file), definite, columns })
     }
 
+    /// Whether a name is one of the record and not of the scene: a column that is not there is missing, whatever else has
+    /// its name.
+    pub(super) fn is_of_record(&self, name: &str) -> bool {
+        name != TIME && (self.columns.iter().any(|column| column == name) || self.get(name).is_none())
+    }
+
     /// The number of a name, a path of keys with places in lists counted from 0.
-    pub(super) fn get(&self, name: &str) -> Option<f64> {
+    pub(super) fn get<'n>(&'n self, name: &str) -> Option<f64> {
         let (root, path) = match name.strip_prefix(DEFINITE) {
             Some(path) => (&self.definite, path),
             None => (&self.file, name),
         };
-        let step = |value: &'_ Value, key: &str| -> Option<Value> {
-            match value {
-                Value::Table(table) => table.get(key).cloned(),
-                Value::Array(list) => list.get(key.parse::<usize>().ok()?).cloned(),
-                _ => None,
-            }
+        let step = |value: &'n Value, key: &str| match value {
+            Value::Table(table) => table.get(key),
+            Value::Array(list) => list.get(key.parse::<usize>().ok()?),
+            _ => None,
         };
-        let mut found = None;
-        for key in path.split('.') {
-            found = Some(step(found.as_ref().unwrap_or(root), key)?);
-        }
-        match found? {
-            Value::Float(value) => Some(value),
-            Value::Integer(value) => Some(value as f64),
+        match path.split('.').try_fold(root, step)? {
+            Value::Float(value) => Some(*value),
+            Value::Integer(value) => Some(*value as f64),
             _ => None,
         }
     }

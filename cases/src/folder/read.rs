@@ -2,16 +2,13 @@
 
 use super::claims_file::Over;
 use super::expression::Expression;
-use super::numbers::Numbers;
+use super::numbers::{Numbers, TIME};
 use super::{Wrong, wrong};
 use grainbench_harness::claim::{Expecting, Quantity};
 use grainbench_harness::course::Points;
 use grainbench_harness::run::{Done, Missing};
 use grainbench_harness::source::Source;
 use std::sync::Arc;
-
-/// The time, in expressions.
-pub(super) const TIME: &str = "t";
 
 /// Reads time and value of samples.
 type Samples = Arc<dyn Fn(&Done) -> Result<Points, Missing> + Send + Sync>;
@@ -33,7 +30,7 @@ impl Read {
     fn all(&self, done: &Done) -> Result<Points, Missing> {
         let series = done.series();
         for name in self.value.names() {
-            if name != TIME && self.numbers.get(name).is_none() {
+            if self.numbers.is_of_record(name) {
                 done.column(name)?;
             }
         }

@@ -1,9 +1,9 @@
 //! A claim of a file as the harness has it.
 
-use super::claims_file::{Claimed, Controlled, CourseFile, Formula, Knobs, Over, Place};
+use super::claims_file::{Claimed, Controlled, CourseFile, DEM, Formula, Knobs, Over, Place};
 use super::expression::Expression;
-use super::numbers::Numbers;
-use super::read::{Read, TIME, follow, interpolated};
+use super::numbers::{Numbers, TIME};
+use super::read::{Read, follow, interpolated};
 use super::{Wrong, kept, wrong};
 use crate::registry::read_grains;
 use crate::solvers;
@@ -16,9 +16,10 @@ use grainbench_harness::run::Run;
 use grainbench_harness::source::{Kind, Source, Work};
 use grainbench_harness::tolerance::{Tolerance, computed, judged};
 use grainbench_reference::read_table;
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Method, Resolution};
 use grainbench_scene::source::SceneSource;
+use grainbench_scene::text::tamed;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -47,13 +48,19 @@ impl Reader<'_> {
         }
         let resolution = resolution(&claimed.resolution, &claimed.solver, &scene)?;
         let run = Run::new(kept(variant.to_owned()), kept(claimed.solver.clone()), resolution);
-        let quantity = claim(claimed.quantity.clone(), kept(claimed.unit.clone())).of(run);
+        let course = claimed.follows.as_ref().map(|file| self.course(file, &scene)).transpose()?;
+        // What is judged is what the table has, and the row says so.
+        let words = match course.as_deref() {
+            Some([(first, _), .., (last, _)]) => format!("{}, {first} to {last} s", claimed.quantity),
+            _ => claimed.quantity.clone(),
+        };
+        let quantity = claim(words, kept(claimed.unit.clone())).of(run);
         let tolerance = tolerance(&claimed, &numbers)?;
         let control = control(&claimed.control, &source, &scene)?;
         let is_dem = Method::of(&claimed.solver) == Some(Method::Dem);
-        let expecting = self.expecting(quantity, &claimed, &numbers, is_dem)?;
+        let expecting = expecting(quantity, &claimed, course, (&numbers, is_dem))?;
         let claim = expecting.within(tolerance).refuses(control);
-        let claim = match (&claim.trace, claimed.quantity) {
+        let claim = match (&claim.trace, claim.quantity.clone()) {
             (Some(_), words) => {
                 let plate = Plate {
                     name: kept(words.replace(|letter: char| !letter.is_alphanumeric(), "-").to_lowercase()),
@@ -67,91 +74,12 @@ impl Reader<'_> {
             }
             (None, _) => claim,
         };
-        // What grains on springs are claimed to do, another program of the kind can be asked.
-        Ok(if is_dem { claim.fair_to_any_springs() } else { claim })
+        // What grains on springs do in no convention of a program, another one can be asked.
+        Ok(if claimed.solver == DEM { claim.fair_to_any_springs() } else { claim })
     }
 
-    /// The claim with what is expected of it.
-    fn expecting(
-        &self,
-        quantity: Quantity,
-        claimed: &Claimed,
-        numbers: &Arc<Numbers>,
-        knows_columns: bool,
-    ) -> Result<Expecting, Wrong> {
-        let value = expression("value", &claimed.value)?;
-        let known = |name: &&str| *name == TIME || numbers.columns.iter().any(|column| column == name);
-        let unknown = value.names().into_iter().find(|name| !known(name) && numbers.get(name).is_none());
-        if let Some(unknown) = unknown.filter(|_| knows_columns) {
-            let columns = numbers.columns.join(", ");
-            return Err(wrong("value", format!("columns of the record, among {columns}"), quoted(unknown)));
-        }
-        if !value.names().iter().any(|name| *name != TIME && numbers.get(name).is_none()) {
-            return Err(wrong("value", "a column of the record", "none: it would be the same whatever is run"));
-        }
-        let source = source(claimed)?;
-        let scale = claimed.scale.as_ref().map(|scale| constant("scale", scale, numbers)).transpose()?;
-        if scale.is_some_and(|scale| scale <= 0.0) {
-            return Err(wrong("scale", "a number above zero", "another"));
-        }
-        let over = claimed.over;
-        if over.is_some() && claimed.at.is_some() {
-            return Err(wrong("at", "a moment, or a reading `over` samples", "both"));
-        }
-        let read = Read { value, numbers: Arc::clone(numbers), at: claimed.at, over };
-        let Claimed { equals, follows, at_least, at_most, between, .. } = claimed;
-        match (equals, follows, at_least, at_most, between) {
-            (Some(formula), None, None, None, None) => {
-                let exact = formula_of("equals", formula)?;
-                check_names("equals", &exact, numbers, matches!(over, None | Some(Over::Course)))?;
-                let at = |t: f64| value_at(&exact, numbers, t);
-                if over != Some(Over::Course) && scale.is_none() && at(1.0) == 0.0 {
-                    return Err(wrong("scale", "a number, for zero is expected", "none"));
-                }
-                let of_scene = Arc::clone(numbers);
-                let exact = move |t: f64| value_at(&exact, &of_scene, t);
-                if over == Some(Over::Course) {
-                    return Ok(follow(quantity, source, read.samples(None), exact, scale));
-                }
-                Ok(quantity.equals(source, move |done| {
-                    let (t, value) = read.one(&done[0])?;
-                    let expected = exact(t);
-                    Ok(Measured::new(value, expected, scale.unwrap_or(expected.abs())))
-                }))
-            }
-            (None, Some(file), None, None, None) => {
-                if claimed.at.is_some() || !matches!(over, None | Some(Over::Course)) {
-                    return Err(wrong("follows", "every sample", "a moment or a reading `over` samples"));
-                }
-                let table = self.course(file)?;
-                let within = [table[0].0, table[table.len() - 1].0];
-                let read = Read { at: None, over: Some(Over::Course), ..read };
-                let read = read.samples(Some(within));
-                Ok(follow(quantity, source, read, move |t| interpolated(&table, t), scale))
-            }
-            (None, None, Some(bound), None, None) => {
-                let bound = constant("at_least", bound, numbers)?;
-                Ok(quantity.at_least(bound, source, read.bounded()?))
-            }
-            (None, None, None, Some(bound), None) => {
-                let bound = constant("at_most", bound, numbers)?;
-                Ok(quantity.at_most(bound, source, read.bounded()?))
-            }
-            (None, None, None, None, Some([low, high])) => {
-                let band = [constant("between", low, numbers)?, constant("between", high, numbers)?];
-                if band[0] >= band[1] {
-                    return Err(wrong("between", "the smaller number first", format!("{} and {}", band[0], band[1])));
-                }
-                Ok(quantity.between(band, source, read.bounded()?))
-            }
-            _ => {
-                Err(wrong("equals", "one of `equals`, `follows`, `at_least`, `at_most`, `between`", "none or several"))
-            }
-        }
-    }
-
-    /// Points of a course in a table.
-    fn course(&self, file: &CourseFile) -> Result<Points, Wrong> {
+    /// Points of a course in a table, all within the run.
+    fn course(&self, file: &CourseFile, scene: &Scene) -> Result<Points, Wrong> {
         let table = read_table(&self.folder.join(&file.file)).map_err(|error| Wrong::Scene(error.to_string()))?;
         let column = |key: &'static str, name: &str| {
             let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
@@ -162,7 +90,88 @@ impl Reader<'_> {
         if time.len() < 2 || time.windows(2).any(|pair| pair[0] >= pair[1]) {
             return Err(wrong("follows.time", "at least two times that rise", "others"));
         }
+        if let Duration::Seconds(end) = scene.duration
+            && (time[0] < 0.0 || time[time.len() - 1] > end)
+        {
+            let found = format!("{} to {} s", time[0], time[time.len() - 1]);
+            return Err(wrong("follows.time", format!("times within the run, 0 to {end} s"), found));
+        }
         Ok(time.into_iter().zip(values).collect())
+    }
+}
+
+/// The claim with what is expected of it.
+fn expecting(
+    quantity: Quantity,
+    claimed: &Claimed,
+    course: Option<Points>,
+    (numbers, knows_columns): (&Arc<Numbers>, bool),
+) -> Result<Expecting, Wrong> {
+    let value = expression("value", &claimed.value)?;
+    let is_new = |name: &&str| numbers.is_of_record(name) && !numbers.columns.iter().any(|column| column == name);
+    let unknown = value.names().into_iter().find(is_new);
+    if let Some(unknown) = unknown.filter(|_| knows_columns) {
+        let columns = numbers.columns.join(", ");
+        return Err(wrong("value", format!("columns of the record, among {columns}"), quoted(unknown)));
+    }
+    if !value.names().iter().any(|name| numbers.is_of_record(name)) {
+        return Err(wrong("value", "a column of the record", "none: it would be the same whatever is run"));
+    }
+    let source = source(claimed)?;
+    let scale = claimed.scale.as_ref().map(|scale| constant("scale", scale, numbers)).transpose()?;
+    if scale.is_some_and(|scale| scale <= 0.0) {
+        return Err(wrong("scale", "a number above zero", "another"));
+    }
+    let over = claimed.over;
+    if over.is_some() && claimed.at.is_some() {
+        return Err(wrong("at", "a moment, or a reading `over` samples", "both"));
+    }
+    let read = Read { value, numbers: Arc::clone(numbers), at: claimed.at, over };
+    let Claimed { equals, at_least, at_most, between, .. } = claimed;
+    match (equals, course, at_least, at_most, between) {
+        (Some(formula), None, None, None, None) => {
+            let exact = formula_of("equals", formula)?;
+            check_names("equals", &exact, numbers, matches!(over, None | Some(Over::Course)))?;
+            let at = |t: f64| value_at(&exact, numbers, t);
+            if over != Some(Over::Course) && scale.is_none() && at(1.0) == 0.0 {
+                return Err(wrong("scale", "a number, for zero is expected", "none"));
+            }
+            let of_scene = Arc::clone(numbers);
+            let exact = move |t: f64| value_at(&exact, &of_scene, t);
+            if over == Some(Over::Course) {
+                return Ok(follow(quantity, source, read.samples(None), exact, scale));
+            }
+            Ok(quantity.equals(source, move |done| {
+                let (t, value) = read.one(&done[0])?;
+                let expected = exact(t);
+                Ok(Measured::new(value, expected, scale.unwrap_or(expected.abs())))
+            }))
+        }
+        (None, Some(table), None, None, None) => {
+            if claimed.at.is_some() || !matches!(over, None | Some(Over::Course)) {
+                return Err(wrong("follows", "every sample", "a moment or a reading `over` samples"));
+            }
+            let within = [table[0].0, table[table.len() - 1].0];
+            let read = Read { at: None, over: Some(Over::Course), ..read };
+            let read = read.samples(Some(within));
+            Ok(follow(quantity, source, read, move |t| interpolated(&table, t), scale))
+        }
+        (None, None, Some(bound), None, None) => {
+            let bound = constant("at_least", bound, numbers)?;
+            Ok(quantity.at_least(bound, source, read.bounded()?))
+        }
+        (None, None, None, Some(bound), None) => {
+            let bound = constant("at_most", bound, numbers)?;
+            Ok(quantity.at_most(bound, source, read.bounded()?))
+        }
+        (None, None, None, None, Some([low, high])) => {
+            let band = [constant("between", low, numbers)?, constant("between", high, numbers)?];
+            if band[0] >= band[1] {
+                return Err(wrong("between", "the smaller number first", format!("{} and {}", band[0], band[1])));
+            }
+            Ok(quantity.between(band, source, read.bounded()?))
+        }
+        _ => Err(wrong("equals", "one of `equals`, `follows`, `at_least`, `at_most`, `between`", "none or several")),
     }
 }
 
@@ -235,6 +244,9 @@ fn control(controlled: &Controlled, source: &SceneSource, scene: &Scene) -> Resu
     if given == *scene {
         return Err(wrong("control.set", "what makes another scene", "what leaves it as it is"));
     }
+    if given.duration != scene.duration {
+        return Err(wrong("control.set", "wrong physics in a run of the same length", "another length"));
+    }
     let given = Arc::new(given);
     Ok(Control::scene(kept(controlled.name.clone()), move |scene| (*given).clone_into(scene)))
 }
@@ -263,10 +275,15 @@ fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, 
         };
         return Err(wrong("resolution", expected, "others"));
     }
+    let courant = courant.unwrap_or(Resolution::COURANT);
+    if courant >= 1.0 {
+        return Err(wrong("resolution.courant", "less than 1", courant.to_string()));
+    }
     match method {
         Method::Dem => {
             let critical = scene.critical_time_step();
-            let step = time_step.unwrap_or_else(|| time_step_fraction.unwrap_or(0.1) * critical);
+            let fraction = time_step_fraction.unwrap_or(Resolution::FRACTION);
+            let step = time_step.unwrap_or(fraction * critical);
             if step >= critical {
                 return Err(wrong(
                     "resolution",
@@ -274,16 +291,16 @@ fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, 
                     step.to_string(),
                 ));
             }
-            Ok(time_step.map_or(Resolution::CriticalFraction(time_step_fraction.unwrap_or(0.1)), Resolution::TimeStep))
+            Ok(time_step.map_or(Resolution::CriticalFraction(fraction), Resolution::TimeStep))
         }
         Method::Grid => Ok(Resolution::Grid {
-            cells: cells.unwrap_or(8.0),
-            points: points.unwrap_or(3),
-            courant: courant.unwrap_or(Resolution::COURANT),
+            cells: cells.unwrap_or(Resolution::CELLS),
+            points: points.unwrap_or(Resolution::POINTS),
+            courant,
         }),
         Method::Rigid => Ok(Resolution::Rigid {
             step: Resolution::RIGID_STEP,
-            substeps: substeps.unwrap_or(8),
+            substeps: substeps.unwrap_or(Resolution::SUBSTEPS),
             iterations: iterations.unwrap_or(Resolution::RIGID_ITERATIONS),
         }),
     }
@@ -292,11 +309,10 @@ fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, 
 /// Words that a table and a page can hold.
 fn in_words(key: &'static str, text: &str) -> Result<(), Wrong> {
     const LONGEST: usize = 500;
-    let is_plain = !text.trim().is_empty() && text.len() <= LONGEST && !text.chars().any(char::is_control);
+    let is_plain = !text.trim().is_empty() && text.len() <= LONGEST && tamed(text, |_| false) == text;
     if is_plain { Ok(()) } else { Err(wrong(key, "words on one line", quoted(text))) }
 }
 
 fn quoted(text: &str) -> String {
-    let text: String = text.chars().take(60).flat_map(char::escape_debug).collect();
-    format!("`{text}`")
+    format!("`{}`", tamed(&text.chars().take(60).collect::<String>(), |_| false))
 }

@@ -46,6 +46,18 @@ impl Resolution {
     /// Courant number of a method with a grid, unless another one is asked for.
     pub const COURANT: f64 = 0.4;
 
+    /// Part of the critical step that a command line takes where none is said.
+    pub const FRACTION: f64 = 0.1;
+
+    /// Cells per reference length that it takes.
+    pub const CELLS: f64 = 8.0;
+
+    /// Material points per cell and axis that it takes.
+    pub const POINTS: u32 = 3;
+
+    /// Substeps of a step of rigid bodies that it takes.
+    pub const SUBSTEPS: u32 = 8;
+
     /// Cells per reference length and points per cell and axis of a method with a grid, all else as usual.
     #[must_use]
     pub const fn grid(cells: f64, points: u32) -> Self {

@@ -70,6 +70,12 @@ impl SceneSource {
         }
     }
 
+    /// The text.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// Takes a variant of the scene instead of the plain one.
     #[must_use]
     pub fn variant(mut self, name: &str) -> Self {
