@@ -43,13 +43,23 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NUMBER", default_value_t = Resolution::CELLS, value_parser = positive)]
     cells: f64,
     /// Material points per cell and axis, of solvers with a grid.
-    #[arg(long, value_name = "NUMBER", default_value_t = Resolution::POINTS, value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        default_value_t = Resolution::POINTS,
+        value_parser = clap::value_parser!(u32).range(1..=64)
+    )]
     points: u32,
     /// Courant number c Δt/h, of solvers with a grid.
     #[arg(long, value_name = "NUMBER", default_value_t = Resolution::COURANT, value_parser = positive)]
     courant: f64,
     /// Time steps in each sixtieth of a second, of solvers for rigid bodies.
-    #[arg(long, value_name = "NUMBER", default_value_t = Resolution::SUBSTEPS, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        default_value_t = Resolution::SUBSTEPS,
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
     substeps: u32,
     /// Iterations of the constraint solver in each time step, of solvers for rigid bodies.
     #[arg(
