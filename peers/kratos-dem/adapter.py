@@ -7,35 +7,16 @@ A plane is one triangle (in the plane: one edge), so that no grain crosses a sea
 import csv
 import json
 import os
-import sys
-import traceback
 from math import hypot, sqrt
 
 import numpy as np
 from KratosMultiphysics import *
 from KratosMultiphysics.DEMApplication import *
 from KratosMultiphysics.DEMApplication.DEM_analysis_stage import DEMAnalysisStage
+from serve import Cannot, mean_velocity, serve
 
 STATE = "x y z vx vy vz omegax omegay omegaz".split()
 LAW = "DEM_D_Linear_Custom_Constants"
-
-
-class Cannot(Exception):
-    """The scene cannot be expressed."""
-
-
-def refuse(scene):
-    """What the manifest cannot say."""
-    if scene["global_damping"]:
-        raise Cannot("global damping is not expressed here")
-    if scene.get("domain") is not None and any(scene["domain"]["periodic"]):
-        raise Cannot("periodic along all axes or none")
-    if any(law["cohesion"] or law["rolling_friction"] for law in scene["laws"]):
-        raise Cannot("neither cohesion nor rolling resistance here")
-    if any("restitution" in law for law in scene["laws"]):
-        raise Cannot("a dashpot by the coefficient of restitution is another one here")
-    if any(any(phase["spin"]) for one in scene["walls"] for phase in one["motion"]):
-        raise Cannot("walls that turn are not expressed here")
 
 
 def bearer(thing):
@@ -183,14 +164,10 @@ class Stage(DEMAnalysisStage):
                     node.Fix(what)
 
     def move(self, time, dt):
-        """The walls over the step that ends now: of a phase that begins or ends within it, its share."""
+        """The walls over the step that ends now."""
         for part, one in self.walls:
-            velocity = np.zeros(3)
-            for phase in one["motion"]:
-                within = min(time, phase.get("stop", float("inf"))) - max(time - dt, phase["start"])
-                velocity += np.array(phase["velocity"]) * (max(within, 0.0) / dt)
             if one["motion"]:
-                part.SetValue(LINEAR_VELOCITY, velocity.tolist())
+                part.SetValue(LINEAR_VELOCITY, mean_velocity(one, time - dt, time))
         self._GetSolver().Predict()
 
     def state(self):
@@ -203,7 +180,6 @@ class Stage(DEMAnalysisStage):
 
 def run(scene, out):
     """Steps through the scene and leaves the grains at every sample."""
-    refuse(scene)
     os.chdir(out)
     stage = Stage(scene)
     stage.start()
@@ -222,23 +198,5 @@ def run(scene, out):
                 table.writerows([step, number, *row] for number, row in enumerate(stage.state().tolist(), 1))
 
 
-def main():
-    """A run a line, until there are no more."""
-    Logger.GetDefaultOutput().SetSeverity(Logger.Severity.WARNING)
-    answers = os.fdopen(5, "w")
-    for line in sys.stdin:
-        request = json.loads(line)
-        try:
-            with open(request["scene"]) as file:
-                scene = json.load(file)
-            run(scene, request["out"])
-            answer = {"ran": {}}
-        except Cannot as reason:
-            answer = {"cannot": str(reason)}
-        except Exception as error:
-            traceback.print_exc()
-            answer = {"failed": {"why": f"{type(error).__name__}: {error}", "when": 0.0, "where": None}}
-        print(json.dumps(answer), file=answers, flush=True)
-
-
-main()
+Logger.GetDefaultOutput().SetSeverity(Logger.Severity.WARNING)
+serve(run)

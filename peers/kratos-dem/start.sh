@@ -5,5 +5,6 @@ export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}"
 if [ "$2" = --version ]; then
     exec "$python" -c "from importlib.metadata import version; print('Kratos DEM', version('KratosDEMApplication'))"
 fi
+export PYTHONPATH="$1/.." PYTHONDONTWRITEBYTECODE=1
 exec 5>&1
 exec "$python" "$1/adapter.py" 5>&5 >&2

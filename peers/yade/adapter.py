@@ -5,21 +5,15 @@ cannot leave the plane, with the disc's mass and moment of inertia.
 """
 
 import csv
-import json
 import os
-import sys
-import traceback
 from math import atan
 
+from serve import Cannot, mean_velocity, serve
 from yade import O, Vector3
 from yade.utils import sphere, wall
 from yade.wrapper import *
 
 AXES = "xyz"
-
-
-class Cannot(Exception):
-    """The scene cannot be expressed."""
 
 
 def plane_axis(shape):
@@ -76,7 +70,6 @@ def engines(scene):
 
 def build(scene):
     """Bodies and engines; gives the grains' bodies, the walls' and the driven ones' velocities."""
-    refuse(scene)
     O.reset()
     materials, physics, law = engines(scene)
     grains = []
@@ -106,20 +99,6 @@ def build(scene):
     return grains, walls
 
 
-def refuse(scene):
-    """What the manifest cannot say."""
-    if scene["global_damping"]:
-        raise Cannot("its global damping is not proportional to the mass")
-    if scene.get("domain") is not None and any(scene["domain"]["periodic"]):
-        raise Cannot("periodic along all axes or none")
-    if any(law["cohesion"] or law["rolling_friction"] for law in scene["laws"]):
-        raise Cannot("neither cohesion nor rolling resistance here")
-    if any("restitution" in law for law in scene["laws"]):
-        raise Cannot("a dashpot by the coefficient of restitution is another one here")
-    if any(any(phase["spin"]) for one in scene["walls"] for phase in one["motion"]):
-        raise Cannot("walls that turn are not expressed here")
-
-
 def start(grains, gravity, dt):
     """Velocities half a step before the start: forces are found without moving anything."""
     O.dt = 1e-300
@@ -140,13 +119,9 @@ def start(grains, gravity, dt):
 
 
 def move(walls, time, dt):
-    """The walls' velocities over the step that follows: of a phase that begins or ends within it, its share."""
+    """The walls' velocities over the step that follows."""
     for number, one in walls:
-        velocity = Vector3(0, 0, 0)
-        for phase in one["motion"]:
-            within = min(time + dt, phase.get("stop", float("inf"))) - max(time, phase["start"])
-            velocity += Vector3(*phase["velocity"]) * (max(within, 0.0) / dt)
-        O.bodies[number].state.vel = velocity
+        O.bodies[number].state.vel = Vector3(*mean_velocity(one, time, time + dt))
 
 
 def advance(steps):
@@ -186,22 +161,4 @@ def run(scene, out):
                     table.writerow([stop, number, *x, *(0.5 * (v + state.vel)), *(0.5 * (w + state.angVel))])
 
 
-def main():
-    """A run a line, until there are no more."""
-    answers = os.fdopen(5, "w")
-    for line in sys.stdin:
-        request = json.loads(line)
-        try:
-            with open(request["scene"]) as file:
-                scene = json.load(file)
-            run(scene, request["out"])
-            answer = {"ran": {}}
-        except Cannot as reason:
-            answer = {"cannot": str(reason)}
-        except Exception as error:
-            traceback.print_exc()
-            answer = {"failed": {"why": f"{type(error).__name__}: {error}", "when": O.time, "where": None}}
-        print(json.dumps(answer), file=answers, flush=True)
-
-
-main()
+serve(run)
