@@ -333,3 +333,29 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
         grainbench(folder.path(), &["cost", "incline-disc/60deg-mu.9", "--solver", "SOLVER.toml", "--out", "cost"]);
     assert!(again.out.contains("\n0 of "), "{}", again.out);
 }
+
+/// A program that cannot express any wrong scene has not earned the rows that it passes.
+#[test]
+fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
+    if !is_here("python3") {
+        return;
+    }
+    let read = "scene = json.load(open(sys.argv[1]))\n";
+    let picky = format!("{read}if scene[\"laws\"][0][\"friction\"] != 0.3: sys.exit(64)\n");
+    let folder = example("python", "one_grain.py", Some((read, &picky)));
+    assert_eq!(passes(folder.path(), &["incline-disc/60deg-mu.3"], &["--no-controls"]).1, 3);
+    let answer = grainbench(folder.path(), &["run", "incline-disc/60deg-mu.3", "--solver", "SOLVER.toml", "--json"]);
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    for row in results["verdicts"].as_array().unwrap() {
+        let says = row["detail"].as_str().unwrap_or_default();
+        assert!(
+            row["verdict"] == "unsupported" && says.contains("its control, friction ×1.05, cannot be tried"),
+            "{row}"
+        );
+    }
+    assert!(
+        answer.code == Some(1) && results["controls"] == Value::Array(Vec::new()),
+        "nothing was earned: {}",
+        answer.out
+    );
+}

@@ -37,6 +37,8 @@ pub struct Runner {
     live: bool,
     /// Whether figures may take as long as the finest levels do.
     thorough: bool,
+    /// Whether a stranger must be able to run wrong physics too.
+    controlled: bool,
     /// Threads of a run.
     threads: usize,
     /// The largest set of which runs are done now though they are kept.
@@ -70,6 +72,7 @@ impl Runner {
             stranger: None,
             live: false,
             thorough: false,
+            controlled: true,
             threads: 1,
             afresh: None,
             runs,
@@ -95,6 +98,12 @@ impl Runner {
     #[must_use]
     pub fn thorough(self, thorough: bool) -> Self {
         Self { thorough, ..self }
+    }
+
+    /// The runner whose rows do or do not ask whether a stranger can be fed with their wrong physics.
+    #[must_use]
+    pub fn controlled(self, controlled: bool) -> Self {
+        Self { controlled, ..self }
     }
 
     /// The runner whose runs take so many threads each.
@@ -162,10 +171,30 @@ impl Runner {
         claim.runs.iter().all(|run| self.is_read_back(run, None) || is_stored(run) || can_run(run))
     }
 
-    /// Judges a claim.
+    /// Judges a claim. What a stranger passes and cannot be fed with the wrong physics of, it has not earned.
     #[must_use]
     pub fn judge(&self, claim: &Claim) -> Verdict {
-        self.conclude(claim, claim.runs.iter().map(|run| self.run(run)).collect())
+        let row = self.conclude(claim, claim.runs.iter().map(|run| self.run(run)).collect());
+        if row.outcome != Outcome::Pass {
+            return row;
+        }
+        match self.refused_control(claim) {
+            Some(reason) => {
+                let words = format!("its control, {}, cannot be tried: {reason}", claim.control.name);
+                row.left(Outcome::Unsupported, words)
+            }
+            None => row,
+        }
+    }
+
+    /// Why a stranger cannot run the wrong physics of a claim.
+    fn refused_control(&self, claim: &Claim) -> Option<String> {
+        let asked = self.controlled && self.stranger.is_some();
+        let wrong = |run: &Run| match self.run_wrong(claim, run) {
+            Err(error @ RunError::Unsupported { .. }) => Some(error.to_string()),
+            _ => None,
+        };
+        if asked { claim.runs.iter().find_map(wrong) } else { None }
     }
 
     /// Feeds a claim with its wrong physics; the row of a known error with a solver that does not have it.

@@ -219,6 +219,7 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
 impl<'a> Work<'a> {
     fn new(selected: &'a Selected, options: &Options, thorough: bool) -> Self {
         let runner = registry::runner(selected.case).live(options.live).thorough(thorough);
+        let runner = runner.controlled(!options.no_controls);
         // All levels are asked for: what is kept of runs is done anew too.
         let runner = if thorough { runner.afresh(Set::Paper) } else { runner };
         let runner = match &selected.stranger {
