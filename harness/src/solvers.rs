@@ -20,6 +20,17 @@ pub struct Kept {
     pub made: String,
 }
 
+/// A program beside the solvers of the registry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stranger {
+    /// Its name.
+    pub name: String,
+    /// Time steps that it is asked for, parts of the critical one; the usual ones where it names none.
+    pub fractions: Vec<f64>,
+    /// Whether it stays from run to run.
+    pub stays: bool,
+}
+
 /// Solvers by name, and the runs of other programs that are kept.
 pub trait Solvers: Send + Sync {
     /// The solver of a name.
@@ -40,9 +51,8 @@ pub trait Solvers: Send + Sync {
         false
     }
 
-    /// Programs beside the solvers of the registry, by their names, with the time steps that they are asked for, parts of the
-    /// critical one.
-    fn strangers(&self) -> Vec<(String, Vec<f64>)> {
+    /// Programs beside the solvers of the registry.
+    fn strangers(&self) -> Vec<Stranger> {
         Vec::new()
     }
 

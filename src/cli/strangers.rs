@@ -6,7 +6,7 @@ use grainbench::cases::solvers::{self, Registry};
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::Run;
-use grainbench::harness::solvers::{Kept, Solvers};
+use grainbench::harness::solvers::{Kept, Solvers, Stranger};
 use grainbench::reference::outside::Outside;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
@@ -70,8 +70,12 @@ impl Solvers for WithStrangers {
         self.stranger(name).is_some() || solvers::is_program(name)
     }
 
-    fn strangers(&self) -> Vec<(String, Vec<f64>)> {
-        let of = |stranger: &Arc<Outside>| (stranger.name(), stranger.manifest().knobs.critical_fraction.clone());
+    fn strangers(&self) -> Vec<Stranger> {
+        let of = |stranger: &Arc<Outside>| {
+            let manifest = stranger.manifest();
+            let (fractions, stays) = (manifest.knobs.critical_fraction.clone(), !manifest.worker.is_empty());
+            Stranger { name: stranger.name(), fractions, stays }
+        };
         self.strangers.iter().map(of).collect()
     }
 

@@ -1,5 +1,6 @@
 //! The knobs of every kind of solver, and which turns of them are tried.
 
+use grainbench_harness::solvers::Stranger;
 use grainbench_harness::subject::Lane;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Method, Resolution};
@@ -46,14 +47,15 @@ const SETTINGS: [(&str, &str); 8] = [
 /// All turns of a lane; programs beside the registry are asked where grains on springs are, by their names and the time steps
 /// that they name.
 #[must_use]
-pub fn turns(lane: &Lane, strangers: &[(String, Vec<f64>)]) -> Vec<Turn> {
-    let theirs = strangers.iter().filter(|_| lane.method == Method::Dem).flat_map(|(name, fractions)| {
-        let fractions = if fractions.is_empty() { &PROGRAM_FRACTIONS[..] } else { fractions };
-        let at = |&fraction: &f64| {
-            turn(name, name, Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction))
-        };
-        fractions.iter().map(at).collect::<Vec<_>>()
-    });
+pub fn turns(lane: &Lane, strangers: &[Stranger]) -> Vec<Turn> {
+    let theirs =
+        strangers.iter().filter(|_| lane.method == Method::Dem).flat_map(|Stranger { name, fractions, .. }| {
+            let fractions = if fractions.is_empty() { &PROGRAM_FRACTIONS[..] } else { fractions };
+            let at = |&fraction: &f64| {
+                turn(name, name, Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction))
+            };
+            fractions.iter().map(at).collect::<Vec<_>>()
+        });
     own(lane).into_iter().chain(theirs).collect()
 }
 

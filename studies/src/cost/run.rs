@@ -63,7 +63,7 @@ struct Task {
     start: Arc<OnceLock<f64>>,
     /// Whether the solver is another program.
     is_program: bool,
-    /// Whether it may be one that stays from run to run.
+    /// Whether it stays from run to run.
     stays: bool,
 }
 
@@ -159,6 +159,7 @@ impl<'a> Meter<'a> {
 
     fn tasks(&self, subject: &Subject) -> Vec<Task> {
         let Ok(plain) = subject.case.variant(subject.variant) else { return Vec::new() };
+        let strangers = self.solvers.strangers();
         let mut tasks = Vec::new();
         let mut solvers: BTreeMap<String, Option<Arc<dyn Solver>>> = BTreeMap::new();
         for lane in &subject.lanes {
@@ -169,7 +170,7 @@ impl<'a> Meter<'a> {
             }
             let scene = Arc::new(scene);
             let mut starts: BTreeMap<String, Arc<OnceLock<f64>>> = BTreeMap::new();
-            for turn in knobs::turns(lane, &self.solvers.strangers()) {
+            for turn in knobs::turns(lane, &strangers) {
                 let named = &self.wanted.solvers;
                 if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || *name == turn.line) {
                     continue;
@@ -188,7 +189,7 @@ impl<'a> Meter<'a> {
                 if tasks.iter().all(|task: &Task| task.name != name) {
                     let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
                     let scene = Arc::clone(&scene);
-                    let stays = !self.solvers.edition(&turn.solver).is_empty();
+                    let stays = strangers.iter().any(|stranger| stranger.stays && stranger.name == turn.solver);
                     tasks.push(Task { turn, method: lane.method, scene, solver, name, start, is_program, stays });
                 }
             }
