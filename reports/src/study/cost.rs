@@ -110,7 +110,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
         bars.extend(floors(diagram, line));
     }
     if !bars.is_empty() {
-        curves.push(Curve::new("floor: a soft grain is not wrong for being soft", Stroke::Bars, bars));
+        curves.push(Curve::new("floor: what refining does not take away", Stroke::Bars, bars));
     }
     let all = front(&diagram.points);
     let mut stairs = Vec::new();

@@ -12,7 +12,7 @@ use grainbench_harness::subject::Subject;
 use grainbench_reports::WriteError;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Method, RunError, Solver};
+use grainbench_scene::solver::{RunError, Solver};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
@@ -38,6 +38,8 @@ const LONGEST: f64 = 20.0;
 const PROGRAM: f64 = 4.0;
 /// A refinement that leaves this much of the error has met a floor.
 const FLOOR: f64 = 0.8;
+/// The floor of a program's error.
+const UNKNOWN: &str = "what no finer step takes away";
 /// Errors below this are rounding, and no floor.
 const ROUNDING: f64 = 1e-11;
 
@@ -53,7 +55,8 @@ pub struct Wanted {
 /// One point to measure.
 struct Task {
     turn: Turn,
-    method: Method,
+    /// What is left of its error when the resolution is as fine as one likes.
+    floor: &'static str,
     scene: Arc<Scene>,
     solver: Arc<dyn Solver>,
     /// The result cache.
@@ -189,8 +192,11 @@ impl<'a> Meter<'a> {
                 if tasks.iter().all(|task: &Task| task.name != name) {
                     let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
                     let scene = Arc::clone(&scene);
-                    let stays = strangers.iter().any(|stranger| stranger.stays && stranger.name == turn.solver);
-                    tasks.push(Task { turn, method: lane.method, scene, solver, name, start, is_program, stays });
+                    let stranger = strangers.iter().find(|stranger| stranger.name == turn.solver);
+                    let stays = stranger.is_some_and(|stranger| stranger.stays);
+                    // Of a program nothing is known but that no finer step helps.
+                    let floor = stranger.map_or(lane.method.floor(), |_| UNKNOWN);
+                    tasks.push(Task { turn, floor, scene, solver, name, start, is_program, stays });
                 }
             }
         }
@@ -331,7 +337,7 @@ fn mark_floors(tasks: &[Task], points: &mut [Point]) {
             .collect();
         for at in at_floor {
             let knobs = if points[at].knobs.is_empty() { String::new() } else { format!(" at {}", points[at].knobs) };
-            points[at].floor = Some(format!("{}{knobs}", tasks[at].method.floor()));
+            points[at].floor = Some(format!("{}{knobs}", tasks[at].floor));
         }
     }
 }
