@@ -15,6 +15,7 @@ use grainbench_harness::case::{Case, Home, fraction};
 use grainbench_harness::claim::Claim;
 use grainbench_harness::course::no_more;
 use grainbench_scene::source::SceneSource;
+use grainbench_scene::text::{line_of, written};
 use row::Reader;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,8 +26,6 @@ const SCENE: &str = "scene.toml";
 const CLAIMS: &str = "claims.toml";
 /// Where expected values come from, at more length; it may be absent.
 const DERIVATION: &str = "derivation.md";
-/// Largest file of words (B).
-const MOST: u64 = 1 << 20;
 
 /// A folder that is no case: which file, where in it, what was expected and what stood there.
 #[derive(Debug, thiserror::Error)]
@@ -62,7 +61,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
     let no_case = |what: String| NoCase { file: file.clone(), what };
     let text = text_of(&file)?;
     let claims: ClaimsFile = toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].lines().count().max(1));
+        let line = line_of(&text, &error).unwrap_or(1);
         no_case(format!("line {line}: expected the keys of claims, found {}", error.message().replace('\n', " ")))
     })?;
     let words = [&claims.title, &claims.claim, &claims.weakness];
@@ -108,11 +107,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
 
 /// The text of a file.
 fn text_of(file: &Path) -> Result<String, NoCase> {
-    let no_case = |what: String| NoCase { file: file.to_owned(), what };
-    let readable = |error: std::io::Error| no_case(format!("expected a file that can be read, found {error}"));
-    let found = fs::metadata(file).map_err(readable)?;
-    if !found.is_file() || found.len() > MOST {
-        return Err(no_case("expected a plain file of at most a megabyte, found something else".to_owned()));
-    }
-    fs::read_to_string(file).map_err(readable)
+    let told =
+        |(expected, found)| NoCase { file: file.to_owned(), what: format!("expected {expected}, found {found}") };
+    written(file).map_err(told)
 }

@@ -3,14 +3,12 @@
 use crate::observer::Names;
 use crate::read::read_error::{one_line, quoted};
 use grainbench_scene::effect::Effect;
+use grainbench_scene::text::{line_of, written};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Component, Path};
 use thiserror::Error;
 
-/// Most bytes of a manifest.
-const MOST: u64 = 1 << 20;
 /// Characters that a program's name may have beside letters and digits.
 const IN_NAMES: &str = "-_.+ ";
 
@@ -218,16 +216,9 @@ impl Manifest {
             expected: expected.to_owned(),
             found,
         };
-        let readable = |reason: std::io::Error| error("", "a file that can be read", reason.to_string());
-        let found = fs::metadata(path).map_err(readable)?;
-        if !found.is_file() || found.len() > MOST {
-            return Err(error("", "a plain file of at most a megabyte", "something else".to_owned()));
-        }
-        let text = fs::read(path).map_err(readable)?;
-        let text = String::from_utf8(text).map_err(|_| error("", "UTF-8", "other bytes".to_owned()))?;
+        let text = written(path).map_err(|(expected, found)| error("", expected, found))?;
         let wrong = |reason: toml::de::Error| {
-            let line = reason.span().map(|span| text[..span.start.min(text.len())].lines().count().max(1));
-            let place = line.map(|line| format!("line {line}")).unwrap_or_default();
+            let place = line_of(&text, &reason).map(|line| format!("line {line}")).unwrap_or_default();
             error(&place, "the keys of a manifest", one_line(reason.message()))
         };
         let manifest: Self = toml::from_str(&text).map_err(wrong)?;

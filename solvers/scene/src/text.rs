@@ -1,4 +1,31 @@
-//! Other people's text where it is shown: titles, keys, names of files.
+//! Other people's text: where it is read, and where it is shown, as titles, keys and names of files.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// Most bytes of a file that a person wrote.
+const MOST: u64 = 1 << 20;
+
+/// The text of a file that a person wrote.
+///
+/// # Errors
+/// What was expected, and what was found.
+pub fn written(path: &Path) -> Result<String, (&'static str, String)> {
+    let readable = |reason: io::Error| ("a file that can be read", reason.to_string());
+    let found = fs::metadata(path).map_err(readable)?;
+    if !found.is_file() || found.len() > MOST {
+        return Err(("a plain file of at most a megabyte", "something else".to_owned()));
+    }
+    let text = fs::read(path).map_err(readable)?;
+    String::from_utf8(text).map_err(|_| ("UTF-8", "other bytes".to_owned()))
+}
+
+/// The line of a text in which TOML found something wrong.
+#[must_use]
+pub fn line_of(text: &str, error: &toml::de::Error) -> Option<usize> {
+    error.span().map(|span| text[..span.start.min(text.len())].lines().count().max(1))
+}
 
 /// The text with every character written out that would steer a terminal, hide, or turn the direction of writing; those
 /// that `keeps` names stay.
