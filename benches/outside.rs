@@ -6,8 +6,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grainbench::cases::registry::read_grains;
-use grainbench::reference::deck::Stepping;
-use grainbench::reference::outside::{Outside, Resolved, SceneFormat};
+use grainbench::reference::outside::{Given, Outside, Resolved, SceneFormat};
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Resolution, Solver};
 use grainbench::scene::source::SceneSource;
@@ -65,9 +64,9 @@ fn runs(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().unwrap();
     let scene: Scene = SceneSource::from_text("disc.toml", folder.path(), SCENE).scene(&read_grains).unwrap();
     let step = Resolution::CriticalFraction(0.1);
-    let stepping = Stepping::of(&scene, &step).unwrap();
+    let given = Given::of(&scene, &step).unwrap();
     let resolved = folder.path().join("scene.json");
-    fs::write(&resolved, Resolved::of(&scene, &stepping).text(SceneFormat::Json).unwrap()).unwrap();
+    fs::write(&resolved, Resolved::of(&given).text(SceneFormat::Json).unwrap()).unwrap();
 
     let once = solver(folder.path(), "once", r#"run = ["sh", "once.sh", "{scene}", "{out}"]"#, ONCE);
     let stays = solver(folder.path(), "stays", r#"worker = ["sh", "stays.sh"]"#, STAYS);

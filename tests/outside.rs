@@ -172,6 +172,17 @@ fn a_wrong_manifest_is_refused() {
             "second = 2",
             "SOLVER.toml: line 13: expected the keys of a manifest, found unknown field `second`",
         ),
+        ("laws = [\"linear\"]", "", "SOLVER.toml: can.laws: expected a contact law, or laws of materials that deform"),
+        (
+            "grains = { path = \"grains.csv\", format = \"csv\" }",
+            "",
+            "SOLVER.toml: output: expected `grains`, or of a program whose bodies deform a `series`, found neither",
+        ),
+        (
+            "[limits]",
+            "[knobs]\ncells = [0]\n[limits]",
+            "SOLVER.toml: knobs.cells: expected numbers of cells above zero",
+        ),
         (
             "[limits]",
             "[knobs]\ncritical-fraction = [1.5]\n[limits]",
@@ -304,6 +315,48 @@ fn a_grain_in_cpp_is_built_and_judged() {
     let broken = example("cpp", "one_grain.cpp", Some(("int main", "int mian")));
     let answer = grainbench(broken.path(), &["run", "backspin", "--solver", "SOLVER.toml", "--json"]);
     assert!(answer.code == Some(1) && answer.out.contains("`make --silent` ended with 2"), "{}", answer.out);
+}
+
+/// A column and a bar in fifty lines of Python: bodies that deform are judged by cells, and each line that is spoiled is felt.
+#[test]
+fn a_line_of_masses_is_judged_as_a_continuum() {
+    if !is_here("python3") {
+        return;
+    }
+    let bodies = ["column", "vibrating-bar"];
+    let whole = example("continuum", "", None);
+    assert_eq!(passes(whole.path(), &bodies, &[]), (Some(0), 8), "its energy alone is not told");
+    let spoiled = [
+        ("+ m * scene[\"gravity\"]", "+ 0.95 * m * scene[\"gravity\"]"),
+        ("4 / 3 * material", "1 / 3 * material"),
+        ("modulus * (b - a)", "0.97 * modulus * (b - a)"),
+        ("0.5 if at in (0, count) else 1.0", "1.0"),
+        ("wave[\"amplitude\"] * math", "0.9 * wave[\"amplitude\"] * math"),
+        ("* at * h) for at", "* (at + 1) * h) for at"),
+        ("(1 + scene[\"global_damping\"] * time)", "1"),
+        ("held = 1 if", "held = 0 if"),
+        ("push(dt / 2 if step else 0.0)", "push(dt / 2)"),
+        ("x + dt * w", "x + 0.98 * dt * w"),
+        ("/ h - 0.5", "/ h"),
+    ];
+    for (right, wrong) in spoiled {
+        let folder = example("continuum", "line.py", Some((right, wrong)));
+        assert_eq!(passes(folder.path(), &bodies, &["--no-controls"]).0, Some(1), "{wrong}: every row passes");
+    }
+    let reason = |manifest: &[(&str, &str)], case: &str| {
+        let text = fs::read_to_string(whole.path().join("SOLVER.toml")).unwrap();
+        let text = manifest.iter().fold(text, |text, (right, wrong)| text.replace(right, wrong));
+        fs::write(whole.path().join("other.toml"), text).unwrap();
+        let answer = grainbench(whole.path(), &["run", case, "--solver", "other.toml", "--json", "--no-controls"]);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        let row = &results["verdicts"][0];
+        assert_eq!(row["verdict"], "unsupported", "{row}");
+        row["detail"].as_str().unwrap_or_default().to_owned()
+    };
+    let neo_hookean = [("\"hypoelastic\"", "\"neo-hookean\"")];
+    assert!(reason(&neo_hookean, "column").contains("the law `hypoelastic` of materials"));
+    assert!(reason(&[("\"global-damping\"", "")], "column/static").contains("the effect `global-damping`"));
+    assert!(reason(&neo_hookean, "incline-disc").contains("it leaves no grains"));
 }
 
 /// Studies take a program as they take our own solvers; what it did before is never taken for what it does now.

@@ -14,7 +14,8 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every text file of the repository, as relative path and text; build products and hidden folders but `.ci` left out.
+/// Every text file of the repository, as relative path and text; build products, programs that were
+/// installed beside their adapters and hidden folders but `.ci` left out.
 fn texts() -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut open = vec![root().to_path_buf()];
@@ -23,7 +24,8 @@ fn texts() -> Vec<(String, String)> {
             let path = entry.unwrap().path();
             let shown = path.strip_prefix(root()).unwrap().display().to_string();
             let hidden = shown.starts_with('.') && !shown.starts_with(".ci") && !shown.starts_with(".gitignore");
-            if hidden || shown == "target" || shown == "grainbench-out" {
+            let is_installed = shown.starts_with("peers/") && shown.ends_with("/venv");
+            if hidden || is_installed || shown == "target" || shown == "grainbench-out" {
                 continue;
             }
             if path.is_dir() {

@@ -97,6 +97,7 @@ fn claims() -> Vec<Claim> {
                     "the corner at 2L/c is rounded by a few cells; in units of v, falling with the cell",
                 ))
                 .refuses(softer())
+                .fair_to_any_continuum()
                 .drawn(&VELOCITY, level.name),
         );
         claims.push(
@@ -106,7 +107,8 @@ fn claims() -> Vec<Claim> {
                     Ok(Measured::new(done[0].last("left.vx")?, 0.0, Impact::of(&done[0].scene).speed))
                 })
                 .within(judged(end, "what stays behind as ringing; in units of v, falling with the cell"))
-                .refuses(Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0)),
+                .refuses(Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0))
+                .fair_to_any_continuum(),
         );
     }
     claims.push(
@@ -117,7 +119,8 @@ fn claims() -> Vec<Claim> {
                 Ok(Measured::new(plateau(&done[0])?, exact, -exact))
             })
             .within(judged(0.015, "ringing behind a front that is a jump"))
-            .refuses(softer()),
+            .refuses(softer())
+            .fair_to_any_continuum(),
     );
     claims
 }

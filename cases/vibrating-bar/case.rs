@@ -132,6 +132,7 @@ fn claims() -> Vec<Claim> {
                      .355 ε of the law at a strain ε; in units of the amplitude",
                 ))
                 .refuses(softer())
+                .fair_to_any_continuum()
                 .drawn(&VELOCITY, level.name),
         );
     }

@@ -316,6 +316,12 @@ impl Claim {
         Self { scope: Scope::AnySolver, ..self }
     }
 
+    /// The claim as one that is fair to any solver whose bodies deform.
+    #[must_use]
+    pub fn fair_to_any_continuum(self) -> Self {
+        Self { scope: Scope::AnyContinuum, ..self }
+    }
+
     /// The claim as one that is fair to any solver with the springs of the scene.
     #[must_use]
     pub fn fair_to_any_springs(self) -> Self {

@@ -6,7 +6,6 @@ use crate::control::{self, Wrong};
 use crate::expect::Measured;
 use crate::reading::{self, Table};
 use crate::run::{Done, Run, Set, Standing};
-use crate::scope::Scope;
 use crate::solvers::{Kept, Solvers};
 use crate::tolerance::Made;
 use crate::uncertainty::{Estimate, of_finest};
@@ -129,8 +128,7 @@ impl Runner {
     pub fn claims(&self) -> Vec<Claim> {
         let mut claims = (self.case.claims)();
         if let Some(stranger) = &self.stranger {
-            let has_springs = stranger.has_springs();
-            claims.retain(|claim| claim.scope.is_open() && (has_springs || claim.scope != Scope::AnySprings));
+            claims.retain(|claim| claim.scope.is_asked_of(&**stranger));
         }
         claims
     }

@@ -27,6 +27,12 @@ pub struct Stranger {
     pub name: String,
     /// Time steps that it is asked for, parts of the critical one; the usual ones where it names none.
     pub fractions: Vec<f64>,
+    /// Cells per reference length that it is asked for; the usual ones where it names none.
+    pub cells: Vec<f64>,
+    /// Whether its contacts have springs.
+    pub has_springs: bool,
+    /// Whether its bodies deform.
+    pub deforms: bool,
     /// Whether it stays from run to run.
     pub stays: bool,
 }

@@ -5,6 +5,7 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
 use nalgebra::Vector3;
 
+use crate::deck::Stepping;
 use crate::pair_forces::{PairForce, PairForces};
 use crate::read::contacts::{Forces, contacts};
 use crate::read::digits::Digits;
@@ -282,6 +283,14 @@ impl<'s> Observer<'s> {
 }
 
 impl Observed {
+    /// Of a scene without grains: the samples, and nothing told yet.
+    pub(crate) fn without_grains(stepping: &Stepping) -> Self {
+        let step: Vec<u64> = stepping.samples().collect();
+        let time = step.iter().map(|step| *step as f64 * stepping.time_step).collect();
+        let series = Series { step, time, ..Series::default() };
+        Self { series, uncertainty: Vec::new(), snapshots: Vec::new() }
+    }
+
     /// Keeps the first samples, and the snapshots up to them.
     pub fn keep(&mut self, samples: usize) {
         let series = &mut self.series;

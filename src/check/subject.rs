@@ -99,7 +99,7 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
     }
     for claim in (case.claims)() {
         let [run] = &claim.runs[..] else { continue };
-        if !claim.scope.is_open() || variant.is_some_and(|variant| variant != run.variant) {
+        if !claim.scope.is_of_grains() || variant.is_some_and(|variant| variant != run.variant) {
             continue;
         }
         let mut scene = case.variant(run.variant)?;
@@ -139,6 +139,6 @@ fn with_other_numbers(
 fn elsewhere(mut claim: Claim, scene: &Scene) -> Option<Claim> {
     let Elsewhere { quantity, allowed, because } = claim.elsewhere.take()?;
     let allowed = allowed(scene);
-    let is_known = claim.scope.is_open() && allowed.is_finite();
+    let is_known = claim.scope.is_of_grains() && allowed.is_finite();
     is_known.then(|| Claim { quantity: quantity.to_owned(), tolerance: computed(allowed, because), ..claim })
 }

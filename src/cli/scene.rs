@@ -1,11 +1,11 @@
 //! `grainbench scene`: a scene as programs are given it.
 
 use super::exit::{Fault, Outcome, print};
-use super::simulate::path_and_value;
+use super::simulate::{path_and_value, positive};
 use super::step::Step;
 use super::subject;
-use grainbench::reference::deck::Stepping;
-use grainbench::reference::outside::{Resolved, SceneFormat};
+use grainbench::reference::outside::{Given, Resolved, SceneFormat};
+use grainbench::scene::solver::Resolution;
 use std::process::ExitCode;
 
 /// What the command takes.
@@ -22,6 +22,9 @@ pub(crate) struct Arguments {
     format: Format,
     #[command(flatten)]
     step: Step,
+    /// In place of a time step, cells of a grid per reference length: what programs are given whose bodies deform.
+    #[arg(long, value_name = "NUMBER", value_parser = positive, conflicts_with_all = ["time_step", "time_step_fraction"])]
+    cells: Option<f64>,
 }
 
 /// Formats.
@@ -34,11 +37,14 @@ enum Format {
 /// Prints the scene.
 pub(crate) fn scene(arguments: &Arguments) -> Outcome {
     let (scene, _) = subject::scene(&arguments.scene, &arguments.set)?;
-    let stepping = Stepping::of(&scene, &arguments.step.resolution()).map_err(Fault::input)?;
+    let resolution = arguments
+        .cells
+        .map_or_else(|| arguments.step.resolution(), |cells| Resolution::grid(cells, Resolution::POINTS));
+    let given = Given::of(&scene, &resolution).map_err(Fault::input)?;
     let format = match arguments.format {
         Format::Json => SceneFormat::Json,
         Format::Toml => SceneFormat::Toml,
     };
-    print(&(Resolved::of(&scene, &stepping).text(format).map_err(Fault::input)? + "\n"))?;
+    print(&(Resolved::of(&given).text(format).map_err(Fault::input)? + "\n"))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -28,7 +28,8 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
         if names.is_empty() && !manifests.is_empty() { Vec::new() } else { of_registry(cases, &names, levels)? };
     for path in manifests {
         let stranger = solver::outside(path)?;
-        for of_case in select_fair(cases, levels)? {
+        for mut of_case in select_fair(cases, levels)? {
+            of_case.claims.retain(|claim| claim.scope.is_asked_of(&*stranger));
             selected.push(Selected { stranger: Some(Arc::clone(&stranger)), ..of_case });
         }
     }

@@ -167,7 +167,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     }
     let scene = source.scene(&read_grains)?;
     let solver = solver::find(&arguments.solver)?;
-    let resolution = resolution(arguments, &scene)?;
+    let resolution = resolution(arguments, &scene, solver.as_ref())?;
     if arguments.state.is_some() && Method::of(&arguments.solver) != Some(Method::Dem) {
         let solver = &arguments.solver;
         return Err(Fault::input(format!(
@@ -264,12 +264,13 @@ fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format>
 }
 
 /// The resolution asked for, unless it is above the critical step and nobody said that this is meant.
-fn resolution(arguments: &Arguments, scene: &Scene) -> Result<Resolution, Fault> {
+fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Result<Resolution, Fault> {
     if Method::of(&arguments.solver) == Some(Method::Rigid) {
         let &Arguments { substeps, iterations, .. } = arguments;
         return Ok(Resolution::Rigid { step: Resolution::RIGID_STEP, substeps, iterations });
     }
-    if Method::of(&arguments.solver) == Some(Method::Grid) {
+    // A program that has springs too is given cells where nothing else would do.
+    if solver.deforms() && (!solver.has_springs() || scene.needs_deformable().is_some()) {
         let &Arguments { cells, points, courant, .. } = arguments;
         if courant >= 1.0 && !arguments.allow_unstable {
             return Err(Fault::input(format!(

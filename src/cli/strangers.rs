@@ -73,8 +73,14 @@ impl Solvers for WithStrangers {
     fn strangers(&self) -> Vec<Stranger> {
         let of = |stranger: &Arc<Outside>| {
             let manifest = stranger.manifest();
-            let (fractions, stays) = (manifest.knobs.critical_fraction.clone(), !manifest.worker.is_empty());
-            Stranger { name: stranger.name(), fractions, stays }
+            Stranger {
+                name: stranger.name(),
+                fractions: manifest.knobs.critical_fraction.clone(),
+                cells: manifest.knobs.cells.clone(),
+                has_springs: stranger.has_springs(),
+                deforms: stranger.deforms(),
+                stays: !manifest.worker.is_empty(),
+            }
         };
         self.strangers.iter().map(of).collect()
     }

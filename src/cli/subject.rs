@@ -73,7 +73,7 @@ pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Opti
 /// The scene of the first gate of a case or variant that is fair to any solver, and its resolution.
 pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
     let named = Variant::read(text)?;
-    let fair = |claim: &Claim| claim.scope.is_open() && claim.runs.len() == 1;
+    let fair = |claim: &Claim| claim.scope.is_of_grains() && claim.runs.len() == 1;
     let run = (named.case.claims)()
         .into_iter()
         .filter(fair)

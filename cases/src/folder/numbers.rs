@@ -1,7 +1,7 @@
 //! Names of numbers in a claim: keys of the scene file, and under `scene.` those of the scene as programs are given it.
 
 use grainbench_reference::deck::Stepping;
-use grainbench_reference::outside::Resolved;
+use grainbench_reference::outside::{Given, Resolved};
 use grainbench_scene::scene::Scene;
 use toml::{Table, Value};
 
@@ -26,7 +26,7 @@ impl Numbers {
     pub(super) fn of(file: Table, scene: &Scene) -> Result<Self, String> {
         // Steps belong to a run and not to a claim: they are taken out again.
         let stepping = Stepping { time_step: 1.0, steps: 1, interval: 1 };
-        let resolved = Resolved::of(scene, &stepping);
+        let resolved = Resolved::of(&Given { scene, stepping, grid: None });
         let columns = resolved.columns.clone();
         let mut definite = Value::try_from(resolved).map_err(|error| error.to_string())?;
         if let Some(table) = definite.as_table_mut() {

@@ -83,9 +83,19 @@ impl Stepping {
     /// # Errors
     /// When the resolution is no time step for this scene.
     pub fn of(scene: &Scene, resolution: &Resolution) -> Result<Self, String> {
-        let (time_step, steps) = resolution.steps(scene)?;
+        Ok(Self::every(resolution.steps(scene)?, scene))
+    }
+
+    /// So many steps of a length (s), and the samples of a scene.
+    pub(crate) fn every((time_step, steps): (f64, u64), scene: &Scene) -> Self {
         let interval = Recorder::new(scene, time_step, steps).interval().min(steps.max(1));
-        Ok(Self { time_step, steps, interval })
+        Self { time_step, steps, interval }
+    }
+
+    /// The steps at which there is a sample.
+    pub(crate) fn samples(&self) -> impl Iterator<Item = u64> + use<> {
+        let Self { steps, interval, .. } = *self;
+        (0..=steps / interval).map(move |sample| sample * interval).chain((!self.ends_on_a_sample()).then_some(steps))
     }
 
     /// Whether the last step is a sample anyway.

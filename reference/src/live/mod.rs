@@ -143,10 +143,8 @@ pub(crate) fn most_bytes(scene: &Scene, stepping: Stepping) -> u64 {
 
 /// Refuses a series that lacks a sample that its deck asks for, and one with a value that is not finite.
 pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
-    let due = (0..=stepping.steps / stepping.interval).map(|sample| sample * stepping.interval);
-    let due = due.chain((!stepping.ends_on_a_sample()).then_some(stepping.steps));
     let mut found = series.step.iter().copied();
-    for step in due {
+    for step in stepping.samples() {
         match found.next() {
             Some(at) if at == step => {}
             Some(at) => return Err(format!("expected a sample at step {step}, found step {at}")),

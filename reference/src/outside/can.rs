@@ -1,18 +1,36 @@
 //! What a scene calls for that a program does not declare.
 
-use super::manifest::{Can, Law, Wall};
+use super::manifest::{Can, Law, Manifest, Material, Wall};
 use grainbench_scene::contact_law::Springs;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::{Scene, WallShape};
+use grainbench_scene::solver::Resolution;
 
-/// Why a scene is not given to a program, in words; none where it declares all that the scene calls for.
-pub(super) fn lacks(can: &Can, scene: &Scene) -> Option<String> {
+/// Why a scene is not given to a program at a resolution, in words; none where it declares all that the scene calls for.
+pub(super) fn lacks(manifest: &Manifest, scene: &Scene, resolution: &Resolution) -> Option<String> {
+    let can = &manifest.can;
     let dimension = scene.dimension.count();
     if !can.dimension.contains(&dimension) {
         return Some(format!("it declares no scenes of {dimension} dimensions"));
     }
-    if let Some(what) = scene.needs_deformable().or_else(|| scene.passing()) {
+    if let Some(what) = scene.passing() {
         return Some(format!("{what} cannot be declared"));
+    }
+    if !scene.grains.is_empty() && manifest.output.grains.is_none() {
+        return Some("it leaves no grains (`output.grains`)".to_owned());
+    }
+    let deforms = matches!(resolution, Resolution::Grid { .. });
+    let law = if deforms { lacks_material(can, scene) } else { lacks_law(can, scene) };
+    law.or_else(|| lacks_wall(can, scene)).or_else(|| lacks_effect(can, scene, deforms))
+}
+
+/// Of grains that keep their shape.
+fn lacks_law(can: &Can, scene: &Scene) -> Option<String> {
+    if let Some(what) = scene.needs_deformable() {
+        return Some(match can.deformable[..] {
+            [] => format!("it declares no bodies that deform (`can.deformable`), and the scene has {what}"),
+            _ => format!("the scene has {what}, and no cells of a grid are named"),
+        });
     }
     for law in scene.laws.iter().flatten() {
         let (law, word) = match law.springs {
@@ -24,23 +42,52 @@ pub(super) fn lacks(can: &Can, scene: &Scene) -> Option<String> {
             return Some(format!("it does not declare the law `{word}`"));
         }
     }
-    for wall in &scene.walls {
+    None
+}
+
+/// Of grains and bodies that deform, whose contacts have friction and no springs.
+fn lacks_material(can: &Can, scene: &Scene) -> Option<String> {
+    if can.deformable.is_empty() {
+        return Some("it declares no bodies that deform (`can.deformable`)".to_owned());
+    }
+    if scene.start.manufactured.is_some() || scene.start.initial_pressure.is_some() {
+        return scene.start.needs_deformable().map(|what| format!("{what} cannot be declared"));
+    }
+    let used = scene.grains.iter().map(|grain| grain.material).chain(scene.bodies.iter().map(|body| body.material));
+    used.into_iter().find_map(|place| {
+        let name = &scene.materials[usize::from(place)];
+        let Some(material) = scene.deformable.get(usize::from(place)).copied().flatten() else {
+            return Some(format!("material `{name}` has no elastic moduli"));
+        };
+        let (law, word) = Material::of(material.constitutive);
+        (!can.deformable.contains(&law)).then(|| format!("it does not declare the law `{word}` of materials"))
+    })
+}
+
+fn lacks_wall(can: &Can, scene: &Scene) -> Option<String> {
+    scene.walls.iter().find_map(|wall| {
         let (kind, word) = match wall.shape {
             WallShape::Plane { .. } => (Wall::Plane, "plane"),
             WallShape::Segment { .. } => (Wall::Segment, "segment"),
             WallShape::Rectangle { .. } => (Wall::Rectangle, "rectangle"),
             WallShape::Round { .. } => (Wall::Round, "round"),
         };
-        if !can.walls.contains(&kind) {
-            return Some(format!("it does not declare walls that are a `{word}`"));
-        }
-    }
+        (!can.walls.contains(&kind)).then(|| format!("it does not declare walls that are a `{word}`"))
+    })
+}
+
+fn lacks_effect(can: &Can, scene: &Scene, deforms: bool) -> Option<String> {
     if !scene.driven.is_empty() && !can.driven {
         return Some("it does not declare driven grains (`can.driven`)".to_owned());
     }
-    // Whoever moves grains at all lets them fall, and Hertz' law is declared as a law.
-    let of_all = [Effect::Gravity, Effect::Hertz];
-    let called_for = Effect::ALL.into_iter().filter(|effect| !of_all.contains(effect) && effect.is_on(scene));
+    let is_asked = |effect: &Effect| match effect {
+        // Whoever moves grains at all lets them fall, and Hertz' law is declared as a law.
+        Effect::Gravity | Effect::Hertz => false,
+        // Bodies that deform have no dashpots, and yielding is declared with the law of the material.
+        Effect::ContactDamping | Effect::Restitution | Effect::Plasticity => !deforms,
+        _ => true,
+    };
+    let called_for = Effect::ALL.into_iter().filter(|effect| is_asked(effect) && effect.is_on(scene));
     let mut missing = called_for.filter(|effect| !can.effects.iter().any(|name| name == effect.key_word()));
     missing.next().map(|effect| format!("it does not declare the effect `{}`", effect.key_word()))
 }

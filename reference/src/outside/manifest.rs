@@ -2,6 +2,7 @@
 
 use crate::observer::Names;
 use crate::read::read_error::{one_line, quoted};
+use grainbench_scene::body::Constitutive;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::text::{line_of, written};
 use serde::Deserialize;
@@ -63,8 +64,12 @@ pub enum SceneFormat {
 pub struct Can {
     /// Numbers of dimensions.
     pub dimension: Vec<usize>,
-    /// Contact laws.
+    /// Contact laws of grains that keep their shape.
+    #[serde(default)]
     pub laws: Vec<Law>,
+    /// Laws of materials, of programs whose grains and bodies deform.
+    #[serde(default)]
+    pub deformable: Vec<Material>,
     /// Kinds of walls.
     #[serde(default)]
     pub walls: Vec<Wall>,
@@ -88,6 +93,29 @@ pub enum Law {
     Coulomb,
 }
 
+/// Laws between deformation and stress, [`Constitutive`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Material {
+    /// Hypoelastic.
+    Hypoelastic,
+    /// Neo-Hookean.
+    NeoHookean,
+    /// Yielding by von Mises, with linear hardening.
+    VonMises,
+}
+
+impl Material {
+    /// The law of a material.
+    pub(super) const fn of(constitutive: Constitutive) -> (Self, &'static str) {
+        match constitutive {
+            Constitutive::Hypoelastic => (Self::Hypoelastic, "hypoelastic"),
+            Constitutive::NeoHookean => (Self::NeoHookean, "neo-hookean"),
+            Constitutive::VonMises { .. } => (Self::VonMises, "von-mises"),
+        }
+    }
+}
+
 /// Kinds of walls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -109,6 +137,9 @@ pub struct Knobs {
     /// Time steps as parts of the critical one.
     #[serde(default)]
     pub critical_fraction: Vec<f64>,
+    /// Cells per reference length of the scene: of a grain's radius, where there are grains.
+    #[serde(default)]
+    pub cells: Vec<f64>,
 }
 
 /// Files that a run leaves, by their paths in the folder of the run.
@@ -116,7 +147,8 @@ pub struct Knobs {
 #[serde(deny_unknown_fields)]
 pub struct Output {
     /// The grains at every sample.
-    pub grains: Grains,
+    #[serde(default)]
+    pub grains: Option<Grains>,
     /// The forces at contacts at the same steps, as a dump of LAMMPS' kind.
     #[serde(default)]
     pub contacts: Option<String>,
@@ -258,8 +290,22 @@ impl Manifest {
                 other.to_string(),
             );
         }
+        if let Some(other) = self.knobs.cells.iter().find(|cells| !(cells.is_finite() && **cells > 0.0)) {
+            return wrong("knobs.cells", "numbers of cells above zero", other.to_string());
+        }
+        if self.can.laws.is_empty() && self.can.deformable.is_empty() {
+            return wrong(
+                "can.laws",
+                "a contact law, or laws of materials that deform (`can.deformable`)",
+                "none".to_owned(),
+            );
+        }
         let output = &self.output;
-        let files = [("output.grains.path", Some(&output.grains.path)), ("output.contacts", output.contacts.as_ref())];
+        if output.grains.is_none() && output.series.is_none() {
+            return wrong("output", "`grains`, or of a program whose bodies deform a `series`", "neither".to_owned());
+        }
+        let path = output.grains.as_ref().map(|grains| &grains.path);
+        let files = [("output.grains.path", path), ("output.contacts", output.contacts.as_ref())];
         let tables = [("output.series", output.series.as_ref()), ("output.report", output.report.as_ref())];
         for (key, path) in files.into_iter().chain(tables).filter_map(|(key, path)| Some((key, path?))) {
             let mut parts = Path::new(path).components();
@@ -267,7 +313,8 @@ impl Manifest {
                 return wrong(key, "a path inside the folder of the run", quoted(path));
             }
         }
-        if output.contacts.is_some() && output.grains.format != GrainFormat::Lammps {
+        let is_dump = output.grains.as_ref().is_some_and(|grains| grains.format == GrainFormat::Lammps);
+        if output.contacts.is_some() && !is_dump {
             return wrong("output.contacts", "grains as a dump beside it", "grains in another format".to_owned());
         }
         let Limits { seconds, memory_mib, threads } = self.limits;

@@ -5,14 +5,17 @@
 //! leaves its grains at every sample; gates, controls, conformance and studies then judge it as they judge any solver.
 
 mod can;
+mod deformable;
 mod grain_table;
 mod manifest;
 mod report;
 mod resolved;
 mod worker;
 
-pub use manifest::{Can, GrainFormat, Grains, Knobs, Law, Limits, Manifest, ManifestError, Output, SceneFormat, Wall};
-pub use resolved::{Resolved, schema};
+pub use manifest::{
+    Can, GrainFormat, Grains, Knobs, Law, Limits, Manifest, ManifestError, Material, Output, SceneFormat, Wall,
+};
+pub use resolved::{Given, Resolved, schema};
 
 use crate::deadline::Deadline;
 use crate::deck::Stepping;
@@ -169,18 +172,18 @@ impl Outside {
     }
 
     /// Gives the program a scene and waits until it is done.
-    fn start(&self, scene: &Scene, stepping: &Stepping) -> Result<Finished, RunError> {
+    fn start(&self, given: &Given<'_>) -> Result<Finished, RunError> {
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let not_run = |reason: String| fail(Failure::NotRun(reason), Vec::new());
         let format = self.manifest.scene;
-        let text = Resolved::of(scene, stepping).text(format).map_err(not_run)?;
+        let text = Resolved::of(given).text(format).map_err(not_run)?;
         let ending = if format == SceneFormat::Json { "json" } else { "toml" };
         let name = format!("{SCENE}.{ending}");
         let folder = process::scratch([(&*name, &*text)]).map_err(|error| not_run(error.to_string()))?;
         let file = folder.path().join(&name);
         let executable = self.program()?;
         let arguments = self.words(self.manifest.command(), &file, folder.path());
-        let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(scene, *stepping);
+        let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(given.scene, given.stepping);
         let limits = self.limits(Duration::from_secs(self.manifest.limits.seconds), bytes);
         let mut start = Instant::now();
         let (said, last_lines) = if self.manifest.worker.is_empty() {
@@ -219,12 +222,12 @@ impl Outside {
     }
 
     /// Time of a run of no steps (s).
-    fn start_up(&self, scene: &Scene, stepping: &Stepping) -> f64 {
-        let grains = scene.grains.len();
+    fn start_up(&self, given: &Given<'_>) -> f64 {
+        let grains = given.scene.grains.len();
         let known = |of: &Self| of.start_up.lock().unwrap_or_else(PoisonError::into_inner).get(&grains).copied();
         known(self).unwrap_or_else(|| {
-            let none = Stepping { steps: 0, interval: 1, ..*stepping };
-            let seconds = self.start(scene, &none).map_or(0.0, |finished| finished.seconds);
+            let stepping = Stepping { steps: 0, interval: 1, ..given.stepping };
+            let seconds = self.start(&Given { stepping, ..*given }).map_or(0.0, |finished| finished.seconds);
             self.start_up.lock().unwrap_or_else(PoisonError::into_inner).insert(grains, seconds);
             seconds
         })
@@ -233,30 +236,10 @@ impl Outside {
     /// Reads what a run left.
     fn observe(&self, scene: &Scene, stepping: &Stepping, folder: &Path) -> Result<Observed, Failure> {
         let Output { grains, contacts, series, .. } = &self.manifest.output;
-        let told = |error: OutputError| Failure::Output(without(folder, &error.to_string()));
-        let names = grains.names();
-        let mut observed = match grains.format {
-            GrainFormat::Csv => {
-                let path = plain_file(folder, &grains.path)?;
-                grain_table::observe(scene, &path, &grains.path, &names, stepping.time_step).map_err(output)
-            }
-            GrainFormat::Lammps | GrainFormat::Npz | GrainFormat::Vtk => {
-                let mut files = if grains.format == GrainFormat::Vtk {
-                    of_pattern(folder, &grains.path)?
-                } else {
-                    vec![plain_file(folder, &grains.path)?]
-                };
-                files.extend(contacts.as_ref().map(|name| plain_file(folder, name)).transpose()?);
-                let rows = scene.grains.len() * (16 + scene.walls.len());
-                let time_step = Some(stepping.time_step);
-                let sources = Sources { files, log: None, names, time_step, most_rows: Some(rows as u64) };
-                Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(told)
-            }
-        }
-        .map_err(|failure| match failure {
-            Failure::Output(reason) => Failure::Output(without(folder, &reason)),
-            other => other,
-        })?;
+        let mut observed = match grains.as_ref().filter(|_| !scene.grains.is_empty()) {
+            Some(grains) => observe_grains(scene, stepping, folder, (grains, contacts.as_deref()))?,
+            None => Observed::without_grains(stepping),
+        };
         if let Some(name) = series {
             let table = read_table(&plain_file(folder, name)?).map_err(output)?;
             let wrong = |expected: String, found: String| {
@@ -272,6 +255,39 @@ impl Outside {
         }
         Ok(observed)
     }
+}
+
+/// Reads the grains that a run left, and their contacts where there is a file of them.
+fn observe_grains(
+    scene: &Scene,
+    stepping: &Stepping,
+    folder: &Path,
+    (grains, contacts): (&Grains, Option<&str>),
+) -> Result<Observed, Failure> {
+    let told = |error: OutputError| Failure::Output(without(folder, &error.to_string()));
+    let names = grains.names();
+    let observed = match grains.format {
+        GrainFormat::Csv => {
+            let path = plain_file(folder, &grains.path)?;
+            grain_table::observe(scene, &path, &grains.path, &names, stepping.time_step).map_err(output)
+        }
+        GrainFormat::Lammps | GrainFormat::Npz | GrainFormat::Vtk => {
+            let mut files = if grains.format == GrainFormat::Vtk {
+                of_pattern(folder, &grains.path)?
+            } else {
+                vec![plain_file(folder, &grains.path)?]
+            };
+            files.extend(contacts.map(|name| plain_file(folder, name)).transpose()?);
+            let rows = scene.grains.len() * (16 + scene.walls.len());
+            let time_step = Some(stepping.time_step);
+            let sources = Sources { files, log: None, names, time_step, most_rows: Some(rows as u64) };
+            Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(told)
+        }
+    };
+    observed.map_err(|failure| match failure {
+        Failure::Output(reason) => Failure::Output(without(folder, &reason)),
+        other => other,
+    })
 }
 
 /// How a run ended that ended in order.
@@ -342,6 +358,14 @@ impl Solver for Outside {
         self.manifest.name.clone()
     }
 
+    fn has_springs(&self) -> bool {
+        self.manifest.can.laws.iter().any(|law| *law != Law::Coulomb)
+    }
+
+    fn deforms(&self) -> bool {
+        !self.manifest.can.deformable.is_empty()
+    }
+
     fn available(&self) -> Result<(), RunError> {
         self.prepare()?;
         self.program().map(drop)
@@ -349,14 +373,15 @@ impl Solver for Outside {
 
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         let cannot = |reason: String| RunError::Unsupported { solver: self.name(), reason };
-        if let Some(reason) = can::lacks(&self.manifest.can, scene) {
+        if let Some(reason) = can::lacks(&self.manifest, scene, resolution) {
             return Err(cannot(reason));
         }
-        let stepping =
-            Stepping::of(scene, resolution).map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
+        let given =
+            Given::of(scene, resolution).map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
+        let stepping = given.stepping;
         self.prepare()?;
         watch.begin(stepping.time_step, stepping.steps);
-        let Finished { folder, said, last_lines, seconds } = self.start(scene, &stepping)?;
+        let Finished { folder, said, last_lines, seconds } = self.start(&given)?;
         let fail = |failure| RunError::Program { solver: self.name(), failure, last_lines: last_lines.clone() };
         let told = match said {
             Said::Ran(told) => told,
@@ -368,7 +393,7 @@ impl Solver for Outside {
         watch.progress(stepping.steps, stepping.steps);
         let seconds = match told {
             Some(told) => told.solve,
-            None => (seconds - self.start_up(scene, &stepping)).max(0.0),
+            None => (seconds - self.start_up(&given)).max(0.0),
         };
         let options = self.version().into_iter().collect();
         Ok(Record {

@@ -1,5 +1,6 @@
 //! The scene that a program is given: everything definite, in SI, nothing to be looked up elsewhere.
 
+use super::deformable::{self, Body, BodyProbe, Grid, Material, Settle};
 use super::manifest::SceneFormat;
 use crate::deck::Stepping;
 use grainbench_scene::contact_law::{ContactLaw, Springs};
@@ -7,6 +8,7 @@ use grainbench_scene::effect::Effect;
 use grainbench_scene::file::GrainShape;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Scene, Wall, WallShape};
+use grainbench_scene::solver::Resolution;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -48,8 +50,49 @@ pub struct Resolved {
     pub walls: Vec<ResolvedWall>,
     /// Groups of grains that are moved whatever the forces on them.
     pub driven: Vec<Driven>,
+    /// The grid, where bodies deform. Springs and dashpots of `laws` are then not meant, friction is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<Grid>,
+    /// Materials that deform, where there is a grid.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub deformable: Vec<Material>,
+    /// Bodies that are no grains.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<Body>,
+    /// A damped phase before the clock starts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settle: Option<Settle>,
+    /// Probes of bodies and of the material inside them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<BodyProbe>,
     /// Columns that a table of the series may have.
     pub columns: Vec<String>,
+}
+
+/// A scene as it is given to a program at a resolution.
+#[derive(Clone, Copy)]
+pub struct Given<'s> {
+    /// The scene.
+    pub scene: &'s Scene,
+    /// Its steps.
+    pub stepping: Stepping,
+    /// Its grid, where bodies deform.
+    pub grid: Option<Grid>,
+}
+
+impl<'s> Given<'s> {
+    /// Of a scene at a resolution.
+    ///
+    /// # Errors
+    /// Says what is wrong where there are no such steps of the scene.
+    pub fn of(scene: &'s Scene, resolution: &Resolution) -> Result<Self, String> {
+        let Resolution::Grid { cells, points, courant } = *resolution else {
+            return Ok(Self { scene, stepping: Stepping::of(scene, resolution)?, grid: None });
+        };
+        let stepping = Stepping::every(resolution.steps_on_grid(scene)?, scene);
+        let cell = scene.reference_length / cells;
+        Ok(Self { scene, stepping, grid: Some(Grid { cell, points, courant }) })
+    }
 }
 
 /// Steps and samples.
@@ -220,7 +263,8 @@ pub struct Driven {
 impl Resolved {
     /// Of a scene, with steps.
     #[must_use]
-    pub fn of(scene: &Scene, stepping: &Stepping) -> Self {
+    pub fn of(given: &Given<'_>) -> Self {
+        let Given { scene, stepping, grid } = given;
         let vector = |vector: &Vector3<f64>| [vector.x, vector.y, vector.z];
         let material = |place: u16| scene.materials[usize::from(place)].clone();
         let critical = scene.critical_time_step();
@@ -271,6 +315,11 @@ impl Resolved {
                     velocity: vector(&driven.velocity),
                 })
                 .collect(),
+            grid: *grid,
+            deformable: if grid.is_some() { deformable::materials(scene) } else { Vec::new() },
+            bodies: deformable::bodies(scene),
+            settle: deformable::settle(scene),
+            probes: deformable::probes(scene),
             columns: Recorder::new(scene, 1.0, 1).finish().0.columns.into_iter().map(|column| column.name).collect(),
         }
     }

@@ -286,6 +286,14 @@ impl Solver for Mpm {
         self.name.to_owned()
     }
 
+    fn has_springs(&self) -> bool {
+        false
+    }
+
+    fn deforms(&self) -> bool {
+        true
+    }
+
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         self.go(scene, resolution, None, watch)
     }

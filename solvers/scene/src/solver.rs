@@ -115,13 +115,35 @@ impl Resolution {
         Ok(match (scene.duration, self) {
             (Duration::Cycles(cycles), _) => (wanted, cycles),
             (Duration::Seconds(time), Self::TimeStep(_)) => (wanted, ((time / wanted).round() as u64).max(1)),
-            (Duration::Seconds(time), _) => {
-                // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
-                let steps = (time / wanted * (1.0 - 1e-12)).ceil().max(1.0);
-                (time / steps, steps as u64)
-            }
+            (Duration::Seconds(time), _) => whole_steps(time, wanted),
         })
     }
+
+    /// Time step (s) and number of steps of a scene on a grid: the Courant number times what the fastest wave takes through a
+    /// cell, shortened so that a whole number of steps fits.
+    ///
+    /// # Errors
+    /// Says what is wrong: the resolution is no grid, nothing in the scene deforms, or it lasts a number of cycles.
+    pub fn steps_on_grid(&self, scene: &Scene) -> Result<(f64, u64), String> {
+        let Self::Grid { cells, courant, .. } = *self else {
+            return Err(format!("expected cells of a grid, found {self}"));
+        };
+        let Duration::Seconds(time) = scene.duration else {
+            return Err("expected a duration in seconds, found cycles".to_owned());
+        };
+        let wanted = courant * scene.reference_length / cells / scene.fastest_wave();
+        if !(wanted.is_finite() && wanted > 0.0) {
+            return Err(format!("expected a material that deforms and positive numbers, found none at {self}"));
+        }
+        beyond_steps(time / wanted).map_or_else(|| Ok(whole_steps(time, wanted)), Err)
+    }
+}
+
+/// A whole number of steps of at most a length (s) in a time (s), and how long they are then. The slack keeps a ratio that is
+/// whole but for rounding from gaining one.
+fn whole_steps(time: f64, wanted: f64) -> (f64, u64) {
+    let steps = (time / wanted * (1.0 - 1e-12)).ceil().max(1.0);
+    (time / steps, steps as u64)
 }
 
 /// Most steps that any solver takes: at a million a second they would take thirty years.
@@ -500,6 +522,12 @@ pub trait Solver: Send + Sync {
     /// at those.
     fn has_springs(&self) -> bool {
         true
+    }
+
+    /// Whether its bodies deform: rows that look inside bodies, or at what deformation makes of a motion, are asked of such a
+    /// solver alone.
+    fn deforms(&self) -> bool {
+        false
     }
 
     /// Runs a scene.

@@ -24,6 +24,8 @@ pub struct Turn {
 const FRACTIONS: [f64; 8] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002];
 /// Those that other programs are asked for, whose start takes longer than most of these runs.
 const PROGRAM_FRACTIONS: [f64; 3] = [0.2, 0.05, 0.01];
+/// Cells that they are asked for, over those of the lane.
+const PROGRAM_CELLS: [f64; 3] = [0.25, 0.5, 1.0];
 /// Substeps of rapier.
 const SUBSTEPS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
 /// Iterations of its constraint solver at eight substeps.
@@ -45,18 +47,26 @@ const SETTINGS: [(&str, &str); 8] = [
 ];
 
 /// All turns of a lane; programs beside the registry are asked where grains on springs are, by their names and the time steps
-/// that they name.
+/// that they name, or where bodies deform, with the cells that they name.
 #[must_use]
 pub fn turns(lane: &Lane, strangers: &[Stranger]) -> Vec<Turn> {
-    let theirs =
-        strangers.iter().filter(|_| lane.method == Method::Dem).flat_map(|Stranger { name, fractions, .. }| {
-            let fractions = if fractions.is_empty() { &PROGRAM_FRACTIONS[..] } else { fractions };
-            let at = |&fraction: &f64| {
-                turn(name, name, Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction))
-            };
-            fractions.iter().map(at).collect::<Vec<_>>()
-        });
-    own(lane).into_iter().chain(theirs).collect()
+    own(lane).into_iter().chain(strangers.iter().flat_map(|stranger| theirs(lane, stranger))).collect()
+}
+
+fn theirs(lane: &Lane, stranger: &Stranger) -> Vec<Turn> {
+    let at = |resolution, sequence| turn(&stranger.name, &stranger.name, resolution, &lane.knobs, Some(sequence));
+    match (lane.method, lane.about) {
+        (Method::Dem, _) if stranger.has_springs => {
+            let fractions = if stranger.fractions.is_empty() { &PROGRAM_FRACTIONS[..] } else { &stranger.fractions };
+            fractions.iter().map(|&fraction| at(Resolution::CriticalFraction(fraction), 1.0 / fraction)).collect()
+        }
+        (Method::Grid, Resolution::Grid { cells: about, points, courant }) if stranger.deforms => {
+            let usual = PROGRAM_CELLS.map(|factor| factor * about);
+            let cells = if stranger.cells.is_empty() { &usual[..] } else { &stranger.cells };
+            cells.iter().map(|&cells| at(Resolution::Grid { cells, points, courant }, cells / about)).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 fn own(lane: &Lane) -> Vec<Turn> {
