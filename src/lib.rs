@@ -6,6 +6,7 @@
 
 pub mod check;
 pub mod own;
+pub mod peers;
 pub mod verify;
 
 pub use own::{Judgement, conform, judge};

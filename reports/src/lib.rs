@@ -3,6 +3,7 @@
 pub mod elements;
 pub mod export;
 pub mod headline;
+pub mod judged;
 pub mod junit;
 pub mod line;
 mod manifest;

@@ -4,6 +4,7 @@ use grainbench_harness::figure::Figure;
 use grainbench_harness::verdict::{Control, Verdict};
 use serde::{Deserialize, Serialize};
 
+use crate::judged::Judged;
 use crate::stored_figure;
 
 /// A whole run of the harness.
@@ -13,6 +14,9 @@ pub struct Report {
     pub provenance: Provenance,
     /// One section a case, in the order of the registry.
     pub sections: Vec<Section>,
+    /// Programs that were judged before, by their manifests.
+    #[serde(default)]
+    pub judged: Vec<Judged>,
 }
 
 /// What ran, where and when.

@@ -7,6 +7,7 @@ use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePl
 use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
+use crate::judged::Judged;
 use crate::report::{Provenance, Report, RunCost, Section};
 
 /// A row that passes or fails by its numbers.
@@ -264,7 +265,7 @@ fn nine_discs() -> Section {
 
 /// Two cases with every kind of row.
 pub(crate) fn report() -> Report {
-    Report {
+    let mut report = Report {
         provenance: Provenance {
             version: "0.1.0".into(),
             commit: "0123456789ab".into(),
@@ -275,7 +276,10 @@ pub(crate) fn report() -> Report {
             wall_seconds: 12.3,
         },
         sections: vec![backspin(), nine_discs()],
-    }
+        judged: Vec::new(),
+    };
+    report.judged = vec![Judged::of("other".into(), "other 1.0".into(), "0123".into(), &report)];
+    report
 }
 
 /// The same report with text in every field that would break out of a page that does not escape it.

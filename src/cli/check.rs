@@ -78,7 +78,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
         (None, None) => Vec::new(),
     };
     check_writable(&arguments.out)?;
-    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections };
+    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections, judged: Vec::new() };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;

@@ -65,7 +65,11 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let section = section(arguments, &comparison);
     let [a, b] = names(arguments);
     let words = vec!["compare".to_owned(), a, b];
-    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
+    let report = Report {
+        provenance: provenance(words, start.elapsed().as_secs_f64()),
+        sections: vec![section],
+        judged: Vec::new(),
+    };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;

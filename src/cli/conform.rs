@@ -45,7 +45,11 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     })?;
     let mut words = vec!["conform".to_owned()];
     words.extend(arguments.solver.iter().cloned());
-    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
+    let report = Report {
+        provenance: provenance(words, start.elapsed().as_secs_f64()),
+        sections: vec![section],
+        judged: Vec::new(),
+    };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;

@@ -11,6 +11,7 @@ mod effects;
 mod exit;
 mod fields;
 mod interrupt;
+mod keep;
 mod list;
 mod progress;
 mod provenance;

@@ -285,7 +285,11 @@ fn verify(arguments: &Verify) -> Outcome {
         runs: Vec::new(),
     };
     let words = [vec!["reference verify".to_owned()], arguments.ids.clone()].concat();
-    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections: vec![section] };
+    let report = Report {
+        provenance: provenance(words, start.elapsed().as_secs_f64()),
+        sections: vec![section],
+        judged: Vec::new(),
+    };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;

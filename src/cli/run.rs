@@ -4,6 +4,7 @@ use super::conform;
 use super::cores::{MOST_THREADS, share};
 use super::exit::{self, Fault, Outcome, RED, check_writable, print};
 use super::interrupt::Interrupt;
+use super::keep::{self, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::select::{self, Selected};
@@ -61,6 +62,9 @@ pub(crate) struct Options {
     /// Leave out the negative controls.
     #[arg(long)]
     no_controls: bool,
+    /// Keep the rows of the program beside its manifest, as `judged.json`: all cases, with their controls.
+    #[arg(long, requires = "solver", conflicts_with = "no_controls")]
+    keep: bool,
     /// Threads of each run; as many runs at once as the machine has cores for. The bits do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     threads: u16,
@@ -70,6 +74,7 @@ pub(crate) struct Options {
 pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let selected = select::select(cases, &options.solver, &options.levels)?;
     check_writable(&options.out)?;
+    let keeping = if options.keep { Some(keep::program(&selected)?) } else { None };
     let start = Instant::now();
     let thorough = options.levels.iter().any(|level| level == "all");
     let interrupt = Interrupt::listen();
@@ -84,7 +89,19 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         words.push(format!("interrupted: {left} checks left out"));
     }
     let provenance = provenance(words, start.elapsed().as_secs_f64());
-    let report = Report { provenance, sections };
+    // They stand beside the whole registry, and not beside a case of it.
+    let judged = if cases.is_empty() && options.solver.is_empty() {
+        grainbench::peers::kept().map_err(Fault::input)?
+    } else {
+        Vec::new()
+    };
+    let report = Report { provenance, sections, judged };
+    if let Some(program) = keeping {
+        if left > 0 || !cases.is_empty() {
+            return Err(Fault::input("--keep: expected a whole run of all cases, found a part of it"));
+        }
+        keep(program, &report)?;
+    }
     let write = if options.parquet { write_report_and_parquet } else { write_report };
     write(&options.out, &report).map_err(Fault::writing)?;
     if options.json {

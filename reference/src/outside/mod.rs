@@ -33,6 +33,7 @@ use report::{OwnReport, Seconds};
 use std::collections::BTreeMap;
 use std::env;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
@@ -162,8 +163,23 @@ impl Outside {
         done.clone().map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
     }
 
+    /// The folder of the manifest.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Hash of the manifest and of the files beside it but what is kept of its rows: what an adapter is.
+    ///
+    /// # Errors
+    /// When one of them cannot be read.
+    pub fn fingerprint(&self) -> io::Result<String> {
+        fingerprint(&self.folder)
+    }
+
     /// The first line that it prints of its version.
-    fn version(&self) -> Option<String> {
+    #[must_use]
+    pub fn version(&self) -> Option<String> {
         let ask = || {
             let printed = self.aside(&self.manifest.version, FOR_VERSION).ok()?;
             printed.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line)
@@ -288,6 +304,24 @@ fn observe_grains(
         Failure::Output(reason) => Failure::Output(without(folder, &reason)),
         other => other,
     })
+}
+
+/// Hash of the files in a folder, but of what is kept there.
+///
+/// # Errors
+/// When one of them cannot be read.
+pub fn fingerprint(folder: &Path) -> io::Result<String> {
+    let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
+    let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
+    files.retain(|path| path.extension().is_none_or(|end| end != "json"));
+    files.sort();
+    let mut hash = blake3::Hasher::new();
+    for path in files {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let text = fs::read(&path)?;
+        hash.update(format!("{name} {}\n", text.len()).as_bytes()).update(&text);
+    }
+    Ok(hash.finalize().to_hex()[..32].to_owned())
 }
 
 /// How a run ended that ended in order.

@@ -1,5 +1,6 @@
 //! The report as one page that needs nothing else: no script, no network, no font.
 
+mod peers;
 mod prose;
 pub(crate) mod provenance;
 mod section;
@@ -20,7 +21,7 @@ use crate::report::Report;
 /// # Errors
 /// When a figure cannot be drawn.
 pub fn render(report: &Report) -> Result<String, DrawError> {
-    let mut taken = BTreeSet::from(["summary".to_owned(), "provenance".to_owned()]);
+    let mut taken = BTreeSet::from(["summary", "peers", "provenance"].map(str::to_owned));
     let anchors: Vec<String> = report.sections.iter().map(|section| unique(&slug(&section.name), &mut taken)).collect();
     let counts = Headline::of_report(report);
     let mut sections = Vec::new();
@@ -31,6 +32,7 @@ pub fn render(report: &Report) -> Result<String, DrawError> {
         main {
             (summary::render(report, &anchors))
             @for section in &sections { (section) }
+            (peers::render(report))
             (provenance::render(&report.provenance))
         }
     };

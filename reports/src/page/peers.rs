@@ -1,0 +1,110 @@
+//! Other people's solvers beside ours, as they were judged when somebody ran them.
+
+use maud::{Markup, html};
+
+use super::scrolling;
+use crate::judged::{self, Count, Judged};
+use crate::number;
+use crate::report::Report;
+
+/// Renders the section; nothing where no program was judged.
+pub(crate) fn render(report: &Report) -> Markup {
+    let judged = &report.judged;
+    html! {
+        @if !judged.is_empty() {
+            section id="peers" {
+                h2 { "Other people's solvers" }
+                p.claim {
+                    "Programs by their manifests, on the rows that are fair to any solver, each with its negative control. They were run "
+                    "where and when the first table says, and not by this run."
+                }
+                (scrolling("Programs", &programs(judged)))
+                p.note {
+                    "By case: largest error over what is allowed, and rows passed of those that were asked; the rest the program cannot "
+                    "express. The second column has the largest of the same rows with our solvers, where this run judged them."
+                }
+                (scrolling("Programs by case", &by_case(report)))
+            }
+        }
+    }
+}
+
+fn programs(judged: &[Judged]) -> Markup {
+    html! {
+        table.cases {
+            thead {
+                tr {
+                    th scope="col" { "Program" }
+                    th scope="col" { "Rows passed" }
+                    th scope="col" { "Controls red" }
+                    th scope="col" { "Judged" }
+                    th scope="col" { "On" }
+                }
+            }
+            tbody {
+                @for of in judged {
+                    @let count = of.count(None);
+                    tr {
+                        th scope="row" { (of.program) span.title { (of.version) } }
+                        td { (tally(&count)) }
+                        td { (count.controls_red) " of " (count.controls) }
+                        td { (of.day()) ", commit " (of.provenance.commit) }
+                        td { (of.provenance.machine) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn tally(count: &Count) -> Markup {
+    html! {
+        span.tally { (count.pass) " / " (count.pass + count.red + count.amber) }
+        @if count.red > 0 { span.mark.fail { "✗ " (count.red) } }
+        @if count.amber > 0 { span.mark.amber { "▲ " (count.amber) } }
+    }
+}
+
+fn by_case(report: &Report) -> Markup {
+    html! {
+        table.cases {
+            thead {
+                tr {
+                    th scope="col" { "Case" }
+                    th scope="col" { "ours" }
+                    @for of in &report.judged { th scope="col" { (of.program) } }
+                }
+            }
+            tbody {
+                @for case in judged::cases(&report.judged) {
+                    tr {
+                        th scope="row" { (case) }
+                        td { @if let Some(worst) = ours(report, case) { (number::significant(worst, 2)) } @else { "—" } }
+                        @for of in &report.judged { (cell(&of.count(Some(case)))) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn cell(count: &Count) -> Markup {
+    html! {
+        td {
+            @if let Some(worst) = count.worst { (number::significant(worst, 2)) " · " } @else if count.red == 0 { "— " }
+            @if count.pass + count.red > 0 { (count.pass) "/" (count.pass + count.red + count.amber) }
+            @if count.red > 0 { span.mark.fail { "✗ " (count.red) } }
+        }
+    }
+}
+
+/// Largest error over what is allowed of the rows of this run that programs were asked too.
+fn ours(report: &Report, case: &str) -> Option<f64> {
+    let asked = |variant: &str, quantity: &str| {
+        let mut rows = report.judged.iter().flat_map(|of| &of.rows);
+        rows.any(|row| (row.case.as_str(), row.variant.as_str(), row.quantity.as_str()) == (case, variant, quantity))
+    };
+    let section = report.sections.iter().find(|section| section.name == case)?;
+    let rows = section.verdicts.iter().filter(|row| asked(&row.variant, &row.quantity));
+    rows.filter_map(|row| Some(row.error?.abs() / row.allowed)).reduce(f64::max)
+}

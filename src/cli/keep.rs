@@ -1,0 +1,29 @@
+//! `grainbench run --keep`: the rows of a program, kept beside its manifest.
+
+use super::exit::Fault;
+use super::select::Selected;
+use grainbench::reference::outside::Outside;
+use grainbench::reports::judged::Judged;
+use grainbench::reports::{Report, write_file};
+
+/// The file with what is kept.
+const KEEPS: &str = "judged.json";
+
+/// The one program that was selected.
+pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
+    let mut programs = selected.iter().map(|of| of.stranger.as_deref());
+    let Some(Some(program)) = programs.next() else {
+        return Err(Fault::input("--keep: expected one program by its manifest, found a solver of ours"));
+    };
+    let is_it = |other: Option<&Outside>| other.is_some_and(|other| other.manifest().name == program.manifest().name);
+    if programs.all(is_it) { Ok(program) } else { Err(Fault::input("--keep: expected one program, found several")) }
+}
+
+/// Keeps the rows of a program beside its manifest.
+pub(crate) fn keep(program: &Outside, report: &Report) -> Result<(), Fault> {
+    let adapter = program.fingerprint().map_err(Fault::writing)?;
+    let name = program.manifest().name.clone();
+    let version = program.version().unwrap_or_else(|| "not told".to_owned());
+    let text = Judged::of(name, version, adapter, report).text().map_err(Fault::input)?;
+    write_file(program.folder().join(KEEPS), text.as_bytes()).map_err(Fault::writing)
+}
