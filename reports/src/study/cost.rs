@@ -50,6 +50,13 @@ pub fn cheapest<'a>(diagram: &'a Diagram, line: &'a str, target: f64) -> Option<
     within.min_by(|a, b| a.wall_seconds.unwrap_or(f64::NAN).total_cmp(&b.wall_seconds.unwrap_or(f64::NAN)))
 }
 
+/// Whether a line reaches an error in a time that cannot be told: less than its program's start varies by.
+#[must_use]
+pub fn is_hidden(diagram: &Diagram, line: &str, target: f64) -> bool {
+    let is_reached = |point: &Point| point.error.is_some_and(|error| error <= target) && point.wall_seconds.is_none();
+    cheapest(diagram, line, target).is_none() && of_line(diagram, line).any(is_reached)
+}
+
 /// One sentence for a target: the cheapest setting of each solver, and how many times the cheapest of all it costs.
 #[must_use]
 pub fn sentence(diagram: &Diagram, target: f64) -> String {
@@ -71,6 +78,10 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
         parts.push("no solver reaches it".to_owned());
     }
     for line in lines {
+        if is_hidden(diagram, line, target) {
+            parts.push(format!("{line} in less time than its start varies by"));
+            continue;
+        }
         let best = of_line(diagram, line).filter_map(Point::place).map(|(error, _)| error).min_by(f64::total_cmp);
         if let (Some(best), None) = (best, cheapest(diagram, line, target)) {
             parts.push(format!("{line} not, at best {}", number::fraction(best)));

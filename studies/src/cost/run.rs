@@ -297,7 +297,8 @@ fn summarise(point: &mut Point) {
     let median_of = |of: fn(&Timing) -> f64| range_of(of).map(|[_, median, _]| median);
     let (walls, cpu_seconds, start_up) =
         (range_of(|timing| timing.wall), median_of(|timing| timing.cpu), median_of(|timing| timing.start_up));
-    point.wall_seconds = walls.map(|[_, median, _]| median);
+    // Of a program that does not tell it is the whole less a run of no steps: nothing is left where the start varies by more.
+    point.wall_seconds = walls.map(|[_, median, _]| median).filter(|median| *median > 0.0);
     point.start_up_seconds = start_up;
     // Of a program it is the difference of two times, which tells nothing where both are mostly start-up.
     let told = |cpu: &f64| *cpu >= 0.1 * point.start_up_seconds.unwrap_or(0.0);
