@@ -5,9 +5,9 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::body::Hold;
 use std::f64::consts::PI;
 
-const LEVELS: &[Level] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
+pub(crate) const LEVELS: &[Level] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
 /// The bar between smooth sides.
-const HELD: &str = "held-sideways";
+pub(crate) const HELD: &str = "held-sideways";
 const REST: &str = "beside what dispersion of quadratic B-splines with two points a cell and the time step make of it, (1/4 + \
                     1/96)(kh)² − (ωΔt)²/24: (kh)⁴, and at most ε² of the strain ε = v₀√(ρ/E), of which .013 was found";
 const SOURCE: Source = Source::Derived("u_tt = (E/ρ) u_xx, fixed-free (derivation)");
@@ -35,7 +35,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 /// ω (rad/s) and mean velocity at the start (m/s).
-fn mode(scene: &Scene) -> (f64, f64) {
+pub(crate) fn mode(scene: &Scene) -> (f64, f64) {
     let bar = &scene.bodies[0];
     let wave = bar.wave.map_or((f64::NAN, f64::NAN), |wave| (wave.wave_number, wave.amplitude));
     let material = scene.deformable[0].map_or(f64::NAN, |material| material.longitudinal_modulus());
@@ -64,10 +64,10 @@ fn rest(squared: f64, strain: f64) -> f64 {
 }
 
 /// Period between smooth sides (s), 10 √(E/M): E = 100 Pa and M = E (1 − ν)/((1 + ν)(1 − 2ν)) = 70/(1.3 · .4) Pa at ν = .3.
-const HELD_PERIOD: f64 = 8.618_916_073_713_347;
+pub(crate) const HELD_PERIOD: f64 = 8.618_916_073_713_347;
 
 /// Mean of the periods between crossings of zero (s).
-fn period(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn period(done: &Done) -> Result<f64, Missing> {
     let (time, velocity) = (&done.series().time, done.column("bar.vx")?);
     let crossings: Vec<f64> = (1..velocity.len())
         .filter(|&at| velocity[at - 1] * velocity[at] < 0.0)

@@ -1,0 +1,30 @@
+//! The period of the bar itself: what a grid makes of it is what is measured, and not expected.
+
+use super::vibrating_bar::{HELD, HELD_PERIOD, LEVELS, mode, period};
+use crate::registry;
+use grainbench_harness::prelude::*;
+use grainbench_harness::subject::{Lane, Subject};
+use grainbench_scene::solver::Method;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+pub(crate) fn subjects() -> Vec<Subject> {
+    let Some(case) = registry::by_name("vibrating-bar") else { return Vec::new() };
+    let of = |variant, quantity: &str, source: &str, exact: fn(&Scene) -> f64| Subject {
+        case,
+        variant,
+        quantity: quantity.to_owned(),
+        unit: "s",
+        source: source.to_owned(),
+        measure: Arc::new(move |done| {
+            let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
+            let exact = exact(&done.scene);
+            Ok(Measured::new(period(done)?, exact, exact))
+        }),
+        lanes: vec![Lane { method: Method::Grid, knobs: String::new(), prepare: None, about: LEVELS[1].resolution }],
+    };
+    vec![
+        of(PLAIN, "period", "2π/(β√(E/ρ)) (derivation)", |scene| 2.0 * PI / mode(scene).0),
+        of(HELD, "period between smooth sides", "10 √(E/M) s (derivation)", |_| HELD_PERIOD),
+    ]
+}
