@@ -3,11 +3,11 @@
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::progress::Progress;
 use super::provenance::provenance;
-use super::subject;
+use super::{solver, subject};
 use grainbench::cases::registry::read_grains;
 use grainbench::cases::solvers;
 use grainbench::reports::StagedDir;
-use grainbench::scene::solver::{Resolution, Solver};
+use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use grainbench::studies::Follow;
 use grainbench::studies::race::{Heat, Race, Racer, Track, heat};
@@ -48,8 +48,8 @@ pub(crate) struct Arguments {
     /// Steps of the short and of the long run.
     #[arg(long, value_name = "SHORT,LONG", value_parser = steps)]
     steps: Option<[u64; 2]>,
-    /// Only this solver or program; may be given more than once.
-    #[arg(long, value_name = "NAME")]
+    /// Only this solver or program, or beside LAMMPS the program of this manifest; may be given more than once.
+    #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
     /// Directory for `race.json`, which keeps every lap, and `race.md`.
     #[arg(long, value_name = "DIR", default_value = "grainbench-race")]
@@ -69,7 +69,9 @@ fn steps(text: &str) -> Result<[u64; 2], String> {
 /// Runs the race and leaves its table.
 pub(crate) fn race(arguments: &Arguments) -> Outcome {
     let known = PAIRS.as_flattened();
-    if let Some(unknown) = arguments.solver.iter().find(|name| !known.contains(&name.as_str())) {
+    let (manifests, named): (Vec<&String>, Vec<&String>) =
+        arguments.solver.iter().partition(|name| solver::is_manifest(name));
+    if let Some(unknown) = named.iter().find(|name| !known.contains(&name.as_str())) {
         return Err(Fault::unknown("a racer", unknown, known.iter().copied()));
     }
     check_writable(&arguments.out)?;
@@ -79,15 +81,21 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
         arguments.tracks.iter().map(String::as_str).collect()
     };
     let tracks = names.iter().map(|name| track(name, arguments.steps)).collect::<Result<Vec<_>, _>>()?;
-    let wanted = |name: &str| arguments.solver.is_empty() || arguments.solver.iter().any(|wanted| wanted == name);
-    let entered: Vec<(Box<dyn Solver>, &'static str)> = PAIRS
+    let wanted = |name: &str| {
+        let is_beside = !manifests.is_empty() && PAIRS[0].contains(&name);
+        arguments.solver.is_empty() || is_beside || named.iter().any(|wanted| *wanted == name)
+    };
+    let of_registry = PAIRS
         .iter()
         .flat_map(|pair| pair.iter().map(|&name| (name, pair[1])))
         .filter(|(name, _)| wanted(name))
-        .filter_map(|(name, against)| Some((solvers::by_name(name)?, against)))
-        .collect();
-    let racers: Vec<Racer<'_>> =
-        entered.iter().map(|(solver, against)| Racer { solver: solver.as_ref(), against }).collect();
+        .filter_map(|(name, against)| Some(Racer { solver: solvers::by_name(name)?.into(), against, stays: false }));
+    let mut racers: Vec<Racer> = of_registry.collect();
+    for path in manifests {
+        let program = solver::outside(path)?;
+        let stays = !program.manifest().worker.is_empty();
+        racers.push(Racer { solver: program, against: PAIRS[0][1], stays });
+    }
     let start = Instant::now();
     let laps = tracks.len() as u64 * racers.len() as u64 * u64::from(arguments.rounds);
     let mut follower = Laps(Progress::new(laps, "laps"));

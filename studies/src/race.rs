@@ -14,6 +14,8 @@ use grainbench_scene::solver::{Resolution, RunError, Solver};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+use std::sync::Arc;
+use std::time::Instant;
 
 /// A lap that takes less processor time (s) tells noise: it is the difference of two times.
 const SHORTEST: f64 = 0.05;
@@ -32,11 +34,14 @@ pub struct Track {
 }
 
 /// A racer and the one that its rate is divided by.
-pub struct Racer<'a> {
+pub struct Racer {
     /// The solver.
-    pub solver: &'a dyn Solver,
+    pub solver: Arc<dyn Solver>,
     /// Whose rate the others of its pair are divided by.
     pub against: &'static str,
+    /// Whether it is a program that stays from run to run: what it spent is not told before it ends, and of one thread it is what
+    /// the clock shows.
+    pub stays: bool,
 }
 
 /// What all racers did on a track.
@@ -138,18 +143,19 @@ fn for_steps(scene: &Scene, steps: u64) -> Scene {
 }
 
 /// Processor time of a run (s), and what it left: kinetic energy at its end (J) and the version of the program.
-fn run(solver: &dyn Solver, track: &Track, steps: u64) -> Result<(f64, Option<f64>, Option<String>), RunError> {
+fn run(racer: &Racer, track: &Track, steps: u64) -> Result<(f64, Option<f64>, Option<String>), RunError> {
     let scene = for_steps(&track.scene, steps);
     let begun = cpu_seconds();
-    let record = solver.run(&scene, &track.resolution, &mut ())?;
-    let spent = cpu_seconds() - begun;
+    let start = Instant::now();
+    let record = racer.solver.run(&scene, &track.resolution, &mut ())?;
+    let spent = if racer.stays { start.elapsed().as_secs_f64() } else { cpu_seconds() - begun };
     let energy = record.series.column("all.kinetic_energy").and_then(|values| values.last().copied());
     Ok((spent, energy, record.provenance.options.into_iter().next()))
 }
 
 /// All racers on a track, `rounds` times in turn.
-pub fn heat(track: &Track, racers: &[Racer<'_>], rounds: u32, follow: &mut impl Follow) -> Heat {
-    let blank = |racer: &Racer<'_>| Raced {
+pub fn heat(track: &Track, racers: &[Racer], rounds: u32, follow: &mut impl Follow) -> Heat {
+    let blank = |racer: &Racer| Raced {
         solver: racer.solver.name(),
         version: None,
         rates: Vec::new(),
@@ -166,8 +172,8 @@ pub fn heat(track: &Track, racers: &[Racer<'_>], rounds: u32, follow: &mut impl 
             if raced.absent.is_none() {
                 let lap = |raced: &mut Raced| -> Result<f64, RunError> {
                     let [short, long] = track.steps;
-                    let (before, energy, version) = run(racer.solver, track, short)?;
-                    let (after, ..) = run(racer.solver, track, long)?;
+                    let (before, energy, version) = run(racer, track, short)?;
+                    let (after, ..) = run(racer, track, long)?;
                     (raced.kinetic_energy, raced.version) = (energy, version);
                     Ok(after - before)
                 };
