@@ -1,8 +1,16 @@
-//! Impacts of Hertz spheres: the scenes of benchmark tests 1 to 4 of Chung & Ooi (2011), against closed forms.
+//! Impacts of Hertz spheres: the scenes of the eight benchmark tests of Chung & Ooi (2011), against closed forms.
+
+#[path = "fair.rs"]
+mod fair;
+#[path = "forms.rs"]
+mod forms;
+#[path = "turning.rs"]
+mod turning;
 
 use crate::rows::program_forces::forces;
 use crate::rows::programs::hertz_impact;
 use crate::rows::rigid;
+use forms::Meeting;
 use grainbench_harness::prelude::*;
 use grainbench_scene::contact_law::ContactLaw;
 use std::f64::consts::PI;
@@ -23,7 +31,8 @@ pub(crate) static CASE: Case = Case {
     name: "chung-ooi",
     title: "Impacts of Hertz spheres",
     claim: "Elastic impacts have Hertz's deepest overlap, force and duration; a coefficient of restitution is given back \
-            exactly; an oblique impact that slides has the tangential restitution and spin of its friction impulse.",
+            exactly; a contact that slides leaves the velocity and the spin of its friction impulse, on a plane, between \
+            spheres alike and unlike; angular momentum about the contact stays on any branch.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Impacts of one contact. The sliding branch is felt by μ and e alone: any tangential spring that reaches the \
@@ -36,7 +45,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn claims() -> Vec<Claim> {
-    let mut claims = [elastic(), restitution(), oblique(), rigid()].concat();
+    let mut claims = [elastic(), restitution(), oblique(), rigid(), turning::claims(), fair::claims()].concat();
     for variant in [ELASTIC[0], ELASTIC[2], DAMPED[0], OBLIQUE[0]] {
         claims.extend(hertz_impact(variant, STEP.resolution, variant == OBLIQUE[0]));
     }
@@ -212,19 +221,12 @@ fn tangential(done: &Done) -> Result<f64, Missing> {
     Ok(done.last("a.vx")? / done.scene.grains[0].velocity.x)
 }
 
-/// μ(1+e) with the restitution that the law was given: the impulse of friction where the limit is that of the spring, for
-/// ∫F_spring dt = m(1+e)v, and what the dashpot does cancels over the impact.
-fn impulse(scene: &Scene) -> f64 {
-    let law = law(scene);
-    let ratio = law.damping_ratio;
-    law.friction * (1.0 + (-PI * ratio / (1.0 - ratio * ratio).sqrt()).exp())
-}
-
-/// Tangential restitution and spin (rad/s) after an impact that slides throughout.
+/// Tangential restitution and spin (rad/s) after an impact that slides throughout, where the limit of friction is that of the
+/// spring: ∫F_spring dt = m(1+e)v, for what the dashpot does cancels over the impact.
 fn sliding(scene: &Scene) -> (f64, f64) {
-    let grain = &scene.grains[0];
-    let (along, onto) = (grain.velocity.x, grain.velocity.z.abs());
-    (1.0 - impulse(scene) * onto / along, 2.5 * impulse(scene) * onto / grain.radius)
+    let meeting = Meeting::of(scene);
+    let [along, spin] = meeting.after(scene, 1.0 + meeting.restitution);
+    (along / scene.grains[0].velocity.x, spin)
 }
 
 fn oblique() -> Vec<Claim> {
@@ -334,7 +336,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     restitution.push(Curve::new("slides throughout, rigid", Stroke::Dashed, exact_restitution));
     spin.push(Curve::new("slides throughout, rigid", Stroke::Dashed, exact_spin));
-    Ok(vec![
+    let mut figures = vec![
         Figure::graph(
             "force",
             "Force during the impact of two spheres (test 1)",
@@ -357,5 +359,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             [Axis::linear("angle of impact from the normal (°)"), Axis::linear("spin ω (rad/s)")],
             spin,
         ),
-    ])
+    ];
+    figures.extend(turning::figures(runner)?);
+    Ok(figures)
 }

@@ -1,0 +1,93 @@
+//! Closed forms of an impact whose contact slides throughout, and of a dashpot that may not pull.
+
+use super::{impact, law};
+use grainbench_scene::scene::Scene;
+use std::f64::consts::PI;
+
+/// How the first grain of a scene meets what lies below it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Meeting {
+    /// Velocity of its surface along x against the other's, s = v_a − ω_a R_a − v_b − ω_b R_b (m/s).
+    pub(super) slip: f64,
+    /// Impulse m* v_n that stops the approach (N s).
+    pub(super) stopping: f64,
+    /// Friction μ.
+    pub(super) friction: f64,
+    /// Coefficient of restitution e that the law was made for.
+    pub(super) restitution: f64,
+    /// Ratio e′ of the velocities along the normal where the contact lets go as soon as its force is zero.
+    pub(super) early: f64,
+    /// Damping ratio ζ of the law.
+    pub(super) ratio: f64,
+    /// ρ = 6 G* s/(μ E* v_n): how much faster the tangential spring grows than Coulomb's limit by the normal one.
+    pub(super) steepness: f64,
+}
+
+/// e = exp(−πζ/√(1−ζ²)), of a contact that lets go when the overlap is zero.
+pub(super) fn restitution(ratio: f64) -> f64 {
+    (-PI * ratio / (1.0 - ratio * ratio).sqrt()).exp()
+}
+
+/// The same of a contact that lets go when its force is zero: exp(−(ζ/√(1−ζ²)) φ), φ = arg(2ζ²−1 + 2iζ√(1−ζ²)) (Schwager &
+/// Pöschel 2007 for linear springs; Hertz's obey the same oscillator, see the derivation).
+pub(super) fn released_early(ratio: f64) -> f64 {
+    let root = (1.0 - ratio * ratio).sqrt();
+    let phase = (2.0 * ratio * root).atan2(2.0 * ratio * ratio - 1.0);
+    (-ratio / root * phase).exp()
+}
+
+/// Damping ratio whose release at zero force gives e, by bisection.
+fn compensated(restitution: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0 - 1e-9);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if released_early(middle) > restitution { low = middle } else { high = middle }
+    }
+    low
+}
+
+impl Meeting {
+    /// Of a scene.
+    pub(super) fn of(scene: &Scene) -> Self {
+        let first = &scene.grains[0];
+        let own = first.velocity.x - first.spin.y * first.radius;
+        let other = scene.grains.get(1).map_or(0.0, |second| second.velocity.x + second.spin.y * second.radius);
+        let (_, mass, speed) = impact(scene);
+        let law = law(scene);
+        let steepness = 6.0 * law.effective_shear_modulus() * (own - other).abs()
+            / (law.friction * law.effective_modulus() * speed);
+        Self {
+            slip: own - other,
+            stopping: mass * speed,
+            friction: law.friction,
+            restitution: restitution(law.damping_ratio),
+            early: released_early(law.damping_ratio),
+            ratio: law.damping_ratio,
+            steepness,
+        }
+    }
+
+    /// What sticking at the start takes of friction's impulse in units of μ m* v_n, where the limit is that of spring and dashpot:
+    /// 2ζ²/(ρ−1) (derivation).
+    pub(super) fn start(&self) -> f64 {
+        2.0 * self.ratio.powi(2) / (self.steepness - 1.0)
+    }
+
+    /// The same with the dashpot whose release at zero force gives e, and a spring that is added to by k_s Δs rather than being
+    /// k_s s: 2/3 of the force, as k_s grows with √δ.
+    pub(super) fn latest_start(&self) -> f64 {
+        2.0 * compensated(self.restitution).powi(2) / (2.0 / 3.0 * self.steepness - 1.0)
+    }
+
+    /// Friction's impulse on the first grain (N s): μ times `factor` times the one that stops the approach, against the slip.
+    /// The factor is 1 + e where the limit is that of the spring, or of a force that never pulls and leaves e.
+    pub(super) fn impulse(&self, factor: f64) -> f64 {
+        -self.slip.signum() * self.friction * factor * self.stopping
+    }
+
+    /// Velocity along x (m/s) and spin (rad/s) of the first grain after that impulse, which acts at the distance R.
+    pub(super) fn after(&self, scene: &Scene, factor: f64) -> [f64; 2] {
+        let (grain, impulse) = (&scene.grains[0], self.impulse(factor));
+        [grain.velocity.x + impulse / grain.mass, grain.spin.y - impulse * grain.radius / grain.inertia]
+    }
+}

@@ -1,0 +1,118 @@
+//! Tests 5 to 8 for our solvers: impulses of friction to the digits that a convention fixes, and the branches that stick, drawn.
+
+use super::forms::Meeting;
+use super::{LEVELS, SLIDING, STEP};
+use grainbench_harness::prelude::*;
+
+/// Test 5.
+pub(super) const PLANE: [&str; 2] = ["5-steel", "5-polyethylene"];
+/// Tests 6 and 8.
+pub(super) const BALLS: [&str; 4] = ["6-aluminium-alloy", "6-nylon", "8-aluminium-alloy", "8-nylon"];
+/// A velocity (m/s) of test 5 and a spin (rad/s) of tests 6 and 8 at which the contact sticks.
+pub(super) const STICKING: f64 = 2.0;
+
+/// Test 5 with a velocity along the plane (m/s).
+pub(super) fn sliding_along(variant: &'static str, along: f64) -> Run {
+    Run::new(variant, "dem:1979", STEP.resolution)
+        .adjusted(&format!("{along} m/s along the plane"), move |scene| scene.grains[0].velocity.x = along)
+}
+
+/// Tests 6 and 8 with a spin (rad/s); between spheres steps are those of the next level, as the larger sets their size.
+pub(super) fn spinning(variant: &'static str, spin: f64) -> Run {
+    let level = if variant.starts_with('8') { LEVELS[1] } else { STEP };
+    Run::new(variant, "dem:1979", level.resolution)
+        .adjusted(&format!("{spin} rad/s"), move |scene| scene.grains[0].spin.y = spin)
+}
+
+/// The same without a dashpot, where conventions have nothing to differ in.
+pub(super) fn elastic(variant: &'static str, spin: f64) -> Run {
+    spinning(variant, spin).adjusted(&format!("{spin} rad/s, e = 1"), move |scene| {
+        scene.grains[0].spin.y = spin;
+        scene.change_laws(|law| law.damping_ratio = 0.0);
+    })
+}
+
+pub(super) fn claims() -> Vec<Claim> {
+    let runs = PLANE.map(|variant| sliding_along(variant, 30.0)).into_iter();
+    runs.chain(BALLS.map(|variant| spinning(variant, 12.0))).flat_map(|run| sharp(&run)).collect()
+}
+
+/// What a contact that slides leaves: with the limit of Cundall & Strack, that of the spring, friction has the impulse
+/// μ(1+e) m* v_n; with ours, the force where it pushes, μ(1+e′) m* v_n of a release at zero force, but for the start.
+fn sharp(run: &Run) -> Vec<Claim> {
+    let of = |solver: &'static str, other: &'static str, words: &str, factor: fn(&Meeting) -> f64| {
+        let row = |quantity: &str, unit, column: &'static str, at: usize| {
+            let control = if run.variant.starts_with('5') {
+                Control::scene("friction × 1.01", |scene| scene.change_laws(|law| law.friction *= 1.01))
+            } else {
+                Control::solver("the limit of the other convention", other)
+            };
+            claim(format!("{quantity} after sliding, {words}"), unit)
+                .of(Run { solver, ..run.clone() })
+                .equals(SLIDING, move |done| {
+                    let scene = &done[0].scene;
+                    let meeting = Meeting::of(scene);
+                    let after = meeting.after(scene, factor(&meeting))[at];
+                    let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
+                    Ok(Measured::new(done[0].last(column)?, after, (after - before).abs()))
+                })
+                .within(judged(1e-3, "the dashpot is half a step late: first order in Δt; of what friction changes"))
+                .refuses(control)
+        };
+        [row("velocity along the contact", "m/s", "a.vx", 0), row("spin", "rad/s", "a.omega_y", 1)]
+    };
+    let spring = of("dem:1979", "dem", "μ(1+e) m* v_n", |meeting| 1.0 + meeting.restitution);
+    let pushing =
+        of("dem", "dem:1979", "μ(1+e′−2ζ²/(ρ−1)) m* v_n", |meeting| 1.0 + meeting.early - meeting.start());
+    if run.variant.starts_with('5') { spring.to_vec() } else { spring.into_iter().chain(pushing).collect() }
+}
+
+/// What the paper draws: the slide of the surfaces after the impact against that before, both over the velocity along the normal.
+pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let slides = |done: &Done, friction: f64| -> Option<(f64, f64)> {
+        let (grain, before) = (&done.scene.grains[0], Meeting::of(&done.scene));
+        let onto = friction * grain.velocity.z.abs();
+        let other = match done.scene.grains.get(1) {
+            Some(second) => done.last("b.vx").ok()? + done.last("b.omega_y").ok()? * second.radius,
+            None => 0.0,
+        };
+        let after = done.last("a.vx").ok()? - done.last("a.omega_y").ok()? * grain.radius - other;
+        Some((before.slip.abs() / onto, before.slip.signum() * after / (friction * done.last("a.vz").ok()?)))
+    };
+    let (mut plane, mut balls) = (Vec::new(), Vec::new());
+    for variant in PLANE {
+        let mut points = Vec::new();
+        for along in [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0] {
+            points.extend(slides(&runner.run(&sliding_along(variant, along))?, 0.3));
+        }
+        plane.push(Curve::new(variant, Stroke::Markers, points));
+    }
+    for variant in BALLS {
+        let mut points = Vec::new();
+        for spin in [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 9.0, 12.0] {
+            points.extend(slides(&runner.run(&spinning(variant, spin))?, 1.0));
+        }
+        balls.push(Curve::new(variant, Stroke::Markers, points));
+    }
+    let line = |from: f64, to: f64, of: fn(f64) -> f64| [from, to].map(|x| (x, of(x))).to_vec();
+    plane.push(Curve::new("slides throughout", Stroke::Dashed, line(7.0, 13.4, |before| before - 7.0)));
+    balls.push(Curve::new("slides throughout", Stroke::Dashed, line(2.1, 6.0, |before| (before - 2.1) / 0.5)));
+    let caption =
+        "Where the surfaces stick, Mindlin's spring rings: there is no closed form, and no gate but momentum.";
+    Ok(vec![
+        Figure::graph(
+            "recoil-elastic",
+            "Slide of the surfaces after an oblique elastic impact (test 5)",
+            caption,
+            [Axis::linear("s / (μ v_n) before"), Axis::linear("s′ / (μ v_n′) after")],
+            plane,
+        ),
+        Figure::graph(
+            "recoil-turning",
+            "Slide of the surfaces after an impact of a sphere that turns (tests 6 and 8)",
+            caption,
+            [Axis::linear("s / v_n before"), Axis::linear("s′ / v_n′ after")],
+            balls,
+        ),
+    ])
+}
