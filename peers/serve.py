@@ -4,6 +4,7 @@ import json
 import os
 import sys
 import traceback
+from math import hypot
 
 
 class Cannot(Exception):
@@ -18,10 +19,45 @@ def refuse(scene):
         raise Cannot("periodic along all axes or none")
     if any(law["cohesion"] or law["rolling_friction"] for law in scene["laws"]):
         raise Cannot("neither cohesion nor rolling resistance here")
-    if any("restitution" in law for law in scene["laws"]):
+    if any("restitution" in law and law["law"] == "linear" for law in scene["laws"]):
         raise Cannot("a dashpot by the coefficient of restitution is another one here")
     if any(any(phase["spin"]) for one in scene["walls"] for phase in one["motion"]):
         raise Cannot("walls that turn are not expressed here")
+
+
+def reach(scene):
+    """How far a grain can get in the run, and a few radii."""
+    time = scene["steps"]["count"] * scene["steps"]["time_step"]
+    fastest = max(hypot(*grain["velocity"]) + hypot(*grain["spin"]) * grain["radius"] for grain in scene["grains"])
+    fastest += max((hypot(*group["velocity"]) for group in scene["driven"]), default=0.0)
+    fastest += sum(hypot(*phase["velocity"]) for wall in scene["walls"] for phase in wall["motion"])
+    return fastest * time + hypot(*scene["gravity"]) * time**2 / 2 + 4 * max(grain["radius"] for grain in scene["grains"])
+
+
+def near(scene, wall):
+    """The grains that can get to a wall."""
+    normal, point, far = wall["plane"]["normal"], wall["plane"]["point"], reach(scene)
+    height = lambda grain: sum(n * (x - p) for n, x, p in zip(normal, grain["position"], point))
+    return [grain for grain in scene["grains"] if height(grain) < grain["radius"] + far]
+
+
+def hertz(scene):
+    """Hertz's law of the contacts that can come about, one for all; E and nu of two equal materials that have its E* and G*.
+
+    E* = E / (2 (1 - nu^2)) and G* = E / (4 (2 - nu) (1 + nu)), so that nu = (E* - 4 G*) / (E* - 2 G*).
+    """
+    grains = scene["grains"]
+    pairs = {frozenset((a["material"], b["material"])) for at, a in enumerate(grains) for b in grains[:at]}
+    pairs |= {frozenset((wall["material"], grain["material"])) for wall in scene["walls"] for grain in near(scene, wall)}
+    laws = [law for law in scene["laws"] if frozenset(law["between"]) in pairs]
+    if any(law["law"] != "hertz-mindlin" for law in laws) or len(laws) != 1:
+        raise Cannot("one law of Hertz for all contacts that can come about")
+    (law,) = laws
+    if law["normal_damping"] or law["tangential_damping"]:
+        raise Cannot("dashpots of Hertz's law by the coefficient of restitution")
+    normal, shear = law["effective_modulus"], law["effective_shear_modulus"]
+    poisson = (normal - 4 * shear) / (normal - 2 * shear)
+    return law, 2 * (1 - poisson**2) * normal, poisson
 
 
 def mean_velocity(wall, start, end):

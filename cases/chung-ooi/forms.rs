@@ -67,8 +67,8 @@ impl Meeting {
         }
     }
 
-    /// What sticking at the start takes of friction's impulse in units of μ m* v_n, where the limit is that of spring and dashpot:
-    /// 2ζ²/(ρ−1) (derivation).
+    /// What sticking at the start takes of friction's impulse in units of μ m* v_n, where the limit is that of spring and
+    /// dashpot: 2ζ²/(ρ−1) (derivation).
     pub(super) fn start(&self) -> f64 {
         2.0 * self.ratio.powi(2) / (self.steepness - 1.0)
     }

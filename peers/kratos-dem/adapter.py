@@ -1,4 +1,4 @@
-"""Scenes of grainbench in Kratos DEM 10.4: linear springs by pair, dashpots where Kratos' own relation holds, planes.
+"""Scenes of grainbench in Kratos DEM 10.4: linear springs by pair, dashpots where Kratos' own relation holds, Hertz, planes.
 
 The model is built in memory. Velocity Verlet leaves positions and velocities at the same time, so samples are taken as they are.
 A plane is one triangle (in the plane: one edge), so that no grain crosses a seam, where its tangential spring would start anew.
@@ -13,10 +13,10 @@ import numpy as np
 from KratosMultiphysics import *
 from KratosMultiphysics.DEMApplication import *
 from KratosMultiphysics.DEMApplication.DEM_analysis_stage import DEMAnalysisStage
-from serve import Cannot, mean_velocity, serve
+from serve import Cannot, hertz, mean_velocity, reach, serve
 
 STATE = "x y z vx vy vz omegax omegay omegaz".split()
-LAW = "DEM_D_Linear_Custom_Constants"
+LAW = {"linear": "DEM_D_Linear_Custom_Constants", "hertz-mindlin": "DEM_D_Hertz_viscous_Coulomb"}
 
 
 def bearer(thing):
@@ -42,6 +42,8 @@ def materials(scene):
     numbers = {one: number for number, one in enumerate(bearers, 1)}
     density = {bearer(grain): grain["mass"] / volume(grain, scene["dimension"]) for grain in scene["grains"]}
     laws = {frozenset(law["between"]): law for law in scene["laws"]}
+    is_hertz = any(law["law"] == "hertz-mindlin" for law in scene["laws"])
+    young, poisson = hertz(scene)[1:] if is_hertz else (1.0, 0.0)
     relations, ratios = [], {}
     for a in bearers:
         for b in bearers:
@@ -49,16 +51,18 @@ def materials(scene):
             if law is None or numbers[a] > numbers[b] or not a[1] + b[1]:
                 continue
             pair = numbers[a], numbers[b]
-            ratios[pair] = damping_ratio(law, (a[1], b[1]))
-            words = dict(K_NORMAL=law["normal_stiffness"], K_TANGENTIAL=law["tangential_stiffness"])
+            words = dict(COEFFICIENT_OF_RESTITUTION=law.get("restitution", 1.0))
+            if not is_hertz:
+                ratios[pair] = damping_ratio(law, (a[1], b[1]))
+                words |= dict(K_NORMAL=law["normal_stiffness"], K_TANGENTIAL=law["tangential_stiffness"])
             words |= dict(STATIC_FRICTION=law["friction"], DYNAMIC_FRICTION=law["friction"], FRICTION_DECAY=500.0)
-            words |= dict(COEFFICIENT_OF_RESTITUTION=1.0, ROLLING_FRICTION=0.0, ROLLING_FRICTION_WITH_WALLS=0.0)
-            words |= dict(DEM_DISCONTINUUM_CONSTITUTIVE_LAW_NAME=LAW)
+            words |= dict(ROLLING_FRICTION=0.0, ROLLING_FRICTION_WITH_WALLS=0.0)
+            words |= dict(DEM_DISCONTINUUM_CONSTITUTIVE_LAW_NAME=LAW[law["law"]])
             words |= dict(DEM_ROLLING_FRICTION_MODEL_NAME="DEMRollingFrictionModelBounded")
             relations.append(dict(material_ids_list=pair, Variables=words, Tables={}))
     listed = []
     for one, number in numbers.items():
-        words = dict(PARTICLE_DENSITY=density.get(one, 1.0), YOUNG_MODULUS=1.0, POISSON_RATIO=0.0, COMPUTE_WEAR=False)
+        words = dict(PARTICLE_DENSITY=density.get(one, 1.0), YOUNG_MODULUS=young, POISSON_RATIO=poisson, COMPUTE_WEAR=False)
         listed.append(dict(material_name=f"{number}", material_id=number, Variables=words, Tables={}))
     return dict(materials=listed, material_relations=relations, material_assignation_table=[]), numbers, ratios
 
@@ -71,22 +75,17 @@ def volume(grain, dimension):
 def corners(one, scene):
     """A triangle, or an edge in the plane, that covers all of a plane that the grains can reach."""
     places = np.array([grain["position"] for grain in scene["grains"]])
-    time = scene["steps"]["count"] * scene["steps"]["time_step"]
-    fastest = max(hypot(*grain["velocity"]) + hypot(*grain["spin"]) * grain["radius"] for grain in scene["grains"])
-    fastest += max((hypot(*group["velocity"]) for group in scene["driven"]), default=0.0)
-    fastest += sum(hypot(*phase["velocity"]) for wall in scene["walls"] for phase in wall["motion"])
-    reach = fastest * time + hypot(*scene["gravity"]) * time**2 / 2 + 4 * max(grain["radius"] for grain in scene["grains"])
     normal, point = np.array(one["plane"]["normal"]), np.array(one["plane"]["point"])
     middle = (places.min(axis=0) + places.max(axis=0)) / 2
-    reach += np.linalg.norm(places - middle, axis=1).max() + abs((middle - point) @ normal)
+    far = reach(scene) + np.linalg.norm(places - middle, axis=1).max() + abs((middle - point) @ normal)
     middle = middle - ((middle - point) @ normal) * normal
     if scene["dimension"] == 2:
         along = np.array([normal[1], -normal[0], 0.0])
-        return [middle + reach * along, middle - reach * along]
+        return [middle + far * along, middle - far * along]
     first = np.cross(normal, np.eye(3)[abs(normal).argmin()])
     first /= np.linalg.norm(first)
     second = np.cross(normal, first)
-    return [middle + 2 * reach * (c * first + s * second) for c, s in ((1, 0), (-0.5, sqrt(0.75)), (-0.5, -sqrt(0.75)))]
+    return [middle + 2 * far * (c * first + s * second) for c, s in ((1, 0), (-0.5, sqrt(0.75)), (-0.5, -sqrt(0.75)))]
 
 
 class Stage(DEMAnalysisStage):

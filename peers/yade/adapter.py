@@ -1,4 +1,4 @@
-"""Scenes of grainbench in Yade 2023.02: linear springs, dashpots where one number fits all contacts, planes along the axes.
+"""Scenes of grainbench in Yade 2023.02: linear springs, dashpots where one number fits all, Hertz, planes along the axes.
 
 Yade's velocities stand half a step before its positions: they are started there and averaged for samples. Discs are spheres that
 cannot leave the plane, with the disc's mass and moment of inertia.
@@ -6,9 +6,9 @@ cannot leave the plane, with the disc's mass and moment of inertia.
 
 import csv
 import os
-from math import atan
+from math import atan, sqrt
 
-from serve import Cannot, mean_velocity, serve
+from serve import Cannot, hertz, mean_velocity, near, serve
 from yade import O, Vector3
 from yade.utils import sphere, wall
 from yade.wrapper import *
@@ -38,11 +38,28 @@ def dashpots(law):
     return lambda mass: [gamma * mass for gamma in by_mass] if any(by_mass) else of_stiffness
 
 
-def engines(scene):
+def hertzian(scene, bearers, walls):
+    """Hertz's law, whose walls have the radius of the sphere: R/2 stands for R, and moduli larger by the root of 2 make it up.
+
+    A coefficient `en` alone brings a shear dashpot along, which `es` of 1 takes away and `betas` of 0 does not.
+    """
+    law, young, poisson = hertz(scene)
+    if walls and len(scene["grains"]) > 1:
+        raise Cannot("spheres that meet a plane have other moduli here than spheres that meet one another")
+    words = dict(density=1, young=young * (sqrt(2) if walls else 1), poisson=poisson, frictionAngle=atan(law["friction"]))
+    material = O.materials.append(FrictMat(label="all", **words))
+    dashpot = dict(en=law["restitution"], es=1) if "restitution" in law else {}
+    physics = Ip2_FrictMat_FrictMat_MindlinPhys(**dashpot)
+    return {bearer: material for bearer in bearers}, [physics], [Law2_ScGeom_MindlinPhys_Mindlin()]
+
+
+def engines(scene, reached):
     """The contact law, and a material by the name of the scene's and the mass: none of a wall."""
     laws = {frozenset(law["between"]): law for law in scene["laws"]}
     bearers = {(grain["material"], grain["mass"]) for grain in scene["grains"]}
     bearers |= {(one["material"], 0.0) for one in scene["walls"]}
+    if any(law["law"] == "hertz-mindlin" for law in laws.values()):
+        return hertzian(scene, bearers, reached)
     dampings = ("stiffness_damping", "normal_damping", "tangential_damping")
     if any(law[name] for law in laws.values() for name in dampings):
         if len(laws) != 1:
@@ -71,7 +88,9 @@ def engines(scene):
 def build(scene):
     """Bodies and engines; gives the grains' bodies, the walls' and the driven ones' velocities."""
     O.reset()
-    materials, physics, law = engines(scene)
+    is_hertz = any(law["law"] == "hertz-mindlin" for law in scene["laws"])
+    reached = [one for one in scene["walls"] if not is_hertz or near(scene, one)]
+    materials, physics, law = engines(scene, reached)
     grains = []
     for grain in scene["grains"]:
         body = sphere(Vector3(*grain["position"]), grain["radius"], material=materials[grain["material"], grain["mass"]])
@@ -85,7 +104,7 @@ def build(scene):
             state = O.bodies[grains[number - 1]].state
             state.blockedDOFs, state.vel, state.angVel = "xyzXYZ", Vector3(*group["velocity"]), Vector3(0, 0, 0)
     walls = []
-    for one in scene["walls"]:
+    for one in reached:
         axis, sense = plane_axis(one["plane"])
         plane = wall(one["plane"]["point"][axis], axis, sense, material=materials[one["material"], 0.0])
         walls.append((O.bodies.append(plane), one))
