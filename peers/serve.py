@@ -69,8 +69,11 @@ def mean_velocity(wall, start, end):
     return velocity
 
 
-def serve(run):
-    """Runs a scene a line until there are no more; answers go to the descriptor 5, for programs print where they like."""
+def serve(run, refuse=refuse):
+    """Runs a scene a line until there are no more; answers go to the descriptor 5, for programs print where they like.
+
+    `refuse` raises `Cannot` where the scene calls for what the manifest has no word for and the program does not have.
+    """
     answers = os.fdopen(5, "w")
     for line in sys.stdin:
         request = json.loads(line)

@@ -80,8 +80,7 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
         }
         for claim in &claims {
             let verdict = runner.judge(claim);
-            // What the solver cannot express it cannot express wrongly either.
-            if verdict.outcome != Outcome::Unsupported {
+            if runner.tries_control(claim, &verdict) {
                 judgement.controls.push(runner.control(claim));
             }
             judgement.verdicts.push(verdict);

@@ -185,6 +185,13 @@ impl Runner {
         }
     }
 
+    /// Whether a claim is fed with its wrong physics once it was judged: what a stranger cannot express it cannot express wrongly
+    /// either, and wrong physics that it cannot express tells nothing of a row that is red anyway.
+    #[must_use]
+    pub fn tries_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
+        self.stranger.is_none() || verdict.outcome != Outcome::Unsupported && self.refused_control(claim).is_none()
+    }
+
     /// Why a stranger cannot run the wrong physics of a claim.
     fn refused_control(&self, claim: &Claim) -> Option<String> {
         let asked = self.controlled && self.stranger.is_some();

@@ -214,12 +214,13 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
         }
         Task::Control(_, gate) => {
             let gate_of = &at.selected.claims[gate];
-            // What a stranger cannot express it cannot express wrongly either.
-            let is_felt = || {
-                let verdict = at.verdicts[gate].get_or_init(|| at.runner.judge(gate_of));
-                verdict.outcome != verdict::Outcome::Unsupported
+            let is_tried = || {
+                at.selected.stranger.is_none() || {
+                    let verdict = at.verdicts[gate].get_or_init(|| at.runner.judge(gate_of));
+                    at.runner.tries_control(gate_of, verdict)
+                }
             };
-            if at.runner.is_available(gate_of) && (at.selected.stranger.is_none() || is_felt()) {
+            if at.runner.is_available(gate_of) && is_tried() {
                 at.controls[gate].get_or_init(|| at.runner.control(gate_of));
             }
         }

@@ -1,0 +1,10 @@
+# Kratos prints a banner where answers are expected: that goes to the errors, and answers through the descriptor 5.
+python="$1/venv/bin/python"
+[ -x "$python" ] || python=python3
+export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}"
+if [ "$2" = --version ]; then
+    exec "$python" -c "from importlib.metadata import version; print('Kratos MPM', version('KratosMPMApplication'))"
+fi
+export PYTHONPATH="$1/.." PYTHONDONTWRITEBYTECODE=1
+exec 5>&1
+exec "$python" "$1/adapter.py" 5>&5 >&2
