@@ -4,6 +4,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod common;
+
+use common::{expect_file, root, with_generated};
 use grainbench::cases::registry::{self, CASES, read_grains};
 use grainbench::cases::runner;
 use grainbench::dem::convention::Convention;
@@ -16,22 +19,7 @@ use grainbench::scene::source::SceneSource;
 use grainbench::studies::race::Race;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-
-fn root(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
-}
-
-/// Compares a file with what it should hold, or writes it.
-fn expect_file(path: &str, wanted: &str) {
-    let path = root(path);
-    if std::env::var_os("UPDATE_README").is_some() {
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(&path, wanted).unwrap();
-    }
-    let found = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(found == wanted, "{} is out of date: UPDATE_README=1 cargo test --test readme writes it", path.display());
-}
+use std::path::Path;
 
 fn settings_table() -> String {
     let mut table = "| solver | setting |\n|---|---|\n".to_owned();
@@ -39,14 +27,6 @@ fn settings_table() -> String {
         writeln!(table, "| `{}` | {} |", mpm.name, mpm.setting.words().join("; ")).unwrap();
     }
     table
-}
-
-/// README with the text between two marks replaced.
-fn with_generated(readme: &str, mark: &str, table: &str) -> String {
-    let open = format!("<!-- generated: {mark} -->\n");
-    let start = readme.find(&open).unwrap() + open.len();
-    let end = start + readme[start..].find("<!-- end -->").unwrap();
-    format!("{}\n{table}\n{}", &readme[..start], &readme[end..])
 }
 
 fn cases_table() -> String {

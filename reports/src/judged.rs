@@ -97,6 +97,30 @@ impl Judged {
         Self { program, version, adapter, provenance: report.provenance.clone(), rows }
     }
 
+    /// What ends otherwise in another run of the program, a line each: verdicts, controls, and rows that are not kept.
+    #[must_use]
+    pub fn otherwise(&self, report: &Report) -> Vec<String> {
+        let now = Self::of(self.program.clone(), String::new(), String::new(), report);
+        let words = |row: &Row| {
+            let control = match row.control_red {
+                Some(true) => ", its control red",
+                Some(false) => ", its control not red",
+                None => "",
+            };
+            format!("{}{control}", row.verdict.word())
+        };
+        let line = |row: &Row| {
+            let kept = self.rows.iter().find(|kept| {
+                (&kept.case, &kept.variant, &kept.resolution, &kept.quantity)
+                    == (&row.case, &row.variant, &row.resolution, &row.quantity)
+            });
+            let kept = kept.map_or_else(|| "no such row".to_owned(), words);
+            let found = words(row);
+            (kept != found).then(|| format!("{}/{} · {}: {found}; kept: {kept}", row.case, row.variant, row.quantity))
+        };
+        now.rows.iter().filter_map(line).collect()
+    }
+
     /// As it is kept.
     ///
     /// # Errors
@@ -171,6 +195,12 @@ mod tests {
         assert_eq!((count.pass, count.red), (counts.pass, counts.fail + counts.broken));
         assert_eq!(count.pass + count.red + count.amber, judged.rows.len());
         assert!(count.controls > 0 && count.controls_red <= count.controls);
+        assert!(judged.otherwise(&report).is_empty());
+        let mut other = report.clone();
+        other.sections[0].verdicts[0].outcome = Outcome::Stale;
+        other.sections[0].controls[0].turned_red ^= true;
+        let otherwise = judged.otherwise(&other);
+        assert!(otherwise.iter().any(|line| line.contains("stale; kept: ")), "{otherwise:?}");
         assert_eq!(judged.count(Some("no-such-case")), Count::default());
         assert!(Judged::read(&judged.text().unwrap().replace("\"program\"", "\"programme\"")).is_err());
     }

@@ -1,10 +1,11 @@
-//! `grainbench run --keep`: the rows of a program, kept beside its manifest.
+//! `grainbench run --keep` and `--as-kept`: the rows of a program, kept beside its manifest, and held to it.
 
 use super::exit::Fault;
 use super::select::Selected;
 use grainbench::reference::outside::Outside;
 use grainbench::reports::judged::Judged;
 use grainbench::reports::{Report, write_file};
+use std::fs;
 
 /// The file with what is kept.
 const KEEPS: &str = "judged.json";
@@ -17,6 +18,16 @@ pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
     };
     let is_it = |other: Option<&Outside>| other.is_some_and(|other| other.manifest().name == program.manifest().name);
     if programs.all(is_it) { Ok(program) } else { Err(Fault::input("--keep: expected one program, found several")) }
+}
+
+/// What is kept of a program.
+pub(crate) fn read(program: &Outside) -> Result<Judged, Fault> {
+    let path = program.folder().join(KEEPS);
+    let wrong = |found: String| {
+        Fault::input(format!("{KEEPS} beside the manifest: expected what `--keep` leaves, found {found}"))
+    };
+    let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    Judged::read(&text).map_err(|error| wrong(error.to_string()))
 }
 
 /// Keeps the rows of a program beside its manifest.

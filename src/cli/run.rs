@@ -65,6 +65,9 @@ pub(crate) struct Options {
     /// Keep the rows of the program beside its manifest, as `judged.json`: all cases, with their controls.
     #[arg(long, requires = "solver", conflicts_with = "no_controls")]
     keep: bool,
+    /// Red is what ends otherwise than it is kept beside the manifest, and not what is red there too.
+    #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "keep"])]
+    as_kept: bool,
     /// Threads of each run; as many runs at once as the machine has cores for. The bits do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     threads: u16,
@@ -74,6 +77,7 @@ pub(crate) struct Options {
 pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let selected = select::select(cases, &options.solver, &options.levels)?;
     check_writable(&options.out)?;
+    let kept = if options.as_kept { Some(keep::read(keep::program(&selected)?)?) } else { None };
     let keeping = if options.keep { Some(keep::program(&selected)?) } else { None };
     let start = Instant::now();
     let thorough = options.levels.iter().any(|level| level == "all");
@@ -110,6 +114,12 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         print(&format!("{}\n{}\n", summary_table(&report), options.out.join("index.html").display()))?;
     }
     let is_mute = selected.iter().any(|of| of.stranger.is_some()) && says_nothing(&report);
+    if let Some(kept) = kept {
+        let otherwise = kept.otherwise(&report);
+        otherwise.iter().for_each(|line| exit::say("otherwise than kept", line));
+        let is_red = left > 0 || is_mute || !otherwise.is_empty();
+        return Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS });
+    }
     if left > 0 || is_mute { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, options.strict)) }
 }
 

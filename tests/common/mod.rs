@@ -3,7 +3,7 @@
 // Each test file uses its part of this.
 #![allow(dead_code)]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// What a command answered.
@@ -58,4 +58,32 @@ pub(crate) fn files(directory: &Path) -> Vec<String> {
     }
     found.sort();
     found
+}
+
+/// A path in the repository.
+pub(crate) fn root(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Compares a file with what it should hold, or writes it.
+pub(crate) fn expect_file(path: &str, wanted: &str) {
+    let path = root(path);
+    if std::env::var_os("UPDATE_README").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, wanted).unwrap();
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        found == wanted,
+        "{} is out of date: UPDATE_README=1 cargo test --test readme --test peers writes it",
+        path.display()
+    );
+}
+
+/// A text with the text between two marks replaced.
+pub(crate) fn with_generated(readme: &str, mark: &str, table: &str) -> String {
+    let open = format!("<!-- generated: {mark} -->\n");
+    let start = readme.find(&open).unwrap() + open.len();
+    let end = start + readme[start..].find("<!-- end -->").unwrap();
+    format!("{}\n{table}\n{}", &readme[..start], &readme[end..])
 }
