@@ -3,7 +3,13 @@
 use grainbench_reports::judged::Judged;
 
 /// What is kept of each, by its folder.
-pub const KEPT: [(&str, &str); 0] = [];
+pub const KEPT: [(&str, &str); 5] = [
+    ("yade", include_str!("../peers/yade/judged.json")),
+    ("kratos-dem", include_str!("../peers/kratos-dem/judged.json")),
+    ("lammps", include_str!("../peers/lammps/judged.json")),
+    ("taichi", include_str!("../peers/taichi/judged.json")),
+    ("kratos-mpm", include_str!("../peers/kratos-mpm/judged.json")),
+];
 
 /// The programs that were judged before.
 ///

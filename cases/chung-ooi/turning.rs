@@ -17,8 +17,8 @@ pub(super) fn sliding_along(variant: &'static str, along: f64) -> Run {
         .adjusted(&format!("{along} m/s along the plane"), move |scene| scene.grains[0].velocity.x = along)
 }
 
-/// The step of test 8: its critical one is that of the lighter sphere on the stiffer one's floor, some forty times shorter than that
-/// of the contact that is looked at.
+/// The step of test 8: its critical one is that of the lighter sphere on the stiffer one's floor, some forty times shorter than
+/// that of the contact that is looked at.
 pub(super) const OF_TEST_8: Resolution = Resolution::CriticalFraction(0.1);
 
 /// Tests 6 and 8 with a spin (rad/s).

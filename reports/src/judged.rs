@@ -154,7 +154,8 @@ impl Judged {
             count.controls += usize::from(row.control_red.is_some());
             count.controls_red += usize::from(row.control_red == Some(true));
             if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.verdict, row.error) {
-                let of_allowed = error.abs() / row.allowed;
+                // What is to be exact and is uses nothing up.
+                let of_allowed = if error == 0.0 { 0.0 } else { error.abs() / row.allowed };
                 count.worst = Some(count.worst.map_or(of_allowed, |worst: f64| worst.max(of_allowed)));
             }
         }

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::scrolling;
+use crate::headline;
 use crate::judged::{self, Count, Judged};
 use crate::number;
 use crate::report::Report;
@@ -15,13 +16,14 @@ pub(crate) fn render(report: &Report) -> Markup {
             section id="peers" {
                 h2 { "Other people's solvers" }
                 p.claim {
-                    "Programs by their manifests, on the rows that are fair to any solver, each with its negative control. They were run "
-                    "where and when the first table says, and not by this run."
+                    "Programs by their manifests, on the rows that are fair to any solver, each with its negative control. "
+                    "They were run where and when the first table says, and not by this run."
                 }
                 (scrolling("Programs", &programs(judged)))
                 p.note {
-                    "By case: largest error over what is allowed, and rows passed of those that were asked; the rest the program cannot "
-                    "express. The second column has the largest of the same rows with our solvers, where this run judged them."
+                    "By case: largest error over what is allowed, and rows passed of those that were asked; the rest the "
+                    "program cannot express. The second column has the largest of the same rows with our solvers, where "
+                    "this run judged them."
                 }
                 (scrolling("Programs by case", &by_case(report)))
             }
@@ -106,5 +108,5 @@ fn ours(report: &Report, case: &str) -> Option<f64> {
     };
     let section = report.sections.iter().find(|section| section.name == case)?;
     let rows = section.verdicts.iter().filter(|row| asked(&row.variant, &row.quantity));
-    rows.filter_map(|row| Some(row.error?.abs() / row.allowed)).reduce(f64::max)
+    rows.filter(|row| row.error.is_some()).map(headline::used_tolerance).reduce(f64::max)
 }

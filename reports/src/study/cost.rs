@@ -82,7 +82,7 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
             parts.push(format!("{line} in less time than its start varies by"));
             continue;
         }
-        let best = of_line(diagram, line).filter_map(Point::place).map(|(error, _)| error).min_by(f64::total_cmp);
+        let best = of_line(diagram, line).filter_map(|point| point.error).min_by(f64::total_cmp);
         if let (Some(best), None) = (best, cheapest(diagram, line, target)) {
             parts.push(format!("{line} not, at best {}", number::fraction(best)));
         }

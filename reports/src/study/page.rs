@@ -127,7 +127,7 @@ fn not_reached(diagram: &Diagram, line: &str) -> String {
     if cost::is_hidden(diagram, line, 0.01) {
         return "in less time than its start varies by".to_owned();
     }
-    let best = cost::of_line(diagram, line).filter_map(Point::place).map(|(error, _)| error).min_by(f64::total_cmp);
+    let best = cost::of_line(diagram, line).filter_map(|point| point.error).min_by(f64::total_cmp);
     match (best, cost::of_line(diagram, line).next().map(|point| point.standing)) {
         (Some(best), _) => format!("at best {}", number::fraction(best)),
         (None, Some(Standing::Failed)) => "fails".to_owned(),

@@ -1,0 +1,153 @@
+//! What is kept of other people's programs: of these adapters, of today's rows, and in the tables of `peers/README.md`.
+//!
+//! `UPDATE_README=1 cargo test --release --test peers` writes the tables anew; `grainbench run --solver PATH --keep` judges anew.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{expect_file, root, with_generated};
+use grainbench::cases::registry;
+use grainbench::peers::{KEPT, kept};
+use grainbench::reference::outside::{Outside, fingerprint};
+use grainbench::reports::judged::{Count, Judged, cases};
+use grainbench::reports::number;
+use serde_json::Value;
+use std::fmt::Write as _;
+
+/// A folder of `peers/` without what is kept would be an adapter that nobody ever saw judged.
+#[test]
+fn every_adapter_was_judged_as_it_stands() {
+    let mut folders: Vec<String> = std::fs::read_dir(root("peers"))
+        .unwrap()
+        .map(|entry| entry.unwrap())
+        .filter(|entry| entry.path().join("SOLVER.toml").is_file())
+        .map(|entry| entry.file_name().into_string().unwrap())
+        .collect();
+    folders.sort();
+    let mut named: Vec<&str> = KEPT.iter().map(|(name, _)| *name).collect();
+    named.sort_unstable();
+    assert_eq!(folders, named);
+    for ((folder, _), judged) in KEPT.iter().zip(kept().unwrap()) {
+        let path = root("peers").join(folder);
+        assert_eq!(judged.adapter, fingerprint(&path).unwrap(), "{folder} has changed since: run it with --keep");
+        let program = Outside::read(&path.join("SOLVER.toml")).unwrap();
+        assert_eq!(judged.program, program.manifest().name);
+        assert!(!judged.provenance.commit.contains("changes"), "{folder} was judged by a tree that nobody has");
+    }
+}
+
+/// A row that passes has a control that turned red, and a row is one of today's with today's tolerance.
+#[test]
+fn kept_rows_are_earned_and_are_those_of_today() {
+    for judged in kept().unwrap() {
+        let name = &judged.program;
+        for row in judged.rows.iter().filter(|row| row.verdict.word() == "pass") {
+            assert_eq!(row.control_red, Some(true), "{name}: {}/{} · {}", row.case, row.variant, row.quantity);
+        }
+        for case in cases(std::slice::from_ref(&judged)) {
+            let Some(of_registry) = registry::by_name(case) else { continue };
+            let claims = (of_registry.claims)();
+            for row in judged.rows.iter().filter(|row| row.case == case) {
+                let is_it = claims.iter().any(|claim| {
+                    claim.quantity == row.quantity && claim.resolution() == row.resolution && claim.scope.is_open()
+                });
+                assert!(is_it, "{name}: {case} has no row `{}` any more: run it with --keep", row.quantity);
+            }
+        }
+    }
+}
+
+fn programs_table(judged: &[Judged]) -> String {
+    let mut table =
+        "| program | rows | pass | red | amber | controls red | judged |\n|---|---|---|---|---|---|---|\n".to_owned();
+    for of in judged {
+        let Count { pass, red, amber, controls, controls_red, .. } = of.count(None);
+        let rows = of.rows.len();
+        let (version, day, commit) = (&of.version, of.day(), &of.provenance.commit);
+        writeln!(
+            table,
+            "| {version} | {rows} | {pass} | {red} | {amber} | {controls_red} of {controls} | {day}, {commit} |"
+        )
+        .unwrap();
+    }
+    table.trim_end().to_owned()
+}
+
+/// Largest error over what is allowed and rows passed of those asked; what a program cannot express says nothing.
+fn cell(count: Count) -> String {
+    let Count { pass, red, amber, worst, .. } = count;
+    if pass + red == 0 {
+        return "–".to_owned();
+    }
+    let asked = pass + red + amber;
+    let red = if red > 0 { format!(", **{red} red**") } else { String::new() };
+    worst.map_or_else(String::new, |worst| format!("{} · ", number::significant(worst, 2)))
+        + &format!("{pass}/{asked}{red}")
+}
+
+fn cases_table(judged: &[Judged]) -> String {
+    let names: Vec<&str> = judged.iter().map(|of| of.program.as_str()).collect();
+    let mut table = format!("| case | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
+    for case in cases(judged) {
+        let cells: Vec<String> = judged.iter().map(|of| cell(of.count(Some(case)))).collect();
+        writeln!(table, "| `{case}` | {} |", cells.join(" | ")).unwrap();
+    }
+    table.trim_end().to_owned()
+}
+
+#[test]
+fn tables_are_generated() {
+    let judged = kept().unwrap();
+    let readme = std::fs::read_to_string(root("peers/README.md")).unwrap();
+    let readme = with_generated(&readme, "programs", &programs_table(&judged));
+    let readme = with_generated(&readme, "cases", &cases_table(&judged));
+    let study: Value = serde_json::from_str(&std::fs::read_to_string(root("peers/cost.json")).unwrap()).unwrap();
+    expect_file("peers/README.md", &with_generated(&readme, "costs", &costs_table(&study)));
+}
+
+/// The cheapest setting of each solver within one per cent, beside the cheapest of all; else how near it comes.
+fn costs_table(study: &Value) -> String {
+    let points = study["points"].as_array().unwrap();
+    let word = |point: &Value, key: &str| point[key].as_str().unwrap_or_default().to_owned();
+    let subject = |point: &Value| (word(point, "case"), word(point, "variant"), word(point, "quantity"));
+    let (mut subjects, mut solvers) = (Vec::new(), Vec::new());
+    for point in points {
+        let (of, solver) = (subject(point), word(point, "solver"));
+        if !subjects.contains(&of) {
+            subjects.push(of);
+        }
+        if !solvers.contains(&solver) {
+            solvers.push(solver);
+        }
+    }
+    let mut table = format!("| at 1 % | {} |\n|---|{}\n", solvers.join(" | "), "---|".repeat(solvers.len()));
+    for of in &subjects {
+        let here = || points.iter().filter(|point| subject(point) == *of);
+        let of_solver = |solver: &str| here().filter(move |point| point["solver"] == solver).collect::<Vec<_>>();
+        let cheapest = |solver: &str| {
+            let within = |point: &&&Value| point["error"].as_f64().is_some_and(|error| error <= 0.01);
+            let times = of_solver(solver);
+            times.iter().filter(within).filter_map(|point| point["wall_seconds"].as_f64()).reduce(f64::min)
+        };
+        let best = solvers.iter().filter_map(|solver| cheapest(solver)).fold(f64::INFINITY, f64::min);
+        let cell = |solver: &String| match cheapest(solver) {
+            Some(time) if time <= best => format!("**{}**", number::seconds(time)),
+            Some(time) => format!("{} (× {})", number::seconds(time), number::significant(time / best, 2)),
+            None => {
+                let nearest = of_solver(solver).iter().filter_map(|point| point["error"].as_f64()).reduce(f64::min);
+                match nearest {
+                    Some(error) if error <= 0.01 => "less than its start varies by".to_owned(),
+                    Some(error) => format!("at best {}", number::fraction(error)),
+                    None => "–".to_owned(),
+                }
+            }
+        };
+        let cells: Vec<String> = solvers.iter().map(cell).collect();
+        writeln!(table, "| `{}/{}`, {} | {} |", of.0, of.1, of.2, cells.join(" | ")).unwrap();
+    }
+    let told = |key: &str| study["provenance"][key].as_str().unwrap_or_default().to_owned();
+    let day = told("date").split(' ').next().unwrap_or_default().to_owned();
+    write!(table, "\n{}, {day}, commit {}.", told("machine"), told("commit")).unwrap();
+    table
+}
