@@ -4,6 +4,7 @@ use crate::read::decoding::{Decoded, decoded};
 use crate::read::dump::DumpReader;
 use crate::read::line_reader::LineReader;
 use crate::read::npz::{self, Course};
+use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 use crate::read::vtk;
@@ -42,6 +43,9 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     // Other archives are refused where their text is looked for.
     if mark.starts_with(npz::MARK) && path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz")) {
         return Ok(Kind::Npz);
+    }
+    if mark.starts_with(parquet::MARK) {
+        return Ok(Kind::Table);
     }
     let reading = |error| ReadError::reading(&name, 1, error);
     let mut head = Vec::new();

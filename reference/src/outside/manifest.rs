@@ -188,7 +188,8 @@ pub enum GrainFormat {
     /// A dump of LAMMPS' kind, which LIGGGHTS writes too.
     #[serde(alias = "liggghts")]
     Lammps,
-    /// A table with a row for each grain and sample.
+    /// A table with a row for each grain and sample, as text or in Parquet.
+    #[serde(alias = "parquet")]
     Csv,
     /// Arrays of NumPy: `position`, `velocity` and `spin` of the shape (samples, grains, 3), and `step`.
     Npz,

@@ -17,6 +17,7 @@ pub(crate) mod line_reader;
 pub(crate) mod log;
 pub(crate) mod npz;
 pub(crate) mod numbers;
+pub(crate) mod parquet;
 pub(crate) mod read_error;
 pub(crate) mod snapshot;
 pub(crate) mod table;

@@ -1,16 +1,17 @@
-//! Tables of numbers with a line of names above: CSV, of whatever program.
+//! Tables of numbers with a line of names above: CSV, of whatever program; and the same in Parquet.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
 use crate::read::digits::Digits;
 use crate::read::line_reader::blocks;
 use crate::read::numbers::{NotFinite, NumberColumn, RowForm};
+use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 
 /// Most numbers that are read of a table: what is made of one takes ten times as much memory.
-const MOST_NUMBERS: usize = 1 << 24;
+pub(super) const MOST_NUMBERS: usize = 1 << 24;
 
 /// A table of numbers.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -55,13 +56,19 @@ impl Table {
     }
 }
 
-/// Reads the table at `path`, plain, gzip or zstd; see [`parse_table`].
+/// Reads the table at `path`: Parquet, or text, plain, gzip or zstd; see [`parse_table`].
 ///
 /// # Errors
 /// The file cannot be read, or is not such a table.
 pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     let name = path.to_string_lossy();
-    let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
+    let mut file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
+    let mut mark = Vec::new();
+    let marked = (&file).take(parquet::MARK.len() as u64).read_to_end(&mut mark).and_then(|_| file.rewind());
+    marked.map_err(|error| ReadError::reading(&name, 1, error))?;
+    if mark == parquet::MARK {
+        return parquet::read(file, &name);
+    }
     parse_table(BufReader::new(file), &name)
 }
 

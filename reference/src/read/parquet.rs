@@ -1,0 +1,157 @@
+//! Tables of numbers in Parquet's files, with Snappy's compression or none.
+
+use super::digits::Digits;
+use super::numbers::NumberColumn;
+use super::read_error::{ReadError, quoted};
+use super::table::{MOST_NUMBERS, Table};
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use std::any::Any;
+use std::cell::Cell;
+use std::fs::File;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::Once;
+
+/// How a file begins.
+pub(crate) const MARK: &[u8] = b"PAR1";
+/// Most bytes of all its numbers, unpacked.
+const MOST: i64 = 1 << 30;
+
+/// Reads the table of a file, which errors call `name`.
+///
+/// # Errors
+/// The file is damaged or larger than a table may be, has a column of something else than numbers, or a number that is absent or
+/// not finite.
+pub(super) fn read(file: File, name: &str) -> Result<Table, ReadError> {
+    // The crate checks what it reads in most places and trusts a length in some: a damaged file is to be an error, not an end.
+    static HUSHED: Once = Once::new();
+    HUSHED.call_once(|| {
+        let told = panic::take_hook();
+        panic::set_hook(Box::new(move |of| {
+            if !READING.get() {
+                told(of)
+            }
+        }));
+    });
+    READING.set(true);
+    let read = panic::catch_unwind(AssertUnwindSafe(|| whole(file, name)));
+    READING.set(false);
+    read.unwrap_or_else(|_: Box<dyn Any + Send>| Err(damaged(name, "one that breaks off or is damaged")))
+}
+
+thread_local! {
+    /// Whether a file is being read: what ends there is told by an error alone.
+    static READING: Cell<bool> = const { Cell::new(false) };
+}
+
+fn damaged(name: &str, found: &str) -> ReadError {
+    ReadError::at(name, 1, "a whole file of Parquet, plain or with Snappy's compression", found)
+}
+
+fn whole(file: File, name: &str) -> Result<Table, ReadError> {
+    let told = |error: ParquetError| damaged(name, &quoted(&error.to_string()));
+    let reader = SerializedFileReader::new(file).map_err(told)?;
+    let about = reader.metadata();
+    let names = about.file_metadata().schema_descr().columns().iter().map(|column| column.name().to_owned());
+    let columns: Vec<NumberColumn> =
+        names.map(|name| NumberColumn { digits: Digits::exact(), ..NumberColumn::new(&name) }).collect();
+    let rows = usize::try_from(about.file_metadata().num_rows()).unwrap_or(usize::MAX);
+    let bytes = about.row_groups().iter().map(|group| group.total_byte_size()).fold(0_i64, i64::saturating_add);
+    if rows.saturating_mul(columns.len()) > MOST_NUMBERS || !(0..=MOST).contains(&bytes) {
+        return Err(ReadError::at(name, 1, format!("at most {MOST_NUMBERS} numbers in a table"), "more"));
+    }
+    if rows == 0 || columns.is_empty() {
+        return Err(ReadError::at(name, 1, "a row of numbers", "none"));
+    }
+    let mut values = Vec::new();
+    for (at, row) in reader.get_row_iter(None).map_err(told)?.enumerate() {
+        let row = row.map_err(told)?;
+        let before = values.len();
+        for (column, field) in row.get_column_iter() {
+            let number = number(field).filter(|number| number.is_finite());
+            values.push(number.ok_or_else(|| {
+                let expected = format!("a finite number in column `{column}`, row {}", at + 1);
+                ReadError::at(name, 1, expected, quoted(&field.to_string()))
+            })?);
+        }
+        if values.len() - before != columns.len() || values.len() > MOST_NUMBERS {
+            return Err(ReadError::at(
+                name,
+                1,
+                format!("{} columns of numbers", columns.len()),
+                "columns within columns",
+            ));
+        }
+    }
+    Ok(Table::new(columns, values))
+}
+
+/// The number of a field; none where it holds something else.
+fn number(field: &Field) -> Option<f64> {
+    Some(match *field {
+        Field::Double(number) => number,
+        Field::Float(number) => f64::from(number),
+        Field::Byte(number) => f64::from(number),
+        Field::Short(number) => f64::from(number),
+        Field::Int(number) => f64::from(number),
+        Field::Long(number) => number as f64,
+        Field::UByte(number) => f64::from(number),
+        Field::UShort(number) => f64::from(number),
+        Field::UInt(number) => f64::from(number),
+        Field::ULong(number) => number as f64,
+        Field::Bool(is_so) => f64::from(u8::from(is_so)),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::read::table::read_table;
+    use std::fs;
+    use std::path::{Path, PathBuf};
+
+    fn data() -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/grains_pandas.parquet")
+    }
+
+    /// Two grains at three steps, of every width of numbers, as pandas writes them.
+    #[test]
+    fn a_table_of_pandas_is_read() {
+        let table = read_table(&data()).unwrap();
+        let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        assert_eq!(names, ["step", "id", "x", "y", "vx", "vy", "omegaz"]);
+        let column = |name: &str| table.values(table.column(name).unwrap()).collect::<Vec<f64>>();
+        assert_eq!(column("step"), [0.0, 0.0, 50.0, 50.0, 100.0, 100.0]);
+        assert_eq!(column("id"), [1.0, 2.0, 1.0, 2.0, 1.0, 2.0]);
+        assert_eq!(column("x")[3], 0.25);
+        assert_eq!(column("vx"), [0.25, 0.5, 0.25, 0.5, 0.25, 0.5]);
+        assert_eq!(column("omegaz")[5], -1.0);
+    }
+
+    /// Wherever a file is cut off or a byte of it is changed, there is a table or an error, and no end.
+    #[test]
+    fn a_damaged_file_is_an_error() {
+        let whole = fs::read(data()).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("grains.parquet");
+        let mut errors = 0;
+        let mut tried = |bytes: &[u8]| {
+            fs::write(&path, bytes).unwrap();
+            match read_table(&path) {
+                Ok(table) => assert!(table.rows() > 0),
+                Err(error) => {
+                    errors += 1;
+                    assert!(error.to_string().contains("grains.parquet:1: expected "), "{error}");
+                }
+            }
+        };
+        (4..whole.len()).step_by(3).for_each(|end| tried(&whole[..end]));
+        for at in 4..whole.len() {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 1 << (at % 8);
+            tried(&bytes);
+        }
+        assert!(errors > 2000, "{errors}");
+    }
+}
