@@ -64,6 +64,14 @@ impl Solver for Varied {
         self.name.clone()
     }
 
+    fn has_springs(&self) -> bool {
+        self.mpm.has_springs()
+    }
+
+    fn deforms(&self) -> bool {
+        self.mpm.deforms()
+    }
+
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         Ok(self.named(self.mpm.run(scene, resolution, watch)?))
     }
