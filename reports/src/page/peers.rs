@@ -1,10 +1,11 @@
 //! Other people's solvers beside ours, as they were judged when somebody ran them.
 
+use grainbench_harness::verdict::{Outcome, Verdict};
 use maud::{Markup, html};
 
 use super::scrolling;
 use crate::headline;
-use crate::judged::{self, Count, Judged};
+use crate::judged::{self, Count, Judged, Row};
 use crate::number;
 use crate::report::Report;
 
@@ -95,18 +96,21 @@ fn cell(count: &Count) -> Markup {
         td {
             @if let Some(worst) = count.worst { (number::significant(worst, 2)) " · " } @else if count.red == 0 { "— " }
             @if count.pass + count.red > 0 { (count.pass) "/" (count.pass + count.red + count.amber) }
-            @if count.red > 0 { span.mark.fail { "✗ " (count.red) } }
+            @if count.red > 0 { " " span.mark.fail { "✗ " (count.red) } }
         }
     }
 }
 
-/// Largest error over what is allowed of the rows of this run that programs were asked too.
+/// Largest error over what is allowed of the rows of this run that programs were asked too, at the same resolution.
 fn ours(report: &Report, case: &str) -> Option<f64> {
-    let asked = |variant: &str, quantity: &str| {
-        let mut rows = report.judged.iter().flat_map(|of| &of.rows);
-        rows.any(|row| (row.case.as_str(), row.variant.as_str(), row.quantity.as_str()) == (case, variant, quantity))
+    let asked = report.judged.iter().flat_map(|of| &of.rows).filter(|row| row.case == case);
+    let is_asked = |row: &&Verdict| {
+        let is_judged = matches!(row.outcome, Outcome::Pass | Outcome::Fail);
+        let is_it = |theirs: &Row| {
+            (&theirs.variant, &theirs.quantity, &theirs.resolution) == (&row.variant, &row.quantity, &row.resolution)
+        };
+        is_judged && asked.clone().any(is_it)
     };
     let section = report.sections.iter().find(|section| section.name == case)?;
-    let rows = section.verdicts.iter().filter(|row| asked(&row.variant, &row.quantity));
-    rows.filter(|row| row.error.is_some()).map(headline::used_tolerance).reduce(f64::max)
+    section.verdicts.iter().filter(is_asked).map(headline::used_tolerance).reduce(f64::max)
 }
