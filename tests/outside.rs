@@ -359,6 +359,32 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
     assert!(reason(&neo_hookean, "incline-disc").contains("it leaves no grains"));
 }
 
+/// What a program was judged to be is kept beside it, and another run is held to that and not to green.
+#[test]
+fn a_program_is_held_to_what_is_kept_of_it() {
+    if !is_here("python3") {
+        return;
+    }
+    let folder = example("continuum", "line.py", Some(("/ h - 0.5", "/ h")));
+    let judge = |further: &[&str]| {
+        grainbench(folder.path(), &[&["run", "--solver", "SOLVER.toml", "--out", "out"], further].concat())
+    };
+    let before = judge(&["--as-kept"]);
+    assert!(before.code == Some(2) && before.err.contains("expected what `--keep` leaves"), "{}", before.err);
+    let part = judge(&["--keep", "column"]);
+    assert!(part.code == Some(2) && !folder.path().join("judged.json").exists(), "{}", part.err);
+    assert_eq!(judge(&["--keep"]).code, Some(1), "stresses of other places are red");
+    let kept: Value = serde_json::from_slice(&fs::read(folder.path().join("judged.json")).unwrap()).unwrap();
+    assert!(kept["rows"].as_array().unwrap().iter().any(|row| row["verdict"] == "fail"), "{kept}");
+    assert_eq!(judge(&["--as-kept", "column", "vibrating-bar"]).code, Some(0), "it is red as it was");
+    let script = fs::read_to_string(folder.path().join("line.py")).unwrap();
+    fs::write(folder.path().join("line.py"), script.replace("x + dt * w", "x + 0.98 * dt * w")).unwrap();
+    let other = judge(&["--as-kept", "column", "vibrating-bar"]);
+    assert!(other.code == Some(1) && other.err.contains("fail, its control red; kept: pass"), "{}", other.err);
+    fs::write(folder.path().join("judged.json"), "{").unwrap();
+    assert_eq!(judge(&["--as-kept", "column"]).code, Some(2));
+}
+
 /// Studies take a program as they take our own solvers; what it did before is never taken for what it does now.
 #[test]
 fn a_program_is_timed_and_its_longest_stable_step_is_found() {

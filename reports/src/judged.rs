@@ -196,13 +196,22 @@ mod tests {
         assert_eq!((count.pass, count.red), (counts.pass, counts.fail + counts.broken));
         assert_eq!(count.pass + count.red + count.amber, judged.rows.len());
         assert!(count.controls > 0 && count.controls_red <= count.controls);
-        assert!(judged.otherwise(&report).is_empty());
-        let mut other = report.clone();
-        other.sections[0].verdicts[0].outcome = Outcome::Stale;
-        other.sections[0].controls[0].turned_red ^= true;
-        let otherwise = judged.otherwise(&other);
-        assert!(otherwise.iter().any(|line| line.contains("stale; kept: ")), "{otherwise:?}");
         assert_eq!(judged.count(Some("no-such-case")), Count::default());
         assert!(Judged::read(&judged.text().unwrap().replace("\"program\"", "\"programme\"")).is_err());
+    }
+
+    #[test]
+    fn what_ends_otherwise_is_told() {
+        let mut report = sample::report();
+        // A program has one row of a quantity.
+        report.sections.truncate(1);
+        report.sections[0].verdicts.truncate(1);
+        let kept = Judged::of("other".to_owned(), String::new(), String::new(), &report);
+        assert_eq!(kept.otherwise(&report), Vec::<String>::new());
+        report.sections[0].verdicts[0].outcome = Outcome::Stale;
+        let [line] = &kept.otherwise(&report)[..] else { panic!("one row ends otherwise") };
+        assert!(line.contains(": stale") && line.contains("; kept: pass"), "{line}");
+        report.sections[0].verdicts[0].quantity = "another".to_owned();
+        assert!(kept.otherwise(&report)[0].ends_with("kept: no such row"));
     }
 }

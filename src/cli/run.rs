@@ -78,6 +78,9 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let selected = select::select(cases, &options.solver, &options.levels)?;
     check_writable(&options.out)?;
     let kept = if options.as_kept { Some(keep::read(keep::program(&selected)?)?) } else { None };
+    if let Some(case) = cases.first().filter(|_| options.keep) {
+        return Err(Fault::input(format!("--keep: expected all cases, found `{case}` named")));
+    }
     let keeping = if options.keep { Some(keep::program(&selected)?) } else { None };
     let start = Instant::now();
     let thorough = options.levels.iter().any(|level| level == "all");
@@ -101,8 +104,8 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     };
     let report = Report { provenance, sections, judged };
     if let Some(program) = keeping {
-        if left > 0 || !cases.is_empty() {
-            return Err(Fault::input("--keep: expected a whole run of all cases, found a part of it"));
+        if left > 0 {
+            return Err(Fault::input(format!("--keep: expected a whole run, found {left} checks left out")));
         }
         keep(program, &report)?;
     }
