@@ -72,8 +72,12 @@ fn softer() -> Control {
 }
 
 fn claims() -> Vec<Claim> {
-    let mut claims: Vec<Claim> =
-        LEVELS.iter().zip([0.037, 9e-3, 1.7e-3]).map(|(&level, allowed)| swinging(level, allowed)).collect();
+    // From 25 to 50 cells ours has to gain more than a method of second order does: of others that is not asked.
+    let mut claims = vec![
+        swinging(LEVELS[0], 0.037).fair_to_any_continuum(),
+        swinging(LEVELS[1], 9e-3).fair_to_any_continuum(),
+        swinging(LEVELS[2], 1.7e-3),
+    ];
     let at_rest = || Run::new("static", "mpm", LEVELS[1].resolution);
     claims.push(
         claim("sinking of the centre of mass at rest", "m")
@@ -126,6 +130,5 @@ fn swinging(level: Level, allowed: f64) -> Claim {
             "dispersion of the grid, and the strain of .0005; in units of the largest displacement",
         ))
         .refuses(softer())
-        .fair_to_any_continuum()
         .drawn(&DISPLACEMENT, level.name)
 }

@@ -32,6 +32,9 @@ pub struct Manifest {
     /// A command that is run once in the manifest's folder before the first run, and is not timed.
     #[serde(default)]
     pub prepare: Vec<String>,
+    /// Files elsewhere that it is made of too, by their paths from the manifest: what is kept of its rows is of them as well.
+    #[serde(default)]
+    pub files: Vec<String>,
     /// In which format it is given the scene.
     #[serde(default)]
     pub scene: SceneFormat,

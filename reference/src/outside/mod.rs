@@ -169,12 +169,24 @@ impl Outside {
         &self.folder
     }
 
-    /// Hash of the manifest and of the files beside it but what is kept of its rows: what an adapter is.
+    /// Hash of what an adapter is: the files in the folder of the manifest, but what is kept of its rows, and those that the
+    /// manifest names beside.
     ///
     /// # Errors
     /// When one of them cannot be read.
     pub fn fingerprint(&self) -> io::Result<String> {
-        fingerprint(&self.folder)
+        let entries = fs::read_dir(&self.folder)?.collect::<io::Result<Vec<_>>>()?;
+        let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
+        files.retain(|path| path.extension().is_none_or(|end| end != "json"));
+        files.sort();
+        files.extend(self.manifest.files.iter().map(|file| self.folder.join(file)));
+        let mut hash = blake3::Hasher::new();
+        for path in files {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let text = fs::read(&path)?;
+            hash.update(format!("{name} {}\n", text.len()).as_bytes()).update(&text);
+        }
+        Ok(hash.finalize().to_hex()[..32].to_owned())
     }
 
     /// The first line that it prints of its version.
@@ -304,24 +316,6 @@ fn observe_grains(
         Failure::Output(reason) => Failure::Output(without(folder, &reason)),
         other => other,
     })
-}
-
-/// Hash of the files in a folder, but of what is kept there.
-///
-/// # Errors
-/// When one of them cannot be read.
-pub fn fingerprint(folder: &Path) -> io::Result<String> {
-    let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
-    let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
-    files.retain(|path| path.extension().is_none_or(|end| end != "json"));
-    files.sort();
-    let mut hash = blake3::Hasher::new();
-    for path in files {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let text = fs::read(&path)?;
-        hash.update(format!("{name} {}\n", text.len()).as_bytes()).update(&text);
-    }
-    Ok(hash.finalize().to_hex()[..32].to_owned())
 }
 
 /// How a run ended that ended in order.
