@@ -335,7 +335,6 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
         ("* at * h) for at", "* (at + 1) * h) for at"),
         ("(1 + scene[\"global_damping\"] * time)", "1"),
         ("held = 1 if", "held = 0 if"),
-        ("push(dt / 2 if step else 0.0)", "push(dt / 2)"),
         ("x + dt * w", "x + 0.98 * dt * w"),
         ("/ h - 0.5", "/ h"),
     ];

@@ -8,11 +8,12 @@ mod common;
 
 use common::{expect_file, root, with_generated};
 use grainbench::cases::registry;
+use grainbench::harness::study::point::Diagram;
 use grainbench::peers::{KEPT, kept};
 use grainbench::reference::outside::Outside;
 use grainbench::reports::judged::{Count, Judged, cases};
-use grainbench::reports::number;
-use serde_json::Value;
+use grainbench::reports::study::{Study, cost};
+use grainbench::reports::{Provenance, number};
 use std::fmt::Write as _;
 
 /// A folder of `peers/` without what is kept would be an adapter that nobody ever saw judged.
@@ -103,52 +104,34 @@ fn tables_are_generated() {
     let readme = std::fs::read_to_string(root("peers/README.md")).unwrap();
     let readme = with_generated(&readme, "programs", &programs_table(&judged));
     let readme = with_generated(&readme, "cases", &cases_table(&judged));
-    let study: Value = serde_json::from_str(&std::fs::read_to_string(root("peers/cost.json")).unwrap()).unwrap();
+    let study: Study = serde_json::from_str(&std::fs::read_to_string(root("peers/cost.json")).unwrap()).unwrap();
     expect_file("peers/README.md", &with_generated(&readme, "costs", &costs_table(&study)));
 }
 
 /// The cheapest setting of each solver within one per cent, beside the cheapest of all; else how near it comes.
-fn costs_table(study: &Value) -> String {
-    let points = study["points"].as_array().unwrap();
-    let word = |point: &Value, key: &str| point[key].as_str().unwrap_or_default().to_owned();
-    let subject = |point: &Value| (word(point, "case"), word(point, "variant"), word(point, "quantity"));
-    let (mut subjects, mut solvers) = (Vec::new(), Vec::new());
-    for point in points {
-        let (of, solver) = (subject(point), word(point, "solver"));
-        if !subjects.contains(&of) {
-            subjects.push(of);
-        }
-        if !solvers.contains(&solver) {
-            solvers.push(solver);
-        }
-    }
-    let mut table = format!("| at 1 % | {} |\n|---|{}\n", solvers.join(" | "), "---|".repeat(solvers.len()));
-    for of in &subjects {
-        let here = || points.iter().filter(|point| subject(point) == *of);
-        let of_solver = |solver: &str| here().filter(move |point| point["solver"] == solver).collect::<Vec<_>>();
-        let cheapest = |solver: &str| {
-            let within = |point: &&&Value| point["error"].as_f64().is_some_and(|error| error <= 0.01);
-            let times = of_solver(solver);
-            times.iter().filter(within).filter_map(|point| point["wall_seconds"].as_f64()).reduce(f64::min)
+fn costs_table(study: &Study) -> String {
+    const TARGET: f64 = 0.01;
+    let lines = cost::lines(&study.diagrams);
+    let mut table = format!("| at 1 % | {} |\n|---|{}\n", lines.join(" | "), "---|".repeat(lines.len()));
+    for diagram in &study.diagrams {
+        let cheapest = |line: &str| cost::cheapest(diagram, line, TARGET).and_then(|point| point.wall_seconds);
+        let best = lines.iter().filter_map(|line| cheapest(line)).fold(f64::INFINITY, f64::min);
+        let nearest = |line: &str| {
+            let points = diagram.points.iter().filter(|point| point.solver == line);
+            points.filter_map(|point| point.error).reduce(f64::min)
         };
-        let best = solvers.iter().filter_map(|solver| cheapest(solver)).fold(f64::INFINITY, f64::min);
-        let cell = |solver: &String| match cheapest(solver) {
-            Some(time) if time <= best => format!("**{}**", number::seconds(time)),
-            Some(time) => format!("{} (× {})", number::seconds(time), number::significant(time / best, 2)),
-            None => {
-                let nearest = of_solver(solver).iter().filter_map(|point| point["error"].as_f64()).reduce(f64::min);
-                match nearest {
-                    Some(error) if error <= 0.01 => "less than its start varies by".to_owned(),
-                    Some(error) => format!("at best {}", number::fraction(error)),
-                    None => "–".to_owned(),
-                }
-            }
+        let cell = |line: &&str| match (cheapest(line), nearest(line)) {
+            (Some(time), _) if time <= best => format!("**{}**", number::seconds(time)),
+            (Some(time), _) => format!("{} (× {})", number::seconds(time), number::significant(time / best, 2)),
+            (None, _) if cost::is_hidden(diagram, line, TARGET) => "less than its start varies by".to_owned(),
+            (None, Some(error)) => format!("at best {}", number::fraction(error)),
+            (None, None) => "–".to_owned(),
         };
-        let cells: Vec<String> = solvers.iter().map(cell).collect();
-        writeln!(table, "| `{}/{}`, {} | {} |", of.0, of.1, of.2, cells.join(" | ")).unwrap();
+        let cells: Vec<String> = lines.iter().map(cell).collect();
+        let Diagram { case, variant, quantity, .. } = diagram;
+        writeln!(table, "| `{case}/{variant}`, {quantity} | {} |", cells.join(" | ")).unwrap();
     }
-    let told = |key: &str| study["provenance"][key].as_str().unwrap_or_default().to_owned();
-    let day = told("date").split(' ').next().unwrap_or_default().to_owned();
-    write!(table, "\n{}, {day}, commit {}.", told("machine"), told("commit")).unwrap();
+    let Provenance { machine, date, commit, .. } = &study.provenance;
+    write!(table, "\n{machine}, {}, commit {commit}.", date.split(' ').next().unwrap_or_default()).unwrap();
     table
 }
