@@ -1,14 +1,25 @@
-//! Notes for provenance which commit and which compiler the program is built from.
+//! Notes for provenance which commit, which compiler and which sources of solvers the program is built from.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
+
+/// What the solvers of a kind are made of; of other people's programs that is what we hand them.
+const SOURCES: [(&str, &[&str]); 4] = [
+    ("DEM", &["solvers/dem/src", "solvers/scene/src", "solvers/lanes/src"]),
+    ("MPM", &["solvers/mpm/src", "solvers/scene/src", "solvers/lanes/src"]),
+    ("RIGID", &["solvers/rigid/src", "solvers/scene/src"]),
+    ("PROGRAMS", &["reference/src/deck"]),
+];
 
 fn main() {
     let root = env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
     let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     println!("cargo::rustc-env=GRAINBENCH_RUSTC={}", words(&rustc, &["--version"]).unwrap_or_else(unknown));
     println!("cargo::rustc-env=GRAINBENCH_COMMIT={}", commit(&root).unwrap_or_else(unknown));
+    for (name, folders) in SOURCES {
+        println!("cargo::rustc-env=GRAINBENCH_SOURCES_{name}={}", fingerprint(Path::new(&root), folders));
+    }
     // Whatever can make the tree differ from its commit, and the commit itself.
     let manifest = fs::read_to_string(Path::new(&root).join("Cargo.toml")).unwrap_or_default();
     for part in ["build.rs", "Cargo.toml", "Cargo.lock", "src"].into_iter().chain(members(&manifest)) {
@@ -19,6 +30,28 @@ fn main() {
             println!("cargo::rerun-if-changed={}", part.display());
         }
     }
+}
+
+/// Hash of all files in some folders, by their paths and texts.
+fn fingerprint(root: &Path, folders: &[&str]) -> String {
+    let mut files: Vec<PathBuf> = Vec::new();
+    let mut open: Vec<PathBuf> = folders.iter().map(|folder| root.join(folder)).collect();
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            if path.is_dir() { open.push(path) } else { files.push(path) }
+        }
+    }
+    files.sort();
+    let mut hasher = blake3::Hasher::new();
+    for file in files {
+        let name = file.strip_prefix(root).unwrap_or(&file).to_string_lossy().into_owned();
+        for part in [name.into_bytes(), fs::read(&file).unwrap_or_default()] {
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(&part);
+        }
+    }
+    hasher.finalize().to_hex()[..16].to_owned()
 }
 
 /// The folders of the workspace's crates but this one, from the line that lists them.

@@ -5,6 +5,7 @@
 //! solver.
 
 pub mod check;
+pub mod kept;
 pub mod own;
 pub mod peers;
 pub mod verify;

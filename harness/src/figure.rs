@@ -110,6 +110,9 @@ pub enum Shades {
     Signed,
     /// Grey: fringes.
     Fringes,
+    /// From dark to light, each colour in shades from dark to bright: amounts on lit bodies. Levels are those of
+    /// [`crate::raster::lit`].
+    Lit,
 }
 
 /// One picture of a field, or the frames of a film of it.

@@ -39,6 +39,19 @@ pub fn level(value: f64, (low, high): (f64, f64)) -> u8 {
     if part.is_nan() { VOID } else { LOW + (part * f64::from(HIGH - LOW)).round() as u8 }
 }
 
+/// Colours of a lit value, and shades of each.
+pub const COLOURS: u8 = 8;
+/// Shades of each colour.
+pub const LIGHTS: u8 = 31;
+
+/// The level of a value from 0 to 1 under a light from 0 to 1.
+#[must_use]
+pub fn lit(value: f64, light: f64) -> u8 {
+    let part = |of: f64, count: u8| (of.clamp(0.0, 1.0) * f64::from(count)).floor().min(f64::from(count - 1)) as u8;
+    // Not a number is drawn as void.
+    if value.is_nan() || light.is_nan() { VOID } else { LOW + LIGHTS * part(value, COLOURS) + part(light, LIGHTS) }
+}
+
 #[derive(Serialize, Deserialize)]
 struct Stored {
     width: u32,
@@ -96,5 +109,6 @@ mod tests {
     fn levels_span_the_range() {
         assert_eq!([0.0, 0.5, 1.0, -3.0, 9.0].map(|value| level(value, (0.0, 1.0))), [LOW, 128, HIGH, LOW, HIGH]);
         assert_eq!(level(f64::NAN, (0.0, 1.0)), VOID);
+        assert_eq!([lit(0.0, 0.0), lit(1.0, 1.0), lit(f64::NAN, 1.0)], [LOW, COLOURS * LIGHTS, VOID]);
     }
 }

@@ -153,13 +153,13 @@ pub fn used_tolerance(verdict: &Verdict) -> f64 {
     }
 }
 
-/// The judged row that uses most of its tolerance.
+/// The row with an error that uses most of its tolerance, what is known to be wrong included: nothing is hidden by being known.
 #[must_use]
 pub fn worst(section: &Section) -> Option<&Verdict> {
     section
         .verdicts
         .iter()
-        .filter(|verdict| matches!(verdict.outcome, Outcome::Pass | Outcome::Fail))
+        .filter(|verdict| matches!(verdict.outcome, Outcome::Pass | Outcome::Fail | Outcome::Known))
         .max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
 }
 

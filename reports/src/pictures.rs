@@ -1,10 +1,9 @@
 //! A page of pictures of records, without verdicts.
 
-use crate::page::{shell, slug, unique};
-use crate::plot;
+use crate::page::{figures, shell, slug, unique};
 use crate::staged::StagedDir;
-use crate::store::SaveError;
-use grainbench_harness::figure::{Drawing, Figure};
+use crate::store::{SaveError, add_figure};
+use grainbench_harness::figure::Figure;
 use grainbench_scene::record::{Provenance, Record};
 use maud::{PreEscaped, html};
 use std::collections::BTreeSet;
@@ -37,28 +36,17 @@ pub(crate) fn write_page(
     let mut drawn = Vec::new();
     for figure in figures {
         let name = unique(&slug(&figure.name), &mut names);
-        let svg = plot::draw(figure)?;
-        out.write(format!("figures/{name}.svg"), &svg)?;
-        if let Some(film) = plot::film(figure)? {
-            out.write(format!("figures/{name}.png"), film)?;
-        }
-        drawn.push((name, svg, figure));
+        add_figure(out, figure, &name)?;
+        drawn.push(figures::part(figure, &name, &name)?.whole);
     }
     let body = html! {
-        main {
+        main.alone {
             header {
                 p.kicker { "grainbench" }
                 h1 { (title) }
                 @for lead in leads { p.lead { (lead) } }
             }
-            @for (name, svg, figure) in &drawn {
-                figure id=(name) {
-                    div class=(if matches!(figure.drawing, Drawing::Graph(_)) { "plot graph" } else { "plot" }) {
-                        (PreEscaped(svg))
-                    }
-                    figcaption { (figure.caption) }
-                }
-            }
+            div.figures { @for figure in &drawn { (PreEscaped(figure)) } }
         }
     };
     out.write("index.html", shell(&format!("grainbench · {title}"), &body))?;

@@ -5,6 +5,7 @@ use grainbench_harness::verdict::{Control, Verdict};
 use serde::{Deserialize, Serialize};
 
 use crate::judged::Judged;
+use crate::measured::Measurements;
 use crate::stored_figure;
 
 /// A whole run of the harness.
@@ -17,6 +18,9 @@ pub struct Report {
     /// Programs that were judged before, by their manifests.
     #[serde(default)]
     pub judged: Vec<Judged>,
+    /// What accuracy costs and what stays stable, as it was measured before.
+    #[serde(default)]
+    pub measured: Measurements,
 }
 
 /// What ran, where and when.

@@ -4,11 +4,14 @@ use grainbench_harness::control::Red;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Expected;
 use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
+use grainbench_harness::study::point::{Counts, Diagram, Point, Standing};
 use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
 use crate::judged::Judged;
+use crate::measured::{Costs, Measurements};
 use crate::report::{Provenance, Report, RunCost, Section};
+use crate::study::Study;
 
 /// A row that passes or fails by its numbers.
 pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expected: f64, allowed: f64) -> Verdict {
@@ -264,22 +267,66 @@ fn nine_discs() -> Section {
 }
 
 /// Two cases with every kind of row.
+fn report_provenance() -> Provenance {
+    Provenance {
+        version: "0.1.0".into(),
+        commit: "0123456789ab".into(),
+        date: "2025-03-01 12:00 UTC".into(),
+        machine: "x86_64, 2 cores, Linux".into(),
+        rustc: "rustc 1.95.0".into(),
+        options: vec!["--levels default".into()],
+        wall_seconds: 12.3,
+    }
+}
+
 pub(crate) fn report() -> Report {
     let mut report = Report {
-        provenance: Provenance {
-            version: "0.1.0".into(),
-            commit: "0123456789ab".into(),
-            date: "2025-03-01 12:00 UTC".into(),
-            machine: "x86_64, 2 cores, Linux".into(),
-            rustc: "rustc 1.95.0".into(),
-            options: vec!["--levels default".into()],
-            wall_seconds: 12.3,
-        },
+        provenance: report_provenance(),
         sections: vec![backspin(), nine_discs()],
         judged: Vec::new(),
+        measured: Measurements { cost: Some(Costs::of(&costs(), &|_| None)), stability: None },
     };
     report.judged = vec![Judged::of("other".into(), "other 1.0".into(), "0123".into(), &report)];
     report
+}
+
+/// What two quantities cost three solvers: within .1 % to 10 %, at 1 and 4 ms, 100 and 400 ms; the third has one of them alone.
+pub(crate) fn costs() -> Study {
+    let point = |solver: &str, quantity: &str, error: f64, wall: f64| Point {
+        case: "backspin".into(),
+        variant: "plain".into(),
+        solver: solver.into(),
+        resolution: "dt=.1".into(),
+        knobs: String::new(),
+        quantity: quantity.into(),
+        unit: "m".into(),
+        standing: Standing::Measured,
+        value: Some(1.0 + error),
+        expected: Some(1.0),
+        error: Some(error),
+        floor: None,
+        wall_seconds: Some(wall),
+        wall_spread: None,
+        cpu_seconds: Some(wall),
+        start_up_seconds: Some(0.0),
+        repetitions: Vec::new(),
+        counts: Counts::default(),
+        detail: None,
+    };
+    let diagram = |quantity: &str, points: &[(&str, f64, f64)]| Diagram {
+        case: "backspin".into(),
+        variant: "plain".into(),
+        quantity: quantity.into(),
+        source: "rigid sphere under Coulomb friction".into(),
+        points: points.iter().map(|(solver, error, wall)| point(solver, quantity, *error, *wall)).collect(),
+    };
+    let mut study = Study::new(report_provenance());
+    study.diagrams = vec![
+        diagram("velocity", &[("dem", 5e-4, 1e-3), ("dem", 1e-5, 3e-3), ("mpm", 8e-3, 0.1), ("rigid", 5e-3, 2e-3)]),
+        diagram("spin", &[("dem", 5e-4, 4e-3), ("mpm", 8e-3, 0.4), ("rigid", 0.05, 2e-3)]),
+    ];
+    study.sources = ["dem", "mpm", "rigid"].map(|solver| (solver.to_owned(), "as then".to_owned())).into();
+    study
 }
 
 /// The same report with text in every field that would break out of a page that does not escape it.

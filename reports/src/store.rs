@@ -1,13 +1,14 @@
 //! The output directory: written whole, read back to redraw.
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use grainbench_harness::figure::{Drawing, Figure, Graph};
 use grainbench_scene::text::tamed;
 use thiserror::Error;
 
+use crate::export::series_csv::harmless;
 use crate::junit::junit_xml;
 use crate::page;
 use crate::plot;
@@ -73,7 +74,7 @@ pub enum LoadError {
 }
 
 /// Writes `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml` and `figures/CASE-NAME.svg` into
-/// `dir`, films as `figures/CASE-NAME.png` too, all of them or none.
+/// `dir`, the data of graphs as `.csv` and films as `.png` beside them, and what the page has no room for; all of them or none.
 ///
 /// # Errors
 /// When the disk refuses or a figure cannot be drawn.
@@ -114,19 +115,52 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
     out.write("rows.csv", rows)?;
     let junit = junit_xml(report).map_err(|error| encode("junit.xml")(error.to_string()))?;
     out.write("junit.xml", junit)?;
-    out.write("index.html", page::render(report)?)?;
-    let mut names = BTreeSet::new();
-    for section in &report.sections {
-        for figure in &section.figures {
-            let stem = page::slug(&format!("{}-{}", section.name, figure.name));
-            let name = page::unique(&stem, &mut names);
-            out.write(format!("figures/{name}.svg"), plot::draw(figure)?)?;
-            if let Some(film) = plot::film(figure)? {
-                out.write(format!("figures/{name}.png"), film)?;
-            }
+    let page = page::render(report)?;
+    out.write("index.html", page.html)?;
+    for (path, text) in page.beside {
+        out.write(path, text)?;
+    }
+    for (section, names) in report.sections.iter().zip(page::figure_names(report)) {
+        for (figure, name) in section.figures.iter().zip(names) {
+            add_figure(out, figure, &name)?;
         }
     }
     Ok(())
+}
+
+/// Adds a figure by itself: as a picture, the data of a graph as CSV, a film as an animated PNG.
+///
+/// # Errors
+/// When the disk refuses or it cannot be drawn.
+pub(crate) fn add_figure(out: &mut StagedDir, figure: &Figure, name: &str) -> Result<(), SaveError> {
+    out.write(format!("figures/{name}.svg"), plot::draw(figure)?)?;
+    if let Drawing::Graph(graph) = &figure.drawing {
+        let data = graph_csv(graph)
+            .map_err(|error| SaveError::Encode { file: "the data of a figure", reason: error.to_string() })?;
+        out.write(format!("figures/{name}.csv"), data)?;
+    }
+    if let Some(film) = plot::film(figure)? {
+        out.write(format!("figures/{name}.png"), film)?;
+    }
+    Ok(())
+}
+
+/// The data of a graph: a line a point. What is not finite is left empty.
+fn graph_csv(graph: &Graph) -> Result<Vec<u8>, csv::Error> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(["curve", &graph.x.label, &graph.y.label])?;
+    let number = |value: f64| if value.is_finite() { format!("{value:?}") } else { String::new() };
+    let mut name = String::new();
+    for curve in &graph.curves {
+        // Points without a name of their own belong to the curve before them.
+        if !curve.label.is_empty() {
+            name = harmless(curve.label.clone());
+        }
+        for (x, y) in &curve.points {
+            table.write_record([&name, &number(*x), &number(*y)])?;
+        }
+    }
+    table.into_inner().map_err(|error| error.into_error().into())
 }
 
 impl Report {

@@ -9,6 +9,7 @@ use grainbench::check::{Subject, check as judge};
 use grainbench::harness::verdict;
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources};
+use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, line, write_report};
 use grainbench::scene::scene::Scene;
@@ -78,7 +79,12 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
         (None, None) => Vec::new(),
     };
     check_writable(&arguments.out)?;
-    let report = Report { provenance: provenance(words, start.elapsed().as_secs_f64()), sections, judged: Vec::new() };
+    let report = Report {
+        provenance: provenance(words, start.elapsed().as_secs_f64()),
+        sections,
+        judged: Vec::new(),
+        measured: Measurements::default(),
+    };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;

@@ -12,6 +12,7 @@ use grainbench::harness::tolerance::Made;
 use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::comparison::{self, Comparison, Difference, Key};
 use grainbench::reference::observer::Names;
+use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, number, write_report};
 use std::path::{Path, PathBuf};
@@ -69,6 +70,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections: vec![section],
         judged: Vec::new(),
+        measured: Measurements::default(),
     };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {

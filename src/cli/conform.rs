@@ -7,6 +7,7 @@ use super::run::{exit_code, says_nothing};
 use super::solver;
 use grainbench::cases::solvers;
 use grainbench::harness::conformance;
+use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, summary_table, write_report};
 use grainbench::scene::solver::Solver;
@@ -49,6 +50,7 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections: vec![section],
         judged: Vec::new(),
+        measured: Measurements::default(),
     };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {

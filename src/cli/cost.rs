@@ -1,6 +1,7 @@
 //! `grainbench cost`: what accuracy costs.
 
 use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::keep::keep_study;
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::strangers::WithStrangers;
@@ -14,6 +15,7 @@ use grainbench::studies::cost::against::compare;
 use grainbench::studies::cost::run::{Meter, Wanted};
 use grainbench::studies::cost::step;
 use grainbench::studies::result_cache::ResultCache;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -39,6 +41,9 @@ pub(crate) struct Arguments {
     /// Compare with the `results.json` of another session: counts exactly, times with their spread.
     #[arg(long, value_name = "OLD.json")]
     against: Option<PathBuf>,
+    /// Keep in the tree what the first screen of a page tells of it: all cases and solvers of ours.
+    #[arg(long, conflicts_with_all = ["cases", "solver"])]
+    keep: bool,
     /// Directory for the report; finished points are kept in it too.
     #[arg(long, value_name = "DIR", default_value = "grainbench-cost")]
     out: PathBuf,
@@ -70,11 +75,14 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     if prices {
         study.model = Some(step::measure(&Registry, ROUNDS, &mut follower).map_err(Fault::input)?);
     }
+    let mut asked = Vec::new();
     for (at, subject) in subjects.iter().enumerate() {
         let diagram = meter.diagram(subject, &mut follower).map_err(Fault::writing)?;
         if diagram.points.is_empty() {
             continue;
         }
+        asked.extend(diagram.points.iter().map(|point| point.solver.clone()));
+        study.sources = sources(&asked);
         study.diagrams.push(diagram);
         let mut options = words(arguments);
         if at + 1 < subjects.len() {
@@ -90,6 +98,9 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         study.against = Some(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
     }
     write_study(&arguments.out, &study).map_err(Fault::writing)?;
+    if arguments.keep {
+        keep_study("cost", &study)?;
+    }
     let reused = follower.end();
     if arguments.json {
         print(&study_json(&study).map_err(Fault::input)?)?;
@@ -131,6 +142,11 @@ fn words(arguments: &Arguments) -> Vec<String> {
         words.push(format!("--levels {}", arguments.levels));
     }
     words
+}
+
+/// Hashes of the sources of solvers, by their names.
+pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
+    names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
 }
 
 /// The sentences, and what changed.

@@ -1,9 +1,11 @@
-//! `grainbench run --keep` and `--as-kept`: the rows of a program, kept beside its manifest, and held to it.
+//! What is kept: by `run --keep` the rows of a program beside its manifest, to which `--as-kept` holds it, and by `cost --keep`
+//! and `stability --keep` a study in the tree.
 
 use super::exit::Fault;
 use super::select::Selected;
 use grainbench::reference::outside::Outside;
 use grainbench::reports::judged::Judged;
+use grainbench::reports::study::{Study, kept_text};
 use grainbench::reports::{Report, write_file};
 use std::fs;
 
@@ -28,6 +30,12 @@ pub(crate) fn read(program: &Outside) -> Result<Judged, Fault> {
     };
     let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     Judged::read(&text).map_err(|error| wrong(error.to_string()))
+}
+
+/// Keeps a study in the tree, for the first screen of a page.
+pub(crate) fn keep_study(name: &str, study: &Study) -> Result<(), Fault> {
+    let text = kept_text(study).map_err(Fault::input)?;
+    write_file(grainbench::kept::place(name), text.as_bytes()).map_err(Fault::writing)
 }
 
 /// Keeps the rows of a program beside its manifest.

@@ -15,6 +15,7 @@ use grainbench::harness::run::Set;
 use grainbench::harness::runner::Runner;
 use grainbench::harness::tolerance::Made;
 use grainbench::reference::stored::{folder, make};
+use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, StagedDir, write_file, write_report};
 use grainbench::scene::scene::Scene;
@@ -289,6 +290,7 @@ fn verify(arguments: &Verify) -> Outcome {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections: vec![section],
         judged: Vec::new(),
+        measured: Measurements::default(),
     };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {

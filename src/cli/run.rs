@@ -15,6 +15,7 @@ use grainbench::harness::run::{Done, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::verdict::{self, Control, Verdict};
 use grainbench::reference::outside::Outside;
+use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, RunCost, Section, summary_table, write_report, write_report_and_parquet};
 use grainbench::scene::solver::RunError;
@@ -97,12 +98,12 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     }
     let provenance = provenance(words, start.elapsed().as_secs_f64());
     // They stand beside the whole registry, and not beside a case of it.
-    let judged = if cases.is_empty() && options.solver.is_empty() {
-        grainbench::peers::kept().map_err(Fault::input)?
+    let (judged, measured) = if cases.is_empty() && options.solver.is_empty() {
+        (grainbench::peers::kept().map_err(Fault::input)?, grainbench::kept::measured().map_err(Fault::input)?)
     } else {
-        Vec::new()
+        (Vec::new(), Measurements::default())
     };
-    let report = Report { provenance, sections, judged };
+    let report = Report { provenance, sections, judged, measured };
     if let Some(program) = keeping {
         if left > 0 {
             return Err(Fault::input(format!("--keep: expected a whole run, found {left} checks left out")));

@@ -1,7 +1,8 @@
 //! `grainbench stability`: the largest stable steps, and hard cases.
 
-use super::cost::Follower;
+use super::cost::{Follower, sources};
 use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::keep::keep_study;
 use super::provenance::provenance;
 use super::strangers::WithStrangers;
 use grainbench::cases::registry;
@@ -38,6 +39,9 @@ pub(crate) struct Arguments {
     /// Do everything anew, also what was finished before.
     #[arg(long)]
     fresh: bool,
+    /// Keep in the tree what the first screen of a page tells of it: all cases and solvers of ours.
+    #[arg(long, conflicts_with_all = ["cases", "solver"])]
+    keep: bool,
     /// Directory for the report; finished pieces are kept in it too.
     #[arg(long, value_name = "DIR", default_value = "grainbench-stability")]
     out: PathBuf,
@@ -80,9 +84,15 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
                 options.push(format!("unfinished: {} of {} limits and cases", at + 1, pieces.len()));
             }
             study.provenance = provenance(options, start.elapsed().as_secs_f64());
+            let limits = study.limits.iter().map(|row| row.solver.clone());
+            let asked: Vec<String> = limits.chain(study.hard.iter().map(|row| row.solver.clone())).collect();
+            study.sources = sources(&asked);
             write_study(&arguments.out, &study).map_err(Fault::writing)?;
             written = Instant::now();
         }
+    }
+    if arguments.keep {
+        keep_study("stability", &study)?;
     }
     let reused = follower.end();
     if arguments.json {

@@ -16,6 +16,7 @@ use grainbench::reference::stored::StoredRun;
 use grainbench::reference::{ReadError, parse_data, parse_log, parse_table};
 use grainbench::reports::export::record_json;
 use grainbench::reports::junit::junit_xml;
+use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::study::points_of;
 use grainbench::reports::{Provenance, Report, Section, page, plot, record_figures, refuse_mixed};
@@ -280,7 +281,13 @@ fn report() -> &'static Vec<u8> {
             options: vec!["run".to_owned()],
             wall_seconds: 1.0,
         };
-        serde_json::to_vec_pretty(&Report { provenance, sections: vec![section], judged: Vec::new() }).unwrap()
+        serde_json::to_vec_pretty(&Report {
+            provenance,
+            sections: vec![section],
+            judged: Vec::new(),
+            measured: Measurements::default(),
+        })
+        .unwrap()
     })
 }
 

@@ -1,11 +1,19 @@
-//! The report as one page that needs nothing else: no script, no network, no font.
+//! The report as one page that needs nothing else: no network, no font, and no script to be read. What would make it too heavy
+//! lies as files beside it.
 
+pub(crate) mod budget;
+mod cards;
+mod contents;
+pub(crate) mod figures;
+mod matrix;
+mod overview;
 mod peers;
 mod prose;
 pub(crate) mod provenance;
+mod rows;
 mod section;
-mod style;
 mod summary;
+mod tables;
 
 use std::collections::BTreeSet;
 
@@ -16,27 +24,64 @@ use crate::headline::Headline;
 use crate::plot::{DrawError, markup};
 use crate::report::Report;
 
+/// The look of the page, and what it can do beyond being read.
+const CSS: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// A page, and the files beside it that hold what it has no room for, by their paths.
+pub struct Page {
+    /// The page itself.
+    pub html: String,
+    /// Files that it links.
+    pub beside: Vec<(String, String)>,
+}
+
 /// Renders the whole page.
 ///
 /// # Errors
 /// When a figure cannot be drawn.
-pub fn render(report: &Report) -> Result<String, DrawError> {
-    let mut taken = BTreeSet::from(["summary", "peers", "provenance"].map(str::to_owned));
+pub fn render(report: &Report) -> Result<Page, DrawError> {
+    let mut taken = BTreeSet::from(["summary", "peers", "provenance", "tools", "matrix"].map(str::to_owned));
     let anchors: Vec<String> = report.sections.iter().map(|section| unique(&slug(&section.name), &mut taken)).collect();
-    let counts = Headline::of_report(report);
-    let mut sections = Vec::new();
-    for (section, anchor) in report.sections.iter().zip(&anchors) {
-        sections.push(section::render(section, anchor, &mut taken)?);
+    taken.extend(anchors.iter().map(|anchor| rows_of(anchor)));
+    let names = figure_names(report);
+    let mut pieces = vec![budget::Piece::Fixed(String::new())];
+    for ((section, anchor), names) in report.sections.iter().zip(&anchors).zip(&names) {
+        pieces.extend(section::pieces(section, anchor, names, &mut taken)?);
     }
+    let head = overview::render(report, &anchors, &|_| true)?.into_string();
+    let counts = Headline::of_report(report);
+    let foot = html! { (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
+    pieces.push(budget::Piece::Fixed(foot));
+    pieces[0] = budget::Piece::Fixed(head.clone());
+    let fixed = CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();
+    let (main, beside) = budget::fit(pieces, budget::PAGE.saturating_sub(fixed));
+    let below = main.strip_prefix(&head).unwrap_or_default();
+    // Rows that lie beside the page cannot be led to by their own addresses.
+    let head = overview::render(report, &anchors, &|row| below.contains(&format!(" id=\"{row}\"")))?.into_string();
     let body = html! {
-        main {
-            (summary::render(report, &anchors))
-            @for section in &sections { (section) }
-            (peers::render(report))
-            (provenance::render(&report.provenance))
+        a.skip href="#summary" { "To the summary" }
+        div.frame {
+            (contents::render(report, &anchors))
+            main { (PreEscaped(head)) (PreEscaped(below)) }
         }
     };
-    Ok(shell(&format!("grainbench · {}", counts.sentence()), &body))
+    Ok(Page { html: shell(&format!("grainbench · {}", counts.sentence()), &body), beside })
+}
+
+/// The anchor of the table of all rows of a case.
+pub(crate) fn rows_of(anchor: &str) -> String {
+    format!("{anchor}-rows")
+}
+
+/// The names of the files of all figures, section by section.
+pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
+    let mut taken = BTreeSet::new();
+    let of = |section: &crate::report::Section| {
+        let stem = |figure: &grainbench_harness::figure::Figure| slug(&format!("{}-{}", section.name, figure.name));
+        section.figures.iter().map(|figure| unique(&stem(figure), &mut taken)).collect()
+    };
+    report.sections.iter().map(of).collect()
 }
 
 /// A whole page about a body.
@@ -47,10 +92,13 @@ pub(crate) fn shell(title: &str, body: &Markup) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                // Without this a browser asks for one.
+                link rel="icon" href="data:,";
                 title { (title) }
-                style { (PreEscaped(style::CSS)) }
+                style { (PreEscaped(CSS)) }
             }
-            body { (body) }
+            body { (body) script { (PreEscaped(SCRIPT)) } }
         }
     };
     markup(&page.into_string())
@@ -103,19 +151,24 @@ mod tests {
     use super::*;
     use crate::sample;
 
+    fn html(report: &Report) -> String {
+        render(report).unwrap().html
+    }
+
     #[test]
     fn refers_to_nothing_outside() {
-        let page = render(&sample::report()).unwrap();
-        let page = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
-        for outside in ["http://", "https://", "src=", "@import", "url(", "<script", "<link"] {
+        let page = html(&sample::report());
+        let page = page.replace("http://www.w3.org/2000/svg", "").replace(SCRIPT, "");
+        for outside in ["http://", "https://", "src=", "@import", "url(", "<link rel=\"style"] {
             assert!(!page.contains(outside), "{outside}");
         }
+        assert_eq!(page.matches("<script").count(), 1);
     }
 
     #[test]
     fn hostile_text_stays_text() {
-        let page = render(&sample::hostile()).unwrap();
-        assert!(!page.contains("<script"), "a text field was not escaped");
+        let page = html(&sample::hostile());
+        assert_eq!(page.matches("<script").count(), 1, "a text field was not escaped");
         assert!(!page.contains("<img"), "an image got in");
         assert!(!page.contains("</title></svg></style>"), "an attribute or a heading broke out");
         assert!(!page.to_lowercase().contains("href=\"javascript"));
@@ -127,7 +180,7 @@ mod tests {
         let mut report = sample::report();
         let again = report.sections.clone();
         report.sections.extend(again);
-        let page = render(&report).unwrap();
+        let page = html(&report);
         let values = |attribute: &str| -> Vec<String> {
             page.split(attribute).skip(1).filter_map(|rest| rest.split('"').next()).map(str::to_owned).collect()
         };
@@ -137,6 +190,26 @@ mod tests {
             assert!(ids.contains(&target), "{target}");
         }
         assert!(ids.contains(&"backspin".to_owned()) && ids.contains(&"backspin-2".to_owned()));
+    }
+
+    /// Whatever cases are added: what is too much lies beside the page, and nothing is lost.
+    #[test]
+    fn a_page_stays_light_however_much_there_is() {
+        let mut report = sample::report();
+        let mut section = report.sections[0].clone();
+        let rows = section.verdicts.clone();
+        section.verdicts = rows.iter().cycle().take(60 * rows.len()).cloned().collect();
+        let whole: usize = report.sections.iter().map(|section| section.verdicts.len()).sum();
+        report.sections.extend(std::iter::repeat_n(section.clone(), 40));
+        let page = render(&report).unwrap();
+        assert!(page.html.len() <= budget::PAGE, "{}", page.html.len());
+        let row = "<tr data-s=";
+        let there = page.html.matches(row).count()
+            + page.beside.iter().map(|(_, text)| text.matches(row).count()).sum::<usize>();
+        assert_eq!(there, whole + 40 * section.verdicts.len());
+        for (path, _) in &page.beside {
+            assert!(page.html.contains(&format!("href=\"{path}\"")), "{path} is not linked");
+        }
     }
 
     #[test]

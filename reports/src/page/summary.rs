@@ -1,69 +1,21 @@
-//! What a reader sees first: the counts, what fails, and a row a case.
+//! What fails, and what accuracy costs over all cases.
 
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::verdict::Outcome;
 use maud::{Markup, html};
 
-use super::{scrolling, sign};
-use crate::headline::{self, Headline, OUTCOMES};
 use crate::line;
+use crate::measured::{Costs, Factor, TARGETS};
 use crate::number;
-use crate::report::{Report, Section};
+use crate::report::Report;
 
 /// More failing lines than this are left to the sections.
 const LINES: usize = 12;
+/// Errors and times outside of these are not drawn in the picture over all cases.
+const LEAST: f64 = 1e-10;
 
-/// Renders the head of the page.
-pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
-    let counts = Headline::of_report(report);
-    let wrong = counts.fail + counts.broken;
-    let cases = report.sections.len();
-    html! {
-        header id="summary" {
-            p.kicker { "grainbench " (report.provenance.version) " · " (report.provenance.date) }
-            h1 {
-                @if counts.rows() == 0 {
-                    "Nothing was judged"
-                } @else if wrong > 0 {
-                    (wrong) " of " (counts.rows()) " rows " (if wrong == 1 { "fails" } else { "fail" })
-                } @else if counts.amber() > 0 {
-                    (counts.pass) " of " (counts.rows()) " rows pass, none fails"
-                } @else {
-                    "All " (counts.rows()) " rows pass"
-                }
-            }
-            p.lead {
-                (cases) (if cases == 1 { " case" } else { " cases" })
-                " of granular mechanics, each judged against an answer with a stated source and tolerance."
-            }
-            ul.counts aria-label="Rows by outcome" {
-                @for outcome in OUTCOMES {
-                    @let count = counts.count(outcome);
-                    @let (symbol, class) = sign(outcome);
-                    li class={ (class) @if count == 0 { " none" } } {
-                        b { (count) }
-                        span {
-                            (symbol) " " (outcome.word())
-                            @if outcome == Outcome::Pass && counts.regression > 0 {
-                                ", " (counts.regression) " of them regression"
-                            }
-                        }
-                    }
-                }
-                li class={ "controls " @if counts.controls_red < counts.controls { "fail" } } {
-                    b { (counts.controls_red) " of " (counts.controls) }
-                    span {
-                        "negative controls turned red"
-                        @if counts.controls_broken > 0 { ", " (counts.controls_broken) " by breaking" }
-                    }
-                }
-            }
-            (failing(report, anchors))
-            (cases_table(report, anchors))
-        }
-    }
-}
-
-fn failing(report: &Report, anchors: &[String]) -> Markup {
+/// What fails, a line each.
+pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     let mut lines = Vec::new();
     for (section, anchor) in report.sections.iter().zip(anchors) {
         for verdict in &section.verdicts {
@@ -90,64 +42,69 @@ fn failing(report: &Report, anchors: &[String]) -> Markup {
     }
 }
 
-fn cases_table(report: &Report, anchors: &[String]) -> Markup {
-    let table = html! {
-        table.cases {
+/// Error against time over all cases.
+pub(crate) fn picture(costs: &Costs) -> Figure {
+    let mut curves = Vec::new();
+    for line in &costs.lines {
+        let means =
+            line.factors.iter().zip(TARGETS).filter_map(|(factor, target)| Some((factor.as_ref()?.place, target)));
+        let old = if costs.stamp.is_old(&line.solver) { " (changed since)" } else { "" };
+        curves.push(Curve::new(format!("{}{old}", line.solver), Stroke::MarkedLine, means.collect()));
+        let points = line.points.iter().copied().filter(|(_, error)| *error >= LEAST).collect();
+        curves.push(Curve::new("", Stroke::Beside, points));
+    }
+    Figure::graph(
+        "what-accuracy-costs",
+        "Error against time, over all cases",
+        "",
+        [Axis::log("time over the cheapest solver's at 1 %"), Axis::log("|error|")],
+        curves,
+    )
+}
+
+/// The factors in a table, and how they were made.
+pub(crate) fn factors(costs: &Costs) -> Markup {
+    let stamp = &costs.stamp;
+    html! {
+        p.note {
+            "Filled: geometric mean over the quantities in which a solver reaches 10, 1 and .1 %. Hollow: every setting that no other "
+            "of its settings beats, errors below 10⁻¹⁰ left out. Times are of the stepping loop."
+        }
+        table {
             thead {
                 tr {
-                    th scope="col" { "Case" }
-                    th scope="col" { "Solvers" }
-                    th scope="col" { "Rows passed" }
-                    th scope="col" { "Worst error, of allowed" }
-                    th scope="col" { "Controls red" }
+                    th scope="col" { "× the cheapest" }
+                    @for target in TARGETS { th.n scope="col" { (number::fraction(target)) } }
                 }
             }
             tbody {
-                @for (section, anchor) in report.sections.iter().zip(anchors) { (case_row(section, anchor)) }
+                @for line in &costs.lines {
+                    tr class=[stamp.is_old(&line.solver).then_some("old")] {
+                        th scope="row" { (line.solver) span.fine { (line.asked) " of " (costs.quantities) " asked" } }
+                        @for factor in &line.factors {
+                            td.n { @if let Some(factor) = factor { (cell(factor)) } @else { "not reached" } }
+                        }
+                    }
+                }
             }
         }
-    };
-    scrolling("Cases", &table)
+        p.note {
+            "Measured " (stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit) ", and not by this run. "
+            @if !stamp.changed.is_empty() {
+                "Hatched: the sources of " (stamp.changed.join(", ")) " have changed since, or are not known to be the same. "
+            }
+            code { "grainbench cost --keep" } " measures them again."
+        }
+    }
 }
 
-fn case_row(section: &Section, anchor: &str) -> Markup {
-    let counts = Headline::of_section(section);
-    let wrong = counts.fail + counts.broken;
-    let controls = if counts.controls_red < counts.controls { "fail" } else { "" };
+fn cell(factor: &Factor) -> Markup {
+    let [least, largest] = factor.seconds.map(number::seconds);
     html! {
-        tr {
-            th scope="row" {
-                a href={ "#" (anchor) } { (section.name) }
-                span.title { (section.title) }
-            }
-            td { (headline::solvers(section).join(", ")) }
-            td {
-                @if counts.rows() == 0 { "—" } @else {
-                    span.tally { (counts.pass) " / " (counts.rows()) }
-                    @if wrong > 0 { span.mark.fail { "✗ " (wrong) } }
-                    @if counts.amber() > 0 { span.mark.amber { "▲ " (counts.amber()) } }
-                    @if counts.pass == counts.rows() { span.mark.pass { "✓" } }
-                }
-            }
-            td {
-                @if let Some(worst) = headline::worst(section) {
-                    @let used = headline::used_tolerance(worst);
-                    span.used {
-                        // The bar is full at the tolerance; beyond it, colour and number tell.
-                        i.bar aria-hidden="true" {
-                            i class=(if used > 1.0 { "over" } else { "" })
-                                style={ "width:" (format!("{:.0}", 100.0 * used.clamp(0.02, 1.0))) "%" } {}
-                        }
-                        b { (number::significant(used, 2)) }
-                    }
-                    span.what { (worst.quantity) ", " (worst.solver) " " (worst.resolution) }
-                } @else { "—" }
-            }
-            td class=(controls) {
-                @if counts.controls == 0 { "none" } @else {
-                    (counts.controls_red) " of " (counts.controls)
-                }
-            }
+        "× " (number::significant(factor.times, 2)) " (" (factor.reached) ")"
+        span.fine { (least) " … " (largest) }
+        @if let Some((times, count)) = factor.over_dem {
+            span.fine { "× " (number::significant(times, 2)) " dem (" (count) ")" }
         }
     }
 }

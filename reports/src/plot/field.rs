@@ -1,11 +1,11 @@
-//! Fields as pixels in a drawing: panels, a bar of colours, a scale bar; films with a bar that runs along their clock.
+//! Fields as pixels in a drawing: panels, a bar of colours, a scale bar; of films the last frame, with a bar along their clock.
 
 use std::io;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use grainbench_harness::figure::{Field, Panel, Shades};
-use grainbench_harness::raster::{HIGH, LOW, RIM, Raster, VOID};
+use grainbench_harness::figure::{Field, Shades};
+use grainbench_harness::raster::{COLOURS, HIGH, LIGHTS, LOW, RIM, Raster, VOID, lit};
 use maud::{Markup, html};
 
 use super::scale::Scale;
@@ -18,7 +18,7 @@ const TOP: f64 = 48.0;
 const HEAD: f64 = 24.0;
 const GAP: f64 = 14.0;
 /// Right of the panels, for colours.
-const COLOURS: f64 = 124.0;
+const BAR: f64 = 124.0;
 /// The panels together, or each of several rows.
 const TALLEST: f64 = 560.0;
 const TALLEST_ROW: f64 = 300.0;
@@ -45,7 +45,7 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let rows = count.div_ceil(across);
     let head = if field.panels.iter().any(|panel| !panel.title.is_empty()) { HEAD } else { 0.0 };
     let each_its_own = field.panels.iter().any(|panel| panel.own.is_some());
-    let room = WIDTH - 2.0 * MARGIN - if each_its_own { 0.0 } else { COLOURS };
+    let room = WIDTH - 2.0 * MARGIN - if each_its_own { 0.0 } else { BAR };
     let widest = (room - GAP * (across - 1) as f64) / across as f64;
     let scale =
         (widest / f64::from(size.0)).min(TALLEST.max(TALLEST_ROW * rows as f64) / rows as f64 / f64::from(size.1));
@@ -58,12 +58,9 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let full = panel.0 * across as f64 + gap * (across - 1) as f64;
     let images = if is_film {
         let strip = 2.0 * SEAM as f64 * scale;
-        vec![(corner(0), (full, panel.1 + strip), film(field)?)]
+        vec![(corner(0), (full, panel.1 + strip), still(field)?)]
     } else {
-        let still = |(at, panel_of): (usize, &Panel)| {
-            Ok((corner(at), panel, png(field.shades, size, &[panel_of.frames[0].levels.clone()])?))
-        };
-        field.panels.iter().enumerate().map(still).collect::<io::Result<_>>()?
+        stills(field)?.into_iter().enumerate().map(|(at, still)| (corner(at), panel, still)).collect()
     };
     let foot = bottom + if is_film { 2.0 * SEAM as f64 * scale } else { 0.0 };
     let bars = foot + if is_film { CLOCK } else { 0.0 };
@@ -103,15 +100,22 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     .into_string())
 }
 
-/// The film of a field by itself, as an animated PNG: panels side by side and a bar that runs along the clock.
-///
-/// # Errors
-/// When it has no panel, or frames differ in size or number.
-pub fn film(field: &Field) -> io::Result<Vec<u8>> {
+/// The frames of a film, panels side by side and below them a bar that runs along the clock.
+pub(crate) struct Frames {
+    /// Pixels across.
+    pub(crate) width: u32,
+    /// Pixels down.
+    pub(crate) height: u32,
+    /// Levels of every frame, by rows from the top.
+    pub(crate) levels: Vec<Vec<u8>>,
+}
+
+/// Puts the frames of a film together.
+pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
     let (width, height) = check(field)?;
     let (wide, high) = (width as usize, height as usize);
     let full = wide * field.panels.len() + SEAM * (field.panels.len() - 1);
-    let frames: Vec<Vec<u8>> = (0..field.times.len())
+    let levels = (0..field.times.len())
         .map(|frame| {
             let mut levels = vec![VOID; full * (high + 2 * SEAM)];
             for (at, panel) in field.panels.iter().enumerate() {
@@ -129,7 +133,33 @@ pub fn film(field: &Field) -> io::Result<Vec<u8>> {
             levels
         })
         .collect();
-    png(field.shades, (full as u32, height + 2 * SEAM as u32), &frames)
+    Ok(Frames { width: full as u32, height: height + 2 * SEAM as u32, levels })
+}
+
+/// The film of a field by itself, as an animated PNG.
+///
+/// # Errors
+/// When it has no panel, or frames differ in size or number.
+pub fn film(field: &Field) -> io::Result<Vec<u8>> {
+    let Frames { width, height, levels } = frames(field)?;
+    png(field.shades, (width, height), &levels)
+}
+
+/// The last frame of a film, which stands where nothing moves: in print, and before it runs.
+fn still(field: &Field) -> io::Result<Vec<u8>> {
+    let Frames { width, height, levels } = frames(field)?;
+    png(field.shades, (width, height), &levels[levels.len() - 1..])
+}
+
+/// Every panel of a picture as a PNG.
+pub(crate) fn stills(field: &Field) -> io::Result<Vec<Vec<u8>>> {
+    let size = check(field)?;
+    field.panels.iter().map(|panel| png(field.shades, size, std::slice::from_ref(&panel.frames[0].levels))).collect()
+}
+
+/// Red, green and blue of every level.
+pub(crate) fn palette(shades: Shades) -> Vec<u8> {
+    (0..=u8::MAX).flat_map(|level| colour(shades, level)).collect()
 }
 
 /// Where a frame stands on the clock, from 0 to 1.
@@ -175,7 +205,7 @@ fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::R
     encoder.set_compression(png::Compression::High);
     // Neighbouring levels are no neighbours as bytes of a palette.
     encoder.set_filter(png::Filter::NoFilter);
-    encoder.set_palette((0..=u8::MAX).flat_map(|level| colour(shades, level)).collect::<Vec<u8>>());
+    encoder.set_palette(palette(shades));
     if frames.len() > 1 {
         encoder.set_animated(frames.len() as u32, 0)?;
         encoder.set_frame_delay(PACE, 10)?;
@@ -195,6 +225,8 @@ fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::R
 /// Anderton and Renslow 2018), magma, and ColorBrewer's PuOr, all from the `colorous` crate.
 fn colour(shades: Shades, level: u8) -> [u8; 3] {
     let part = f64::from(level.saturating_sub(LOW)) / f64::from(HIGH - LOW);
+    let (value, light) = (level.saturating_sub(LOW) / LIGHTS, level.saturating_sub(LOW) % LIGHTS);
+    let lit = |channel: u8| (f64::from(channel) * f64::from(light) / f64::from(LIGHTS - 1)).round() as u8;
     match (level, shades) {
         (VOID, Shades::Glow) => [0x30, 0x30, 0x38],
         (VOID, _) => [0xff; 3],
@@ -204,8 +236,14 @@ fn colour(shades: Shades, level: u8) -> [u8; 3] {
         (_, Shades::Amount) => colorous::CIVIDIS.eval_continuous(part).as_array(),
         (_, Shades::Glow) => colorous::MAGMA.eval_continuous(part).as_array(),
         (_, Shades::Signed) => colorous::PURPLE_ORANGE.eval_continuous(part).as_array(),
+        (_, Shades::Lit) => colorous::VIRIDIS.eval_continuous(f64::from(value.min(COLOURS - 1)) / f64::from(COLOURS - 1)).as_array().map(lit),
         (_, Shades::Fringes) => [(255.0 * part).round() as u8; 3],
     }
+}
+
+/// The level that stands for a part of the range in a bar of colours.
+fn level_of(shades: Shades, part: f64) -> u8 {
+    if shades == Shades::Lit { lit(part, 1.0) } else { LOW + (f64::from(HIGH - LOW) * part) as u8 }
 }
 
 /// Colours with their values.
@@ -219,8 +257,7 @@ fn colour_bar(field: &Field, x: f64, y: f64, height: f64) -> Markup {
     html! {
         g font-size="14" fill="#222" {
             @for at in 0..STEPS {
-                @let level = LOW + (f64::from(HIGH - LOW) * (f64::from(at) + 0.5) / f64::from(STEPS)) as u8;
-                @let [red, green, blue] = colour(field.shades, level);
+                @let [red, green, blue] = colour(field.shades, level_of(field.shades, (f64::from(at) + 0.5) / f64::from(STEPS)));
                 rect x=(px(x)) y=(px(y + height - step * f64::from(at + 1))) width="16" height=(px(step + 0.8))
                     fill=(format!("#{red:02x}{green:02x}{blue:02x}")) {}
             }
@@ -246,8 +283,7 @@ fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 
     html! {
         g font-size="13" fill="#222" {
             @for at in 0..STEPS {
-                @let level = LOW + (f64::from(HIGH - LOW) * (f64::from(at) + 0.5) / f64::from(STEPS)) as u8;
-                @let [red, green, blue] = colour(shades, level);
+                @let [red, green, blue] = colour(shades, level_of(shades, (f64::from(at) + 0.5) / f64::from(STEPS)));
                 rect x=(px(x + step * f64::from(at))) y=(px(y)) width=(px(step + 0.8)) height="12"
                     fill=(format!("#{red:02x}{green:02x}{blue:02x}")) {}
             }
@@ -318,6 +354,7 @@ fn px(length: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainbench_harness::figure::Panel;
 
     fn field(frames: usize, panels: usize) -> Field {
         let raster = |level: u8| Raster { width: 40, height: 30, levels: vec![level; 1200] };

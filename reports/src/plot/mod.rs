@@ -4,6 +4,7 @@ pub mod field;
 pub mod forces;
 pub mod graph;
 pub mod palette;
+mod reel;
 pub mod scale;
 
 use grainbench_harness::figure::{Drawing, Figure};
@@ -30,16 +31,40 @@ pub struct DrawError {
 /// Draws a figure as a complete SVG document.
 ///
 /// # Errors
-/// When the drawing library refuses.
+/// When frames of a field are not of one size.
 pub fn draw(figure: &Figure) -> Result<String, DrawError> {
     let svg = match &figure.drawing {
-        Drawing::Graph(graph) => graph::draw(&figure.title, graph)
-            .map_err(|source| DrawError { figure: figure.name.clone(), reason: source.to_string() })?,
+        Drawing::Graph(graph) => graph::draw(&figure.title, graph),
         Drawing::Forces(plot) => forces::draw(&figure.title, plot),
         Drawing::Field(field) => field::draw(&figure.title, field)
             .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() })?,
     };
     Ok(markup(&svg))
+}
+
+/// The same as light as a page wants it: a field with fewer pixels where it has many.
+///
+/// # Errors
+/// When frames of a field are not of one size.
+pub fn draw_small(figure: &Figure) -> Result<String, DrawError> {
+    let Drawing::Field(field) = &figure.drawing else { return draw(figure) };
+    let wrong = |reason: std::io::Error| DrawError { figure: figure.name.clone(), reason: reason.to_string() };
+    let light = reel::light(field).map_err(wrong)?;
+    Ok(markup(&field::draw(&figure.title, &light).map_err(wrong)?))
+}
+
+/// A film packed for the script of a page; none where nothing moves.
+///
+/// # Errors
+/// When the frames are not of one size.
+pub fn reel(figure: &Figure) -> Result<Option<String>, DrawError> {
+    match &figure.drawing {
+        Drawing::Field(field) if field.times.len() > 1 => reel::light(field)
+            .and_then(|light| reel::reel(&light))
+            .map(Some)
+            .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() }),
+        _ => Ok(None),
+    }
 }
 
 /// A document without the characters that XML has no place for, whoever wrote the words in it.

@@ -1,29 +1,14 @@
 //! Colours, markers and dashes that stay apart without colour vision and in grey print.
 
-use plotters::style::RGBColor;
-
-/// Text and axes.
-pub const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 /// Secondary text.
-pub const FAINT: RGBColor = RGBColor(0x66, 0x66, 0x66);
-/// Lines of the grid at labelled ticks.
-pub const GRID: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
-/// Lines of the grid between labelled ticks.
-pub const FINE_GRID: RGBColor = RGBColor(0xf0, 0xf0, 0xf0);
+pub const FAINT: &str = "#666";
 
 /// Okabe and Ito's colours without the yellow, which is too pale on white, and without black, which dashed curves
 /// have.
-const COLOURS: [RGBColor; 6] = [
-    RGBColor(0x00, 0x72, 0xb2),
-    RGBColor(0xd5, 0x5e, 0x00),
-    RGBColor(0x00, 0x9e, 0x73),
-    RGBColor(0xcc, 0x79, 0xa7),
-    RGBColor(0xe6, 0x9f, 0x00),
-    RGBColor(0x56, 0xb4, 0xe9),
-];
+const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
 /// Shades of dashed curves: exact answers and limits stand apart from what was computed.
-const SHADES: [RGBColor; 3] = [RGBColor(0x11, 0x11, 0x11), RGBColor(0x66, 0x66, 0x66), RGBColor(0x99, 0x99, 0x99)];
+const SHADES: [&str; 3] = ["#222", "#666", "#999"];
 
 /// Lengths of dash and gap.
 const DASHES: [(u32, u32); 4] = [(9, 5), (3, 4), (16, 5), (5, 10)];
@@ -85,7 +70,7 @@ impl Marker {
 
 /// Colour of the curve at `place` among those that are not dashed.
 #[must_use]
-pub fn colour(place: usize) -> RGBColor {
+pub fn colour(place: usize) -> &'static str {
     COLOURS[place % COLOURS.len()]
 }
 
@@ -98,7 +83,7 @@ pub fn marker(place: usize) -> Marker {
 
 /// Shade of the curve at `place` among the dashed ones.
 #[must_use]
-pub fn shade(place: usize) -> RGBColor {
+pub fn shade(place: usize) -> &'static str {
     SHADES[place % SHADES.len()]
 }
 

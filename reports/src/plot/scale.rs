@@ -1,10 +1,6 @@
 //! One axis: its range, its ticks and their labels.
 
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-
-use crate::number::power_of_ten;
+use crate::number::{power_of_ten, significant};
 
 /// A linear or logarithmic axis.
 #[derive(Clone, Debug)]
@@ -15,6 +11,8 @@ pub struct Scale {
     high: f64,
     /// About how many labelled ticks fit.
     room: f64,
+    /// Where ticks stand instead of at round numbers.
+    levels: Vec<f64>,
 }
 
 /// A place on an axis.
@@ -31,7 +29,13 @@ impl Scale {
     /// for about `room` labels. Values that cannot stand on it are passed over.
     #[must_use]
     pub fn fit(values: impl Iterator<Item = f64>, logarithmic: bool, margin: f64, room: u32) -> Self {
-        let mut scale = Self { logarithmic, low: f64::INFINITY, high: f64::NEG_INFINITY, room: f64::from(room.max(2)) };
+        let mut scale = Self {
+            logarithmic,
+            low: f64::INFINITY,
+            high: f64::NEG_INFINITY,
+            room: f64::from(room.max(2)),
+            levels: Vec::new(),
+        };
         for value in values {
             if scale.shows(value) {
                 let place = scale.place(value);
@@ -63,6 +67,12 @@ impl Scale {
         scale
     }
 
+    /// The axis with its labelled ticks at some values, where there are some.
+    #[must_use]
+    pub fn at_levels(self, levels: &[f64]) -> Self {
+        Self { levels: levels.iter().copied().filter(|level| self.shows(*level)).collect(), ..self }
+    }
+
     /// Whether a value has a place on this axis.
     #[must_use]
     pub fn shows(&self, value: f64) -> bool {
@@ -78,6 +88,10 @@ impl Scale {
     /// Ticks in rising order.
     #[must_use]
     pub fn ticks(&self) -> Vec<Tick> {
+        if !self.levels.is_empty() {
+            let tick = |&value: &f64| Tick { value, label: Some(significant(value, 3)) };
+            return self.levels.iter().map(tick).collect();
+        }
         if self.logarithmic { self.logarithmic_ticks() } else { self.linear_ticks() }
     }
 
@@ -148,30 +162,6 @@ impl Scale {
             }
         }
         ticks
-    }
-}
-
-impl Ranged for Scale {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        let (from, to) = (f64::from(limit.0), f64::from(limit.1));
-        (from + self.position(*value) * (to - from)).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
-        self.ticks().into_iter().map(|tick| tick.value).collect()
-    }
-
-    fn range(&self) -> Range<f64> {
-        if self.logarithmic { 10_f64.powf(self.low)..10_f64.powf(self.high) } else { self.low..self.high }
-    }
-}
-
-impl ValueFormatter<f64> for Scale {
-    fn format_ext(&self, value: &f64) -> String {
-        crate::number::value(*value)
     }
 }
 

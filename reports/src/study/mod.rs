@@ -13,8 +13,9 @@ use grainbench_harness::study::point::{Change, Diagram};
 use grainbench_harness::study::stability::{Hard, Limit};
 use grainbench_harness::study::step::Model;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
-pub use store::{STUDY_FILE, load_study, points_of, study_json, write_study};
+pub use store::{STUDY_FILE, kept_text, load_study, points_of, study_json, write_study};
 
 /// What a study left: enough to redo every output without a solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,6 +43,9 @@ pub struct Study {
     /// The ledger of effects.
     #[serde(default)]
     pub ledger: Vec<Entry>,
+    /// Hashes of the sources of the solvers that were measured, by their names.
+    #[serde(default)]
+    pub sources: BTreeMap<String, String>,
 }
 
 impl Study {
@@ -57,6 +61,7 @@ impl Study {
             limits: Vec::new(),
             hard: Vec::new(),
             ledger: Vec::new(),
+            sources: BTreeMap::new(),
         }
     }
 }

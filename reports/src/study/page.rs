@@ -33,7 +33,7 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
         sections.push(effects::render(study));
     }
     let body = html! {
-        main {
+        main.alone {
             @for section in &sections { (section) }
             (provenance::render(&study.provenance))
         }

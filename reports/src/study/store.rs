@@ -91,6 +91,26 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
     diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 
+/// What is kept of a study in the tree: of every solver the settings that no other of its settings beats, without repetitions.
+///
+/// # Errors
+/// When something has no JSON form, which nothing that was made by this project has.
+pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
+    let mut study = study.clone();
+    study.model = None;
+    for diagram in &mut study.diagrams {
+        let mut kept: Vec<Point> = Vec::new();
+        for line in cost::lines([&*diagram]) {
+            let front = cost::front(cost::of_line(diagram, line));
+            // Of who reaches nothing one point says why.
+            let first = cost::of_line(diagram, line).take(usize::from(front.is_empty()));
+            kept.extend(front.into_iter().chain(first).map(|point| Point { repetitions: Vec::new(), ..point.clone() }));
+        }
+        diagram.points = kept;
+    }
+    serde_json::to_string_pretty(&study).map(|text| text + "\n")
+}
+
 /// Reads the study that [`write_study`] left in a directory.
 ///
 /// # Errors

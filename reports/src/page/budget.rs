@@ -1,0 +1,114 @@
+//! Keeps the page light: what may lie beside it goes there, the least missed and heaviest first, until the rest fits.
+
+use maud::{PreEscaped, html};
+
+/// The most that a page weighs (B).
+pub(crate) const PAGE: usize = 2_450_000;
+
+/// What goes beside the page first comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Rank {
+    Films,
+    Costs,
+    Controls,
+    Figures,
+    Derivations,
+    Rows,
+}
+
+/// A piece of the page.
+pub(crate) enum Piece {
+    /// It is always there.
+    Fixed(String),
+    /// It is there while there is room.
+    Part(Part),
+}
+
+/// What may lie beside the page.
+pub(crate) struct Part {
+    pub(crate) rank: Rank,
+    /// As it stands in the page.
+    pub(crate) whole: String,
+    /// What stands in its place: it links the file.
+    pub(crate) link: String,
+    /// The file with it, by its path; none where it is written anyway.
+    pub(crate) file: Option<(String, String)>,
+}
+
+impl Part {
+    /// A table or a text: its file is a page of its own.
+    pub(crate) fn text(rank: Rank, title: &str, path: String, whole: String) -> Self {
+        let link = html! { p { a href=(path) { (title) } " (a page beside this one)" } }.into_string();
+        let body = html! { main.alone { h1 { (title) } (PreEscaped(&whole)) } };
+        Self { rank, whole, link, file: Some((path, super::shell(title, &body))) }
+    }
+}
+
+/// Joins the pieces, and what lies beside the page.
+pub(crate) fn fit(mut pieces: Vec<Piece>, limit: usize) -> (String, Vec<(String, String)>) {
+    let mut weight: usize = pieces
+        .iter()
+        .map(|piece| match piece {
+            Piece::Fixed(text) => text.len(),
+            Piece::Part(part) => part.whole.len(),
+        })
+        .sum();
+    let mut order: Vec<(Rank, std::cmp::Reverse<usize>, usize)> = pieces
+        .iter()
+        .enumerate()
+        .filter_map(|(at, piece)| match piece {
+            Piece::Part(part) if part.whole.len() > part.link.len() => {
+                Some((part.rank, std::cmp::Reverse(part.whole.len()), at))
+            }
+            _ => None,
+        })
+        .collect();
+    order.sort_unstable();
+    let mut beside = Vec::new();
+    for (_, _, at) in order {
+        if weight <= limit {
+            break;
+        }
+        if let Piece::Part(part) = &mut pieces[at] {
+            weight = weight - part.whole.len() + part.link.len();
+            beside.extend(part.file.take());
+            part.whole = std::mem::take(&mut part.link);
+        }
+    }
+    let text = pieces.into_iter().map(|piece| match piece {
+        Piece::Fixed(text) | Piece::Part(Part { whole: text, .. }) => text,
+    });
+    (text.collect(), beside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_missed_goes_first_and_only_as_much_as_must() {
+        let part = |rank, letter: &str| {
+            Piece::Part(Part {
+                rank,
+                whole: letter.repeat(100),
+                link: letter.to_uppercase(),
+                file: Some((letter.to_owned(), letter.repeat(100))),
+            })
+        };
+        let pieces = || {
+            vec![
+                Piece::Fixed("-".repeat(100)),
+                part(Rank::Rows, "r"),
+                part(Rank::Films, "f"),
+                part(Rank::Controls, "c"),
+            ]
+        };
+        let (text, beside) = fit(pieces(), 400);
+        assert!(text.len() == 400 && beside.is_empty());
+        let (text, beside) = fit(pieces(), 399);
+        assert!(text.contains('F') && text.contains("rr") && text.contains("cc") && beside.len() == 1);
+        let (text, beside) = fit(pieces(), 250);
+        assert!(text.contains('F') && text.contains("rr") && text.contains('C') && beside.len() == 2);
+        assert_eq!(fit(pieces(), 0).1.len(), 3);
+    }
+}

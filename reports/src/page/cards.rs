@@ -1,0 +1,192 @@
+//! A card a solver: how far it can be trusted, where it fails, and what it costs.
+
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::verdict::{Outcome, Verdict};
+use maud::{Markup, html};
+
+use super::rows::address;
+use super::rows_of;
+use crate::headline::used_tolerance;
+use crate::measured::{AT, Costs, Hold, Line, Stability};
+use crate::number;
+use crate::report::Report;
+
+/// Kinds of source in the order of what they are worth.
+const KINDS: [Evidence; 8] = [
+    Evidence::Analytic,
+    Evidence::Experiment,
+    Evidence::OtherCode,
+    Evidence::Paper,
+    Evidence::Prototype,
+    Evidence::Convergence,
+    Evidence::Invariant,
+    Evidence::Regression,
+];
+
+/// Solvers of a report, ours by method first, settings of one case last.
+pub(crate) fn solvers(report: &Report) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for row in report.sections.iter().flat_map(|section| &section.verdicts) {
+        if !names.contains(&row.solver.as_str()) {
+            names.push(&row.solver);
+        }
+    }
+    const METHODS: [&str; 5] = ["dem", "mpm", "rigid", "lammps", "liggghts"];
+    let place = |name: &&str| {
+        let method = name.split([':', '+']).next().unwrap_or_default();
+        let known = METHODS.iter().position(|known| *known == method).unwrap_or(METHODS.len());
+        (name.contains('+'), known, name.contains(':'))
+    };
+    // In the order in which they come where nothing else tells.
+    names.sort_by_key(place);
+    names
+}
+
+/// Renders the cards.
+pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
+    // A setting that one case asks for stands in the matrix, and has no card of its own.
+    let solvers: Vec<&str> = solvers(report).into_iter().filter(|name| !name.contains('+')).collect();
+    let (cost, stability) = (report.measured.cost.as_ref(), report.measured.stability.as_ref());
+    let lead = |row: &Verdict| {
+        let own = address(row);
+        let at = report.sections.iter().position(|section| section.name == row.case);
+        let table = at.and_then(|at| anchors.get(at)).map_or_else(|| "matrix".to_owned(), |anchor| rows_of(anchor));
+        if is_there(&own) { own } else { table }
+    };
+    html! {
+        @if !solvers.is_empty() {
+            div.cards aria-label="Solvers" role="group" {
+                @for solver in solvers { (card(report, &lead, solver, (cost, stability))) }
+            }
+        }
+    }
+}
+
+fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Item = &'a Verdict> {
+    report.sections.iter().flat_map(|section| &section.verdicts).filter(move |row| row.solver == solver)
+}
+
+/// How wrong an answer is: what fails before what is known, broken runs before all; then by the error itself.
+fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
+    match row.outcome {
+        Outcome::Broken => Some((2, f64::INFINITY)),
+        Outcome::Fail => Some((1, row.error.map_or(f64::INFINITY, f64::abs))),
+        Outcome::Known => Some((0, row.error.map_or(f64::INFINITY, f64::abs))),
+        _ => None,
+    }
+}
+
+/// One card; `lead` gives the anchor of a row.
+fn card(
+    report: &Report,
+    lead: &dyn Fn(&Verdict) -> String,
+    solver: &str,
+    (cost, stability): (Option<&Costs>, Option<&Stability>),
+) -> Markup {
+    let count = |outcome: Outcome| rows(report, solver).filter(|row| row.outcome == outcome).count();
+    let (all, pass) = (rows(report, solver).count(), count(Outcome::Pass));
+    let red = count(Outcome::Fail) + count(Outcome::Broken);
+    let class = if red > 0 {
+        "fail"
+    } else if pass < all {
+        "amber"
+    } else {
+        "pass"
+    };
+    let worst = rows(report, solver)
+        .filter_map(|row| Some((wrongness(row)?, row)))
+        .max_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let line = cost.and_then(|cost| Some((cost, cost.lines.iter().find(|line| line.solver == solver)?)));
+    let hold = stability.and_then(|of| Some((of, of.lines.iter().find(|line| line.solver == solver)?)));
+    let filter = |outcome: Option<&'static str>, text: Markup| {
+        html! {
+            a href="#matrix" data-solver=(solver) data-outcome=[outcome] { (text) }
+        }
+    };
+    html! {
+        div.card class=(class) data-card=(solver) {
+            h3 { (filter(None, html! { (solver) })) span { (pass) "/" (all) } }
+            dl {
+                div { dt { "passed" } dd { (kinds(report, solver)) } }
+                @if let Some((_, row)) = worst {
+                    div {
+                        dt { (if row.outcome == Outcome::Known { "gets wrong" } else { "fails" }) }
+                        dd {
+                            a.bad href={ "#" (lead(row)) } { (row.quantity) ", " (row.case) }
+                            ": off " (number::error(row.error)) (times(row))
+                            @if let Some(detail) = &row.detail { "; " (first_sentence(detail)) }
+                            " " @let others = count(row.outcome) - 1;
+                            @if others > 0 { (filter(Some(row.outcome.word()), html! { "and " (others) " more" })) }
+                        }
+                    }
+                } @else { div { dt { "gets wrong" } dd { "nothing that is judged here" } } }
+                @if let Some((of, hold)) = hold { (stable(of, hold)) }
+                @if let Some((of, line)) = line { (price(of, line)) }
+            }
+        }
+    }
+}
+
+fn times(row: &Verdict) -> String {
+    let used = used_tolerance(row);
+    if used.is_finite() { format!(", {} times what is allowed", number::significant(used, 2)) } else { String::new() }
+}
+
+/// What comes before the first colon's or sentence's end, for a reason is told in full in its row.
+fn first_sentence(text: &str) -> &str {
+    let end = text.find([':', ';', '.']).filter(|end| *end > 30).unwrap_or(text.len());
+    &text[..end]
+}
+
+fn kinds(report: &Report, solver: &str) -> String {
+    let of = |kind: Evidence| {
+        let mine = || rows(report, solver).filter(|row| row.evidence == kind);
+        let (pass, all) = (mine().filter(|row| row.outcome == Outcome::Pass).count(), mine().count());
+        (all > 0).then(|| format!("{} {pass}/{all}", kind.word()))
+    };
+    KINDS.into_iter().filter_map(of).collect::<Vec<_>>().join(", ")
+}
+
+fn stable(of: &Stability, hold: &Hold) -> Markup {
+    let class = of.stamp.is_old(&hold.solver).then_some("old");
+    let number = |value: f64| number::significant(value, 4);
+    html! {
+        @if let Some(([low, high], count)) = hold.limit {
+            div class=[class] {
+                dt { "largest stable step" }
+                dd { (number(low)) "–" (number(high)) " of the exact limit (" (count) " assemblies)" }
+            }
+        } @else if let Some(([low, high], unit)) = &hold.found {
+            div class=[class] { dt { "largest stable step" } dd { (number(*low)) "–" (number(*high)) " " (unit) } }
+        }
+        @if hold.asked() > 0 {
+            div class=[class] {
+                dt { "hard cases" }
+                dd {
+                    (hold.holds) " of " (hold.asked()) " hold"
+                    @if hold.smaller > 0 { ", " (hold.smaller) " at a smaller step" }
+                    @if hold.typed > 0 { ", " (hold.typed) " end in an error" }
+                    @if hold.wrong > 0 { ", " b.bad { (hold.wrong) " quietly wrong" } }
+                }
+            }
+        }
+        @if class.is_some() { div.old { dt { "measured" } dd { (of.stamp.day()) ", sources changed since" } } }
+    }
+}
+
+fn price(of: &Costs, line: &Line) -> Markup {
+    let is_old = of.stamp.is_old(&line.solver);
+    html! {
+        div class=[is_old.then_some("old")] {
+            dt { "1 % costs" }
+            dd {
+                @if let Some(factor) = line.factors[AT] {
+                    "× " (number::significant(factor.times, 2)) " the cheapest ("
+                    (number::seconds(factor.seconds[0])) " … " (number::seconds(factor.seconds[1])) "), reached in "
+                    (factor.reached) " of " (line.asked)
+                } @else { "not reached in any of " (line.asked) }
+                @if is_old { "; measured " (of.stamp.day()) ", sources changed since" }
+            }
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Contents that stay in view: a line a case, with what is not green of it.
+
+use maud::{Markup, html};
+
+use crate::headline::Headline;
+use crate::report::Report;
+
+/// Renders the contents.
+pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
+    html! {
+        nav.contents aria-label="Contents" {
+            details open {
+                summary { "Contents" }
+                ul {
+                    li { a href="#summary" { "Summary" } }
+                    @for (section, anchor) in report.sections.iter().zip(anchors) {
+                        @let counts = Headline::of_section(section);
+                        @let wrong = counts.fail + counts.broken;
+                        li {
+                            a href={ "#" (anchor) } data-case=(section.name) {
+                                @if wrong > 0 { span.n.fail { "✗ " (wrong) } }
+                                @else if counts.amber() > 0 { span.n.amber { "▲ " (counts.amber()) } }
+                                (section.name)
+                            }
+                        }
+                    }
+                    @if !report.judged.is_empty() { li { a href="#peers" { "Other people's solvers" } } }
+                    li { a href="#provenance" { "Provenance" } }
+                }
+            }
+            button #theme type="button" hidden { "Dark or light" }
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The figures of a case: the first ones to be seen at once, the rest to be opened; films with a pause.
+
+use std::collections::BTreeSet;
+
+use grainbench_harness::figure::{Drawing, Figure};
+use maud::{Markup, PreEscaped, html};
+
+use super::budget::{Part, Piece, Rank};
+use super::{slug, unique};
+use crate::plot::{self, DrawError};
+use crate::report::Section;
+
+/// So many stand open.
+const SEEN: usize = 2;
+
+/// Graphs scroll on a phone, for their text would be too small; force plots have hardly any and shrink.
+const fn class(drawing: &Drawing) -> &'static str {
+    match drawing {
+        Drawing::Graph(_) => "plot graph",
+        Drawing::Forces(_) | Drawing::Field(_) => "plot",
+    }
+}
+
+/// The figures of a section; `names` are those of their files.
+pub(crate) fn pieces(
+    section: &Section,
+    anchor: &str,
+    names: &[String],
+    taken: &mut BTreeSet<String>,
+) -> Result<Vec<Piece>, DrawError> {
+    let mut pieces = Vec::new();
+    let count = section.figures.len();
+    let fixed = |text: &str| Piece::Fixed(text.to_owned());
+    for (at, (figure, name)) in section.figures.iter().zip(names).enumerate() {
+        if at == 0 {
+            pieces.push(fixed("<div class=\"figures aside\">"));
+        }
+        if at == SEEN {
+            let more = count - SEEN;
+            let head = format!(
+                "</div><details class=\"aside\"><summary>{more} more figure{}</summary><div class=\"figures\">",
+                if more == 1 { "" } else { "s" }
+            );
+            pieces.push(Piece::Fixed(head));
+        }
+        let id = unique(&format!("{anchor}-{}", slug(&figure.name)), taken);
+        pieces.push(Piece::Part(part(figure, name, &id)?));
+        if at + 1 == count {
+            pieces.push(fixed(if count > SEEN { "</div></details>" } else { "</div>" }));
+        }
+    }
+    Ok(pieces)
+}
+
+/// A figure, and what stands in its place when there is no room for it.
+pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawError> {
+    let still = PreEscaped(plot::draw_small(figure)?);
+    let reel = plot::reel(figure)?;
+    let shown = html! {
+        @if let Some(reel) = &reel {
+            div.film data-title=(figure.title) data-film=(reel) {
+                div class=(class(&figure.drawing)) { (still) }
+                button type="button" hidden { "Pause" }
+            }
+        } @else {
+            div class=(class(&figure.drawing)) { (still) }
+        }
+    };
+    let whole = framed(figure, name, id, &shown).into_string();
+    // Of a film the frame that tells most stays; of anything else a picture that is loaded from its file.
+    let link = if reel.is_some() {
+        framed(figure, name, id, &html! { div class=(class(&figure.drawing)) { (still) } })
+    } else {
+        let image = html! {
+            div class=(class(&figure.drawing)) {
+                img loading="lazy" width="860" height="520" src={ "figures/" (name) ".svg" } alt=(figure.title);
+            }
+        };
+        framed(figure, name, id, &image)
+    };
+    let rank = if reel.is_some() { Rank::Films } else { Rank::Figures };
+    Ok(Part { rank, whole, link: link.into_string(), file: None })
+}
+
+/// A figure with its caption and its files.
+fn framed(figure: &Figure, name: &str, id: &str, shown: &Markup) -> Markup {
+    html! {
+        figure id=(id) {
+            (shown)
+            figcaption {
+                (figure.caption)
+                span.act {
+                    " "
+                    @match &figure.drawing {
+                        Drawing::Graph(_) => { a href={ "figures/" (name) ".csv" } { "data (CSV)" } }
+                        Drawing::Field(field) if field.times.len() > 1 => { a href={ "figures/" (name) ".png" } { "film" } }
+                        Drawing::Field(_) | Drawing::Forces(_) => { a href={ "figures/" (name) ".svg" } { "picture" } }
+                    }
+                }
+            }
+        }
+    }
+}

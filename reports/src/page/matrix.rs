@@ -1,0 +1,147 @@
+//! Cases by solvers: of each cell the worst error over what is allowed, as colour and number.
+
+use grainbench_harness::verdict::{Outcome, Verdict};
+use maud::{Markup, html};
+
+use super::cards;
+use crate::headline::used_tolerance;
+use crate::judged::{Judged, Row};
+use crate::number;
+use crate::report::{Report, Section};
+
+/// All settings that cases ask for by name stand in one column.
+const OTHERS: &str = "mpm+…";
+
+/// What stands in a cell.
+struct Cell<'a> {
+    /// Worst error over what is allowed; none where no row has an error.
+    worst: Option<f64>,
+    /// How its worst row ended.
+    outcome: Outcome,
+    rows: usize,
+    pass: usize,
+    /// The solver that its rows are of.
+    solver: &'a str,
+}
+
+/// Red before amber before green; what a solver cannot express tells nothing where it has other rows.
+const fn order(outcome: Outcome) -> u8 {
+    match outcome {
+        Outcome::Broken => 5,
+        Outcome::Fail => 4,
+        Outcome::Known => 3,
+        Outcome::Stale => 2,
+        Outcome::Pass => 1,
+        Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => 0,
+    }
+}
+
+fn cell<'a>(rows: &[&'a Verdict]) -> Option<Cell<'a>> {
+    let worst = rows.iter().max_by_key(|row| order(row.outcome))?;
+    let has_error = rows.iter().filter(|row| row.error.is_some());
+    Some(Cell {
+        worst: has_error.map(|row| used_tolerance(row)).reduce(f64::max),
+        outcome: worst.outcome,
+        rows: rows.len(),
+        pass: rows.iter().filter(|row| row.outcome == Outcome::Pass).count(),
+        solver: &rows.first()?.solver,
+    })
+}
+
+/// The class of a cell: green by how much of the tolerance is used, amber and red by how far beyond it.
+fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
+    let worst = worst.unwrap_or(f64::INFINITY);
+    match outcome {
+        Outcome::Pass if worst <= 0.1 => "c0",
+        Outcome::Pass if worst <= 0.5 => "c1",
+        Outcome::Pass => "c2",
+        Outcome::Fail | Outcome::Broken => "f0",
+        Outcome::Known if worst <= 10.0 => "k0",
+        Outcome::Known if worst <= 1e3 => "k1",
+        Outcome::Known | Outcome::Stale => "k2",
+        Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => "cannot",
+    }
+}
+
+/// Few letters: the cell is small.
+fn short(worst: f64) -> String {
+    if worst >= 1e3 {
+        format!("1e{}", worst.log10().round())
+    } else if worst < 0.005 {
+        "0".to_owned()
+    } else {
+        number::significant(worst, 2)
+    }
+}
+
+/// Renders the matrix.
+pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
+    let all = cards::solvers(report);
+    let mut columns: Vec<&str> = all.iter().copied().filter(|name| !name.contains('+')).collect();
+    if columns.len() < all.len() {
+        columns.push(OTHERS);
+    }
+    let table = html! {
+        table {
+            thead {
+                tr {
+                    td {}
+                    @for column in &columns { th scope="col" { span { (column) } } }
+                    @for of in &report.judged { th scope="col" { span { (of.program) } } }
+                }
+            }
+            tbody {
+                @for (section, anchor) in report.sections.iter().zip(anchors) {
+                    tr data-case=(section.name) {
+                        th scope="row" { a href={ "#" (anchor) } { (section.name) } }
+                        @for column in &columns { td { (ours(section, column, anchor)) } }
+                        @for of in &report.judged { td { (theirs(of, &section.name)) } }
+                    }
+                }
+            }
+        }
+    };
+    html! {
+        div.matrix {
+            h2 id="matrix" { "Where each solver stands: worst error over what is allowed" }
+            (super::scrolling("Cases by solvers", &table))
+            p.key {
+                span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 of what is allowed" }
+                span { i.k0 {} i.k1 {} i.k2 {} "a published method's known error: ≤ 10, ≤ 1000, more times it" }
+                span { i.f0 {} "fails" } span { i.cannot {} "cannot express it" }
+            }
+            @if !report.judged.is_empty() {
+                p.note { "The last columns are other people's programs, judged when somebody ran them: " a href="#peers" { "what they are" } "." }
+            }
+        }
+    }
+}
+
+fn ours(section: &Section, column: &str, anchor: &str) -> Markup {
+    let is_mine = |row: &&Verdict| if column == OTHERS { row.solver.contains('+') } else { row.solver == column };
+    let rows: Vec<&Verdict> = section.verdicts.iter().filter(is_mine).collect();
+    let Some(cell) = cell(&rows) else { return html! {} };
+    let words =
+        format!("{}, {column}: {} of {} rows pass; worst {}", section.name, cell.pass, cell.rows, cell.outcome.word());
+    html! {
+        a class=(class(cell.outcome, cell.worst)) href={ "#" (super::rows_of(anchor)) } title=(words) data-solver=(cell.solver)
+            data-case=(section.name) { (text(cell.outcome, cell.worst)) }
+    }
+}
+
+fn text(outcome: Outcome, worst: Option<f64>) -> String {
+    match (worst, outcome) {
+        (_, Outcome::Broken) => "✗".to_owned(),
+        (Some(worst), _) if worst.is_finite() => short(worst),
+        (Some(_), _) => "∞".to_owned(),
+        (None, _) => "–".to_owned(),
+    }
+}
+
+fn theirs(of: &Judged, case: &str) -> Markup {
+    let rows: Vec<&Row> = of.rows.iter().filter(|row| row.case == case).collect();
+    let Some(worst) = rows.iter().max_by_key(|row| order(row.verdict)) else { return html! {} };
+    let used = of.count(Some(case)).worst;
+    let words = format!("{case}, {}: {}", of.program, worst.verdict.word());
+    html! { span class=(class(worst.verdict, used)) title=(words) { (text(worst.verdict, used)) } }
+}

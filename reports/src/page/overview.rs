@@ -1,0 +1,90 @@
+//! What a reader sees first: the counts, what fails, a card a solver, the matrix of cases and solvers, and what accuracy costs.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::{cards, matrix, sign, summary};
+use crate::headline::{Headline, OUTCOMES};
+use crate::plot::{self, DrawError};
+use crate::report::Report;
+use grainbench_harness::verdict::Outcome;
+
+/// Renders the head of the page; `is_there` says whether a row stands in the page by its own address.
+pub(crate) fn render(
+    report: &Report,
+    anchors: &[String],
+    is_there: &dyn Fn(&str) -> bool,
+) -> Result<Markup, DrawError> {
+    let counts = Headline::of_report(report);
+    let wrong = counts.fail + counts.broken;
+    let cases = report.sections.len();
+    let costs = report.measured.cost.as_ref();
+    let picture = costs.map(|costs| plot::draw(&summary::picture(costs))).transpose()?;
+    Ok(html! {
+        header id="summary" {
+            p.kicker { "grainbench " (report.provenance.version) " · " (report.provenance.date) " · commit " (report.provenance.commit) }
+            h1 {
+                @if counts.rows() == 0 {
+                    "Nothing was judged"
+                } @else if wrong > 0 {
+                    (wrong) " of " (counts.rows()) " rows " (if wrong == 1 { "fails" } else { "fail" })
+                } @else if counts.amber() > 0 {
+                    (counts.pass) " of " (counts.rows()) " rows pass, none fails"
+                } @else {
+                    "All " (counts.rows()) " rows pass"
+                }
+            }
+            ul.counts aria-label="Rows by outcome" {
+                li { (cases) (if cases == 1 { " case" } else { " cases" }) }
+                @for outcome in OUTCOMES {
+                    @let count = counts.count(outcome);
+                    @let (symbol, class) = sign(outcome);
+                    @if count > 0 || matches!(outcome, Outcome::Pass | Outcome::Fail) {
+                        li class={ (class) @if count == 0 { " none" } } {
+                            b { (count) } " "
+                            span {
+                                (symbol) " " (outcome.word())
+                                @if outcome == Outcome::Pass && counts.regression > 0 {
+                                    ", " (counts.regression) " of them regression"
+                                }
+                            }
+                        }
+                    }
+                }
+                li class={ "controls " @if counts.controls_red < counts.controls { "fail" } } {
+                    b { (counts.controls_red) " of " (counts.controls) } " "
+                    span {
+                        "negative controls turned red"
+                        @if counts.controls_broken > 0 { ", " (counts.controls_broken) " by breaking" }
+                    }
+                }
+            }
+            (summary::failing(report, anchors))
+        }
+        (tools())
+        (cards::render(report, anchors, is_there))
+        div.overview {
+            (matrix::render(report, anchors))
+            @if let (Some(costs), Some(picture)) = (costs, &picture) {
+                div {
+                    h2 id="costs" { "What accuracy costs" }
+                    div.plot { (PreEscaped(picture)) }
+                    (summary::factors(costs))
+                }
+            }
+        }
+    })
+}
+
+/// What only a script can do; hidden until it is there.
+fn tools() -> Markup {
+    html! {
+        div.tools id="tools" hidden {
+            input id="search" type="search" placeholder="Search rows ( / )" aria-label="Search rows";
+            @for kind in ["solver", "case", "source", "outcome", "evidence"] {
+                select id={ "by-" (kind) } aria-label={ "Only this " (kind) } { option value="" { "any " (kind) } }
+            }
+            button id="clear" type="button" { "Clear" }
+        }
+        div.found id="found" hidden aria-live="polite" {}
+    }
+}

@@ -1,0 +1,220 @@
+// What the page can do beyond being read: search, filter, sort, copy a row, stop a film, change colours.
+// Without it the page is whole, and everything is there to be read.
+"use strict";
+(() => {
+  const all = (what, within = document) => [...within.querySelectorAll(what)];
+  const root = document.documentElement;
+  const make = (name, text, more = {}) => Object.assign(document.createElement(name), { textContent: text }, more);
+
+  // Colours: as the system has them, until somebody says otherwise.
+  const theme = document.getElementById("theme");
+  if (theme) {
+    theme.hidden = false;
+    theme.addEventListener("click", () => {
+      const isDark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+      root.dataset.theme = isDark ? "light" : "dark";
+    });
+  }
+
+  // Films: frames are differences to the frame before, packed; they run until somebody stops them.
+  const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const unpack = async (text) =>
+    new Uint8Array(await new Response(new Blob([bytes(text)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+  const play = async (film) => {
+    const data = film.dataset.film.split(" ");
+    const [width, height, count] = data.slice(0, 3).map(Number);
+    const palette = bytes(data[3]), frames = await unpack(data[4]), size = width * height;
+    for (let at = size; at < frames.length; at += 1) frames[at] = (frames[at] + frames[at - size]) & 255;
+    const canvas = make("canvas", "", { width, height });
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", film.dataset.title);
+    const pen = canvas.getContext("2d"), image = pen.createImageData(width, height);
+    const show = (frame) => {
+      for (let at = 0; at < size; at += 1) {
+        const level = 3 * frames[frame * size + at];
+        image.data.set([palette[level], palette[level + 1], palette[level + 2], 255], 4 * at);
+      }
+      pen.putImageData(image, 0, 0);
+      film.dataset.frame = frame;
+    };
+    const still = film.querySelector("image");
+    const button = film.querySelector("button");
+    const place = document.createElementNS("http://www.w3.org/2000/svg", "foreignObject");
+    for (const side of ["x", "y", "width", "height"]) place.setAttribute(side, still.getAttribute(side));
+    canvas.style.cssText = "width:100%;height:100%;display:block;image-rendering:auto";
+    place.append(canvas);
+    let frame = count - 1, timer = 0;
+    const set = (isOn) => {
+      clearInterval(timer);
+      timer = isOn ? setInterval(() => { frame = (frame + 1) % count; show(frame); }, 100) : 0;
+      button.textContent = isOn ? "Pause" : "Play";
+      film.dataset.playing = isOn;
+    };
+    show(frame);
+    still.after(place);
+    button.hidden = false;
+    button.addEventListener("click", () => set(!timer));
+    // In print there is the still frame, which lies below.
+    addEventListener("beforeprint", () => { place.remove(); });
+    addEventListener("afterprint", () => { still.after(place); });
+    new IntersectionObserver((seen) => {
+      if (!seen[0].isIntersecting) set(false);
+      else if (!film.dataset.asked && !matchMedia("(prefers-reduced-motion: reduce)").matches) { film.dataset.asked = "1"; set(true); }
+    }).observe(film);
+  };
+  all(".film").forEach((film) => play(film).catch(() => {}));
+
+  const tools = document.getElementById("tools");
+  if (!tools) return;
+  tools.hidden = false;
+  const search = document.getElementById("search"), found = document.getElementById("found");
+  const rows = all("table.verdicts tbody tr").map((row) => ({
+    row, section: row.closest("section"), solver: row.dataset.s, outcome: row.dataset.o, evidence: row.dataset.e,
+    source: row.dataset.k, case: row.closest("section").dataset.case,
+    text: (row.closest("section").dataset.words + " " + row.textContent).toLowerCase(),
+  }));
+  const kinds = ["solver", "case", "source", "outcome", "evidence"];
+  const selects = Object.fromEntries(kinds.map((kind) => [kind, document.getElementById("by-" + kind)]));
+  for (const kind of kinds) {
+    const values = [...new Set(rows.map((row) => row[kind]))];
+    if (kind === "source") values.sort();
+    for (const value of values) selects[kind].append(make("option", value.length > 60 ? value.slice(0, 58) + "…" : value, { value }));
+  }
+
+  const wanted = () => ({ words: search.value.toLowerCase().split(/\s+/).filter(Boolean), ...Object.fromEntries(kinds.map((k) => [k, selects[k].value])) });
+  let opened = [];
+  const apply = () => {
+    const want = wanted();
+    const isOn = want.words.length > 0 || kinds.some((kind) => want[kind]);
+    document.body.classList.toggle("filtering", isOn);
+    const tally = new Map(), cases = new Map();
+    for (const one of rows) {
+      const fits = !isOn || (kinds.every((kind) => !want[kind] || one[kind] === want[kind]) && want.words.every((word) => one.text.includes(word)));
+      one.row.hidden = !fits;
+      if (!fits) continue;
+      cases.set(one.case, (cases.get(one.case) || 0) + 1);
+      const of = tally.get(one.solver) || { pass: 0, all: 0, worst: 0 };
+      of.all += 1;
+      of.pass += one.outcome === "pass" ? 1 : 0;
+      of.worst = Math.max(of.worst, Number(one.row.dataset.u || 0));
+      tally.set(one.solver, of);
+    }
+    opened.forEach((details) => { details.open = false; });
+    opened = [];
+    for (const section of all("section.case")) {
+      section.hidden = isOn && !cases.has(section.dataset.case);
+      const details = section.querySelector("details.rows-of");
+      if (isOn && !section.hidden && details && !details.open) { details.open = true; opened.push(details); }
+    }
+    for (const row of all(".matrix tbody tr")) row.hidden = isOn && !cases.has(row.dataset.case);
+    for (const link of all(".contents a[data-case]")) link.parentElement.hidden = isOn && !cases.has(link.dataset.case);
+    found.hidden = !isOn;
+    if (!isOn) return;
+    const sum = [...tally.values()].reduce((sum, of) => sum + of.all, 0);
+    found.replaceChildren(make("b", `${sum} of ${rows.length} rows in ${cases.size} cases. `), make("span", "Passed by solver, and the worst error over what is allowed:"));
+    const list = document.createElement("ul");
+    for (const [solver, of] of [...tally].sort((a, b) => b[1].pass / b[1].all - a[1].pass / a[1].all || b[1].all - a[1].all)) {
+      const item = make("li", "");
+      item.append(make("b", solver), make("span", ` ${of.pass}/${of.all}, worst ${of.worst >= 100 ? of.worst.toExponential(0) : Number(of.worst.toPrecision(2))}`));
+      list.append(item);
+    }
+    found.append(list);
+  };
+  const ask = (want) => {
+    search.value = want.words || "";
+    for (const kind of kinds) selects[kind].value = want[kind] || "";
+    apply();
+  };
+  let soon = 0;
+  search.addEventListener("input", () => { clearTimeout(soon); soon = setTimeout(apply, 80); });
+  for (const kind of kinds) selects[kind].addEventListener("change", apply);
+  document.getElementById("clear").addEventListener("click", () => ask({}));
+  addEventListener("keydown", (key) => {
+    const isTyping = /^(INPUT|SELECT|TEXTAREA)$/.test(document.activeElement.tagName);
+    if (key.key === "/" && !isTyping) { key.preventDefault(); search.focus(); search.select(); }
+    if (key.key === "Escape") { ask({}); document.activeElement.blur(); }
+  });
+  // What a cell or a card leads to: its rows and no others.
+  document.addEventListener("click", (click) => {
+    const link = click.target.closest("a[data-solver]");
+    if (!link || click.ctrlKey || click.metaKey) return;
+    click.preventDefault();
+    ask({ solver: link.dataset.solver, case: link.dataset.case, outcome: link.dataset.outcome });
+    found.scrollIntoView({ block: "start" });
+    const target = document.getElementById(decodeURIComponent(link.hash.slice(1)));
+    if (target && link.dataset.case) target.scrollIntoView({ block: "center" });
+  });
+  // A link to a row that the filter hides shows it again.
+  const reveal = () => {
+    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    if (!target) return;
+    if (target.closest("[hidden]")) ask({});
+    for (let up = target; up; up = up.parentElement) if (up.tagName === "DETAILS") up.open = true;
+    target.scrollIntoView({ block: target.tagName === "TR" ? "center" : "start" });
+  };
+  addEventListener("hashchange", reveal);
+  if (location.hash) reveal();
+
+  // Sort by a column: numbers as numbers, and once more the other way round.
+  const value = (row, column) => {
+    const cell = row.cells[column];
+    return cell.dataset.v === undefined ? cell.innerText.trim() : Number(cell.dataset.v);
+  };
+  for (const head of all("table.sorts thead th")) {
+    const button = make("button", head.textContent, { type: "button" });
+    head.replaceChildren(button);
+    button.addEventListener("click", () => {
+      const turn = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
+      const body = head.closest("table").tBodies[0];
+      all("th", head.parentElement).forEach((other) => other.removeAttribute("aria-sort"));
+      head.setAttribute("aria-sort", turn > 0 ? "ascending" : "descending");
+      const order = [...body.rows].map((row) => [value(row, head.cellIndex), row]);
+      order.sort(([a], [b]) => turn * (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b), "en", { numeric: true })));
+      body.append(...order.map(([, row]) => row));
+    });
+  }
+
+  // A row as text.
+  const words = (row) => {
+    const section = row.closest("section").dataset.case;
+    const cells = [...row.cells].map((cell) => {
+      const copy = cell.cloneNode(true);
+      all(".act", copy).forEach((act) => act.remove());
+      return [...copy.childNodes].map((part) => part.textContent.trim()).filter(Boolean).join(", ");
+    });
+    return [section, ...cells].filter(Boolean).join(" · ");
+  };
+  for (const { row } of rows) {
+    const copy = make("button", "⧉", { type: "button", title: "Copy this row as text" });
+    copy.setAttribute("aria-label", "Copy this row as text");
+    row.querySelector(".act").append(copy);
+  }
+  document.addEventListener("click", async (click) => {
+    const button = click.target.closest(".act button");
+    if (!button) return;
+    const text = words(button.closest("tr"));
+    root.dataset.copied = text;
+    try { await navigator.clipboard.writeText(text); } catch {
+      const area = make("textarea", text);
+      document.body.append(area);
+      area.select();
+      document.execCommand("copy");
+      area.remove();
+    }
+    button.textContent = "✓";
+    setTimeout(() => { button.textContent = "⧉"; }, 1200);
+  });
+
+  // Contents say where one is.
+  const links = new Map(all(".contents a").map((link) => [link.hash.slice(1), link]));
+  const watch = new IntersectionObserver((seen) => {
+    for (const { isIntersecting, target } of seen) {
+      if (!isIntersecting) continue;
+      links.forEach((link) => link.removeAttribute("aria-current"));
+      const link = links.get(target.id);
+      if (link) { link.setAttribute("aria-current", "true"); }
+    }
+  }, { rootMargin: "-10% 0px -80% 0px" });
+  all("header[id], section[id]").forEach((section) => watch.observe(section));
+  if (matchMedia("(max-width: 75rem)").matches) all(".contents details").forEach((details) => { details.open = false; });
+})();

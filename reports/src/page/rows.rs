@@ -1,0 +1,89 @@
+//! Every row of a case: the verdict first, and what long names there are broken at words.
+
+use std::collections::BTreeSet;
+
+use grainbench_harness::verdict::{Outcome, Verdict};
+use maud::{Markup, html};
+
+use super::{sign, unique};
+use crate::headline::used_tolerance;
+use crate::line;
+use crate::number;
+
+/// The address of a row, the same from run to run.
+pub(crate) fn address(verdict: &Verdict) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for part in [&verdict.case, &verdict.variant, &verdict.solver, &verdict.resolution, &verdict.quantity] {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part.as_bytes());
+    }
+    format!("row-{}", &hasher.finalize().to_hex()[..8])
+}
+
+/// In order of the gates, but what fails first, and what is amber after that.
+pub(crate) fn sorted(verdicts: &[Verdict]) -> Vec<&Verdict> {
+    let mut rows: Vec<&Verdict> = verdicts.iter().collect();
+    rows.sort_by_key(|verdict| match verdict.outcome {
+        Outcome::Fail => 0,
+        Outcome::Broken => 1,
+        Outcome::Pass => 3,
+        _ => 2,
+    });
+    rows
+}
+
+/// The table. `taken` are the anchors of the page.
+pub(crate) fn table(rows: &[&Verdict], taken: &mut BTreeSet<String>) -> Markup {
+    html! {
+        table.rows.sorts.verdicts {
+            colgroup { @for _ in 0..6 { col; } }
+            thead {
+                tr {
+                    th scope="col" { "Verdict" }
+                    th scope="col" { "Quantity" }
+                    th scope="col" { "Solver" }
+                    th.n scope="col" { "Value, expected" }
+                    th.n scope="col" { "Error, allowed" }
+                    th scope="col" { "Evidence and source" }
+                }
+            }
+            tbody { @for verdict in rows { (row(verdict, &unique(&address(verdict), taken))) } }
+        }
+    }
+}
+
+fn row(verdict: &Verdict, id: &str) -> Markup {
+    let (symbol, class) = sign(verdict.outcome);
+    let used = verdict.error.map(|_| used_tolerance(verdict)).filter(|used| used.is_finite());
+    let used_text = used.map(|used| format!("{used:.4e}"));
+    html! {
+        tr data-s=(verdict.solver) data-o=(verdict.outcome.word()) data-e=(verdict.evidence.word()) data-k=(verdict.source)
+            data-u=[used_text.as_ref()] id=(id) class=(class) {
+            td {
+                span.act { a href={ "#" (id) } aria-label="Link to this row" { "§" } }
+                span.mark class=(class) { (symbol) " " (verdict.outcome.word()) }
+                @if let Some(detail) = &verdict.detail { span.fine { (detail) } }
+            }
+            th scope="row" { (verdict.quantity) @if !verdict.variant.is_empty() { span.fine { (verdict.variant) } } }
+            td { (verdict.solver) span.fine { (verdict.resolution) } }
+            td.n data-l="value" data-v=[verdict.value] {
+                (verdict.value.map_or_else(|| "—".to_owned(), |value| number::with_unit(value, &verdict.unit)))
+                span.fine { (line::expected_word(verdict.evidence)) " " (line::expected(verdict.expected, &verdict.unit)) }
+            }
+            td.n data-l="error" data-v=[used_text.as_ref()] {
+                (number::error(verdict.error))
+                @if let (Some(scale), Some(_)) = (line::scale_note(verdict), verdict.error) { " " (scale) }
+                span.fine {
+                    "allowed " (number::fraction(verdict.allowed)) ", " (verdict.tolerance.word())
+                    @if let Some(used) = verdict.closeness() {
+                        ", " (number::significant(used, 2)) (if used > 1.0 { " times it" } else { " of it used" })
+                    }
+                }
+            }
+            td {
+                (verdict.evidence.word()) ": " (verdict.source)
+                @if !verdict.because.is_empty() { span.fine { "allowed: " (verdict.because) } }
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Negative controls and costs of a case.
+
+use grainbench_harness::verdict::Control;
+use maud::{Markup, html};
+
+use super::scrolling;
+use crate::number;
+use crate::report::RunCost;
+
+/// What each gate was fed with, and whether it refused it.
+pub(crate) fn controls(controls: &[Control]) -> Markup {
+    html! {
+        p.note { "Each gate is fed with wrong physics, which it must refuse." }
+        table.rows.sorts {
+            thead {
+                tr {
+                    th scope="col" { "Result" }
+                    th scope="col" { "Quantity" }
+                    th scope="col" { "Solver" }
+                    th scope="col" { "Wrong physics" }
+                    th.n scope="col" { "Error seen, allowed" }
+                }
+            }
+            tbody {
+                @for control in controls {
+                    @let (class, result) = if control.turned_red { ("pass", "✓ turned red") } else { ("fail", "✗ not red") };
+                    tr class=(class) {
+                        td { span.mark class=(class) { (result) } " by " (control.how.word()) }
+                        th scope="row" {
+                            (control.quantity)
+                            @if !control.variant.is_empty() { span.fine { (control.variant) } }
+                        }
+                        td { (control.solver) }
+                        td { (control.wrong_physics) }
+                        td.n data-l="error" data-v=[control.error.map(f64::abs)] {
+                            (number::error(control.error)) span.fine { "allowed " (number::fraction(control.allowed)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What every run cost.
+pub(crate) fn costs(runs: &[RunCost]) -> Markup {
+    let variants = runs.iter().any(|run| !run.variant.is_empty());
+    let table = html! {
+        table.sorts {
+            thead {
+                tr {
+                    th scope="col" { "Solver" }
+                    @if variants { th scope="col" { "Variant" } }
+                    th scope="col" { "Resolution" }
+                    th.n scope="col" { "Δt" }
+                    th.n scope="col" { "Δt / critical" }
+                    th.n scope="col" { "Steps" }
+                    th.n scope="col" { "Particle-steps" }
+                    th.n scope="col" { "Contact evaluations" }
+                    th.n scope="col" { "Wall time" }
+                }
+            }
+            tbody {
+                @for run in runs {
+                    tr {
+                        th scope="row" { (run.solver) }
+                        @if variants { td { (run.variant) } }
+                        td { (run.resolution) }
+                        td.n data-v=(run.time_step) { (number::seconds(run.time_step)) }
+                        td.n { (run.fraction_of_critical.map_or("—".to_owned(), |part| number::significant(part, 3))) }
+                        td.n data-v=(run.steps) { (number::count(run.steps)) }
+                        td.n data-v=(run.particle_steps) { (number::count(run.particle_steps)) }
+                        td.n { (run.contact_evaluations.map_or("—".to_owned(), number::count)) }
+                        td.n data-v=(run.wall_seconds) { (number::seconds(run.wall_seconds)) }
+                    }
+                }
+            }
+        }
+    };
+    html! { p.note { "Counts do not depend on the machine; wall time does." } (scrolling("Costs", &table)) }
+}

@@ -1,0 +1,74 @@
+//! Axes with their ticks and labels.
+
+use maud::{Markup, html};
+
+use super::{LABEL, Panel, TICK, px};
+use crate::plot::text_width;
+
+/// Draws the grid, the axes, their ticks and labels; the lower axis is labelled where it has a label.
+pub(super) fn draw(panel: &Panel<'_>, y_label: &str, x_label: Option<&String>) -> Markup {
+    let frame = panel.frame;
+    let (x_ticks, y_ticks) = (panel.x.ticks(), panel.y.ticks());
+    let mut free_from = f64::NEG_INFINITY;
+    // Two labels never run into each other.
+    let mut labels = Vec::new();
+    for tick in &x_ticks {
+        let at = panel.across(tick.value);
+        if let Some(label) = &tick.label {
+            let half = 0.5 * text_width(label, TICK);
+            if at - half > free_from {
+                labels.push((at, label));
+                free_from = at + half + 6.0;
+            }
+        }
+    }
+    let path = |ticks: &mut dyn Iterator<Item = String>| ticks.collect::<String>();
+    let grid = |labelled: bool| {
+        let across = x_ticks
+            .iter()
+            .filter(|tick| tick.label.is_some() == labelled)
+            .map(|tick| format!("M{} {}V{}", px(panel.across(tick.value)), px(frame.top), px(frame.bottom)));
+        let up = y_ticks
+            .iter()
+            .filter(|tick| tick.label.is_some() == labelled)
+            .map(|tick| format!("M{} {}H{}", px(frame.left), px(panel.up(tick.value)), px(frame.right)));
+        path(&mut across.chain(up))
+    };
+    let length = |labelled: bool| if labelled { 6 } else { 3 };
+    let marks = path(
+        &mut x_ticks
+            .iter()
+            .map(|tick| {
+                format!("M{} {}v{}", px(panel.across(tick.value)), px(frame.bottom), length(tick.label.is_some()))
+            })
+            .chain(y_ticks.iter().map(|tick| {
+                format!("M{} {}h-{}", px(frame.left), px(panel.up(tick.value)), length(tick.label.is_some()))
+            })),
+    );
+    let (left, right, top, bottom) = (px(frame.left), px(frame.right), px(frame.top), px(frame.bottom));
+    let middle = 0.5 * (frame.top + frame.bottom);
+    html! {
+        path d=(grid(false)) fill="none" stroke="#f0f0f0" stroke-width=".8" {}
+        path d=(grid(true)) fill="none" stroke="#ddd" stroke-width=".8" {}
+        path d=(format!("M{left} {top}V{bottom}H{right}")) fill="none" stroke="#222" stroke-width="1.2" {}
+        path d=(marks) fill="none" stroke="#222" {}
+        g font-size=(TICK) fill="#222" {
+            g text-anchor="end" {
+                @for tick in &y_ticks {
+                    @if let Some(label) = &tick.label {
+                        text x=(px(frame.left - 10.0)) y=(px(panel.up(tick.value) + 0.35 * TICK)) { (label) }
+                    }
+                }
+            }
+            @if let Some(x_label) = x_label {
+                g text-anchor="middle" {
+                    @for (at, label) in &labels { text x=(px(*at)) y=(px(frame.bottom + 21.0)) { (label) } }
+                    text x=(px(0.5 * (frame.left + frame.right))) y=(px(frame.bottom + 46.0)) font-size=(LABEL) { (x_label) }
+                }
+            }
+        }
+        text transform=(format!("translate(20 {}) rotate(-90)", px(middle))) text-anchor="middle" font-size=(LABEL) fill="#222" {
+            (y_label)
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Curves as paths.
+
+use std::fmt::Write as _;
+
+use grainbench_harness::figure::Stroke;
+use maud::{Markup, html};
+
+use super::{Look, Place, px};
+use crate::plot::palette::{self, Marker};
+
+/// More points than this are thinned to what the width can show.
+const DENSE: usize = 400;
+/// Markers that tell lines from what is exact, and from each other.
+const MARKS_ON_A_LINE: usize = 7;
+
+/// A path through places, in tenths: the first absolute, the others from one to the next.
+fn path(places: &[Place]) -> String {
+    let tenths = |(x, y): Place| ((10.0 * x).round() as i64, (10.0 * y).round() as i64);
+    let mut text = String::new();
+    let mut before = None;
+    for place in places.iter().map(|place| tenths(*place)) {
+        let _ = match before {
+            None => write!(text, "M{} {}", place.0, place.1),
+            Some((x, y)) if (x, y) == place => Ok(()),
+            Some((x, y)) => {
+                let (across, up) = (place.0 - x, place.1 - y);
+                let letter = if text.contains('l') { if across < 0 { "" } else { " " } } else { "l" };
+                write!(text, "{letter}{across}{}{up}", if up < 0 { "" } else { " " })
+            }
+        };
+        before = Some(place);
+    }
+    text
+}
+
+/// Draws a curve from its pieces.
+pub(super) fn draw(stroke: Stroke, look: &Look, pieces: &[Vec<Place>]) -> Markup {
+    let all = || pieces.iter().flatten().copied();
+    let joined = matches!(stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine);
+    let line: String = if joined {
+        pieces.iter().filter(|piece| piece.len() > 1).map(|piece| path(piece)).collect()
+    } else {
+        String::new()
+    };
+    let dash = look.dash.map(|(dash, gap)| format!("{} {}", 10 * dash, 10 * gap));
+    html! {
+        @if !line.is_empty() {
+            path transform="scale(.1)" d=(line) fill="none" stroke=(look.colour) stroke-width="20" stroke-dasharray=[dash] {}
+        }
+        @match stroke {
+            Stroke::Markers | Stroke::MarkedLine => { (marks(all(), look, true, 4.2)) }
+            Stroke::Line => {
+                (marks(pieces.iter().filter(|piece| piece.len() == 1).flatten().copied(), look, true, 4.2))
+                // Evenly along x, and for each shape elsewhere, so that curves on top of each other show theirs.
+                (marks(pieces.iter().flat_map(|piece| along(piece, MARKS_ON_A_LINE, 0.15 + 0.7 * fraction_of(look.marker))), look, false, 4.2))
+            }
+            Stroke::Dashed => {}
+            Stroke::Beside => { (marks(all(), look, false, 2.8)) }
+            Stroke::Failed => { (crosses(all(), look)) }
+            Stroke::Bars => { (bars(&all().collect::<Vec<_>>(), look)) }
+        }
+    }
+}
+
+/// Pale bars, two ends each.
+fn bars(ends: &[Place], look: &Look) -> Markup {
+    let bars: String = ends.chunks_exact(2).map(path).collect();
+    html! { path transform="scale(.1)" d=(bars) fill="none" stroke=(look.colour) stroke-opacity=".3" stroke-width="50" {} }
+}
+
+/// Crosses where runs failed.
+fn crosses(places: impl Iterator<Item = Place>, look: &Look) -> Markup {
+    let crosses: String = places.map(|(x, y)| format!("M{} {}l8 8m0 -8l-8 8", px(x - 4.0), px(y - 4.0))).collect();
+    html! { path d=(crosses) fill="none" stroke=(look.colour) stroke-width="1.8" {} }
+}
+
+/// Markers: filled where a point was measured, hollow where they only tell lines apart.
+fn marks(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: f64) -> Markup {
+    let corners = look.marker.corners();
+    let outline: String = places
+        .map(|(x, y)| {
+            if corners.is_empty() {
+                let across = px(2.0 * radius);
+                return format!(
+                    "M{} {}a{r} {r} 0 1 0 {across} 0a{r} {r} 0 1 0-{across} 0z",
+                    px(x - radius),
+                    px(y),
+                    r = px(radius)
+                );
+            }
+            let places: Vec<Place> =
+                corners.iter().map(|(across, down)| (x + radius * across, y + radius * down)).collect();
+            let text = places.iter().map(|(x, y)| format!("{} {}", px(*x), px(*y))).collect::<Vec<_>>();
+            format!("M{}z", text.join("L"))
+        })
+        .collect();
+    html! {
+        @if !outline.is_empty() {
+            path d=(outline) fill=(if filled { look.colour } else { "#fff" }) stroke=(look.colour) stroke-width="1.6" {}
+        }
+    }
+}
+
+/// The sample of a curve in a legend, between two places.
+pub(super) fn sample(stroke: Stroke, look: &Look, from: Place, to: Place) -> Markup {
+    let middle = (0.5 * (from.0 + to.0), from.1);
+    html! {
+        @match stroke {
+            Stroke::Markers => { (marks([middle].into_iter(), look, true, 4.2)) }
+            Stroke::Beside | Stroke::Failed => { (draw(stroke, look, &[vec![middle]])) }
+            Stroke::Bars | Stroke::Dashed => { (draw(stroke, look, &[vec![from, to]])) }
+            Stroke::Line | Stroke::MarkedLine => {
+                (draw(Stroke::Dashed, look, &[vec![from, to]]))
+                (marks([middle].into_iter(), look, stroke == Stroke::MarkedLine, 4.2))
+            }
+        }
+    }
+}
+
+/// A different fraction of one for every shape.
+fn fraction_of(marker: Marker) -> f64 {
+    let place = (0..7).find(|place| palette::marker(*place) == marker).unwrap_or(0);
+    (place as f64 * 0.38).fract()
+}
+
+/// Points of a polyline at even steps of x, interpolated.
+fn along(piece: &[Place], count: usize, shift: f64) -> Vec<Place> {
+    let (Some(first), Some(last)) = (piece.first(), piece.last()) else { return Vec::new() };
+    (0..count)
+        .filter_map(|index| {
+            let at = first.0 + (last.0 - first.0) * (index as f64 + shift) / count as f64;
+            piece.windows(2).find_map(|pair| {
+                let ((ax, ay), (bx, by)) = (pair[0], pair[1]);
+                if (ax - at) * (bx - at) > 0.0 || ax == bx {
+                    return None;
+                }
+                Some((at, ay + (at - ax) / (bx - ax) * (by - ay)))
+            })
+        })
+        .collect()
+}
+
+/// Keeps the first, lowest, highest and last point of every two units that a dense curve crosses.
+pub(super) fn thin(points: Vec<Place>) -> Vec<Place> {
+    let forward = points.windows(2).all(|pair| pair[0].0 <= pair[1].0);
+    if points.len() <= DENSE || !forward {
+        return points;
+    }
+    let column = |point: &Place| (0.5 * point.0).floor() as i64;
+    let mut kept = Vec::new();
+    for run in points.chunk_by(|a, b| column(a) == column(b)) {
+        let lowest = run.iter().enumerate().min_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let highest = run.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let mut picks = vec![0, run.len() - 1];
+        picks.extend(lowest.map(|(place, _)| place));
+        picks.extend(highest.map(|(place, _)| place));
+        picks.sort_unstable();
+        picks.dedup();
+        kept.extend(picks.into_iter().map(|place| run[place]));
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dense_curves_are_thinned_but_keep_their_peaks() {
+        let mut points: Vec<Place> = (0..20_000).map(|step| (f64::from(step / 25), 100.0)).collect();
+        points[7_777].1 = 900.0;
+        let kept = thin(points);
+        assert!(kept.len() < 1_700, "{}", kept.len());
+        assert!(kept.iter().any(|point| point.1 == 900.0));
+    }
+
+    #[test]
+    fn paths_say_the_first_place_and_the_ways_from_there() {
+        assert_eq!(path(&[(1.0, 2.0), (3.0, 2.5), (2.0, 0.0), (2.0, 0.0), (4.0, 1.0)]), "M10 20l20 5-10-25 20 10");
+    }
+}

@@ -1,0 +1,58 @@
+//! What remains between what was measured and what is exact, where the two lie on each other.
+
+use grainbench_harness::figure::{Curve, Graph, Stroke};
+
+use crate::plot::scale::Scale;
+
+/// Curves nearer than this part of the axis cannot be told apart by eye.
+const TOLD_APART: f64 = 0.012;
+
+/// Differences that are worth a panel.
+pub(super) struct Difference {
+    pub(super) scale: Scale,
+    /// Of a curve, by its place, the differences.
+    pub(super) curves: Vec<(usize, Vec<(f64, f64)>)>,
+}
+
+/// The differences of measured lines from the exact one, on even axes, where each of them lies on it.
+pub(super) fn of(graph: &Graph, y: &Scale) -> Option<Difference> {
+    if graph.x.logarithmic || graph.y.logarithmic {
+        return None;
+    }
+    let of = |stroke: Stroke| graph.curves.iter().enumerate().filter(move |(_, curve)| curve.stroke == stroke);
+    let (lines, exact): (Vec<_>, Vec<_>) =
+        (of(Stroke::Line).collect(), of(Stroke::Dashed).map(|(_, curve)| curve).collect());
+    let is_all = lines.len() + exact.len() == graph.curves.len() && !lines.is_empty();
+    // One exact curve for all, or one for each.
+    if !is_all || exact.is_empty() || (exact.len() != 1 && exact.len() != lines.len()) {
+        return None;
+    }
+    let mut curves = Vec::new();
+    let mut worst = 0.0_f64;
+    for (place, (at, line)) in lines.iter().enumerate() {
+        let reference = exact[if exact.len() == 1 { 0 } else { place }];
+        let found: Vec<(f64, f64)> =
+            line.points.iter().filter_map(|&(x, value)| Some((x, value - at_x(reference, x)?))).collect();
+        if found.len() < 8 {
+            return None;
+        }
+        worst = found.iter().map(|(_, off)| (y.position(off.abs()) - y.position(0.0)).abs()).fold(worst, f64::max);
+        curves.push((*at, found));
+    }
+    let is_seen = |(_, off): &&(f64, f64)| off.is_finite();
+    let values: Vec<f64> =
+        curves.iter().flat_map(|(_, points)| points.iter().filter(is_seen)).map(|point| point.1).collect();
+    let scale = Scale::fit(values.iter().copied().chain([0.0]), false, 0.06, 3);
+    (worst < TOLD_APART && values.iter().any(|value| *value != 0.0)).then_some(Difference { scale, curves })
+}
+
+/// A curve at a place between two of its points.
+fn at_x(curve: &Curve, x: f64) -> Option<f64> {
+    let next = curve.points.partition_point(|point| point.0 < x);
+    let after = curve.points.get(next)?;
+    if after.0 == x {
+        return Some(after.1);
+    }
+    let before = curve.points.get(next.checked_sub(1)?)?;
+    Some(before.1 + (x - before.0) / (after.0 - before.0) * (after.1 - before.1))
+}

@@ -1,0 +1,86 @@
+//! The legend: names beside the ends of their lines where there is room, else one below the other.
+
+use grainbench_harness::figure::{Curve, Graph, Stroke};
+use maud::{Markup, html};
+
+use super::{LEGEND_LINE, LEGEND_SAMPLE, Look, Panel, TICK, curves, px};
+use crate::plot::wrap;
+
+/// Labels broken into lines; empty when there is nothing to tell.
+pub(super) fn lines(curves: &[Curve]) -> Vec<Vec<String>> {
+    if curves.iter().all(|curve| curve.label.is_empty()) {
+        return Vec::new();
+    }
+    curves.iter().map(|curve| wrap(&curve.label, TICK, 150.0)).collect()
+}
+
+/// What looks as the curve before it needs no word of its own.
+fn is_told(curve: &Curve) -> bool {
+    !(curve.label.is_empty() && matches!(curve.stroke, Stroke::Beside | Stroke::Failed))
+}
+
+/// Draws it to the right of a panel.
+pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel: &Panel<'_>) -> Markup {
+    let told: Vec<usize> = (0..legend.len()).filter(|&at| is_told(&graph.curves[at])).collect();
+    let left = panel.frame.right + 18.0;
+    let entries = tops(graph, legend, panel, &told);
+    html! {
+        g font-size=(TICK) fill="#222" {
+            @for (at, top) in entries {
+                @let (from, to) = ((left, top + 3.0), (left + LEGEND_SAMPLE - 4.0, top + 3.0));
+                (curves::sample(graph.curves[at].stroke, &looks[at], from, to))
+                @for (line, part) in legend[at].iter().enumerate() {
+                    text x=(px(left + LEGEND_SAMPLE + 4.0)) y=(px(top + 3.0 + 0.35 * TICK + LEGEND_LINE * line as f64)) { (part) }
+                }
+            }
+        }
+    }
+}
+
+/// Where the first line of each entry stands.
+fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel<'_>, told: &[usize]) -> Vec<(usize, f64)> {
+    let frame = panel.frame;
+    let (first, last) = (frame.top + 6.0, frame.bottom + 40.0);
+    let height = |at: usize| LEGEND_LINE * legend[at].len() as f64;
+    let whole: f64 = told.iter().map(|&at| height(at)).sum();
+    // A long legend moves closer together before it runs off the drawing.
+    let gap = ((last - first - whole) / told.len().max(1) as f64).clamp(0.0, 7.0);
+    let end = |at: usize| {
+        let joined = matches!(graph.curves[at].stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine);
+        let shown = graph.curves[at].points.iter().filter(|point| panel.x.shows(point.0) && panel.y.shows(point.1));
+        let last = shown.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|_| joined)?;
+        (panel.x.position(last.0) > 0.75).then(|| panel.up(last.1))
+    };
+    let ends: Option<Vec<(usize, f64)>> = told.iter().map(|&at| Some((at, end(at)?))).collect();
+    let stacked = |order: Vec<usize>| {
+        let mut top = first;
+        order
+            .into_iter()
+            .map(|at| {
+                let here = top;
+                top += height(at) + gap;
+                (at, here)
+            })
+            .collect::<Vec<_>>()
+    };
+    let Some(mut ends) = ends.filter(|_| whole + 4.0 * told.len() as f64 <= frame.bottom - first) else {
+        return stacked(told.to_vec());
+    };
+    ends.sort_by(|a, b| a.1.total_cmp(&b.1));
+    // Pushed down where they would overlap, and then up from the lower edge.
+    let mut free = first;
+    let mut placed: Vec<(usize, f64)> = ends
+        .into_iter()
+        .map(|(at, wanted)| {
+            let top = wanted.max(free);
+            free = top + height(at) + 4.0;
+            (at, top)
+        })
+        .collect();
+    let mut lowest = frame.bottom + 14.0;
+    for (at, top) in placed.iter_mut().rev() {
+        *top = top.min(lowest - height(*at));
+        lowest = *top - 4.0;
+    }
+    placed
+}

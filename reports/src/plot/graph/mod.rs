@@ -1,0 +1,260 @@
+//! Curves over two axes. What was measured has markers, what is exact has dashes; where the two cannot be told apart their
+//! difference is drawn below.
+
+mod axes;
+mod curves;
+mod difference;
+mod legend;
+
+use grainbench_harness::figure::{Curve, Graph, Stroke};
+use maud::{Markup, html};
+
+use super::palette::{self, Marker};
+use super::scale::Scale;
+use super::{FONTS, WIDTH, text_width};
+
+const HEIGHT: f64 = 520.0;
+/// Added for a panel of differences.
+const BELOW: f64 = 150.0;
+const TITLE: f64 = 17.0;
+const LABEL: f64 = 15.0;
+const TICK: f64 = 14.0;
+const NOTE: f64 = 12.5;
+const LEGEND_LINE: f64 = 18.0;
+const LEGEND_SAMPLE: f64 = 30.0;
+
+/// A place on the drawing.
+type Place = (f64, f64);
+
+/// How one curve looks.
+#[derive(Clone, Copy)]
+struct Look {
+    colour: &'static str,
+    marker: Marker,
+    dash: Option<(u32, u32)>,
+}
+
+/// Where the axes stand on the drawing.
+#[derive(Clone, Copy)]
+struct Frame {
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+/// A frame with its axes.
+struct Panel<'a> {
+    frame: Frame,
+    x: &'a Scale,
+    y: &'a Scale,
+}
+
+impl Panel<'_> {
+    fn across(&self, value: f64) -> f64 {
+        self.frame.left + self.x.position(value) * (self.frame.right - self.frame.left)
+    }
+
+    fn up(&self, value: f64) -> f64 {
+        self.frame.bottom - self.y.position(value) * (self.frame.bottom - self.frame.top)
+    }
+
+    /// The pieces of a curve: a line breaks where points are missing, for joining over the gap would invent data.
+    fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
+        points
+            .split(|point| !(self.x.shows(point.0) && self.y.shows(point.1)))
+            .filter(|piece| !piece.is_empty())
+            .map(|piece| curves::thin(piece.iter().map(|point| (self.across(point.0), self.up(point.1))).collect()))
+            .collect()
+    }
+}
+
+/// Draws a graph as a complete SVG document.
+#[must_use]
+pub fn draw(title: &str, graph: &Graph) -> String {
+    let looks = looks(&graph.curves);
+    let notes = notes(graph);
+    let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
+    let (log_x, log_y) = (graph.x.logarithmic, graph.y.logarithmic);
+    let seen = |point: &&(f64, f64)| {
+        let on = |value: f64, logarithmic: bool| value.is_finite() && (value > 0.0 || !logarithmic);
+        on(point.0, log_x) && on(point.1, log_y)
+    };
+    let only_lines = graph.curves.iter().all(|curve| matches!(curve.stroke, Stroke::Line | Stroke::Dashed));
+    let x_margin = if only_lines && !log_x { 0.0 } else { 0.05 };
+    let x =
+        Scale::fit(points().filter(seen).map(|point| point.0), log_x, x_margin, 7).at_levels(&levels(&graph.curves));
+    let y = Scale::fit(points().filter(seen).map(|point| point.1), log_y, 0.06, 6);
+    let difference = difference::of(graph, &y);
+    let height = HEIGHT + if difference.is_some() { BELOW } else { 0.0 };
+
+    let legend = legend::lines(&graph.curves);
+    let legend_width = legend.iter().flatten().map(|line| text_width(line, TICK)).fold(0.0, f64::max);
+    let ticks = [Some(&y), difference.as_ref().map(|difference| &difference.scale)];
+    let tick_width = ticks
+        .iter()
+        .flatten()
+        .flat_map(|scale| scale.ticks())
+        .filter_map(|tick| tick.label)
+        .map(|label| text_width(&label, TICK))
+        .fold(0.0, f64::max);
+    let frame = Frame {
+        left: 44.0 + tick_width,
+        right: if legend.is_empty() { WIDTH - 28.0 } else { WIDTH - legend_width - LEGEND_SAMPLE - 36.0 },
+        top: 48.0,
+        bottom: HEIGHT - 58.0 - 17.0 * notes.len() as f64,
+    };
+    let panel = Panel { frame, x: &x, y: &y };
+    let below = difference.as_ref().map(|difference| {
+        let frame = Frame { top: frame.bottom + 22.0, bottom: frame.bottom + BELOW, ..frame };
+        (Panel { frame, x: &x, y: &difference.scale }, difference)
+    });
+    let body = html! {
+        rect width=(WIDTH) height=(height) fill="#fff" {}
+        text x="10" y="29" font-size=(TITLE) font-weight="bold" fill="#222" { (title) }
+        (axes::draw(&panel, &graph.y.label, below.is_none().then_some(&graph.x.label)))
+        @for (curve, look) in graph.curves.iter().zip(&looks) {
+            (curves::draw(curve.stroke, look, &panel.pieces(&curve.points)))
+        }
+        @if let Some((panel, difference)) = &below {
+            (axes::draw(panel, "difference", Some(&graph.x.label)))
+            @for (at, points) in &difference.curves { (curves::draw(Stroke::Line, &looks[*at], &panel.pieces(points))) }
+        }
+        (legend::draw(graph, &looks, &legend, &panel))
+        @for (line, note) in notes.iter().rev().enumerate() {
+            text x=(px(frame.left)) y=(px(height - 8.0 - 17.0 * line as f64)) font-size=(NOTE) fill="#666" { (note) }
+        }
+    };
+    let body: Markup = body;
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height}")) width="100%" role="img"
+            aria-label=(title) font-family=(FONTS) stroke-linejoin="round" stroke-linecap="round" {
+            title { (title) }
+            (body)
+        }
+    }
+    .into_string()
+}
+
+/// Where runs were done at a few levels of resolution, those levels: ticks stand at them and nowhere else.
+fn levels(curves: &[Curve]) -> Vec<f64> {
+    const MOST: usize = 8;
+    let is_of_levels = |curve: &&Curve| matches!(curve.stroke, Stroke::MarkedLine | Stroke::Markers);
+    let mut levels: Vec<f64> =
+        curves.iter().filter(is_of_levels).flat_map(|curve| &curve.points).map(|point| point.0).collect();
+    let count = levels.len();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    let is_run_at_levels = curves.iter().any(|curve| curve.stroke == Stroke::MarkedLine);
+    // What has a level of its own for every point was not run at levels.
+    let is_shared = count > levels.len() || levels.len() <= 4;
+    if is_run_at_levels && is_shared && (2..=MOST).contains(&levels.len()) { levels } else { Vec::new() }
+}
+
+/// Colours go round among computed curves and shades among dashed ones.
+fn looks(curves: &[Curve]) -> Vec<Look> {
+    let (mut coloured, mut dashed) = (0, 0);
+    let mut before = Look { colour: palette::colour(0), marker: palette::marker(0), dash: None };
+    curves
+        .iter()
+        .map(|curve| {
+            match curve.stroke {
+                Stroke::Beside | Stroke::Failed => return before,
+                Stroke::Bars => return Look { colour: palette::FAINT, ..before },
+                _ => {}
+            }
+            let place = if curve.stroke == Stroke::Dashed { &mut dashed } else { &mut coloured };
+            let here = *place;
+            *place += 1;
+            if curve.stroke == Stroke::Dashed {
+                Look { colour: palette::shade(here), marker: palette::marker(here), dash: Some(palette::dash(here)) }
+            } else {
+                before = Look { colour: palette::colour(here), marker: palette::marker(here), dash: None };
+                before
+            }
+        })
+        .collect()
+}
+
+/// What the reader must know of points that have no place.
+fn notes(graph: &Graph) -> Vec<String> {
+    let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
+    let finite = |point: &&(f64, f64)| point.0.is_finite() && point.1.is_finite();
+    let infinite = points().count() - points().filter(finite).count();
+    let low = points()
+        .filter(finite)
+        .filter(|point| (graph.x.logarithmic && point.0 <= 0.0) || (graph.y.logarithmic && point.1 <= 0.0))
+        .count();
+    let mut notes = Vec::new();
+    for (count, what) in [(low, "at or below zero"), (infinite, "without a finite value")] {
+        if count > 0 {
+            let plural = if count == 1 { "" } else { "s" };
+            notes.push(format!("({count} point{plural} {what} not shown)"));
+        }
+    }
+    notes
+}
+
+/// A length with at most one decimal.
+fn px(length: f64) -> String {
+    let text = format!("{length:.1}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use grainbench_harness::figure::Axis;
+
+    use super::*;
+
+    fn graph(logarithmic: bool, points: Vec<(f64, f64)>) -> Graph {
+        let axis = |label: &str| Axis { label: label.to_owned(), logarithmic };
+        Graph {
+            x: axis("time step Δt (s)"),
+            y: axis("error <&>"),
+            curves: vec![Curve { label: "dem".to_owned(), stroke: Stroke::MarkedLine, points }],
+        }
+    }
+
+    #[test]
+    fn counts_what_a_log_axis_cannot_show() {
+        let points = vec![(1e-3, 1e-2), (1e-2, 0.0), (1e-1, -1.0), (1.0, f64::NAN)];
+        let svg = draw("errors", &graph(true, points));
+        assert!(svg.contains("(2 points at or below zero not shown)"));
+        assert!(svg.contains("(1 point without a finite value not shown)"));
+        assert!(svg.contains("10⁻²"));
+        assert!(svg.contains("error &lt;&amp;&gt;"));
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn draws_whatever_the_points_are() {
+        for points in [vec![], vec![(f64::NAN, 1.0)], vec![(1.0, 1.0)], vec![(-1.0, f64::MAX), (1.0, f64::MIN)]] {
+            for logarithmic in [false, true] {
+                let svg = draw("any", &graph(logarithmic, points.clone()));
+                assert!(!svg.contains("NaN") && !svg.contains("inf"), "{points:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn ticks_stand_at_the_levels_that_were_run() {
+        let svg = draw("levels", &graph(true, vec![(2.0, 0.4), (4.0, 0.2), (8.0, 0.1)]));
+        for level in [">2<", ">4<", ">8<"] {
+            assert!(svg.contains(level), "{level}");
+        }
+        assert!(!svg.contains(">5<") && !svg.contains("5×10⁰"));
+    }
+
+    #[test]
+    fn what_lies_on_the_exact_curve_is_shown_by_its_difference() {
+        let exact: Vec<(f64, f64)> = (0..100).map(|at| (f64::from(at), f64::from(at))).collect();
+        let off = |by: f64| -> Vec<(f64, f64)> { exact.iter().map(|(x, y)| (*x, y + by)).collect() };
+        let drawn = |by: f64| {
+            let curves =
+                vec![Curve::new("dem", Stroke::Line, off(by)), Curve::new("exact", Stroke::Dashed, exact.clone())];
+            draw("both", &Graph { x: Axis::linear("t (s)"), y: Axis::linear("x (m)"), curves })
+        };
+        assert!(drawn(1e-3).contains("difference") && !drawn(20.0).contains("difference"));
+    }
+}

@@ -1,0 +1,151 @@
+//! Fields light enough for a page: pictures with fewer pixels, and films as differences between frames, which a script unpacks.
+
+use std::io::{self, Write};
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use grainbench_harness::figure::{Field, Panel, Shades};
+use grainbench_harness::raster::{HIGH, LOW, RIM, Raster, VOID};
+
+use super::field::{self, Frames};
+
+/// The most that a picture weighs in a page, and a film (B).
+const PICTURE: usize = 60_000;
+const FILM: usize = 90_000;
+/// The fewest frames of a film, and pixels of a picture across.
+const FRAMES: usize = 16;
+const ACROSS: u32 = 60;
+
+/// The field with as few pixels and frames as it must have to be light.
+///
+/// # Errors
+/// When its frames do not fit each other.
+pub(crate) fn light(field: &Field) -> io::Result<Field> {
+    let mut field = field.clone();
+    let is_film = field.times.len() > 1;
+    loop {
+        let weight = if is_film { reel(&field)?.len() } else { field::stills(&field)?.iter().map(Vec::len).sum() };
+        let width = field.panels[0].frames[0].width;
+        if weight <= if is_film { FILM } else { PICTURE } || width < 2 * ACROSS {
+            return Ok(field);
+        }
+        field = if field.times.len() >= 2 * FRAMES { every_other(&field) } else { halved(&field) };
+    }
+}
+
+/// A film as `width height frames palette levels`: the palette in base64, and so the zlib stream of the levels, which of all
+/// frames but the first are differences to the frame before.
+///
+/// # Errors
+/// When its frames do not fit each other.
+pub(crate) fn reel(field: &Field) -> io::Result<String> {
+    let Frames { width, height, levels } = field::frames(field)?;
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
+    let mut before: Option<&Vec<u8>> = None;
+    for frame in &levels {
+        let differences: Vec<u8> = match before {
+            None => frame.clone(),
+            Some(before) => frame.iter().zip(before).map(|(now, then)| now.wrapping_sub(*then)).collect(),
+        };
+        packed.write_all(&differences)?;
+        before = Some(frame);
+    }
+    let palette = STANDARD.encode(field::palette(field.shades));
+    Ok(format!("{width} {height} {} {palette} {}", levels.len(), STANDARD.encode(packed.finish()?)))
+}
+
+/// The last of every two frames: the last one stays.
+fn every_other(field: &Field) -> Field {
+    let odd = field.times.len() % 2;
+    let keep = |at: &usize| at % 2 != odd;
+    let pick = |panel: &Panel| Panel {
+        frames: panel.frames.iter().enumerate().filter(|(at, _)| keep(at)).map(|(_, frame)| frame.clone()).collect(),
+        ..panel.clone()
+    };
+    let times = field.times.iter().enumerate().filter(|(at, _)| keep(at)).map(|(_, time)| *time).collect();
+    Field { panels: field.panels.iter().map(pick).collect(), times, ..field.clone() }
+}
+
+/// Half the pixels along each side.
+fn halved(field: &Field) -> Field {
+    let half = |panel: &Panel| Panel { frames: panel.frames.iter().map(|frame| halved_raster(frame, field.shades)).collect(), ..panel.clone() };
+    Field { panels: field.panels.iter().map(half).collect(), pixel: 2.0 * field.pixel, ..field.clone() }
+}
+
+/// Of four pixels a rim where half of them are, else the mean of the values that there are.
+fn halved_raster(raster: &Raster, shades: Shades) -> Raster {
+    let (width, height) = (raster.width.div_ceil(2), raster.height.div_ceil(2));
+    let at =
+        |x: u32, y: u32| raster.levels[(y.min(raster.height - 1) * raster.width + x.min(raster.width - 1)) as usize];
+    let level = |x: u32, y: u32| {
+        let four = [at(2 * x, 2 * y), at(2 * x + 1, 2 * y), at(2 * x, 2 * y + 1), at(2 * x + 1, 2 * y + 1)];
+        let values = || four.into_iter().filter(|level| (LOW..=HIGH).contains(level)).map(u32::from);
+        match (four.into_iter().filter(|level| *level == RIM).count(), values().count() as u32) {
+            (2.., _) | (1, 0) => RIM,
+            (_, 0) => VOID,
+            // Neighbouring levels of lit bodies are no neighbours in light.
+            _ if shades == Shades::Lit => values().next().unwrap_or(0) as u8,
+            (_, count) => (values().sum::<u32>() / count) as u8,
+        }
+    };
+    let levels = (0..height).flat_map(|y| (0..width).map(move |x| level(x, y))).collect();
+    Raster { width, height, levels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flate2::read::ZlibDecoder;
+    use std::io::Read;
+
+    fn noise(width: u32, frames: usize) -> Field {
+        let mut state = 1_u32;
+        let mut dice = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        };
+        let mut raster = |_| Raster { width, height: width, levels: (0..width * width).map(|_| dice()).collect() };
+        let panel = Panel { title: String::new(), frames: (0..frames).map(&mut raster).collect(), own: None };
+        Field {
+            label: "noise".to_owned(),
+            unit: "1".to_owned(),
+            range: (0.0, 1.0),
+            shades: Shades::Amount,
+            pixel: 1.0,
+            panels: vec![panel],
+            clock: "t (s)".to_owned(),
+            times: (0..frames).map(|frame| frame as f64).collect(),
+        }
+    }
+
+    #[test]
+    fn what_is_heavy_is_made_light_and_keeps_its_end() {
+        for (width, frames) in [(800, 1), (400, 60)] {
+            let field = noise(width, frames);
+            let light = light(&field).unwrap();
+            assert!(light.panels[0].frames[0].width < width && light.times.last() == field.times.last());
+            let size = f64::from(light.panels[0].frames[0].width) * light.pixel;
+            assert!((size - f64::from(width)).abs() < 0.05 * f64::from(width), "{size}");
+        }
+        let small = noise(40, 1);
+        assert_eq!(light(&small).unwrap(), small);
+    }
+
+    #[test]
+    fn a_reel_unpacks_to_its_frames() {
+        let field = noise(20, 3);
+        let text = reel(&field).unwrap();
+        let parts: Vec<&str> = text.split(' ').collect();
+        let Frames { width, height, levels } = field::frames(&field).unwrap();
+        assert_eq!(parts[..3], [width.to_string(), height.to_string(), "3".to_owned()]);
+        let mut found = Vec::new();
+        ZlibDecoder::new(STANDARD.decode(parts[4]).unwrap().as_slice()).read_to_end(&mut found).unwrap();
+        let size = levels[0].len();
+        for at in size..found.len() {
+            found[at] = found[at].wrapping_add(found[at - size]);
+        }
+        assert_eq!(found, levels.concat());
+    }
+}

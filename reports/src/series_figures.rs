@@ -1,0 +1,77 @@
+//! What probes told over time, a graph a quantity: velocities beside one another, and positions, and forces.
+
+use crate::record_figures::Named;
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_scene::record::Series;
+
+/// More curves than this in one graph cannot be told apart.
+const CURVES: usize = 8;
+
+/// What a column is of, and of which probe: `disc.vx` is `vx` of `disc`.
+fn parts(name: &str) -> (&str, &str) {
+    name.rsplit_once('.').unwrap_or(("", name))
+}
+
+/// A graph of every quantity that any record's probes told, within a window of time. What is not finite, and what a column that
+/// ends early has not, is not drawn.
+pub(crate) fn figures(records: &[Named<'_>], window: (f64, f64)) -> Vec<Figure> {
+    let mut quantities: Vec<(&str, &str)> = Vec::new();
+    for column in records.iter().flat_map(|named| &named.record.series.columns) {
+        let quantity = (parts(&column.name).1, column.unit.as_str());
+        if !quantities.contains(&quantity) {
+            quantities.push(quantity);
+        }
+    }
+    quantities.into_iter().filter_map(|quantity| figure(records, quantity, window)).collect()
+}
+
+fn figure(records: &[Named<'_>], (quantity, unit): (&str, &str), window: (f64, f64)) -> Option<Figure> {
+    let mut curves = Vec::new();
+    for named in records {
+        let series = &named.record.series;
+        for (at, column) in series.columns.iter().enumerate() {
+            let (probe, of) = parts(&column.name);
+            if (of, column.unit.as_str()) == (quantity, unit) {
+                let label = [probe, &named.name].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
+                let points = points(series, at, window);
+                if points.iter().any(|(_, value)| value.is_finite()) {
+                    curves.push(Curve::new(label, Stroke::Line, points));
+                }
+            }
+        }
+    }
+    let more = curves.len().saturating_sub(CURVES);
+    let left_out = if more > 0 { format!(" {more} more are in the table of probes.") } else { String::new() };
+    curves.truncate(CURVES);
+    let label = if unit == "1" { quantity.to_owned() } else { format!("{quantity} ({unit})") };
+    (!curves.is_empty()).then(|| {
+        Figure::graph(
+            &format!("probe-{quantity}"),
+            &format!("Probes: {quantity}"),
+            &format!("{quantity} as the scene's probes tell it.{left_out}"),
+            [Axis::linear("time t (s)"), Axis::linear(&label)],
+            curves,
+        )
+    })
+}
+
+fn points(series: &Series, column: usize, (from, to): (f64, f64)) -> Vec<(f64, f64)> {
+    let values = series.values.get(column).map_or(&[][..], Vec::as_slice);
+    let points = series.time.iter().copied().zip(values.iter().copied());
+    points.filter(|(time, _)| (from..=to).contains(time)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::sample;
+
+    #[test]
+    fn every_quantity_has_its_graph_and_nothing_stands_for_zero() {
+        let record = sample::record();
+        let named = [Named { name: String::new(), record: &record }];
+        let figures = figures(&named, (f64::NEG_INFINITY, f64::INFINITY));
+        assert!(!figures.is_empty() && figures.iter().all(|figure| crate::plot::draw(figure).is_ok()));
+        assert!(super::figures(&named, (1e9, 2e9)).is_empty(), "a window in which nothing was told shows nothing");
+    }
+}

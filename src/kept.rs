@@ -1,0 +1,45 @@
+//! What accuracy costs and what stays stable, as it was measured when somebody measured it, and of which sources.
+
+use grainbench_reports::measured::{Costs, Measurements, Stability};
+use grainbench_reports::study::Study;
+use std::path::{Path, PathBuf};
+
+/// What `cost --keep` left.
+const COST: &str = include_str!("../studies/kept/cost.json");
+/// What `stability --keep` left.
+const STABILITY: &str = include_str!("../studies/kept/stability.json");
+/// Other people's solvers beside ours in some scenes.
+const PEERS: &str = include_str!("../peers/cost.json");
+
+/// Where a study is kept.
+#[must_use]
+pub fn place(study: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/kept").join(format!("{study}.json"))
+}
+
+/// Hash of the sources of a solver as this program has them; of a program, of what we hand it.
+#[must_use]
+pub fn sources(solver: &str) -> Option<String> {
+    let hash = match solver.split([':', '+']).next() {
+        Some("dem") => env!("GRAINBENCH_SOURCES_DEM"),
+        Some("mpm") => env!("GRAINBENCH_SOURCES_MPM"),
+        Some("rigid") => env!("GRAINBENCH_SOURCES_RIGID"),
+        Some("lammps" | "liggghts") => env!("GRAINBENCH_SOURCES_PROGRAMS"),
+        _ => return None,
+    };
+    Some(hash.to_owned())
+}
+
+/// What was measured before.
+///
+/// # Errors
+/// Names the file that is not what was kept.
+pub fn measured() -> Result<Measurements, String> {
+    let read = |name: &str, text: &str| -> Result<Study, String> {
+        serde_json::from_str(text).map_err(|error| format!("{name}: {error}"))
+    };
+    let mut cost = Costs::of(&read("studies/kept/cost.json", COST)?, &sources);
+    cost.add(Costs::of(&read("peers/cost.json", PEERS)?, &sources));
+    let stability = Stability::of(&read("studies/kept/stability.json", STABILITY)?, &sources);
+    Ok(Measurements { cost: Some(cost), stability: Some(stability) })
+}
