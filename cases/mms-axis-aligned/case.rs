@@ -77,14 +77,16 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         [("uGIMP", GIMP, 2), ("quadratic B-splines", SPLINES, POINTS_OF_SPLINES), ("hat functions", HATS, 2)]
     {
         let mut measured = Vec::new();
-        for (run, cells) in runs(solver, points).iter().zip([16.0, 32.0]) {
-            if let Ok(error) = error(&runner.run(run)?) {
+        let coarse = Run::new(PLAIN, solver, Resolution::grid(8.0, points));
+        let finer = runs(solver, points).into_iter();
+        for (run, cells) in std::iter::once(coarse).chain(finer).zip([8.0, 16.0, 32.0]) {
+            if let Ok(error) = error(&runner.run(&run)?) {
                 measured.push((1.0 / cells, error));
             }
         }
         curves.push(Curve::new(label, Stroke::MarkedLine, measured));
     }
-    curves.push(Curve::new("slope 2", Stroke::Dashed, vec![(1.0 / 32.0, 4e-5), (1.0 / 16.0, 16e-5)]));
+    curves.push(Curve::new("slope 2", Stroke::Dashed, vec![(1.0 / 32.0, 4e-5), (1.0 / 8.0, 64e-5)]));
     Ok(vec![Figure::graph(
         "convergence",
         "Error of the displacement against the cell",

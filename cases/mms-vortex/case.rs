@@ -101,7 +101,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (label, solver) in SOLVERS {
         let mut measured = Vec::new();
-        for level in [level("1/8", 8.0), LEVELS[0]] {
+        for level in [level("1/4", 4.0), level("1/8", 8.0), LEVELS[0]] {
             let run = run(solver, level);
             if let (Resolution::Grid { cells, .. }, Ok(done)) = (level.resolution, runner.run(&run)) {
                 measured.extend(error(&done).ok().map(|error| (1.0 / cells, error)));
@@ -109,7 +109,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         }
         curves.push(Curve::new(label, Stroke::MarkedLine, measured));
     }
-    curves.push(Curve::new("slope 2", Stroke::Dashed, vec![(1.0 / 16.0, 5e-3), (1.0 / 8.0, 2e-2)]));
+    curves.push(Curve::new("slope 2", Stroke::Dashed, vec![(1.0 / 16.0, 5e-3), (1.0 / 4.0, 8e-2)]));
     Ok(vec![Figure::graph(
         "convergence",
         "Error of the displacement against the cell",

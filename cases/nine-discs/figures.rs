@@ -115,7 +115,7 @@ fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
          prints .15 F_eq without its step; the curve crosses it several times.",
         [Axis::linear("Δt / critical step"), Axis::linear("amplitude / F_eq, centre-edge")],
         vec![
-            Curve::new("exact answer of the cycle", Stroke::Line, points),
+            Curve::new("exact answer of the cycle", Stroke::Dashed, points),
             Curve::new("printed in the paper", Stroke::Dashed, printed),
         ],
     ))

@@ -3,6 +3,7 @@
 use super::{PAIRS, STEP, elastic, experiment, run, time_of_a, vertical_strain};
 use grainbench_fields::picture::{Shot, fringe_constant, pictures};
 use grainbench_fields::quantity::Quantity;
+use grainbench_harness::figure::Field;
 use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
 
@@ -66,7 +67,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
                  contact forces, bright without stress; c = {constant:.3e} Pa for both, three fringes at the stress \
                  that a fiftieth of the discs is above."
             ),
-            pictures(Quantity::Fringes(constant), &shots, PIXELS, None),
+            // The paper's lengths have no unit: a bar of metres would be ours.
+            Field { pixel: 0.0, ..pictures(Quantity::Fringes(constant), &shots, PIXELS, None) },
         ));
     }
     if runner.is_thorough() {

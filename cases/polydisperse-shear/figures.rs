@@ -118,7 +118,7 @@ fn of_springs(done: &Done) -> Vec<Figure> {
 }
 
 /// Force chains over the shear.
-fn of_chains(done: &Done) -> [Figure; 2] {
+fn of_chains(done: &Done) -> [Figure; 3] {
     let looked: Vec<(f64, Chains)> = done
         .record
         .snapshots
@@ -149,14 +149,18 @@ fn of_chains(done: &Done) -> [Figure; 2] {
         ),
         Figure::graph(
             "chain-length",
-            "Length and direction of force chains",
-            "Mean number of grains of a chain, and mean direction of compression of its grains from the normal of the \
-             sides. Shear of the right side upwards compresses along −45°.",
-            [Axis::linear("mean shear (1)"), Axis::linear("grains; degrees over ten")],
-            vec![
-                Curve::new("grains of a chain", Stroke::MarkedLine, points(&|chains| mean(&chains.lengths))),
-                Curve::new("direction over 10°", Stroke::MarkedLine, points(&|chains| 0.1 * chains.direction_deg)),
-            ],
+            "Length of force chains",
+            "Mean number of grains of a chain.",
+            [Axis::linear("mean shear (1)"), Axis::linear("grains of a chain (1)")],
+            vec![Curve::new("", Stroke::MarkedLine, points(&|chains| mean(&chains.lengths)))],
+        ),
+        Figure::graph(
+            "chain-direction",
+            "Direction of force chains",
+            "Mean direction of compression of the grains of chains from the normal of the sides. Shear of the right side upwards \
+             compresses along −45°.",
+            [Axis::linear("mean shear (1)"), Axis::linear("direction from the normal of the sides (°)")],
+            vec![Curve::new("", Stroke::MarkedLine, points(&|chains| chains.direction_deg))],
         ),
     ]
 }

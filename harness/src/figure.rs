@@ -138,7 +138,7 @@ pub struct Field {
     pub range: (f64, f64),
     /// How they are coloured.
     pub shades: Shades,
-    /// Side of a pixel (m).
+    /// Side of a pixel (m); zero where lengths have no unit.
     pub pixel: f64,
     /// The panels, equally large.
     pub panels: Vec<Panel>,

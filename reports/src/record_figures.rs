@@ -1,7 +1,9 @@
-//! Pictures of any record of a plane scene: forces, stress, fringes, plastic strain, rotation, speed, profiles, films.
-//! Several records stand beside one another at equal times.
+//! Pictures of any record: of a plane scene forces, stress, fringes, plastic strain, rotation, speed, profiles, films; of others
+//! lit grains and contact forces; of all what probes told. Several records stand beside one another at equal times.
 
 use crate::number;
+use crate::solid_figures::{self, Shot as Lit};
+use crate::series_figures;
 use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
 use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
@@ -49,22 +51,79 @@ pub fn is_plane(record: &Record) -> bool {
     !all.is_empty() && all.iter().all(|&height| height == 0.0)
 }
 
-/// Every picture that the records have the data for, at times of the first one. `fringe` is the constant c of fringes
-/// (Pa).
+/// What of records is shown, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown {
+    /// Stress c of photoelastic fringes (Pa); three fringes where none is given.
+    pub fringe: Option<f64>,
+    /// First and last time (s).
+    pub window: (f64, f64),
+    /// The most frames that a film has.
+    pub frames: usize,
+}
+
+impl Default for Shown {
+    fn default() -> Self {
+        Self { fringe: None, window: (f64::NEG_INFINITY, f64::INFINITY), frames: FRAMES }
+    }
+}
+
+/// Every picture that the records have the data for, at times of the first one, and what their probes told. Records that do not
+/// lie in a plane are seen from the front, the right and above.
 #[must_use]
-pub fn figures(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Figure> {
-    let Some(first) = records.first().filter(|_| records.iter().all(|named| is_plane(named.record))) else {
-        return Vec::new();
+pub fn figures(records: &[Named<'_>], shown: &Shown) -> Vec<Figure> {
+    let (from, to) = shown.window;
+    let Some(first) = records.first() else { return Vec::new() };
+    let all: Vec<&Snapshot> =
+        first.record.snapshots.iter().filter(|snapshot| (from..=to).contains(&snapshot.time)).collect();
+    let mut figures = if records.iter().all(|named| is_plane(named.record)) {
+        plane(records, &all, shown)
+    } else {
+        solid(records, &all, shown)
     };
-    let all = &first.record.snapshots;
+    figures.extend(series_figures::figures(records, shown.window));
+    figures
+}
+
+/// Snapshots at some times, those of a record in a panel; what a record has not is left out and not shown as nothing.
+fn film_of<'a>(records: &'a [Named<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a Snapshot>)> {
+    let frames = |named: &'a Named<'_>| clock.iter().filter_map(|&time| named.at(time)).collect::<Vec<_>>();
+    records.iter().map(|named| (named.name.clone(), frames(named))).filter(|(_, frames)| frames.len() == clock.len()).collect()
+}
+
+/// Grains and contact forces at the end, and a film.
+fn solid(records: &[Named<'_>], all: &[&Snapshot], shown: &Shown) -> Vec<Figure> {
+    let Some(last) = all.last() else { return Vec::new() };
+    let shots = |clock: &[f64]| film_of(records, clock).into_iter().map(|(title, frames)| Lit { title, frames });
+    let at = |shot: Lit<'_>| {
+        let time = format!("t = {}", number::seconds(shot.frames.last().map_or(last.time, |snapshot| snapshot.time)));
+        if shot.title.is_empty() { time } else { format!("{}, {time}", shot.title) }
+    };
+    let end: Vec<Lit<'_>> =
+        shots(&[last.time]).map(|shot| Lit { frames: shot.frames.clone(), title: at(shot) }).collect();
+    let mut figures: Vec<Figure> =
+        [solid_figures::grains(&end, &[0.0]), solid_figures::forces(&end)].into_iter().flatten().collect();
+    if all.len() >= FEWEST {
+        let clock: Vec<f64> = spread(all, shown.frames).map(|snapshot| snapshot.time).collect();
+        figures.extend(solid_figures::grains(&shots(&clock).collect::<Vec<_>>(), &clock));
+    }
+    figures
+}
+
+/// Fields over the plane.
+fn plane(records: &[Named<'_>], all: &[&Snapshot], options: &Shown) -> Vec<Figure> {
     let shown: Vec<f64> = spread(all, if records.len() > 1 { 1 } else { PICTURES }).map(|shot| shot.time).collect();
-    let mut figures: Vec<Figure> = records.iter().filter_map(|named| forces(named, records.len() > 1)).collect();
-    for quantity in quantities(records, fringe) {
+    let mut figures: Vec<Figure> =
+        records.iter().filter_map(|named| forces(named, records.len() > 1, all.last()?.time)).collect();
+    let Some(end) = all.last().map(|snapshot| snapshot.time) else { return figures };
+    for quantity in quantities(records, options.fringe, end) {
         let (name, title) = words(quantity);
+        let (telling, mute): (Vec<&Named<'_>>, Vec<&Named<'_>>) =
+            records.iter().partition(|named| named.at(end).is_some_and(|snapshot| tells(snapshot, quantity)));
         let shots: Vec<Shot<'_>> = shown
             .iter()
             .flat_map(|&time| {
-                records.iter().filter_map(move |named| {
+                telling.iter().filter_map(move |named| {
                     let snapshot = named.at(time)?;
                     let time = format!("t = {}", number::seconds(snapshot.time));
                     let title = if named.name.is_empty() { time } else { format!("{}, {time}", named.name) };
@@ -74,12 +133,14 @@ pub fn figures(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Figure> {
             .collect();
         let picture = pictures(quantity, &shots, PIXELS, None);
         let range = picture.range;
-        figures.push(Figure::field(name, title, &caption(quantity), picture));
+        let caption = caption(quantity) + &not_told(&mute);
+        figures.push(Figure::field(name, title, &caption, picture));
         if all.len() >= FEWEST && !matches!(quantity, Quantity::Speed) {
-            let frames: Vec<&Snapshot> = spread(all, FRAMES).collect();
-            let clock: Vec<f64> = frames.iter().map(|snapshot| snapshot.time).collect();
-            let shots: Vec<Shot<'_>> = records
+            let clock: Vec<f64> = spread(all, options.frames).map(|snapshot| snapshot.time).collect();
+            let frames = |named: &&&Named<'_>| clock.iter().filter_map(|&time| named.at(time)).count() == clock.len();
+            let shots: Vec<Shot<'_>> = telling
                 .iter()
+                .filter(frames)
                 .map(|named| Shot {
                     title: named.name.clone(),
                     frames: clock.iter().filter_map(|&time| named.at(time)).collect(),
@@ -87,23 +148,40 @@ pub fn figures(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Figure> {
                 .collect();
             // Colours of a film must not change on the way.
             let moving = film(quantity, &shots, ("time t (s)", &clock), FILM_PIXELS, Some(range));
-            figures.push(Figure::field(&format!("{name}-film"), &format!("{title}, film"), &caption(quantity), moving));
+            figures.push(Figure::field(&format!("{name}-film"), &format!("{title}, film"), &caption, moving));
         }
     }
-    figures.extend(profiles(records));
+    figures.extend(profiles(records, end));
     figures
 }
 
+/// Whether a snapshot tells a quantity: what nobody has told is not zero.
+fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
+    let has_points = !snapshot.points.is_empty();
+    match quantity {
+        Quantity::StressDifference | Quantity::Fringes(_) => has_points || snapshot.contacts.is_some(),
+        Quantity::PlasticStrain => has_points,
+        Quantity::Rotation => has_points || snapshot.grains.iter().any(|grain| grain.angle.is_some()),
+        Quantity::Speed => true,
+    }
+}
+
+/// Which records do not tell what is shown.
+fn not_told(mute: &[&Named<'_>]) -> String {
+    let names: Vec<&str> = mute.iter().map(|named| named.name.as_str()).collect();
+    if names.is_empty() { String::new() } else { format!(" Not told by {}.", names.join(", ")) }
+}
+
 /// About `count` snapshots spread evenly, the last one among them; the first only in a film.
-fn spread(snapshots: &[Snapshot], count: usize) -> impl Iterator<Item = &Snapshot> {
+fn spread<'a>(snapshots: &'a [&'a Snapshot], count: usize) -> impl Iterator<Item = &'a Snapshot> {
     let last = snapshots.len().saturating_sub(1);
-    let count = count.min(last.max(1));
-    (1..=count).filter_map(move |at| snapshots.get(at * last / count))
+    let count = count.min(last.max(1)).max(1);
+    (1..=count).filter_map(move |at| snapshots.get(at * last / count).copied())
 }
 
 /// What there is to see: stress where contacts or points carry it, plastic strain and rotation where there is some.
-fn quantities(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Quantity> {
-    let ends: Vec<&Snapshot> = records.iter().filter_map(|named| named.record.snapshots.last()).collect();
+fn quantities(records: &[Named<'_>], fringe: Option<f64>, end: f64) -> Vec<Quantity> {
+    let ends: Vec<&Snapshot> = records.iter().filter_map(|named| named.at(end)).collect();
     let mut quantities = Vec::new();
     let stressed = ends.iter().any(|snapshot| !snapshot.points.is_empty() || !snapshot.told_contacts().is_empty());
     if stressed {
@@ -123,8 +201,8 @@ fn quantities(records: &[Named<'_>], fringe: Option<f64>) -> Vec<Quantity> {
     quantities
 }
 
-fn forces(named: &Named<'_>, several: bool) -> Option<Figure> {
-    let last = named.record.snapshots.last().filter(|snapshot| !snapshot.told_contacts().is_empty())?;
+fn forces(named: &Named<'_>, several: bool, end: f64) -> Option<Figure> {
+    let last = named.at(end).filter(|snapshot| !snapshot.told_contacts().is_empty())?;
     let name = if several { format!("forces-{}", named.name) } else { "forces".to_owned() };
     Some(Figure::forces(
         &name,
@@ -136,8 +214,8 @@ fn forces(named: &Named<'_>, several: bool) -> Option<Figure> {
 }
 
 /// Velocity and displacement across a domain that is periodic along one axis, which is the direction of flow.
-fn profiles(records: &[Named<'_>]) -> Vec<Figure> {
-    let Some(last) = records.first().and_then(|named| named.record.snapshots.last()) else { return Vec::new() };
+fn profiles(records: &[Named<'_>], end: f64) -> Vec<Figure> {
+    let Some(last) = records.first().and_then(|named| named.at(end)) else { return Vec::new() };
     let (across, along) = match last.periodic {
         [false, true, _] => (0, 1),
         [true, false, _] => (1, 0),
@@ -148,7 +226,9 @@ fn profiles(records: &[Named<'_>]) -> Vec<Figure> {
         .into_iter()
         .map(|(motion, word, unit)| {
             let curves = records.iter().map(|named| {
-                let points = profile(&named.record.snapshots, motion, across, along, SLICES);
+                let until: Vec<Snapshot> =
+                    named.record.snapshots.iter().filter(|snapshot| snapshot.time <= end).cloned().collect();
+                let points = profile(&until, motion, across, along, SLICES);
                 Curve::new(named.name.clone(), Stroke::Line, points)
             });
             Figure::graph(
@@ -203,7 +283,8 @@ mod tests {
     fn two_records_stand_beside_one_another() {
         let grains = sample::record();
         let deformable = Record { snapshots: vec![sample::deformable(); 9], ..sample::record() };
-        let figures = figures(&[named("mpm", &deformable), named("dem", &grains)], Some(1e3));
+        let figures =
+            figures(&[named("mpm", &deformable), named("dem", &grains)], &Shown { fringe: Some(1e3), ..Shown::default() });
         let names: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();
         for name in ["forces-mpm", "forces-dem", "stress", "fringes", "plastic-strain", "rotation-film", "displacement"]
         {
@@ -213,17 +294,42 @@ mod tests {
             Drawing::Field(field) => Some(field.panels.len()),
             Drawing::Graph(_) | Drawing::Forces(_) => None,
         });
-        assert!(panels.clone().count() > 5 && panels.clone().all(|count| count == 2));
+        // Plastic strain is told by material points alone.
+        assert!(panels.clone().count() > 5 && panels.clone().filter(|count| *count == 2).count() > 4);
         assert!(figures.iter().all(|figure| crate::plot::draw(figure).is_ok()));
     }
 
     #[test]
-    fn what_is_not_flat_is_not_drawn() {
+    fn what_is_not_flat_is_seen_from_outside() {
         let mut solid = sample::record();
         solid.snapshots[1].grains[0].position.z = 0.5;
+        let figures = figures(&[named("", &solid)], &Shown::default());
+        assert!(!is_plane(&solid) && figures.iter().any(|figure| figure.name == "grains"));
         let empty = Record { snapshots: Vec::new(), ..sample::record() };
-        for record in [&solid, &empty] {
-            assert!(!is_plane(record) && figures(&[named("", record)], None).is_empty());
+        assert!(super::figures(&[named("", &empty)], &Shown::default()).iter().all(|figure| figure.name.starts_with("probe-")));
+    }
+
+    /// A dump tells neither contacts nor angles: its panels are left out, and the caption says so.
+    #[test]
+    fn what_nobody_told_is_not_zero() {
+        let grains = sample::record();
+        let mut dump = sample::record();
+        for snapshot in &mut dump.snapshots {
+            snapshot.contacts = None;
+            snapshot.grains.iter_mut().for_each(|grain| grain.angle = None);
         }
+        let figures = figures(&[named("dem", &grains), named("dump", &dump)], &Shown::default());
+        for name in ["stress", "rotation"] {
+            let figure = figures.iter().find(|figure| figure.name == name).unwrap();
+            let Drawing::Field(field) = &figure.drawing else { unreachable!() };
+            assert!(field.panels.len() == 1 && figure.caption.contains("Not told by dump"), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_window_shows_what_is_in_it() {
+        let record = sample::record();
+        let none = Shown { window: (1e9, 2e9), ..Shown::default() };
+        assert!(figures(&[named("", &record)], &none).is_empty());
     }
 }

@@ -5,13 +5,13 @@ use super::run;
 use super::simulate::positive;
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
-use grainbench::reports::record_figures::{self, Named, is_plane};
+use grainbench::reports::record_figures::{self, Named, Shown};
 use grainbench::reports::report::Report;
 use grainbench::reports::store::REPORT_FILE;
 use grainbench::reports::study::{STUDY_FILE, load_study, write_study};
 use grainbench::reports::{refuse_mixed, summary_table, write_pictures, write_report};
 use grainbench::scene::record::Record;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// What the command takes.
@@ -25,6 +25,31 @@ pub(crate) struct Arguments {
     /// Stress c of photoelastic fringes cos((σ₁ − σ₂)/c) in pictures of a simulation; three fringes when absent.
     #[arg(long, value_name = "PA", value_parser = positive, allow_hyphen_values = true)]
     fringe_stress: Option<f64>,
+    /// Only what lies between two times (s), such as `.2..1`; either may be left out.
+    #[arg(long, value_name = "FROM..TO", value_parser = window, allow_hyphen_values = true)]
+    window: Option<(f64, f64)>,
+    /// The most frames of a film.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=500))]
+    frames: Option<u16>,
+}
+
+impl Arguments {
+    /// Whether pictures are asked for in a way of their own.
+    const fn is_of_pictures(&self) -> bool {
+        !self.beside.is_empty() || self.fringe_stress.is_some() || self.window.is_some() || self.frames.is_some()
+    }
+}
+
+/// Reads `FROM..TO`.
+fn window(text: &str) -> Result<(f64, f64), String> {
+    let expected = || format!("expected two times in seconds with `..` between them, such as `.2..1`, found `{text}`");
+    let (from, to) = text.split_once("..").ok_or_else(expected)?;
+    let read = |part: &str, open: f64| {
+        let part = part.trim();
+        if part.is_empty() { Ok(open) } else { part.parse::<f64>().ok().filter(|time| time.is_finite()).ok_or_else(expected) }
+    };
+    let (from, to) = (read(from, f64::NEG_INFINITY)?, read(to, f64::INFINITY)?);
+    if from <= to { Ok((from, to)) } else { Err(format!("expected a time and a later one, found `{text}`")) }
 }
 
 /// Reads what stands in a directory and writes page, figures and result files again. Ends as the run ended.
@@ -39,7 +64,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         print(&page)?;
         return Ok(ExitCode::SUCCESS);
     }
-    if !arguments.beside.is_empty() || arguments.fringe_stress.is_some() {
+    if arguments.is_of_pictures() {
         let there = arguments.dir.display();
         return Err(Fault::input(format!(
             "{there}: expected {RECORD_FILE}, which `simulate` leaves, to make pictures of"
@@ -59,19 +84,21 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
 
 /// Pictures of a simulation, and of others beside it.
 fn pictures(arguments: &Arguments) -> Result<(), Fault> {
-    let read = |dir: &Path| {
-        let record = record_json::load(dir).map_err(Fault::input)?;
-        if is_plane(&record) {
-            Ok(record)
-        } else {
-            let file = dir.join(RECORD_FILE);
-            Err(Fault::input(format!("{}: expected snapshots of a plane scene, found others or none", file.display())))
-        }
-    };
     let dirs = std::iter::once(&arguments.dir).chain(&arguments.beside);
-    let records: Vec<Record> = dirs.map(|dir| read(dir)).collect::<Result<_, _>>()?;
+    let records: Vec<Record> =
+        dirs.map(|dir| record_json::load(dir).map_err(Fault::input)).collect::<Result<_, _>>()?;
     let named: Vec<Named<'_>> = records.iter().map(|record| Named { name: name(record, &records), record }).collect();
-    let figures = record_figures::figures(&named, arguments.fringe_stress);
+    let plain = Shown::default();
+    let shown = Shown {
+        fringe: arguments.fringe_stress,
+        window: arguments.window.unwrap_or(plain.window),
+        frames: arguments.frames.map_or(plain.frames, usize::from),
+    };
+    let figures = record_figures::figures(&named, &shown);
+    if figures.is_empty() {
+        let file = arguments.dir.join(RECORD_FILE);
+        return Err(Fault::input(format!("{}: expected snapshots or samples of probes, found none to show", file.display())));
+    }
     write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::writing)
 }
 

@@ -235,7 +235,7 @@ fn of_record(lot: &mut Lot) -> Answer {
         Err(error) => one_line_of(&path, &error),
         Ok(record) => {
             let named = [record_figures::Named { name: String::new(), record: &record }];
-            draw(&record_figures::figures(&named, None))
+            draw(&record_figures::figures(&named, &record_figures::Shown::default()))
         }
     }
 }

@@ -35,7 +35,7 @@ pub(crate) fn solvers(report: &Report) -> Vec<&str> {
     let place = |name: &&str| {
         let method = name.split([':', '+']).next().unwrap_or_default();
         let known = METHODS.iter().position(|known| *known == method).unwrap_or(METHODS.len());
-        (name.contains('+'), known, name.contains(':'))
+        (name.contains('+'), name.contains(':'), known)
     };
     // In the order in which they come where nothing else tells.
     names.sort_by_key(place);

@@ -12,7 +12,7 @@ mod prose;
 pub(crate) mod provenance;
 mod rows;
 mod section;
-mod summary;
+pub(crate) mod summary;
 mod tables;
 
 use std::collections::BTreeSet;
@@ -49,7 +49,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     for ((section, anchor), names) in report.sections.iter().zip(&anchors).zip(&names) {
         pieces.extend(section::pieces(section, anchor, names, &mut taken)?);
     }
-    let head = overview::render(report, &anchors, &|_| true)?.into_string();
+    let head = overview::render(report, &anchors, &|_| true).into_string();
     let counts = Headline::of_report(report);
     let foot = html! { (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
     pieces.push(budget::Piece::Fixed(foot));
@@ -58,7 +58,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     let (main, beside) = budget::fit(pieces, budget::PAGE.saturating_sub(fixed));
     let below = main.strip_prefix(&head).unwrap_or_default();
     // Rows that lie beside the page cannot be led to by their own addresses.
-    let head = overview::render(report, &anchors, &|row| below.contains(&format!(" id=\"{row}\"")))?.into_string();
+    let head = overview::render(report, &anchors, &|row| below.contains(&format!(" id=\"{row}\""))).into_string();
     let body = html! {
         a.skip href="#summary" { "To the summary" }
         div.frame {

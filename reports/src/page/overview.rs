@@ -4,7 +4,6 @@ use maud::{Markup, PreEscaped, html};
 
 use super::{cards, matrix, sign, summary};
 use crate::headline::{Headline, OUTCOMES};
-use crate::plot::{self, DrawError};
 use crate::report::Report;
 use grainbench_harness::verdict::Outcome;
 
@@ -13,13 +12,12 @@ pub(crate) fn render(
     report: &Report,
     anchors: &[String],
     is_there: &dyn Fn(&str) -> bool,
-) -> Result<Markup, DrawError> {
+) -> Markup {
     let counts = Headline::of_report(report);
     let wrong = counts.fail + counts.broken;
     let cases = report.sections.len();
     let costs = report.measured.cost.as_ref();
-    let picture = costs.map(|costs| plot::draw(&summary::picture(costs))).transpose()?;
-    Ok(html! {
+    html! {
         header id="summary" {
             p.kicker { "grainbench " (report.provenance.version) " · " (report.provenance.date) " · commit " (report.provenance.commit) }
             h1 {
@@ -64,15 +62,15 @@ pub(crate) fn render(
         (cards::render(report, anchors, is_there))
         div.overview {
             (matrix::render(report, anchors))
-            @if let (Some(costs), Some(picture)) = (costs, &picture) {
+            @if let Some(costs) = costs {
                 div {
                     h2 id="costs" { "What accuracy costs" }
-                    div.plot { (PreEscaped(picture)) }
+                    div.plot.small { (PreEscaped(summary::picture(costs))) }
                     (summary::factors(costs))
                 }
             }
         }
-    })
+    }
 }
 
 /// What only a script can do; hidden until it is there.

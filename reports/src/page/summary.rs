@@ -1,12 +1,14 @@
 //! What fails, and what accuracy costs over all cases.
 
-use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::figure::{Axis, Curve, Graph, Stroke};
 use grainbench_harness::verdict::Outcome;
 use maud::{Markup, html};
 
 use crate::line;
-use crate::measured::{Costs, Factor, TARGETS};
+use crate::measured::{Costs, Factor, Line, TARGETS};
 use crate::number;
+use crate::plot::graph::{self, Form};
+use crate::plot;
 use crate::report::Report;
 
 /// More failing lines than this are left to the sections.
@@ -42,69 +44,77 @@ pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     }
 }
 
-/// Error against time over all cases.
-pub(crate) fn picture(costs: &Costs) -> Figure {
+/// Error against time over all cases, as a drawing whose legend is the table of factors.
+pub(crate) fn picture(costs: &Costs) -> String {
     let mut curves = Vec::new();
     for line in &costs.lines {
-        let means =
-            line.factors.iter().zip(TARGETS).filter_map(|(factor, target)| Some((factor.as_ref()?.place, target)));
-        let old = if costs.stamp.is_old(&line.solver) { " (changed since)" } else { "" };
-        curves.push(Curve::new(format!("{}{old}", line.solver), Stroke::MarkedLine, means.collect()));
-        let points = line.points.iter().copied().filter(|(_, error)| *error >= LEAST).collect();
-        curves.push(Curve::new("", Stroke::Beside, points));
+        let means = line.factors.iter().zip(TARGETS).filter_map(|(factor, target)| Some((factor.as_ref()?.place, target)));
+        curves.push(Curve::new(line.solver.clone(), Stroke::MarkedLine, means.collect()));
     }
-    Figure::graph(
-        "what-accuracy-costs",
-        "Error against time, over all cases",
-        "",
-        [Axis::log("time over the cheapest solver's at 1 %"), Axis::log("|error|")],
-        curves,
-    )
+    let points = |line: &Line| line.points.iter().copied().filter(|(_, error)| *error >= LEAST).collect::<Vec<_>>();
+    // Each behind the line of its own look.
+    let curves = curves
+        .into_iter()
+        .zip(&costs.lines)
+        .flat_map(|(curve, line)| [curve, Curve::new("", Stroke::Beside, points(line))])
+        .collect();
+    let graph =
+        Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error|"), curves };
+    let form = Form { width: 560.0, height: 470.0, legend: false };
+    plot::markup(&graph::draw_as("Error against time, over all cases", &graph, form))
 }
 
 /// The factors in a table, and how they were made.
 pub(crate) fn factors(costs: &Costs) -> Markup {
     let stamp = &costs.stamp;
     html! {
-        p.note {
-            "Filled: geometric mean over the quantities in which a solver reaches 10, 1 and .1 %. Hollow: every setting that no other "
-            "of its settings beats, errors below 10⁻¹⁰ left out. Times are of the stepping loop."
-        }
         table {
             thead {
                 tr {
-                    th scope="col" { "× the cheapest" }
+                    th scope="col" { "Time over the cheapest's, at" }
                     @for target in TARGETS { th.n scope="col" { (number::fraction(target)) } }
                 }
             }
             tbody {
-                @for line in &costs.lines {
+                @for (at, line) in costs.lines.iter().enumerate() {
                     tr class=[stamp.is_old(&line.solver).then_some("old")] {
-                        th scope="row" { (line.solver) span.fine { (line.asked) " of " (costs.quantities) " asked" } }
-                        @for factor in &line.factors {
-                            td.n { @if let Some(factor) = factor { (cell(factor)) } @else { "not reached" } }
-                        }
+                        th scope="row" { (graph::key(at)) " " (line.solver) }
+                        @for factor in &line.factors { td.n { (cell(factor.as_ref(), line.asked)) } }
                     }
                 }
             }
         }
+        (over_dem(costs))
         p.note {
-            "Measured " (stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit) ", and not by this run. "
+            "Joined: geometric mean over the quantities in which a solver reaches 10, 1 and .1 %, in brackets how many of those it was "
+            "asked for. Small: every setting that no other of its settings beats, errors below 10⁻¹⁰ left out. Times are of the stepping "
+            "loop. Measured " (stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
+            "; " code { "grainbench cost --keep" } " does it again, for the report of all cases too."
             @if !stamp.changed.is_empty() {
-                "Hatched: the sources of " (stamp.changed.join(", ")) " have changed since, or are not known to be the same. "
+                " Hatched: the sources of " (stamp.changed.join(", ")) " have changed since, or are not known to be the same."
             }
-            code { "grainbench cost --keep" } " measures them again."
         }
     }
 }
 
-fn cell(factor: &Factor) -> Markup {
-    let [least, largest] = factor.seconds.map(number::seconds);
-    html! {
-        "× " (number::significant(factor.times, 2)) " (" (factor.reached) ")"
-        span.fine { (least) " … " (largest) }
-        @if let Some((times, count)) = factor.over_dem {
-            span.fine { "× " (number::significant(times, 2)) " dem (" (count) ")" }
-        }
+fn cell(factor: Option<&Factor>, asked: usize) -> String {
+    match factor {
+        Some(factor) => format!("× {} ({} of {asked})", number::significant(factor.times, 2), factor.reached),
+        None => format!("not reached (0 of {asked})"),
     }
+}
+
+/// What the two methods cost over each other, where both reach an error.
+fn over_dem(costs: &Costs) -> Markup {
+    let Some(line) = costs.lines.iter().find(|line| line.solver == "mpm") else { return html! {} };
+    let parts: Vec<String> = line
+        .factors
+        .iter()
+        .zip(TARGETS)
+        .filter_map(|(factor, target)| {
+            let (times, count) = factor.as_ref()?.over_dem?;
+            Some(format!("at {} × {} ({count} quantities)", number::fraction(target), number::significant(times, 2)))
+        })
+        .collect();
+    html! { @if !parts.is_empty() { p { b { "mpm over dem" } ", where both reach it: " (parts.join(", ")) "." } } }
 }

@@ -85,7 +85,8 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
                 rect x=(px(x)) y=(px(y)) width=(px(panel.0)) height=(px(panel.1)) fill="none" stroke="#777" stroke-width=".8" {}
             }
             @if is_film { (clock(field, full, foot)) }
-            (scale_bar(field.pixel / scale, panel.0, height - FOOT + 24.0))
+            // Where lengths have no unit there is none to draw.
+            @if field.pixel > 0.0 { (scale_bar(field.pixel / scale, panel.0, height - FOOT + 24.0)) }
             @if each_its_own {
                 @for (at, panel_of) in field.panels.iter().enumerate() {
                     @if let Some((range, unit)) = &panel_of.own {

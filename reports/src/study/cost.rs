@@ -50,6 +50,14 @@ pub fn cheapest<'a>(diagram: &'a Diagram, line: &'a str, target: f64) -> Option<
     within.min_by(|a, b| a.wall_seconds.unwrap_or(f64::NAN).total_cmp(&b.wall_seconds.unwrap_or(f64::NAN)))
 }
 
+/// Whether no other line reaches an error in less time.
+#[must_use]
+pub fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
+    let time = |line: &str| cheapest(diagram, line, target).and_then(|point| point.wall_seconds);
+    let others = || lines([diagram]).into_iter().filter(|other| *other != line).filter_map(time);
+    time(line).is_some_and(|mine| others().all(|other| mine <= other))
+}
+
 /// Whether a line reaches an error in a time that cannot be told: less than its program's start varies by.
 #[must_use]
 pub fn is_hidden(diagram: &Diagram, line: &str, target: f64) -> bool {

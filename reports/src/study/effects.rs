@@ -24,6 +24,13 @@ pub(crate) fn render(study: &Study) -> Markup {
                 (count(Worth::Needed)) " needed, " (count(Worth::NotWorthSimulating)) " not worth simulating where they are on, "
                 (count(Worth::Inert)) " inert, " (count(Worth::NotInert)) " not inert."
             }
+            h3 { "Scenes by effects" }
+            p.note {
+                "Of an effect that is on: what changes most without it, in units of what its gate allows, and what it costs as particle-steps "
+                "and contact evaluations with it over those without. Of one that is off: = where it is inert in every bit, ≠ where not."
+            }
+            (heat(&study.ledger))
+            h3 { "The ledger" }
             (table(&study.ledger))
         }
     }
@@ -47,6 +54,62 @@ fn moved(shift: &Shift) -> f64 {
     match (shift.with, shift.without) {
         (Some(with), Some(without)) => (without - with).abs() / shift.allowed.max(f64::MIN_POSITIVE),
         _ => f64::INFINITY,
+    }
+}
+
+/// Scenes by effects: colour and number by what the scene loses without the effect.
+fn heat(ledger: &[Entry]) -> Markup {
+    let mut effects: Vec<&str> = Vec::new();
+    let mut scenes: Vec<(&str, &str)> = Vec::new();
+    for entry in ledger {
+        if !effects.contains(&entry.effect.as_str()) {
+            effects.push(&entry.effect);
+        }
+        if !scenes.contains(&(&entry.case, &entry.variant)) {
+            scenes.push((&entry.case, &entry.variant));
+        }
+    }
+    let find = |(case, variant): (&str, &str), effect: &str| {
+        ledger.iter().find(|entry| entry.case == case && entry.variant == variant && entry.effect == effect)
+    };
+    let table = html! {
+        table.heat {
+            thead { tr { th scope="col" { "Scene" } @for effect in &effects { th scope="col" { (effect) } } } }
+            tbody {
+                @for scene in &scenes {
+                    tr {
+                        th scope="row" { (scene.0) @if !scene.1.is_empty() { "/" (scene.1) } }
+                        @for effect in &effects { td { @if let Some(entry) = find(*scene, effect) { (warmth(entry)) } } }
+                    }
+                }
+            }
+        }
+    };
+    scrolling("Scenes by effects", &table)
+}
+
+fn warmth(entry: &Entry) -> Markup {
+    if !entry.on {
+        return html! { @if entry.worth == Worth::NotInert { b.f0 { "≠" } } @else { "=" } };
+    }
+    let moved = farthest(entry).map(moved);
+    let class = match moved {
+        None => "",
+        Some(moved) if moved <= 1.0 => "c0",
+        Some(moved) if moved <= 10.0 => "k0",
+        Some(moved) if moved <= 1e3 => "k1",
+        Some(_) => "k2",
+    };
+    let words = match moved {
+        None => "—".to_owned(),
+        Some(moved) if moved.is_finite() => number::significant(moved, 2),
+        Some(_) => "∞".to_owned(),
+    };
+    html! {
+        div class=(class) {
+            b { (words) }
+            @if let Some(counts) = entry.counts { span.fine { "× " (number::significant(counts, 3)) } }
+        }
     }
 }
 

@@ -1,8 +1,9 @@
 //! The page of a study.
 
 use super::{Study, cost, effects, stability, step};
+use crate::measured::Costs;
 use crate::number;
-use crate::page::{provenance, scrolling, shell, slug, unique};
+use crate::page::{provenance, scrolling, shell, slug, summary, unique};
 use crate::plot::{self, DrawError};
 use grainbench_harness::figure::Figure;
 use grainbench_harness::study::point::{Diagram, Point, Standing};
@@ -51,7 +52,25 @@ pub(crate) fn figure(figure: &Figure) -> Result<Markup, DrawError> {
     })
 }
 
+/// What each error costs over all cases, a sentence a target.
+fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
+    let sentence = |(at, target): (usize, f64)| {
+        let parts: Vec<String> = costs.lines.iter().filter_map(|line| {
+            let factor = line.factors[at]?;
+            let wins = study.diagrams.iter().filter(|diagram| cost::is_cheapest(diagram, &line.solver, target)).count();
+            Some(format!(
+                "{} in {} of {} quantities, in {wins} the cheapest, on average at {} times the cheapest",
+                line.solver, factor.reached, line.asked, number::significant(factor.times, 2)
+            ))
+        }).collect();
+        let parts = if parts.is_empty() { "no solver reaches it".to_owned() } else { parts.join("; ") };
+        format!("{}: {parts}.", number::fraction(target))
+    };
+    cost::TARGETS.into_iter().enumerate().map(sentence).collect()
+}
+
 fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
+    let costs = Costs::of(study, &|solver| study.sources.get(solver).cloned());
     let scatters: Vec<Markup> = cost::scatters(study).iter().map(figure).collect::<Result<_, _>>()?;
     Ok(html! {
         header id="summary" {
@@ -63,6 +82,14 @@ fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
                  are medians of interleaved repetitions, one run at a time; counts do not depend on the machine."
             }
             @if let Some(old) = &study.against { (changes(study, old)) }
+            div.overview {
+                div.plot.small { (PreEscaped(summary::picture(&costs))) }
+                div {
+                    (summary::factors(&costs))
+                    h3 { "Over all cases" }
+                    ul { @for line in conclusions(study, &costs) { li { (line) } } }
+                }
+            }
             h3 { "Which solver for which scene at 1 %" }
             (which(study))
             @for scatter in &scatters { (scatter) }

@@ -2,6 +2,7 @@
 
 use super::Study;
 use super::page::figure;
+use crate::measured::Stability;
 use crate::number;
 use crate::page::scrolling;
 use crate::plot::DrawError;
@@ -23,12 +24,10 @@ fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 /// Largest stable step against the knob, a figure a unit of steps.
 #[must_use]
 pub fn figures(study: &Study) -> Vec<Figure> {
-    distinct(study.limits.iter().map(|limit| limit.unit.as_str()))
-        .into_iter()
-        .filter_map(|unit| {
-            map(study.limits.iter().filter(|limit| limit.unit == unit && limit.at.is_some()).collect(), unit)
-        })
-        .collect()
+    let maps = distinct(study.limits.iter().map(|limit| limit.unit.as_str())).into_iter().filter_map(|unit| {
+        map(study.limits.iter().filter(|limit| limit.unit == unit && limit.at.is_some()).collect(), unit)
+    });
+    against_exact(study).into_iter().chain(maps).collect()
 }
 
 fn map(rows: Vec<&Limit>, unit: &str) -> Option<Figure> {
@@ -76,6 +75,67 @@ fn map(rows: Vec<&Limit>, unit: &str) -> Option<Figure> {
         .then(|| Figure::graph(name, title, caption, [x, Axis::linear(&format!("Δt / ({unit})"))], curves))
 }
 
+/// Every largest stable step that was found against the exact one: on the line where they agree.
+fn against_exact(study: &Study) -> Option<Figure> {
+    let mut curves = Vec::new();
+    let mut ends = (f64::INFINITY, 0.0_f64);
+    for solver in distinct(study.limits.iter().map(|row| row.solver.as_str())) {
+        let mine = study.limits.iter().filter(|row| row.solver == solver);
+        let points: Vec<(f64, f64)> = mine.filter_map(|row| Some((row.exact?, row.found?))).collect();
+        for (exact, _) in &points {
+            ends = (ends.0.min(*exact), ends.1.max(*exact));
+        }
+        if !points.is_empty() {
+            curves.push(Curve::new(solver, Stroke::Markers, points));
+        }
+    }
+    curves.push(Curve::new("exact", Stroke::Dashed, vec![(ends.0, ends.0), (ends.1, ends.1)]));
+    (curves.len() > 1).then(|| {
+        Figure::graph(
+            "found-exact",
+            "Largest stable steps against the exact limits",
+            "Every assembly with an exact limit, in units of √(m/k); below the line a solver breaks earlier than central differences do.",
+            [Axis::linear("exact limit / √(m/k)"), Axis::linear("largest stable step / √(m/k)")],
+            curves,
+        )
+    })
+}
+
+/// A line a solver: its limits, and how it stands in hard cases.
+fn totals(study: &Study) -> Markup {
+    let table = html! {
+        table {
+            thead {
+                tr {
+                    th scope="col" { "Solver" }
+                    th scope="col" { "Largest stable step over the exact limit" }
+                    th.n scope="col" { "Hard cases that hold" }
+                    th.n scope="col" { "at a smaller step" }
+                    th.n scope="col" { "end in an error" }
+                    th.n scope="col" { "quietly wrong" }
+                }
+            }
+            tbody {
+                @for line in &Stability::of(study, &|_| None).lines {
+                    tr {
+                        th scope="row" { (line.solver) }
+                        td {
+                            @if let Some(([low, high], count)) = line.limit {
+                                (number::significant(low, 4)) " … " (number::significant(high, 4)) " in " (count) " assemblies"
+                            } @else { "—" }
+                        }
+                        td.n { (line.holds) " of " (line.asked()) }
+                        td.n { (line.smaller) }
+                        td.n { (line.typed) }
+                        td.n { (line.wrong) }
+                    }
+                }
+            }
+        }
+    };
+    scrolling("Totals", &table)
+}
+
 /// The section of the page.
 pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
     let pictures: Vec<Markup> = figures(study).iter().map(figure).collect::<Result<_, _>>()?;
@@ -88,6 +148,8 @@ pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
                  exact limit where there \
                  is one; and hard cases, each with what must hold."
             }
+            h3 { "Totals" }
+            (totals(study))
             @if !study.hard.is_empty() {
                 h3 { "Hard cases" }
                 (matrix(&study.hard))

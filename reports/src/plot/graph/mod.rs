@@ -69,9 +69,42 @@ impl Panel<'_> {
     }
 }
 
+/// How large a drawing is, and whether it tells by itself what is what.
+#[derive(Clone, Copy)]
+pub struct Form {
+    /// Width.
+    pub width: f64,
+    /// Height.
+    pub height: f64,
+    /// Whether there is a legend.
+    pub legend: bool,
+}
+
+impl Form {
+    /// Of every figure.
+    pub const FIGURE: Self = Self { width: WIDTH, height: HEIGHT, legend: true };
+}
+
+/// The marker and colour of the curve at a place among those that are not dashed, for a table that is the legend.
+#[must_use]
+pub fn key(place: usize) -> Markup {
+    let look = Look { colour: palette::colour(place), marker: palette::marker(place), dash: None };
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 26 12" width="26" height="12" aria-hidden="true" {
+            (curves::sample(Stroke::MarkedLine, &look, (2.0, 6.0), (24.0, 6.0)))
+        }
+    }
+}
+
 /// Draws a graph as a complete SVG document.
 #[must_use]
 pub fn draw(title: &str, graph: &Graph) -> String {
+    draw_as(title, graph, Form::FIGURE)
+}
+
+/// The same in another form.
+#[must_use]
+pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     let looks = looks(&graph.curves);
     let notes = notes(graph);
     let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
@@ -86,9 +119,9 @@ pub fn draw(title: &str, graph: &Graph) -> String {
         Scale::fit(points().filter(seen).map(|point| point.0), log_x, x_margin, 7).at_levels(&levels(&graph.curves));
     let y = Scale::fit(points().filter(seen).map(|point| point.1), log_y, 0.06, 6);
     let difference = difference::of(graph, &y);
-    let height = HEIGHT + if difference.is_some() { BELOW } else { 0.0 };
+    let height = form.height + if difference.is_some() { BELOW } else { 0.0 };
 
-    let legend = legend::lines(&graph.curves);
+    let legend = if form.legend { legend::lines(&graph.curves) } else { Vec::new() };
     let legend_width = legend.iter().flatten().map(|line| text_width(line, TICK)).fold(0.0, f64::max);
     let ticks = [Some(&y), difference.as_ref().map(|difference| &difference.scale)];
     let tick_width = ticks
@@ -100,9 +133,9 @@ pub fn draw(title: &str, graph: &Graph) -> String {
         .fold(0.0, f64::max);
     let frame = Frame {
         left: 44.0 + tick_width,
-        right: if legend.is_empty() { WIDTH - 28.0 } else { WIDTH - legend_width - LEGEND_SAMPLE - 36.0 },
+        right: if legend.is_empty() { form.width - 28.0 } else { form.width - legend_width - LEGEND_SAMPLE - 36.0 },
         top: 48.0,
-        bottom: HEIGHT - 58.0 - 17.0 * notes.len() as f64,
+        bottom: form.height - 58.0 - 17.0 * notes.len() as f64,
     };
     let panel = Panel { frame, x: &x, y: &y };
     let below = difference.as_ref().map(|difference| {
@@ -110,7 +143,7 @@ pub fn draw(title: &str, graph: &Graph) -> String {
         (Panel { frame, x: &x, y: &difference.scale }, difference)
     });
     let body = html! {
-        rect width=(WIDTH) height=(height) fill="#fff" {}
+        rect width=(form.width) height=(height) fill="#fff" {}
         text x="10" y="29" font-size=(TITLE) font-weight="bold" fill="#222" { (title) }
         (axes::draw(&panel, &graph.y.label, below.is_none().then_some(&graph.x.label)))
         @for (curve, look) in graph.curves.iter().zip(&looks) {
@@ -127,7 +160,7 @@ pub fn draw(title: &str, graph: &Graph) -> String {
     };
     let body: Markup = body;
     html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height}")) width="100%" role="img"
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {height}", form.width)) width="100%" role="img"
             aria-label=(title) font-family=(FONTS) stroke-linejoin="round" stroke-linecap="round" {
             title { (title) }
             (body)
@@ -144,8 +177,9 @@ fn levels(curves: &[Curve]) -> Vec<f64> {
         curves.iter().filter(is_of_levels).flat_map(|curve| &curve.points).map(|point| point.0).collect();
     let count = levels.len();
     levels.sort_by(f64::total_cmp);
-    levels.dedup();
-    let is_run_at_levels = curves.iter().any(|curve| curve.stroke == Stroke::MarkedLine);
+    levels.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
+    let is_run_at_levels = curves.iter().any(|curve| curve.stroke == Stroke::MarkedLine)
+        && curves.iter().all(|curve| curve.stroke != Stroke::Beside);
     // What has a level of its own for every point was not run at levels.
     let is_shared = count > levels.len() || levels.len() <= 4;
     if is_run_at_levels && is_shared && (2..=MOST).contains(&levels.len()) { levels } else { Vec::new() }

@@ -3,6 +3,7 @@
 mod contacts;
 mod extremes;
 mod long;
+mod many;
 
 use super::PATIENCE as LIMIT;
 use super::failure::{Failure, finite, of_error};
@@ -12,10 +13,11 @@ use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::study::stability::{Hard, Hardness};
 use grainbench_reports::WriteError;
+use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
@@ -32,6 +34,8 @@ pub struct HardCase {
     pub scene: Result<Scene, SceneError>,
     /// What must hold, in deed.
     pub check: Check,
+    /// Whether it is continued from a checkpoint halfway too, and must end in the same bits.
+    pub goes_on: bool,
 }
 
 /// Solvers that are asked.
@@ -52,7 +56,7 @@ const HOPELESS: f64 = 600.0;
 /// Every hard case.
 #[must_use]
 pub fn all() -> Vec<HardCase> {
-    [extremes::cases(), contacts::cases(), long::cases()].into_iter().flatten().collect()
+    [extremes::cases(), contacts::cases(), long::cases(), many::cases()].into_iter().flatten().collect()
 }
 
 /// A case from the text of its scene.
@@ -74,7 +78,7 @@ fn changed(
     if let Ok(scene) = &mut scene {
         change(scene);
     }
-    HardCase { name, must, scene, check }
+    HardCase { name, must, scene, check, goes_on: false }
 }
 
 /// The verdict of a solver, from the result cache where it stands there; and whether it did.
@@ -165,8 +169,14 @@ fn resolution(solver: &str, part: f64) -> Resolution {
 }
 
 fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Result<(), Stop> {
-    match solver.run(scene, &resolution(&solver.name(), part), &mut ()) {
+    let resolution = resolution(&solver.name(), part);
+    let mut halfway = Halfway::default();
+    let run = if case.goes_on { solver.run(scene, &resolution, &mut halfway) } else { solver.run(scene, &resolution, &mut ()) };
+    match run {
         Ok(record) => {
+            if case.goes_on {
+                continues(scene, solver, &resolution, (&record, halfway))?;
+            }
             record.snapshots.iter().try_for_each(finite).map_err(Stop::Failed)?;
             (case.check)(scene, &record).map_err(Stop::Failed)
         }
@@ -177,6 +187,49 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
             None => Stop::Cannot(error),
         }),
     }
+}
+
+/// Keeps the checkpoint of half the steps.
+#[derive(Default)]
+struct Halfway {
+    steps: u64,
+    checkpoint: Option<Checkpoint>,
+}
+
+impl Watch for Halfway {
+    fn begin(&mut self, _time_step: f64, steps: u64) {
+        self.steps = steps;
+    }
+
+    fn progress(&mut self, _done: u64, _total: u64) {}
+
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(self.steps.div_ceil(2))
+    }
+
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.checkpoint = Some(checkpoint);
+        Ok(())
+    }
+}
+
+/// Whether a run that goes on from its middle ends as the whole one did.
+fn continues(
+    scene: &Scene,
+    solver: &dyn Solver,
+    resolution: &Resolution,
+    (whole, halfway): (&Record, Halfway),
+) -> Result<(), Stop> {
+    let Some(checkpoint) = halfway.checkpoint else {
+        let reason = "it leaves no checkpoints to continue from".to_owned();
+        return Err(Stop::Cannot(RunError::Unsupported { solver: solver.name(), reason }));
+    };
+    let continued = solver.restart(scene, resolution, &checkpoint, &mut ()).map_err(Stop::Cannot)?;
+    let differ = end(whole).iter().zip(end(&continued)).filter(|(a, b)| a != b).count();
+    if differ > 0 || end(whole).len() != end(&continued).len() {
+        return Err(Stop::Failed(Failure::Wrong(format!("{differ} grains end otherwise when the run is continued"))));
+    }
+    Ok(())
 }
 
 /// Grains at the end.

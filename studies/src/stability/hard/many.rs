@@ -1,0 +1,141 @@
+//! A thousand grains: what holds for two must hold for many, for long, and when a run goes on from its middle.
+
+use super::{HardCase, case, end, kinetic, near};
+use crate::stability::failure::Failure;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use std::f64::consts::FRAC_1_PI;
+use std::fmt::Write as _;
+
+/// Rows of the heap: 990 discs.
+const ROWS: usize = 44;
+/// Steps of a tenth of the critical one that the heap rests for.
+const STEPS: f64 = 1e6;
+/// Discs along the sheared layer, and rows of it.
+const ACROSS: usize = 40;
+const LAYERS: usize = 25;
+/// Radius of a sheared disc; they stand two apart, so that they fill .80 of the plane.
+const RADIUS: f64 = 0.94;
+
+pub(super) fn cases() -> Vec<HardCase> {
+    let shear = shear();
+    vec![
+        case(
+            "heap-of-990-for-1e6-steps",
+            "a heap of 44 rows of discs comes to rest and stays: no disc is off its place by R/10 after 10⁶ steps of springs, none moves",
+            &heap(),
+            at_rest,
+        ),
+        case(
+            "dense-shear-of-1000",
+            "a layer of 1000 discs between walls that move apart along themselves: all stay between the walls, none overlaps by \
+             R/10, none is faster than twice the wall",
+            &shear,
+            sheared,
+        ),
+        HardCase {
+            goes_on: true,
+            ..case(
+                "restart-of-1000-in-the-middle",
+                "the same layer, interrupted halfway and continued from its checkpoint, ends in the same bits",
+                &shear,
+                sheared,
+            )
+        },
+    ]
+}
+
+/// Laws of unit masses with k = 1e6, so that a tenth of the critical step is 2e-4 s.
+fn head(title: &str, duration: f64, gravity: f64, radius: f64) -> String {
+    format!(
+        "title = '{title}'\ndimension = 2\ngravity = [0.0, {gravity:?}]\nduration = {duration:?}\nmaterials.m.density = {:?}\n\
+         contacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 2.857142857e5, friction = 0.5, \
+         normal_damping = 500.0, tangential_damping = 500.0 }}\n",
+        FRAC_1_PI / (radius * radius)
+    )
+}
+
+fn grain(text: &mut String, number: usize, radius: f64, [x, y]: [f64; 2]) {
+    let _ = write!(text, "[grains.g{number}]\nmaterial = 'm'\nradius = {radius:?}\nposition = [{x:?}, {y:?}]\n");
+}
+
+fn heap() -> String {
+    let mut text = head("A heap of many", STEPS * 2e-4, -10.0, 1.0);
+    let mut number = 0;
+    for row in 0..ROWS {
+        for at in 0..ROWS - row {
+            let x = 2.0 * at as f64 + row as f64 - (ROWS - 1) as f64;
+            grain(&mut text, number, 1.0, [x, 1.0 + 3.0_f64.sqrt() * row as f64]);
+            number += 1;
+        }
+    }
+    let edge = ROWS as f64;
+    for (name, point, normal) in
+        [("floor", [0.0, 0.0], [0.0, 1.0]), ("left", [-edge, 0.0], [1.0, 0.0]), ("right", [edge, 0.0], [-1.0, 0.0])]
+    {
+        let _ = write!(text, "[walls.{name}]\nmaterial = 'm'\nplane = {{ point = {point:?}, normal = {normal:?} }}\n");
+    }
+    text + "[output]\nevery = 10.0\n[probes]\nall = { system = true }\n"
+}
+
+fn at_rest(scene: &Scene, record: &Record) -> Result<(), Failure> {
+    let grains = end(record);
+    if grains.len() != scene.grains.len() {
+        return Err(Failure::Wrong(format!("{} grains are left of {}", grains.len(), scene.grains.len())));
+    }
+    for (grain, start) in grains.iter().zip(&scene.grains) {
+        near(&format!("way that grain {} has gone", grain.id), (grain.position - start.position).norm(), 0.0, 0.1)?;
+    }
+    near("kinetic energy", kinetic(grains, scene), 0.0, 1e-6)
+}
+
+/// Height of the layer.
+fn height() -> f64 {
+    3.0_f64.sqrt() * (LAYERS - 1) as f64 + 2.0 * RADIUS
+}
+
+fn shear() -> String {
+    let length = 2.0 * ACROSS as f64;
+    let mut text = format!("domain = {{ low = [0.0, 0.0], high = [{length:?}, {:?}], periodic = [true, false] }}\n", height())
+        + &head("A sheared layer", 4.0, 0.0, RADIUS);
+    for row in 0..LAYERS {
+        for at in 0..ACROSS {
+            let x = 2.0 * at as f64 + 0.5 + (row % 2) as f64;
+            grain(&mut text, ACROSS * row + at, RADIUS, [x, RADIUS + 3.0_f64.sqrt() * row as f64]);
+        }
+    }
+    for (name, y, up, way) in [("bottom", 0.0, 1.0, -1.0), ("top", height(), -1.0, 1.0)] {
+        let _ = write!(
+            text,
+            "[walls.{name}]\nmaterial = 'm'\nplane = {{ point = [0.0, {y:?}], normal = [0.0, {up:?}] }}\n\
+             motion = [{{ velocity = [{way:?}, 0.0] }}]\n"
+        );
+    }
+    text + "[output]\nevery = 0.5\n[probes]\nall = { system = true }\n"
+}
+
+fn sheared(scene: &Scene, record: &Record) -> Result<(), Failure> {
+    let grains = end(record);
+    if grains.len() != scene.grains.len() {
+        return Err(Failure::Wrong(format!("{} grains are left of {}", grains.len(), scene.grains.len())));
+    }
+    for grain in grains {
+        let within = (0.9 * RADIUS..=height() - 0.9 * RADIUS).contains(&grain.position.y);
+        if !within {
+            return Err(Failure::Tunnelling(format!("grain {} is at y = {:.3}", grain.id, grain.position.y)));
+        }
+        near(&format!("speed of grain {}", grain.id), grain.velocity.norm(), 0.0, 2.0)?;
+    }
+    let length = 2.0 * ACROSS as f64;
+    for (at, grain) in grains.iter().enumerate() {
+        for other in &grains[at + 1..] {
+            let mut way = grain.position - other.position;
+            way.x -= length * (way.x / length).round();
+            let overlap = 2.0 * RADIUS - way.norm();
+            if overlap > 0.1 * RADIUS {
+                return Err(Failure::Overlap(overlap / RADIUS));
+            }
+        }
+    }
+    Ok(())
+}
