@@ -43,12 +43,13 @@ fn figure(records: &[Named<'_>], (quantity, unit): (&str, &str), window: (f64, f
     let more = curves.len().saturating_sub(CURVES);
     let left_out = if more > 0 { format!(" {more} more are in the table of probes.") } else { String::new() };
     curves.truncate(CURVES);
-    let label = if unit == "1" { quantity.to_owned() } else { format!("{quantity} ({unit})") };
+    let words = quantity.replace('_', " ");
+    let label = if unit == "1" { words.clone() } else { format!("{words} ({unit})") };
     (!curves.is_empty()).then(|| {
         Figure::graph(
             &format!("probe-{quantity}"),
-            &format!("Probes: {quantity}"),
-            &format!("{quantity} as the scene's probes tell it.{left_out}"),
+            &format!("Probes: {words}"),
+            &format!("{words} as the scene's probes tell it.{left_out}"),
             [Axis::linear("time t (s)"), Axis::linear(&label)],
             curves,
         )

@@ -108,6 +108,7 @@ fn card(
             h3 { (filter(None, html! { (solver) })) span { (pass) "/" (all) } }
             dl {
                 div { dt { "passed" } dd { (kinds(report, solver)) } }
+                (compared(report, solver))
                 @if let Some((_, row)) = worst {
                     div {
                         dt { (if row.outcome == Outcome::Known { "gets wrong" } else { "fails" }) }
@@ -145,6 +146,22 @@ fn kinds(report: &Report, solver: &str) -> String {
         (all > 0).then(|| format!("{} {pass}/{all}", kind.word()))
     };
     KINDS.into_iter().filter_map(of).collect::<Vec<_>>().join(", ")
+}
+
+/// Rows of others that are judged by runs of this program.
+fn compared(report: &Report, solver: &str) -> Markup {
+    let against = format!("against {solver}");
+    let by_it = |row: &&Verdict| {
+        let is_named = row.quantity.contains(&against) || row.source.to_lowercase().contains(solver);
+        row.evidence == Evidence::OtherCode && row.solver != solver && is_named
+    };
+    let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).filter(by_it).collect();
+    let agree = rows.iter().filter(|row| row.outcome == Outcome::Pass).count();
+    html! {
+        @if !rows.is_empty() {
+            div { dt { "its runs" } dd { (agree) " of " (rows.len()) " rows of ours agree with them" } }
+        }
+    }
 }
 
 fn stable(of: &Stability, hold: &Hold) -> Markup {

@@ -67,10 +67,12 @@ fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
 fn short(worst: f64) -> String {
     if worst >= 1e3 {
         format!("1e{}", worst.log10().round())
+    } else if worst >= 0.995 {
+        number::significant(worst, 2)
     } else if worst < 0.005 {
         "0".to_owned()
     } else {
-        number::significant(worst, 2)
+        format!("{worst:.2}").trim_start_matches('0').to_owned()
     }
 }
 

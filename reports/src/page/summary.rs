@@ -86,7 +86,7 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
         }
         (over_dem(costs))
         p.note {
-            "Joined: geometric mean over the quantities in which a solver reaches 10, 1 and .1 %, in brackets how many of those it was "
+            "Joined: geometric mean over the quantities in which a solver reaches 10, 1 and .1 %, below how many of those it was "
             "asked for. Small: every setting that no other of its settings beats, errors below 10⁻¹⁰ left out. Times are of the stepping "
             "loop. Measured " (stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
             "; " code { "grainbench cost --keep" } " does it again, for the report of all cases too."
@@ -97,10 +97,10 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
     }
 }
 
-fn cell(factor: Option<&Factor>, asked: usize) -> String {
-    match factor {
-        Some(factor) => format!("× {} ({} of {asked})", number::significant(factor.times, 2), factor.reached),
-        None => format!("not reached (0 of {asked})"),
+fn cell(factor: Option<&Factor>, asked: usize) -> Markup {
+    html! {
+        @if let Some(factor) = factor { "× " (number::significant(factor.times, 2)) } @else { "—" }
+        span.fine { (factor.map_or(0, |factor| factor.reached)) " of " (asked) }
     }
 }
 

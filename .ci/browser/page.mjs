@@ -1,0 +1,155 @@
+// Tries a report in a browser: node page.mjs DIR. What it finds wrong is printed, and it ends with 1.
+import fs from "node:fs";
+import path from "node:path";
+import { pathToFileURL } from "node:url";
+import puppeteer from "puppeteer-core";
+
+const dir = path.resolve(process.argv[2]);
+const file = path.join(dir, "index.html");
+const address = pathToFileURL(file).href;
+const axe = fs.readFileSync(new URL("node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
+const wrong = [];
+const check = (holds, what) => { if (!holds) wrong.push(what); };
+const pause = (milliseconds) => new Promise((done) => { setTimeout(done, milliseconds); });
+
+const found = ["chromium", "chromium-browser", "google-chrome"].flatMap((name) => process.env.PATH.split(":").map((at) => path.join(at, name)));
+const executablePath = found.find((at) => fs.existsSync(at));
+if (!executablePath) { console.error("There is no chromium here."); process.exit(1); }
+const browser = await puppeteer.launch({
+  executablePath,
+  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+});
+
+const open = async (width, { dark = false, script = true, hash = "" } = {}) => {
+  const page = await browser.newPage();
+  page.on("console", (message) => wrong.push(`console at ${width}: ${message.text()}`));
+  page.on("pageerror", (error) => wrong.push(`error at ${width}: ${error.message}`));
+  page.on("request", (request) => { if (!/^(file|data|blob):/.test(request.url())) wrong.push(`asked the network for ${request.url()}`); });
+  await page.setJavaScriptEnabled(script);
+  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: dark ? "dark" : "light" }]);
+  await page.setViewport({ width, height: 900 });
+  await page.goto(address + hash, { waitUntil: "load" });
+  return page;
+};
+
+// It is light, short, and nowhere wider than the screen; nobody is kept from reading it.
+check(fs.statSync(file).size <= 2_500_000, `the page weighs ${fs.statSync(file).size} bytes`);
+for (const width of [1440, 1024, 390]) {
+  for (const dark of [false, true]) {
+    const page = await open(width, { dark });
+    const [wide, high] = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]);
+    check(wide <= width, `at ${width} the page is ${wide} wide`);
+    if (width === 1440) check(high <= 40 * 900, `the page is ${(high / 900).toFixed(1)} screens long`);
+    await page.evaluate(() => { document.querySelectorAll("details").forEach((details) => { details.open = true; }); });
+    const opened = await page.evaluate(() => document.documentElement.scrollWidth);
+    check(opened <= width, `at ${width}, all opened, the page is ${opened} wide`);
+    const cut = await page.evaluate(() => [...document.querySelectorAll("table.verdicts td:first-child")].filter((cell) => cell.getClientRects().length && cell.getBoundingClientRect().right > innerWidth).length);
+    check(cut === 0, `at ${width} ${cut} verdicts are off the screen`);
+    await page.evaluate(() => { document.querySelectorAll(".case details").forEach((details) => { details.open = false; }); });
+    if (width !== 1024) {
+      await page.evaluate(axe);
+      const serious = await page.evaluate(async () => (await axe.run()).violations
+        .filter((violation) => ["serious", "critical"].includes(violation.impact))
+        .map((violation) => `${violation.id}: ${violation.nodes.length} × ${violation.nodes[0].html.slice(0, 160)} ${violation.nodes[0].failureSummary.slice(0, 200)}`));
+      for (const violation of serious) wrong.push(`axe at ${width}${dark ? ", dark" : ""}: ${violation}`);
+    }
+    await page.close();
+  }
+}
+
+const page = await open(1440);
+const timing = await page.evaluate(() => performance.getEntriesByName("first-contentful-paint").map((entry) => entry.startTime)[0]);
+console.log(`first paint after ${Math.round(timing)} ms`);
+const shown = () => page.evaluate(() => [...document.querySelectorAll("table.verdicts tbody tr")].filter((row) => !row.hidden).map((row) => ({ id: row.id, solver: row.dataset.s, outcome: row.dataset.o, text: row.textContent.toLowerCase(), visible: row.checkVisibility() })));
+const all = (await shown()).length;
+
+// Filter: only what fits is shown, and all of it, opened.
+const [solver] = await page.evaluate(() => [document.querySelector("table.verdicts tbody tr").dataset.s]);
+await page.select("#by-solver", solver);
+let rows = await shown();
+check(rows.length > 0 && rows.length < all && rows.every((row) => row.solver === solver && row.visible), `filter by ${solver}: ${rows.length} of ${all} rows`);
+await page.select("#by-outcome", "pass");
+rows = await shown();
+check(rows.every((row) => row.solver === solver && row.outcome === "pass"), "filter by solver and outcome");
+await page.click("#clear");
+check((await shown()).length === all, "clearing shows all rows again");
+await page.keyboard.press("/");
+await page.keyboard.type("velocity");
+await pause(300);
+rows = await shown();
+const sections = await page.evaluate(() => [...document.querySelectorAll("section.case")].filter((section) => !section.hidden).every((section) => section.querySelector("table.verdicts tbody tr:not([hidden])")));
+check(rows.length > 0 && rows.length < all && sections, `search: ${rows.length} of ${all} rows`);
+await page.evaluate(() => { document.activeElement.blur(); });
+await page.keyboard.press("Escape");
+await page.focus("#search");
+await page.keyboard.type("no such word anywhere");
+await pause(300);
+check((await shown()).length === 0, "a search for what is not there finds something");
+await page.keyboard.press("Escape");
+check((await shown()).length === all, "Escape shows all rows again");
+
+// Sort: by numbers, both ways.
+const order = () => page.evaluate(() => [...document.querySelectorAll("table.verdicts")][0].tBodies[0]).then(() => page.evaluate(() => [...document.querySelector("table.verdicts").tBodies[0].rows].map((row) => Number(row.cells[4].dataset.v)).filter((value) => !Number.isNaN(value))));
+const sort = () => page.evaluate(() => { const details = document.querySelector("table.verdicts").closest("details"); details.open = true; document.querySelectorAll("table.verdicts thead th button")[4].click(); });
+await sort();
+let values = await order();
+check(values.length > 1 && values.every((value, at) => at === 0 || values[at - 1] <= value), "sort by error");
+await sort();
+values = await order();
+check(values.every((value, at) => at === 0 || values[at - 1] >= value), "sort by error, the other way round");
+
+// A row as text.
+const copied = await page.evaluate(() => { document.querySelector("table.verdicts .act button").click(); return document.documentElement.dataset.copied; });
+check(copied && copied.includes(" · ") && !copied.includes("§"), `copied: ${copied}`);
+
+// A cell of the matrix leads to its rows.
+const cell = await page.evaluate(() => { const link = document.querySelector(".matrix a[data-solver]"); link.click(); return { solver: link.dataset.solver, case: link.dataset.case }; });
+rows = await shown();
+check(rows.length > 0 && rows.every((row) => row.solver === cell.solver), "a cell of the matrix leads to its rows");
+await page.click("#clear");
+
+// Films run, and stop when asked.
+const film = await page.$(".film");
+if (film) {
+  await film.evaluate((of) => { for (let up = of; up; up = up.parentElement) if (up.tagName === "DETAILS") up.open = true; of.scrollIntoView(); });
+  await pause(800);
+  const frame = () => film.evaluate((of) => of.dataset.frame);
+  const before = await frame();
+  await pause(500);
+  check(before !== await frame(), "a film does not run");
+  await (await film.$("button")).click();
+  const stopped = await frame();
+  await pause(500);
+  check(stopped === await frame() && await film.evaluate((of) => of.querySelector("button").textContent) === "Play", "a film does not stop");
+} else {
+  wrong.push("there is no film to try");
+}
+await page.close();
+
+// Anchors, with a script and without: the row that is asked for is opened and seen.
+const id = await (async () => { const first = await open(1440); const found = await first.evaluate(() => [...document.querySelectorAll("table.verdicts tbody tr")].at(-1).id); await first.close(); return found; })();
+for (const script of [true, false]) {
+  const page = await open(1440, { script, hash: `#${id}` });
+  await pause(400);
+  const row = await page.$(`#${id}`);
+  check(await row.isVisible(), `#${id} is not opened ${script ? "with" : "without"} a script`);
+  if (!script) check(!(await (await page.$("#tools")).isVisible()), "tools that need a script are shown without one");
+  await page.close();
+}
+
+// In print everything is there: tables opened, the still frame of a film, contents.
+const print = await open(1440);
+await print.emulateMediaType("print");
+const inPrint = await print.evaluate(() => ({
+  row: document.querySelector("table.verdicts tbody tr").getClientRects().length,
+  still: document.querySelector(".film image")?.getBoundingClientRect().width ?? 1,
+  contents: document.querySelector(".contents a").getClientRects().length,
+  tools: document.querySelector("#tools").getClientRects().length,
+}));
+check(inPrint.still > 0 && inPrint.contents > 0 && inPrint.tools === 0, `print: ${JSON.stringify(inPrint)}`);
+await print.close();
+
+await browser.close();
+for (const what of wrong) console.error(what);
+console.log(wrong.length ? `${wrong.length} things are wrong` : "the page holds");
+process.exit(wrong.length ? 1 : 0);
