@@ -2,8 +2,8 @@
 //! lit grains and contact forces; of all what probes told. Several records stand beside one another at equal times.
 
 use crate::number;
-use crate::solid_figures::{self, Shot as Lit};
 use crate::series_figures;
+use crate::solid_figures::{self, Shot as Lit};
 use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
 use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
@@ -88,7 +88,11 @@ pub fn figures(records: &[Named<'_>], shown: &Shown) -> Vec<Figure> {
 /// Snapshots at some times, those of a record in a panel; what a record has not is left out and not shown as nothing.
 fn film_of<'a>(records: &'a [Named<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a Snapshot>)> {
     let frames = |named: &'a Named<'_>| clock.iter().filter_map(|&time| named.at(time)).collect::<Vec<_>>();
-    records.iter().map(|named| (named.name.clone(), frames(named))).filter(|(_, frames)| frames.len() == clock.len()).collect()
+    records
+        .iter()
+        .map(|named| (named.name.clone(), frames(named)))
+        .filter(|(_, frames)| frames.len() == clock.len())
+        .collect()
 }
 
 /// Grains and contact forces at the end, and a film.
@@ -283,8 +287,10 @@ mod tests {
     fn two_records_stand_beside_one_another() {
         let grains = sample::record();
         let deformable = Record { snapshots: vec![sample::deformable(); 9], ..sample::record() };
-        let figures =
-            figures(&[named("mpm", &deformable), named("dem", &grains)], &Shown { fringe: Some(1e3), ..Shown::default() });
+        let figures = figures(
+            &[named("mpm", &deformable), named("dem", &grains)],
+            &Shown { fringe: Some(1e3), ..Shown::default() },
+        );
         let names: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();
         for name in ["forces-mpm", "forces-dem", "stress", "fringes", "plastic-strain", "rotation-film", "displacement"]
         {
@@ -306,7 +312,11 @@ mod tests {
         let figures = figures(&[named("", &solid)], &Shown::default());
         assert!(!is_plane(&solid) && figures.iter().any(|figure| figure.name == "grains"));
         let empty = Record { snapshots: Vec::new(), ..sample::record() };
-        assert!(super::figures(&[named("", &empty)], &Shown::default()).iter().all(|figure| figure.name.starts_with("probe-")));
+        assert!(
+            super::figures(&[named("", &empty)], &Shown::default())
+                .iter()
+                .all(|figure| figure.name.starts_with("probe-"))
+        );
     }
 
     /// A dump tells neither contacts nor angles: its panels are left out, and the caption says so.

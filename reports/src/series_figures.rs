@@ -32,7 +32,8 @@ fn figure(records: &[Named<'_>], (quantity, unit): (&str, &str), window: (f64, f
         for (at, column) in series.columns.iter().enumerate() {
             let (probe, of) = parts(&column.name);
             if (of, column.unit.as_str()) == (quantity, unit) {
-                let label = [probe, &named.name].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
+                let label =
+                    [probe, &named.name].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
                 let points = points(series, at, window);
                 if points.iter().any(|(_, value)| value.is_finite()) {
                     curves.push(Curve::new(label, Stroke::Line, points));

@@ -296,7 +296,11 @@ fn field(
     shades: Shades,
     frame: &dyn Fn(&&Snapshot) -> Raster,
 ) -> Field {
-    let panel = |shot: &Shot<'_>| Panel { title: shot.title.clone(), frames: shot.frames.iter().map(frame).collect(), own: None };
+    let panel = |shot: &Shot<'_>| Panel {
+        title: shot.title.clone(),
+        frames: shot.frames.iter().map(frame).collect(),
+        own: None,
+    };
     Field {
         label: label.to_owned(),
         unit: unit.to_owned(),

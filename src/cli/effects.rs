@@ -3,15 +3,21 @@
 use super::cost::Follower;
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
-use super::subject::Variant;
+use super::simulate::positive;
+use super::solver;
+use super::step::Step;
+use super::subject::{self, Variant};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::study::ledger::Worth;
 use grainbench::reports::study::{Study, study_json, write_study};
+use grainbench::scene::effect::Effect;
+use grainbench::scene::solver::{Method, Resolution};
 use grainbench::studies::effects::ledger::{Ledger, Piece};
+use grainbench::studies::effects::scene::Asked;
 use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::{Follow, identity};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
@@ -19,9 +25,11 @@ use std::time::Instant;
 /// What the command takes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases to look at; all when none is named.
-    #[arg(value_name = "CASE|CASE/VARIANT")]
+    /// Cases to look at, or a scene of yours; all cases when none is named.
+    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     cases: Vec<String>,
+    #[command(flatten)]
+    yours: Yours,
     /// Do everything anew, also what was finished before.
     #[arg(long)]
     fresh: bool,
@@ -33,8 +41,37 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+/// How a scene of somebody's is run.
+#[derive(clap::Args)]
+struct Yours {
+    /// Who runs a scene of yours.
+    #[arg(long, value_name = "NAME|SOLVER.toml", default_value = "dem")]
+    solver: String,
+    #[command(flatten)]
+    step: Step,
+    /// The least change of what a probe of your scene tells that matters to you, in units of its largest value.
+    #[arg(long, value_name = "FRACTION", default_value_t = 0.01, value_parser = positive, allow_hyphen_values = true)]
+    matters: f64,
+}
+
+impl Yours {
+    fn resolution(&self) -> Resolution {
+        match Method::of(&self.solver) {
+            Some(Method::Rigid) => Resolution::substeps(Resolution::SUBSTEPS),
+            Some(Method::Grid) => Resolution::grid(Resolution::CELLS, Resolution::POINTS),
+            Some(Method::Dem) | None => self.step.resolution(),
+        }
+    }
+}
+
 /// Makes the ledger and writes the report, after every case as far as it is.
 pub(crate) fn effects(arguments: &Arguments) -> Outcome {
+    if let Some(scene) = arguments.cases.iter().find(|name| is_scene(name)) {
+        if arguments.cases.len() > 1 {
+            return Err(Fault::input(format!("{scene}: expected a scene of yours alone, found others beside it")));
+        }
+        return of_scene(scene, arguments);
+    }
     let mut ledgers = ledgers(&arguments.cases)?;
     check_writable(&arguments.out)?;
     let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::writing)?;
@@ -61,19 +98,60 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
         write_study(&arguments.out, &study).map_err(Fault::writing)?;
     }
     let reused = follower.end();
+    tell(&study, arguments, &format!("{reused} of {pieces} pieces were done before\n"))
+}
+
+fn is_scene(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+}
+
+/// The ledger of a scene of somebody's.
+fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
+    let yours = &arguments.yours;
+    let (scene, _) = subject::scene(name, &[])?;
+    let solver = solver::find(&yours.solver)?;
+    check_writable(&arguments.out)?;
+    let asked = Asked {
+        name: name.to_owned(),
+        scene: &scene,
+        solver: &*solver,
+        resolution: yours.resolution(),
+        matters: yours.matters,
+    };
+    let effects: Vec<Effect> = Effect::switches().collect();
+    let start = Instant::now();
+    let mut follower = Follower::new(effects.len() as u64 + 1, "effects");
+    follower.now("the scene as it stands");
+    let whole = asked.whole().map_err(|error| Fault::input(error.to_string()))?;
+    follower.done(false);
+    if whole.series.columns.is_empty() {
+        return Err(Fault::input(format!("{name}: expected probes to tell what an effect changes, found none")));
+    }
+    let mut study = Study::new(provenance(vec!["effects".to_owned(), name.to_owned()], 0.0));
+    for effect in effects {
+        follower.now(effect.word());
+        study.ledger.extend(asked.entry(&whole, effect));
+        follower.done(false);
+    }
+    follower.end();
+    study.provenance.wall_seconds = start.elapsed().as_secs_f64();
+    write_study(&arguments.out, &study).map_err(Fault::writing)?;
+    tell(&study, arguments, "")
+}
+
+/// Prints the ledger; red where an effect that is off is not inert.
+fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
     if arguments.json {
-        print(&study_json(&study).map_err(Fault::input)?)?;
+        print(&study_json(study).map_err(Fault::input)?)?;
     } else {
         let mut text = String::new();
         for entry in &study.ledger {
             let key = if entry.on { entry.key.clone() } else { entry.tried.join(", ") };
-            let scene = format!("{}/{}", entry.case, entry.variant);
+            let scene = [entry.case.as_str(), &entry.variant].join("/");
+            let scene = scene.trim_end_matches('/');
             text.push_str(&format!("{scene:<32} {}: {} ({key})\n", entry.effect, entry.worth.word()));
         }
-        print(&format!(
-            "{text}{reused} of {pieces} pieces were done before\n{}\n",
-            arguments.out.join("index.html").display()
-        ))?;
+        print(&format!("{text}{end}{}\n", arguments.out.join("index.html").display()))?;
     }
     let red = study.ledger.iter().any(|entry| entry.worth == Worth::NotInert);
     Ok(if red { ExitCode::from(RED) } else { ExitCode::SUCCESS })

@@ -46,7 +46,11 @@ fn window(text: &str) -> Result<(f64, f64), String> {
     let (from, to) = text.split_once("..").ok_or_else(expected)?;
     let read = |part: &str, open: f64| {
         let part = part.trim();
-        if part.is_empty() { Ok(open) } else { part.parse::<f64>().ok().filter(|time| time.is_finite()).ok_or_else(expected) }
+        if part.is_empty() {
+            Ok(open)
+        } else {
+            part.parse::<f64>().ok().filter(|time| time.is_finite()).ok_or_else(expected)
+        }
     };
     let (from, to) = (read(from, f64::NEG_INFINITY)?, read(to, f64::INFINITY)?);
     if from <= to { Ok((from, to)) } else { Err(format!("expected a time and a later one, found `{text}`")) }
@@ -97,7 +101,10 @@ fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     let figures = record_figures::figures(&named, &shown);
     if figures.is_empty() {
         let file = arguments.dir.join(RECORD_FILE);
-        return Err(Fault::input(format!("{}: expected snapshots or samples of probes, found none to show", file.display())));
+        return Err(Fault::input(format!(
+            "{}: expected snapshots or samples of probes, found none to show",
+            file.display()
+        )));
     }
     write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::writing)
 }

@@ -99,7 +99,7 @@ mod tests {
             vec![
                 Piece::Fixed("-".repeat(100)),
                 part(Rank::Rows, "r"),
-                part(Rank::Films, "f"),
+                part(Rank::Costs, "f"),
                 part(Rank::Controls, "c"),
             ]
         };

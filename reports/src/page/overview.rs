@@ -8,11 +8,7 @@ use crate::report::Report;
 use grainbench_harness::verdict::Outcome;
 
 /// Renders the head of the page; `is_there` says whether a row stands in the page by its own address.
-pub(crate) fn render(
-    report: &Report,
-    anchors: &[String],
-    is_there: &dyn Fn(&str) -> bool,
-) -> Markup {
+pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
     let counts = Headline::of_report(report);
     let wrong = counts.fail + counts.broken;
     let cases = report.sections.len();

@@ -70,7 +70,7 @@
   const search = document.getElementById("search"), found = document.getElementById("found");
   const rows = all("table.verdicts tbody tr").map((row) => ({
     row, section: row.closest("section"), solver: row.dataset.s, outcome: row.dataset.o, evidence: row.dataset.e,
-    source: row.dataset.k, case: row.closest("section").dataset.case,
+    source: row.cells[5].firstChild.textContent.split(": ").slice(1).join(": "), case: row.closest("section").dataset.case,
     text: (row.closest("section").dataset.words + " " + row.textContent).toLowerCase(),
   }));
   const kinds = ["solver", "case", "source", "outcome", "evidence"];
@@ -204,6 +204,11 @@
     button.textContent = "✓";
     setTimeout(() => { button.textContent = "⧉"; }, 1200);
   });
+
+  // What scrolls in its box can be reached by keyboard.
+  if (matchMedia("(max-width: 46rem)").matches) {
+    for (const box of all(".plot.graph")) Object.assign(box, { tabIndex: 0, role: "region", ariaLabel: box.querySelector("title, img")?.textContent || "figure" });
+  }
 
   // Contents say where one is.
   const links = new Map(all(".contents a").map((link) => [link.hash.slice(1), link]));

@@ -57,7 +57,7 @@ fn row(verdict: &Verdict, id: &str) -> Markup {
     let used = verdict.error.map(|_| used_tolerance(verdict)).filter(|used| used.is_finite());
     let used_text = used.map(|used| format!("{used:.4e}"));
     html! {
-        tr data-s=(verdict.solver) data-o=(verdict.outcome.word()) data-e=(verdict.evidence.word()) data-k=(verdict.source)
+        tr data-s=(verdict.solver) data-o=(verdict.outcome.word()) data-e=(verdict.evidence.word())
             data-u=[used_text.as_ref()] id=(id) class=(class) {
             td {
                 span.act { a href={ "#" (id) } aria-label="Link to this row" { "§" } }

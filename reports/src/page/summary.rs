@@ -7,8 +7,8 @@ use maud::{Markup, html};
 use crate::line;
 use crate::measured::{Costs, Factor, Line, TARGETS};
 use crate::number;
-use crate::plot::graph::{self, Form};
 use crate::plot;
+use crate::plot::graph::{self, Form};
 use crate::report::Report;
 
 /// More failing lines than this are left to the sections.
@@ -48,7 +48,8 @@ pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
 pub(crate) fn picture(costs: &Costs) -> String {
     let mut curves = Vec::new();
     for line in &costs.lines {
-        let means = line.factors.iter().zip(TARGETS).filter_map(|(factor, target)| Some((factor.as_ref()?.place, target)));
+        let means =
+            line.factors.iter().zip(TARGETS).filter_map(|(factor, target)| Some((factor.as_ref()?.place, target)));
         curves.push(Curve::new(line.solver.clone(), Stroke::MarkedLine, means.collect()));
     }
     let points = |line: &Line| line.points.iter().copied().filter(|(_, error)| *error >= LEAST).collect::<Vec<_>>();
@@ -58,8 +59,7 @@ pub(crate) fn picture(costs: &Costs) -> String {
         .zip(&costs.lines)
         .flat_map(|(curve, line)| [curve, Curve::new("", Stroke::Beside, points(line))])
         .collect();
-    let graph =
-        Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error|"), curves };
+    let graph = Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error|"), curves };
     let form = Form { width: 560.0, height: 470.0, legend: false };
     plot::markup(&graph::draw_as("Error against time, over all cases", &graph, form))
 }

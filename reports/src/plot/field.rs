@@ -237,7 +237,10 @@ fn colour(shades: Shades, level: u8) -> [u8; 3] {
         (_, Shades::Amount) => colorous::CIVIDIS.eval_continuous(part).as_array(),
         (_, Shades::Glow) => colorous::MAGMA.eval_continuous(part).as_array(),
         (_, Shades::Signed) => colorous::PURPLE_ORANGE.eval_continuous(part).as_array(),
-        (_, Shades::Lit) => colorous::VIRIDIS.eval_continuous(f64::from(value.min(COLOURS - 1)) / f64::from(COLOURS - 1)).as_array().map(lit),
+        (_, Shades::Lit) => colorous::VIRIDIS
+            .eval_continuous(f64::from(value.min(COLOURS - 1)) / f64::from(COLOURS - 1))
+            .as_array()
+            .map(lit),
         (_, Shades::Fringes) => [(255.0 * part).round() as u8; 3],
     }
 }

@@ -13,7 +13,7 @@ use super::field::{self, Frames};
 
 /// The most that a picture weighs in a page, and a film (B).
 const PICTURE: usize = 60_000;
-const FILM: usize = 90_000;
+const FILM: usize = 60_000;
 /// The fewest frames of a film, and pixels of a picture across.
 const FRAMES: usize = 16;
 const ACROSS: u32 = 60;
@@ -70,7 +70,10 @@ fn every_other(field: &Field) -> Field {
 
 /// Half the pixels along each side.
 fn halved(field: &Field) -> Field {
-    let half = |panel: &Panel| Panel { frames: panel.frames.iter().map(|frame| halved_raster(frame, field.shades)).collect(), ..panel.clone() };
+    let half = |panel: &Panel| Panel {
+        frames: panel.frames.iter().map(|frame| halved_raster(frame, field.shades)).collect(),
+        ..panel.clone()
+    };
     Field { panels: field.panels.iter().map(half).collect(), pixel: 2.0 * field.pixel, ..field.clone() }
 }
 

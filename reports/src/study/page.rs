@@ -55,14 +55,22 @@ pub(crate) fn figure(figure: &Figure) -> Result<Markup, DrawError> {
 /// What each error costs over all cases, a sentence a target.
 fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
     let sentence = |(at, target): (usize, f64)| {
-        let parts: Vec<String> = costs.lines.iter().filter_map(|line| {
-            let factor = line.factors[at]?;
-            let wins = study.diagrams.iter().filter(|diagram| cost::is_cheapest(diagram, &line.solver, target)).count();
-            Some(format!(
-                "{} in {} of {} quantities, in {wins} the cheapest, on average at {} times the cheapest",
-                line.solver, factor.reached, line.asked, number::significant(factor.times, 2)
-            ))
-        }).collect();
+        let parts: Vec<String> = costs
+            .lines
+            .iter()
+            .filter_map(|line| {
+                let factor = line.factors[at]?;
+                let wins =
+                    study.diagrams.iter().filter(|diagram| cost::is_cheapest(diagram, &line.solver, target)).count();
+                Some(format!(
+                    "{} in {} of {} quantities, in {wins} the cheapest, on average at {} times the cheapest",
+                    line.solver,
+                    factor.reached,
+                    line.asked,
+                    number::significant(factor.times, 2)
+                ))
+            })
+            .collect();
         let parts = if parts.is_empty() { "no solver reaches it".to_owned() } else { parts.join("; ") };
         format!("{}: {parts}.", number::fraction(target))
     };

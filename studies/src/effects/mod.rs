@@ -6,3 +6,4 @@
 
 pub mod idle;
 pub mod ledger;
+pub mod scene;

@@ -77,17 +77,11 @@ fn crosses(places: impl Iterator<Item = Place>, look: &Look) -> Markup {
 /// Markers: filled where a point was measured, hollow where they only tell lines apart.
 fn marks(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: f64) -> Markup {
     let corners = look.marker.corners();
+    if corners.is_empty() {
+        return dots(places, look, filled, radius);
+    }
     let outline: String = places
         .map(|(x, y)| {
-            if corners.is_empty() {
-                let across = px(2.0 * radius);
-                return format!(
-                    "M{} {}a{r} {r} 0 1 0 {across} 0a{r} {r} 0 1 0-{across} 0z",
-                    px(x - radius),
-                    px(y),
-                    r = px(radius)
-                );
-            }
             let places: Vec<Place> =
                 corners.iter().map(|(across, down)| (x + radius * across, y + radius * down)).collect();
             let text = places.iter().map(|(x, y)| format!("{} {}", px(*x), px(*y))).collect::<Vec<_>>();
@@ -97,6 +91,19 @@ fn marks(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius:
     html! {
         @if !outline.is_empty() {
             path d=(outline) fill=(if filled { look.colour } else { "#fff" }) stroke=(look.colour) stroke-width="1.6" {}
+        }
+    }
+}
+
+/// Round markers as the round ends of lines without a length, which takes up the fewest letters.
+fn dots(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: f64) -> Markup {
+    let dots: String = places.map(|(x, y)| format!("M{} {}h0", px(x), px(y))).collect();
+    html! {
+        @if !dots.is_empty() {
+            path d=(dots) fill="none" stroke=(look.colour) stroke-linecap="round" stroke-width=(px(2.0 * radius + 1.6)) {}
+            @if !filled {
+                path d=(dots) fill="none" stroke="#fff" stroke-linecap="round" stroke-width=(px(2.0 * radius - 1.6)) {}
+            }
         }
     }
 }

@@ -96,8 +96,9 @@ fn height() -> f64 {
 
 fn shear() -> String {
     let length = 2.0 * ACROSS as f64;
-    let mut text = format!("domain = {{ low = [0.0, 0.0], high = [{length:?}, {:?}], periodic = [true, false] }}\n", height())
-        + &head("A sheared layer", 4.0, 0.0, RADIUS);
+    let mut text =
+        format!("domain = {{ low = [0.0, 0.0], high = [{length:?}, {:?}], periodic = [true, false] }}\n", height())
+            + &head("A sheared layer", 4.0, 0.0, RADIUS);
     for row in 0..LAYERS {
         for at in 0..ACROSS {
             let x = 2.0 * at as f64 + 0.5 + (row % 2) as f64;

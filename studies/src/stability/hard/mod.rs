@@ -171,7 +171,11 @@ fn resolution(solver: &str, part: f64) -> Resolution {
 fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Result<(), Stop> {
     let resolution = resolution(&solver.name(), part);
     let mut halfway = Halfway::default();
-    let run = if case.goes_on { solver.run(scene, &resolution, &mut halfway) } else { solver.run(scene, &resolution, &mut ()) };
+    let run = if case.goes_on {
+        solver.run(scene, &resolution, &mut halfway)
+    } else {
+        solver.run(scene, &resolution, &mut ())
+    };
     match run {
         Ok(record) => {
             if case.goes_on {

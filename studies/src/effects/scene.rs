@@ -1,0 +1,124 @@
+//! What each effect is worth in a scene that no case is made of: what changes of what its probes tell, and what that costs.
+
+use super::idle::try_idly;
+use grainbench_harness::study::ledger::{Entry, Shift, Worth};
+use grainbench_scene::effect::Effect;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Method, Resolution, RunError, Solver};
+use std::time::Duration;
+
+/// How long an absent effect is tried, beyond the fewest runs.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// A scene, by a solver.
+pub struct Asked<'a> {
+    /// What it is called.
+    pub name: String,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Who runs it.
+    pub solver: &'a dyn Solver,
+    /// How finely.
+    pub resolution: Resolution,
+    /// The least change that matters, in units of the largest value that a probe tells.
+    pub matters: f64,
+}
+
+impl Asked<'_> {
+    /// The scene as it stands.
+    ///
+    /// # Errors
+    /// When the solver cannot run it.
+    pub fn whole(&self) -> Result<Record, RunError> {
+        self.solver.run(self.scene, &self.resolution, &mut ())
+    }
+
+    /// An effect switched off where the scene calls for it, and tried with a value that does nothing where it does not; nothing
+    /// of what has no such value, or is none of the solver's.
+    #[must_use]
+    pub fn entry(&self, whole: &Record, effect: Effect) -> Option<Entry> {
+        if Method::of(&self.solver.name()).is_some_and(|method| !effect.concerns(method)) {
+            return None;
+        }
+        let key = effect.key(self.scene);
+        let mut entry = Entry {
+            case: self.name.clone(),
+            variant: String::new(),
+            effect: effect.word().to_owned(),
+            on: key.is_some(),
+            key: key.unwrap_or_default(),
+            worth: Worth::Untold,
+            shifts: Vec::new(),
+            counts: None,
+            time: None,
+            tried: Vec::new(),
+        };
+        if entry.on {
+            self.switched_off(whole, effect, &mut entry)
+        } else {
+            self.idly(effect, &mut entry)?
+        }
+        Some(entry)
+    }
+
+    fn switched_off(&self, whole: &Record, effect: Effect, entry: &mut Entry) {
+        let mut without = self.scene.clone();
+        effect.switch_off(&mut without);
+        // The step stays that of the scene as it is.
+        let resolution = match self.resolution.steps(self.scene) {
+            Ok((step, _)) => Resolution::TimeStep(step),
+            Err(_) => self.resolution,
+        };
+        let record = self.solver.run(&without, &resolution, &mut ()).ok();
+        for (at, column) in whole.series.columns.iter().enumerate() {
+            let moved = record.as_ref().map_or(Some(f64::NAN), |record| farthest(whole, record, at));
+            // What never told a number tells nothing now.
+            let Some(moved) = moved else { continue };
+            entry.shifts.push(Shift {
+                quantity: column.name.clone(),
+                solver: self.solver.name(),
+                with: Some(0.0),
+                without: Some(moved).filter(|moved| moved.is_finite()),
+                allowed: self.matters,
+                red: !moved.is_finite() || moved > self.matters,
+            });
+        }
+        entry.worth = match (entry.shifts.iter().any(|shift| shift.red), entry.shifts.is_empty()) {
+            (true, _) => Worth::Needed,
+            (false, false) => Worth::NotWorthSimulating,
+            (false, true) => Worth::Untold,
+        };
+        if let Some(record) = record {
+            entry.counts = Some(whole.cost.work() as f64 / (record.cost.work() as f64).max(1.0));
+            entry.time = Some(whole.cost.wall_seconds / record.cost.wall_seconds.max(f64::MIN_POSITIVE));
+        }
+    }
+
+    fn idly(&self, effect: Effect, entry: &mut Entry) -> Option<()> {
+        let idle = try_idly(self.solver, self.scene, &self.resolution, effect, PATIENCE).ok()??;
+        entry.worth = if idle.same { Worth::Inert } else { Worth::NotInert };
+        (entry.counts, entry.time) = (Some(idle.counts), Some(idle.time));
+        entry.tried.push(self.solver.name());
+        Some(())
+    }
+}
+
+/// The farthest that a column is from that of the whole scene at the same sample, in units of its largest value; not a number where
+/// one of them has none, none where the whole scene tells nothing.
+fn farthest(whole: &Record, without: &Record, column: usize) -> Option<f64> {
+    let values = whole.series.values.get(column)?;
+    let scale = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |scale, value| scale.max(value.abs()));
+    let others = without.series.column(&whole.series.columns.get(column)?.name).unwrap_or_default();
+    if scale == 0.0 {
+        // Of what is nothing with the effect, anything without it is all there is.
+        let largest = others.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        return (!values.is_empty()).then_some(if largest > 0.0 { 1.0 } else { 0.0 });
+    }
+    if others.len() != values.len() {
+        return Some(f64::NAN);
+    }
+    let off =
+        values.iter().zip(others).filter(|(value, _)| value.is_finite()).map(|(value, other)| (other - value).abs());
+    Some(off.fold(0.0, |most: f64, off| if off.is_nan() || most.is_nan() { f64::NAN } else { most.max(off) }) / scale)
+}
