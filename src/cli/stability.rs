@@ -176,7 +176,7 @@ fn select<'a>(
         pieces.extend(BAR_CELLS.map(|cells| Piece::Bar(setting, cells)));
     }
     for hard in hard.iter().filter(|hard| case(&hard.name)) {
-        let asked = hard::SOLVERS.into_iter().filter(|name| solver(name)).chain(theirs());
+        let asked = hard.asked.iter().copied().filter(|name| solver(name)).chain(theirs());
         pieces.extend(asked.map(|name| Piece::Hard(hard, name)));
     }
     if pieces.is_empty() {

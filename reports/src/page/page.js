@@ -69,7 +69,7 @@
   tools.hidden = false;
   const search = document.getElementById("search"), found = document.getElementById("found");
   const rows = all("table.verdicts tbody tr").map((row) => ({
-    row, section: row.closest("section"), solver: row.dataset.s, outcome: row.dataset.o, evidence: row.dataset.e,
+    row, section: row.closest("section"), solver: row.dataset.s, outcome: row.dataset.o, evidence: row.cells[5].firstChild.textContent.split(": ")[0],
     source: row.cells[5].firstChild.textContent.split(": ").slice(1).join(": "), case: row.closest("section").dataset.case,
     text: (row.closest("section").dataset.words + " " + row.textContent).toLowerCase(),
   }));
@@ -96,7 +96,7 @@
       const of = tally.get(one.solver) || { pass: 0, all: 0, worst: 0 };
       of.all += 1;
       of.pass += one.outcome === "pass" ? 1 : 0;
-      of.worst = Math.max(of.worst, Number(one.row.dataset.u || 0));
+      of.worst = Math.max(of.worst, Number(one.row.cells[4].dataset.v || 0));
       tally.set(one.solver, of);
     }
     opened.forEach((details) => { details.open = false; });
@@ -185,9 +185,13 @@
     return [section, ...cells].filter(Boolean).join(" · ");
   };
   for (const { row } of rows) {
+    const act = make("span", "", { className: "act" });
+    const link = make("a", "§", { href: `#${row.id}` });
+    link.setAttribute("aria-label", "Link to this row");
     const copy = make("button", "⧉", { type: "button", title: "Copy this row as text" });
     copy.setAttribute("aria-label", "Copy this row as text");
-    row.querySelector(".act").append(copy);
+    act.append(link, copy);
+    row.cells[0].prepend(act);
   }
   document.addEventListener("click", async (click) => {
     const button = click.target.closest(".act button");

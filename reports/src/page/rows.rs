@@ -55,22 +55,19 @@ pub(crate) fn table(rows: &[&Verdict], taken: &mut BTreeSet<String>) -> Markup {
 fn row(verdict: &Verdict, id: &str) -> Markup {
     let (symbol, class) = sign(verdict.outcome);
     let used = verdict.error.map(|_| used_tolerance(verdict)).filter(|used| used.is_finite());
-    let used_text = used.map(|used| format!("{used:.4e}"));
     html! {
-        tr data-s=(verdict.solver) data-o=(verdict.outcome.word()) data-e=(verdict.evidence.word())
-            data-u=[used_text.as_ref()] id=(id) class=(class) {
+        tr data-s=(verdict.solver) data-o=(verdict.outcome.word()) id=(id) class=(class) {
             td {
-                span.act { a href={ "#" (id) } aria-label="Link to this row" { "§" } }
                 span.mark class=(class) { (symbol) " " (verdict.outcome.word()) }
                 @if let Some(detail) = &verdict.detail { span.fine { (detail) } }
             }
             th scope="row" { (verdict.quantity) @if !verdict.variant.is_empty() { span.fine { (verdict.variant) } } }
             td { (verdict.solver) span.fine { (verdict.resolution) } }
-            td.n data-l="value" data-v=[verdict.value] {
+            td.n data-v=[verdict.value.map(|value| format!("{value:.5e}"))] {
                 (verdict.value.map_or_else(|| "—".to_owned(), |value| number::with_unit(value, &verdict.unit)))
                 span.fine { (line::expected_word(verdict.evidence)) " " (line::expected(verdict.expected, &verdict.unit)) }
             }
-            td.n data-l="error" data-v=[used_text.as_ref()] {
+            td.n data-v=[used.map(|used| format!("{used:.4e}"))] {
                 (number::error(verdict.error))
                 @if let (Some(scale), Some(_)) = (line::scale_note(verdict), verdict.error) { " " (scale) }
                 span.fine {

@@ -32,7 +32,7 @@ pub(crate) fn controls(controls: &[Control]) -> Markup {
                         }
                         td { (control.solver) }
                         td { (control.wrong_physics) }
-                        td.n data-l="error" data-v=[control.error.map(f64::abs)] {
+                        td.n data-v=[control.error.map(f64::abs)] {
                             (number::error(control.error)) span.fine { "allowed " (number::fraction(control.allowed)) }
                         }
                     }

@@ -13,7 +13,7 @@ use super::field::{self, Frames};
 
 /// The most that a picture weighs in a page, and a film (B).
 const PICTURE: usize = 60_000;
-const FILM: usize = 60_000;
+const FILM: usize = 45_000;
 /// The fewest frames of a film, and pixels of a picture across.
 const FRAMES: usize = 16;
 const ACROSS: u32 = 60;

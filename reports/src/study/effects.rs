@@ -132,7 +132,7 @@ fn table(ledger: &[Entry]) -> Markup {
             tbody {
                 @for entry in ledger {
                     tr class=(class(entry.worth)) {
-                        th scope="row" { (entry.case) "/" (entry.variant) }
+                        th scope="row" { (entry.case) @if !entry.variant.is_empty() { "/" (entry.variant) } }
                         td { (entry.effect) }
                         td { @if entry.on { (entry.key) } @else { "off; tried with " (entry.tried.join(", ")) } }
                         td.verdict { span.mark class=(class(entry.worth)) { (entry.worth.word()) } }

@@ -122,3 +122,38 @@ fn farthest(whole: &Record, without: &Record, column: usize) -> Option<f64> {
         values.iter().zip(others).filter(|(value, _)| value.is_finite()).map(|(value, other)| (other - value).abs());
     Some(off.fold(0.0, |most: f64, off| if off.is_nan() || most.is_nan() { f64::NAN } else { most.max(off) }) / scale)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use grainbench_dem::convention::Convention;
+    use grainbench_dem::solver::Dem;
+    use grainbench_scene::source::SceneSource;
+    use std::path::Path;
+
+    const ROLLS: &str = "title = 'A disc rolls'\ndimension = 2\ngravity = [1.0, -9.81]\nduration = 0.5\n\
+        materials.m.density = 1000.0\n[contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e7\n\
+        tangential_stiffness = 3.0e6\nfriction = 0.4\n[grains.disc]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.1]\n\
+        [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+        [output]\nevery = 0.01\n[probes]\ndisc = { grain = 'disc' }\n";
+
+    fn worth(effect: Effect, matters: f64) -> Worth {
+        let source = SceneSource::from_text("rolls", Path::new(""), ROLLS);
+        let scene = source.scene(&|_| Err("this scene reads no file".to_owned())).unwrap();
+        let solver = Dem::new(Convention::DEFAULT);
+        let resolution = Resolution::CriticalFraction(0.1);
+        let asked = Asked { name: "rolls".to_owned(), scene: &scene, solver: &solver, resolution, matters };
+        let whole = asked.whole().unwrap();
+        asked.entry(&whole, effect).unwrap().worth
+    }
+
+    /// Without friction the disc slides half as far again and does not turn.
+    #[test]
+    fn what_a_scene_needs_is_told_from_what_it_does_not() {
+        assert_eq!(worth(Effect::Friction, 0.01), Worth::Needed);
+        assert_eq!(worth(Effect::Cohesion, 0.01), Worth::Inert);
+        // Who does not mind any change needs nothing.
+        assert_eq!(worth(Effect::Friction, 1e3), Worth::NotWorthSimulating);
+    }
+}

@@ -36,6 +36,8 @@ pub struct HardCase {
     pub check: Check,
     /// Whether it is continued from a checkpoint halfway too, and must end in the same bits.
     pub goes_on: bool,
+    /// Who is asked; what takes a solver a thousand million grain-steps is asked of the one that takes a minute for them.
+    pub asked: &'static [&'static str],
 }
 
 /// Solvers that are asked.
@@ -78,7 +80,7 @@ fn changed(
     if let Ok(scene) = &mut scene {
         change(scene);
     }
-    HardCase { name, must, scene, check, goes_on: false }
+    HardCase { name, must, scene, check, goes_on: false, asked: &SOLVERS }
 }
 
 /// The verdict of a solver, from the result cache where it stands there; and whether it did.
