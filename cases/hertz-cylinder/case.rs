@@ -1,7 +1,7 @@
 //! Hertz contact of a cylinder in plane strain: half-width and peak pressure.
 
 use grainbench_harness::prelude::*;
-use grainbench_scene::body::Deformable;
+use grainbench_scene::material::Deformable;
 use grainbench_scene::record::{Owner, PointState, Snapshot};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::PI;

@@ -4,7 +4,7 @@ use super::measures::{deviator_squared, mean_stress, plastic_strain, with_their_
 use super::paper::FIGURE_6;
 use super::{entry, gained, grid, measures, momentum, sheared, to_shear};
 use grainbench_harness::prelude::*;
-use grainbench_scene::body::{Constitutive, Deformable};
+use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::record::Partner;
 use grainbench_scene::scene::Duration;
 

@@ -1,7 +1,7 @@
 //! A block that yields is pressed between smooth sides.
 
 use grainbench_harness::prelude::*;
-use grainbench_scene::body::{Constitutive, Deformable};
+use grainbench_scene::material::{Constitutive, Deformable};
 
 const LEVELS: &[Level] = &[cells("L/8", 8.0, 2)];
 

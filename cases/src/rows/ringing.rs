@@ -4,8 +4,8 @@
 use crate::rows::elastic::stiffen;
 use grainbench_harness::measure::dominant_frequency;
 use grainbench_harness::prelude::*;
-use grainbench_scene::body::{Constitutive, Deformable};
 use grainbench_scene::contact_law::Springs;
+use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Duration, Sampling};
 

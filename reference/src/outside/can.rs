@@ -1,6 +1,6 @@
 //! What a scene calls for that a program does not declare.
 
-use super::manifest::{Can, Law, Manifest, Material, Wall};
+use super::manifest::{Can, Law, Manifest, Wall};
 use grainbench_scene::contact_law::Springs;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::{Scene, WallShape};
@@ -59,8 +59,8 @@ fn lacks_material(can: &Can, scene: &Scene) -> Option<String> {
         let Some(material) = scene.deformable.get(usize::from(place)).copied().flatten() else {
             return Some(format!("material `{name}` has no elastic moduli"));
         };
-        let (law, word) = Material::of(material.constitutive);
-        (!can.deformable.contains(&law)).then(|| format!("it does not declare the law `{word}` of materials"))
+        let law = material.constitutive.kind();
+        (!can.deformable.contains(&law)).then(|| format!("it does not declare the law `{law}` of materials"))
     })
 }
 

@@ -1,6 +1,7 @@
 //! What a program is given of bodies that deform: cells, materials, bodies, how they start, and where probes are.
 
-use grainbench_scene::body::{Block, BlockShape, Constitutive, Hold};
+use grainbench_scene::body::{Block, BlockShape, Hold};
+use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::scene::{BodyName, ProbeTarget, Scene};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -28,24 +29,7 @@ pub struct Material {
     pub shear_modulus: f64,
     /// `hypoelastic`, `neo-hookean` or `von-mises`, with its numbers.
     #[serde(flatten)]
-    pub law: MaterialLaw,
-}
-
-/// The law between deformation and stress.
-#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-#[serde(tag = "constitutive", rename_all = "kebab-case")]
-pub enum MaterialLaw {
-    /// The Jaumann rate of the Cauchy stress is linear in the rate of deformation.
-    Hypoelastic,
-    /// τ = λ ln J + G (b − 1), λ = K − 2G/3.
-    NeoHookean,
-    /// Hypoelastic up to the yield stress of von Mises, with linear isotropic hardening.
-    VonMises {
-        /// Yield stress Y (Pa).
-        yield_stress: f64,
-        /// Hardening modulus H (Pa).
-        hardening_modulus: f64,
-    },
+    pub law: Constitutive,
 }
 
 /// A body that is no grain.
@@ -130,19 +114,13 @@ fn vector(vector: &Vector3<f64>) -> [f64; 3] {
 /// The materials that deform.
 pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     let named = scene.materials.iter().zip(&scene.deformable);
-    let material = |(name, of): (&String, &Option<grainbench_scene::body::Deformable>)| {
+    let material = |(name, of): (&String, &Option<Deformable>)| {
         let of = of.as_ref()?;
         Some(Material {
             material: name.clone(),
             bulk_modulus: of.bulk_modulus,
             shear_modulus: of.shear_modulus,
-            law: match of.constitutive {
-                Constitutive::Hypoelastic => MaterialLaw::Hypoelastic,
-                Constitutive::NeoHookean => MaterialLaw::NeoHookean,
-                Constitutive::VonMises { yield_stress, hardening_modulus } => {
-                    MaterialLaw::VonMises { yield_stress, hardening_modulus }
-                }
-            },
+            law: of.constitutive,
         })
     };
     named.filter_map(material).collect()

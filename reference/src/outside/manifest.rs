@@ -2,8 +2,8 @@
 
 use crate::observer::Names;
 use crate::read::read_error::{one_line, quoted};
-use grainbench_scene::body::Constitutive;
 use grainbench_scene::effect::Effect;
+use grainbench_scene::material::ConstitutiveKind;
 use grainbench_scene::text::{line_of, written};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -72,7 +72,7 @@ pub struct Can {
     pub laws: Vec<Law>,
     /// Laws of materials, of programs whose grains and bodies deform.
     #[serde(default)]
-    pub deformable: Vec<Material>,
+    pub deformable: Vec<ConstitutiveKind>,
     /// Kinds of walls.
     #[serde(default)]
     pub walls: Vec<Wall>,
@@ -94,29 +94,6 @@ pub enum Law {
     HertzMindlin,
     /// Coulomb friction and no spring.
     Coulomb,
-}
-
-/// Laws between deformation and stress, [`Constitutive`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Material {
-    /// Hypoelastic.
-    Hypoelastic,
-    /// Neo-Hookean.
-    NeoHookean,
-    /// Yielding by von Mises, with linear hardening.
-    VonMises,
-}
-
-impl Material {
-    /// The law of a material.
-    pub(super) const fn of(constitutive: Constitutive) -> (Self, &'static str) {
-        match constitutive {
-            Constitutive::Hypoelastic => (Self::Hypoelastic, "hypoelastic"),
-            Constitutive::NeoHookean => (Self::NeoHookean, "neo-hookean"),
-            Constitutive::VonMises { .. } => (Self::VonMises, "von-mises"),
-        }
-    }
 }
 
 /// Kinds of walls.

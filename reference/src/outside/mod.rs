@@ -12,9 +12,7 @@ mod report;
 mod resolved;
 mod worker;
 
-pub use manifest::{
-    Can, GrainFormat, Grains, Knobs, Law, Limits, Manifest, ManifestError, Material, Output, SceneFormat, Wall,
-};
+pub use manifest::{Can, GrainFormat, Grains, Knobs, Law, Limits, Manifest, ManifestError, Output, SceneFormat, Wall};
 pub use resolved::{Given, Resolved, schema};
 
 use crate::deadline::Deadline;

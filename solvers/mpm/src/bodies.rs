@@ -1,63 +1,20 @@
 //! From a scene to bodies: seeded, covered with tracers, pressed where the scene says so.
 
 use crate::grid::Lattice;
-use crate::material::{self, Hypoelastic, Law, NeoHookean, VonMises};
+use crate::material::{Law, Material, with_law};
 use crate::options::Setting;
 use crate::points::Points;
 use crate::seed::{self, Patch, Seed};
 use crate::surface::Tracers;
 use crate::transfer::Part;
-use grainbench_scene::body::{Block, BlockShape, Constitutive, Deformable, Sides};
+use grainbench_scene::body::{Block, BlockShape, Sides};
 use grainbench_scene::manufactured::Medium;
+use grainbench_scene::material::Deformable;
 use grainbench_scene::record::Owner;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
-
-/// The law of a body's material.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Material {
-    NeoHookean(NeoHookean),
-    Hypoelastic(Hypoelastic),
-    VonMises(VonMises),
-}
-
-impl Material {
-    pub(crate) const fn of(deformable: &Deformable, lame: f64) -> Self {
-        let &Deformable { bulk_modulus, shear_modulus, constitutive } = deformable;
-        let elastic = Hypoelastic { bulk_modulus, shear_modulus };
-        match constitutive {
-            Constitutive::NeoHookean => Self::NeoHookean(NeoHookean { lame, shear_modulus }),
-            Constitutive::Hypoelastic => Self::Hypoelastic(elastic),
-            Constitutive::VonMises { yield_stress, hardening_modulus } => {
-                Self::VonMises(VonMises { elastic, yield_stress, hardening_modulus })
-            }
-        }
-    }
-
-    /// Whether it ever yields.
-    const fn yields(&self) -> bool {
-        matches!(self, Self::VonMises(_))
-    }
-
-    /// Elastic energy per volume at the start (J/m³).
-    pub(crate) fn energy(&self, state: &material::State) -> f64 {
-        match self {
-            Self::NeoHookean(law) => law.energy(state),
-            Self::Hypoelastic(law) => law.energy(state),
-            Self::VonMises(law) => law.energy(state),
-        }
-    }
-
-    fn under_pressure(&self, pressure: f64, dimensions: usize) -> (f64, Matrix3<f64>) {
-        match self {
-            Self::NeoHookean(law) => law.under_pressure(pressure, dimensions),
-            Self::Hypoelastic(law) => law.under_pressure(pressure, dimensions),
-            Self::VonMises(law) => law.under_pressure(pressure, dimensions),
-        }
-    }
-}
 
 /// A deformable body.
 #[derive(Clone, Debug)]
@@ -172,7 +129,7 @@ pub(crate) fn seed<S: Space>(
                 tracers: first.1..tracers.len(),
                 chunks: tracers.cut(first.1..tracers.len()),
                 material: blank.material,
-                law: Material::of(&blank.deformable, blank.deformable.lame()),
+                law: Material::of(&blank.deformable),
                 density: blank.density,
                 deformable: blank.deformable,
                 bounds: [Vector3::zeros(); 2],
@@ -186,7 +143,7 @@ pub(crate) fn seed<S: Space>(
         })
         .collect();
     points.set_affine(setting.transfer.carries_affine());
-    points.set_plastic_strain(bodies.iter().any(|body| body.law.yields()));
+    points.set_plastic_strain(bodies.iter().any(|body| body.deformable.constitutive.yield_stress().is_some()));
     (bodies, points, tracers)
 }
 
@@ -219,7 +176,7 @@ pub(crate) fn press<S: Space>(bodies: &[Body], points: &mut Points<S>, tracers: 
         let top = surface.fold(f64::INFINITY, f64::min);
         for at in body.part.points.clone() {
             let pressure = body.density * (depth(points.position[at]) - top);
-            let (stretch, stress) = body.law.under_pressure(pressure, S::DIMENSION);
+            let (stretch, stress) = with_law!(&body.law, law => law.under_pressure(pressure, S::DIMENSION));
             let deformation = S::restrict_gradient(Matrix3::from_diagonal_element(stretch));
             points.deformation[at] = deformation;
             points.reference_volume[at] = points.volume[at] / stretch.powi(S::DIMENSION as i32);

@@ -2,7 +2,7 @@
 
 use crate::bodies::Body;
 use crate::contact::{Other, Touch};
-use crate::material;
+use crate::material::{self, Law, with_law};
 use crate::simulation::Simulation;
 use crate::stress::embed_deformation;
 use grainbench_scene::budget::Budget;
@@ -185,7 +185,7 @@ impl<S: Space> Simulation<S> {
 
     fn elastic_energy(&self, body: &Body) -> f64 {
         let range = body.part.points.clone();
-        range.map(|at| self.state.points.reference_volume[at] * body.law.energy(&self.state_of(at))).sum()
+        with_law!(&body.law, law => range.map(|at| self.state.points.reference_volume[at] * law.energy(&self.state_of(at))).sum())
     }
 
     fn point(&self, body: &Body, at: usize) -> PointState {

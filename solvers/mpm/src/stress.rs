@@ -1,12 +1,12 @@
 //! From velocity gradients to deformation and stress, material by material.
 
 use crate::basis::with_basis;
-use crate::bodies::{Body, Material};
+use crate::bodies::Body;
 use crate::failure::Failure;
 use crate::gradients::Gradients;
 use crate::grid::Node;
 use crate::ledger::Flow;
-use crate::material::{Law, PlasticStrain};
+use crate::material::{Law, PlasticStrain, with_law};
 use crate::nodes::{Grid, Velocities};
 use crate::options::Transfer;
 use crate::points::Lent;
@@ -123,11 +123,7 @@ fn follow_piece<S: Space>(
                 }
             };
         }
-        match *law {
-            Material::NeoHookean(law) => update!(law),
-            Material::Hypoelastic(law) => update!(law),
-            Material::VonMises(law) => update!(law),
-        }
+        with_law!(*law, law => update!(law));
     }
     if let Some(BrokenPoint { point, cause }) = broken
         && failure.is_none()

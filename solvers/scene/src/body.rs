@@ -1,55 +1,8 @@
-//! Deformable bodies: what a material is made of, bodies that are no grains, and how they start.
+//! Deformable bodies that are no grains, and how bodies start.
 
 use crate::manufactured::Manufactured;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
-
-/// The law between deformation and stress.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Constitutive {
-    /// Hypoelastic: the Jaumann rate of the Cauchy stress is linear in the rate of deformation.
-    Hypoelastic,
-    /// Compressible neo-Hookean: τ = λ ln J + G (b − 1).
-    NeoHookean,
-    /// Hypoelastic up to the yield stress of von Mises, with linear isotropic hardening.
-    VonMises {
-        /// Yield stress Y (Pa).
-        yield_stress: f64,
-        /// Hardening modulus H (Pa): the yield stress grows by H for each unit of plastic strain.
-        hardening_modulus: f64,
-    },
-}
-
-/// A deformable material.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deformable {
-    /// Bulk modulus K (Pa).
-    pub bulk_modulus: f64,
-    /// Shear modulus G (Pa).
-    pub shear_modulus: f64,
-    /// The law.
-    pub constitutive: Constitutive,
-}
-
-impl Deformable {
-    /// Lamé's λ = K − 2G/3 (Pa).
-    #[must_use]
-    pub fn lame(&self) -> f64 {
-        self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus
-    }
-
-    /// Modulus of longitudinal waves M = K + 4G/3 (Pa); their speed is √(M/ρ).
-    #[must_use]
-    pub fn longitudinal_modulus(&self) -> f64 {
-        self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus
-    }
-
-    /// Young's modulus of plane strain E' = E/(1 − ν²) = 4G (K + G/3)/(K + 4G/3) (Pa).
-    #[must_use]
-    pub fn plane_modulus(&self) -> f64 {
-        4.0 * self.shear_modulus * (self.bulk_modulus + self.shear_modulus / 3.0) / self.longitudinal_modulus()
-    }
-}
 
 /// Shape of a body that is no grain.
 #[derive(Clone, Copy, Debug, PartialEq)]

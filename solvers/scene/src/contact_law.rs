@@ -4,7 +4,8 @@
 
 use crate::check::Checker;
 use crate::error::SceneError;
-use crate::file::{GrainShape, MaterialSpec};
+use crate::file::GrainShape;
+use crate::material::MaterialSpec;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

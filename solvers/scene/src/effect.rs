@@ -1,8 +1,8 @@
 //! The one list of effects: what each is called, which key of a scene turns it on, how it is switched off, and a value
 //! with which it is compiled in and does nothing. What a scene calls for is derived from it and never typed beside it.
 
-use crate::body::Constitutive;
 use crate::contact_law::{ContactLaw, Springs};
+use crate::material::Deformable;
 use crate::motion::{Moment, Phase};
 use crate::scene::Scene;
 use crate::solver::Method;
@@ -141,16 +141,10 @@ impl Effect {
                 let of_wall = wall.map(|wall| format!("walls.{}.motion", wall.name));
                 of_wall.or_else(|| Some(format!("driven.{}.velocity", driven()?.name)))
             }
-            Self::Plasticity => {
-                scene.deformable.iter().zip(&scene.materials).find_map(|(material, name)| {
-                    match material.as_ref()?.constitutive {
-                        Constitutive::VonMises { yield_stress, .. } => {
-                            Some(format!("materials.{name}.yield_stress = {yield_stress}"))
-                        }
-                        _ => None,
-                    }
-                })
-            }
+            Self::Plasticity => scene.deformable.iter().zip(&scene.materials).find_map(|(material, name)| {
+                let yield_stress = material.as_ref()?.constitutive.yield_stress()?;
+                Some(format!("materials.{name}.yield_stress = {yield_stress}"))
+            }),
         }
     }
 
@@ -207,9 +201,7 @@ impl Effect {
             }
             Self::Plasticity => {
                 for material in scene.deformable.iter_mut().flatten() {
-                    if matches!(material.constitutive, Constitutive::VonMises { .. }) {
-                        material.constitutive = Constitutive::Hypoelastic;
-                    }
+                    material.constitutive = material.constitutive.elastic();
                 }
             }
         }
@@ -255,13 +247,10 @@ impl Effect {
             },
             // A yield stress that nothing reaches.
             Self::Plasticity => {
-                let elastic = scene
-                    .deformable
-                    .iter_mut()
-                    .flatten()
-                    .filter(|material| material.constitutive == Constitutive::Hypoelastic);
-                let never = Constitutive::VonMises { yield_stress: f64::MAX, hardening_modulus: 0.0 };
-                elastic.map(|material| material.constitutive = never).count() > 0
+                let idle = |material: &mut Deformable| {
+                    material.constitutive.never_yielding().map(|never| material.constitutive = never)
+                };
+                scene.deformable.iter_mut().flatten().filter_map(idle).count() > 0
             }
             // A periodic box changes where grains are, however large it is; another law is another answer.
             Self::PeriodicAxes | Self::Hertz | Self::Restitution => false,

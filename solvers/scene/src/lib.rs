@@ -17,6 +17,7 @@ pub mod file;
 pub mod generate;
 pub mod grains;
 pub mod manufactured;
+pub mod material;
 pub mod memory;
 pub mod motion;
 mod near;

@@ -1,11 +1,12 @@
 //! A scene made definite: every grain, wall and law, checked, in SI. Solvers read this and nothing else.
 
 pub use crate::body::Block;
-use crate::body::{Deformable, Start};
+use crate::body::Start;
 use crate::contact_law::ContactLaw;
 use crate::end_state::Springs;
 use crate::file::GrainShape;
 use crate::grains::Grains;
+use crate::material::Deformable;
 use crate::motion::{Displacement, Motion};
 use crate::stays::Stays;
 use nalgebra::Vector3;

@@ -1,14 +1,11 @@
 //! Constitutive laws, three by three in both dimensions: in the plane the strain out of it is zero, the stress is not.
 
-mod hypoelastic;
-mod neo_hookean;
+mod laws;
 mod plastic_strain;
-mod von_mises;
 
-pub use hypoelastic::Hypoelastic;
-pub use neo_hookean::NeoHookean;
+pub use laws::{Hypoelastic, NeoHookean, VonMises};
+pub(crate) use laws::{Material, with_law};
 pub use plastic_strain::PlasticStrain;
-pub use von_mises::VonMises;
 
 use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;

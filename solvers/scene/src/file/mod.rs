@@ -6,19 +6,18 @@ mod bodies;
 mod driven;
 mod grains;
 mod manufactured;
-mod materials;
 mod output;
 mod probes;
 mod walls;
 
 pub use crate::contact_law::{ContactSpec, LawKind};
+pub use crate::material::{ConstitutiveKind, MaterialSpec};
 pub use bodies::{AnnulusSpec, BodySpec, BoxSpec, SideSpec, WaveSpec};
 pub use driven::{DrivenSpec, RegionSpec};
 pub use grains::{
     FileSpec, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, RemovalSpec, SpinSpec, StateSpec,
 };
 pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
-pub use materials::{ConstitutiveKind, MaterialSpec};
 pub use output::OutputSpec;
 pub use probes::{PointSpec, ProbeSpec};
 pub use walls::{ConeSpec, CylinderSpec, MotionSpec, PistonSpec, PlaneSpec, RectangleSpec, WallSpec};

@@ -1,0 +1,205 @@
+//! What grains, bodies and walls are made of, from the keys that a user writes to the moduli and the law that act.
+//!
+//! A new law between deformation and stress is a variant of [`Constitutive`] with its word and its keys here, and its stress in
+//! `solvers/mpm/src/material/laws.rs`.
+
+use crate::check::Checker;
+use crate::error::SceneError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A material.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialSpec {
+    /// Density ρ (kg/m³); not needed for materials of walls, nor where a data file gives it.
+    #[serde(default)]
+    pub density: Option<f64>,
+    /// Young's modulus E (Pa); needed for Hertz contacts unless `rigid`. With Poisson's ratio it makes bodies
+    /// deformable for solvers that resolve them.
+    #[serde(default)]
+    pub young_modulus: Option<f64>,
+    /// Poisson's ratio ν, from −1 to 1/2; needed for Hertz contacts unless `rigid`.
+    #[serde(default)]
+    pub poisson_ratio: Option<f64>,
+    /// Whether the material is rigid: its partner alone deforms in a Hertz contact.
+    #[serde(default)]
+    pub rigid: bool,
+    /// Bulk modulus K (Pa), with `shear_modulus` in place of Young's modulus and Poisson's ratio.
+    #[serde(default)]
+    pub bulk_modulus: Option<f64>,
+    /// Shear modulus G (Pa).
+    #[serde(default)]
+    pub shear_modulus: Option<f64>,
+    /// Law of a deformable material: `neo-hookean` (the default), `hypoelastic` or `von-mises`.
+    #[serde(default)]
+    pub constitutive: Option<ConstitutiveKind>,
+    /// Yield stress Y (Pa); needed for `von-mises`.
+    #[serde(default)]
+    pub yield_stress: Option<f64>,
+    /// Hardening modulus H (Pa) of `von-mises`. Default 0.
+    #[serde(default)]
+    pub hardening_modulus: Option<f64>,
+}
+
+impl MaterialSpec {
+    /// The moduli and the law, where the file says so; `name` is the material's.
+    ///
+    /// # Errors
+    /// Where a number is wrong, or moduli are given by halves.
+    pub(crate) fn deformable(&self, name: &str, check: &Checker<'_>) -> Result<Option<Deformable>, SceneError> {
+        let key = |part: &str| format!("materials.{name}.{part}");
+        let asked = self.constitutive.is_some() || self.bulk_modulus.is_some() || self.shear_modulus.is_some();
+        let (bulk_modulus, shear_modulus) =
+            match (self.bulk_modulus, self.shear_modulus, self.young_modulus, self.poisson_ratio) {
+                (Some(bulk), Some(shear), None, None) => {
+                    let modulus = "modulus (Pa)";
+                    let bulk = check.positive(&key("bulk_modulus"), bulk, modulus)?;
+                    (bulk, check.positive(&key("shear_modulus"), shear, modulus)?)
+                }
+                (None, None, Some(young), Some(poisson)) => {
+                    if !(young > 0.0 && young.is_finite() && poisson > -1.0 && poisson < 0.5) {
+                        let expected = "a positive `young_modulus` and a `poisson_ratio` above −1 and below 1/2";
+                        let found = format!("{young} and {poisson}");
+                        // Laws of contacts judge these numbers themselves where no body is to deform.
+                        return if asked {
+                            Err(check.error(&key("young_modulus"), expected, &found))
+                        } else {
+                            Ok(None)
+                        };
+                    }
+                    (young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)))
+                }
+                _ if asked => {
+                    let expected = "`young_modulus` and `poisson_ratio`, or `bulk_modulus` and `shear_modulus`";
+                    return Err(check.error(&format!("materials.{name}"), expected, "another choice of them"));
+                }
+                _ => return Ok(None),
+            };
+        let constitutive = match self.constitutive.unwrap_or(ConstitutiveKind::NeoHookean) {
+            ConstitutiveKind::NeoHookean => Constitutive::NeoHookean,
+            ConstitutiveKind::Hypoelastic => Constitutive::Hypoelastic,
+            ConstitutiveKind::VonMises => {
+                let Some(yield_stress) = self.yield_stress else {
+                    return Err(check.error(&format!("materials.{name}"), "the key `yield_stress`", "none"));
+                };
+                let hardening = self.hardening_modulus.unwrap_or(0.0);
+                Constitutive::VonMises {
+                    yield_stress: check.positive(&key("yield_stress"), yield_stress, "stress (Pa)")?,
+                    hardening_modulus: check.not_negative(&key("hardening_modulus"), hardening, "modulus (Pa)")?,
+                }
+            }
+        };
+        Ok(Some(Deformable { bulk_modulus, shear_modulus, constitutive }))
+    }
+}
+
+/// Law of a deformable material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ConstitutiveKind {
+    /// The Jaumann rate of the stress is linear in the rate of deformation.
+    Hypoelastic,
+    /// Compressible: τ = λ ln J + G (b − 1).
+    NeoHookean,
+    /// Hypoelastic up to a yield stress, with linear isotropic hardening.
+    VonMises,
+}
+
+impl std::fmt::Display for ConstitutiveKind {
+    /// The word of scene files.
+    fn fmt(&self, text: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        text.write_str(match self {
+            Self::Hypoelastic => "hypoelastic",
+            Self::NeoHookean => "neo-hookean",
+            Self::VonMises => "von-mises",
+        })
+    }
+}
+
+/// The law between deformation and stress, with its numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(tag = "constitutive", rename_all = "kebab-case")]
+pub enum Constitutive {
+    /// Hypoelastic: the Jaumann rate of the Cauchy stress is linear in the rate of deformation.
+    Hypoelastic,
+    /// Compressible neo-Hookean: τ = λ ln J + G (b − 1), λ = K − 2G/3.
+    NeoHookean,
+    /// Hypoelastic up to the yield stress of von Mises, with linear isotropic hardening.
+    VonMises {
+        /// Yield stress Y (Pa).
+        yield_stress: f64,
+        /// Hardening modulus H (Pa): the yield stress grows by H for each unit of plastic strain.
+        hardening_modulus: f64,
+    },
+}
+
+impl Constitutive {
+    /// The law's word.
+    #[must_use]
+    pub const fn kind(&self) -> ConstitutiveKind {
+        match self {
+            Self::Hypoelastic => ConstitutiveKind::Hypoelastic,
+            Self::NeoHookean => ConstitutiveKind::NeoHookean,
+            Self::VonMises { .. } => ConstitutiveKind::VonMises,
+        }
+    }
+
+    /// The stress at which it first yields (Pa), where it ever does.
+    #[must_use]
+    pub const fn yield_stress(&self) -> Option<f64> {
+        match *self {
+            Self::VonMises { yield_stress, .. } => Some(yield_stress),
+            Self::Hypoelastic | Self::NeoHookean => None,
+        }
+    }
+
+    /// The same without yielding.
+    #[must_use]
+    pub const fn elastic(self) -> Self {
+        match self {
+            Self::VonMises { .. } => Self::Hypoelastic,
+            elastic => elastic,
+        }
+    }
+
+    /// The law that yields at a stress that nothing reaches and is this one below it, where there is one.
+    #[must_use]
+    pub const fn never_yielding(&self) -> Option<Self> {
+        match self {
+            Self::Hypoelastic => Some(Self::VonMises { yield_stress: f64::MAX, hardening_modulus: 0.0 }),
+            Self::NeoHookean | Self::VonMises { .. } => None,
+        }
+    }
+}
+
+/// A deformable material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deformable {
+    /// Bulk modulus K (Pa).
+    pub bulk_modulus: f64,
+    /// Shear modulus G (Pa).
+    pub shear_modulus: f64,
+    /// The law.
+    pub constitutive: Constitutive,
+}
+
+impl Deformable {
+    /// Lamé's λ = K − 2G/3 (Pa).
+    #[must_use]
+    pub fn lame(&self) -> f64 {
+        self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus
+    }
+
+    /// Modulus of longitudinal waves M = K + 4G/3 (Pa); their speed is √(M/ρ).
+    #[must_use]
+    pub fn longitudinal_modulus(&self) -> f64 {
+        self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus
+    }
+
+    /// Young's modulus of plane strain E' = E/(1 − ν²) = 4G (K + G/3)/(K + 4G/3) (Pa).
+    #[must_use]
+    pub fn plane_modulus(&self) -> f64 {
+        4.0 * self.shear_modulus * (self.bulk_modulus + self.shear_modulus / 3.0) / self.longitudinal_modulus()
+    }
+}
