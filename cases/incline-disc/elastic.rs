@@ -6,8 +6,8 @@
 //! from four resolutions (quadratic B-splines, APIC, springs at the surface). Larger moduli need no reference: they
 //! lead to the rigid answer.
 
-use crate::exact::one_grain::{OneGrain, State, course, last};
-use crate::rows::elastic::{Rest, settle, stiffen};
+use crate::exact::one_grain::{State, course, last};
+use crate::rows::elastic::{Rest, excess, settle, stiffen};
 use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::{elastic_disc, nodal_contact_2000 as nodal};
 use grainbench_harness::measure::slope as fitted;
@@ -87,12 +87,6 @@ fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> R
         settle(scene, REST, slope.time);
         stiffen(scene, factor);
     })
-}
-
-/// Displacement over that of a rigid disc, less one.
-fn excess(done: &Done) -> Result<f64, Missing> {
-    let (t, state) = last(done)?;
-    Ok(state.x / OneGrain::of(&done.scene).rigid_incline(t).x - 1.0)
 }
 
 /// Time at the end over which rolling is averaged (s): about one period of the disc rocking on its contact, which

@@ -4,8 +4,8 @@
 //! and is stretched before it slips. The expected values are an independent prototype's (quadratic B-splines, APIC,
 //! springs at the surface), extrapolated from R/2, R/4 and R/8.
 
-use crate::exact::one_grain::{OneGrain, last};
-use crate::rows::elastic::{Rest, settle};
+use crate::exact::one_grain::last;
+use crate::rows::elastic::{Rest, excess, settle};
 use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::elastic_sphere;
 use grainbench_harness::prelude::*;
@@ -32,12 +32,6 @@ const POINTS: u32 = 2;
 fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
     Run::new(slope.variant, solver, Resolution::grid(cells, POINTS))
         .adjusted("elastic and settled", |scene| settle(scene, REST, 1.0))
-}
-
-/// Displacement over that of a rigid sphere, less one.
-fn excess(done: &Done) -> Result<f64, Missing> {
-    let (t, state) = last(done)?;
-    Ok(state.x / OneGrain::of(&done.scene).rigid_incline(t).x - 1.0)
 }
 
 pub(super) fn claims() -> Vec<Claim> {

@@ -1,6 +1,8 @@
 //! A grain as an elastic body on a plane: how it starts, and the change of stiffness that leads to the rigid answer;
 //! and a disc that is pressed.
 
+use crate::exact::one_grain::{OneGrain, last};
+use grainbench_harness::prelude::*;
 use grainbench_scene::body::Settle;
 use grainbench_scene::scene::{Duration, Scene};
 use std::f64::consts::PI;
@@ -33,6 +35,15 @@ pub fn stiffen(scene: &mut Scene, factor: f64) {
         material.bulk_modulus *= factor;
         material.shear_modulus *= factor;
     }
+}
+
+/// Displacement down an incline over that of a rigid grain, less one.
+///
+/// # Errors
+/// Where the run has no grain.
+pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
+    let (t, state) = last(done)?;
+    Ok(state.x / OneGrain::of(&done.scene).rigid_incline(t).x - 1.0)
 }
 
 /// An elastic disc in plane strain that is pressed at two opposite sides, or at four, without friction: how much its

@@ -1,7 +1,74 @@
-//! Claims that inclines share, whether the grain is a disc or a sphere.
+//! A grain released from rest on an inclined plane, a disc or a sphere: one case in two geometries, of which each has its scene,
+//! its slopes and its elastic body.
 
+use super::programs;
+use super::rigid::{self, Row};
+use super::set_down::{self, Dashpots};
 use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
 use grainbench_harness::prelude::*;
+
+/// One of the two.
+pub(crate) struct Incline {
+    /// The case, for its variants.
+    pub case: &'static Case,
+    /// Its slopes.
+    pub slopes: &'static [Slope],
+    /// What rapier makes of them.
+    pub rigid: &'static [Row],
+    /// The slope on which it is set down, and the dashpots there.
+    pub set_down: (&'static str, Dashpots),
+}
+
+/// The case, of which the two say name, title and scene.
+pub(crate) const fn case(
+    [name, title, scene]: [&'static str; 3],
+    claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
+    figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
+) -> Case {
+    Case {
+        name,
+        title,
+        claim: "A grain released from rest rolls or slips as Coulomb friction says: displacement, velocity and spin follow \
+                the rigid answer up to the compliance of the contact, and the compliant answer to the step's own error.",
+        scene,
+        derivation: include_str!("../../incline-disc/derivation.md"),
+        weakness: "One contact that never opens and whose normal never turns, started at its static overlap: nothing is \
+                   said about impact, about history on a turning contact, or about grains against grains. A wrong μ is \
+                   felt only where the grain slips, a wrong inertia mostly where it rolls: read the slopes together.",
+        levels: LEVELS,
+        default_level: LEVELS[2],
+        claims,
+        figures,
+        home: &crate::registry::HOME,
+    }
+}
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+
+impl Incline {
+    /// All claims but those of the elastic body.
+    pub(crate) fn claims(&self) -> Vec<Claim> {
+        let (variant, dashpots) = self.set_down;
+        let variants: Vec<_> = self.slopes.iter().map(|slope| slope.variant).collect();
+        [
+            springs(self.case, self.slopes),
+            set_down::claims(variant, dashpots),
+            rigid::inclines(self.rigid),
+            programs::one_grain(&variants),
+        ]
+        .concat()
+    }
+
+    /// All figures but those of the elastic body.
+    ///
+    /// # Errors
+    /// When a run fails.
+    pub(crate) fn figures(&self, runner: &Runner) -> Result<Vec<Figure>, RunError> {
+        let mut figures = motion(runner, self.slopes)?;
+        figures.push(rigid::figure(runner, self.rigid, OneGrain::rigid_incline)?);
+        Ok(figures)
+    }
+}
 
 /// Where the rigid answers are printed.
 const RIGID: Source =
@@ -73,9 +140,8 @@ pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
     })
 }
 
-/// All claims of some slopes.
-#[must_use]
-pub fn claims(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
+/// What springs and dashpots make of some slopes.
+fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &slope in slopes {
         if !slope.sticks {
@@ -251,11 +317,8 @@ fn final_motion(slope: Slope) -> Vec<Claim> {
 }
 
 /// Motion against the rigid answer.
-///
-/// # Errors
-/// When a run fails.
-pub fn figures(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
-    let mut motion = Vec::new();
+fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
+    let mut displacement = Vec::new();
     let mut spin = Vec::new();
     for slope in slopes {
         let done = runner.run(&at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
@@ -263,10 +326,18 @@ pub fn figures(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunErro
         let states = course(&done).unwrap_or_default();
         let thin: Vec<_> = states.iter().step_by(states.len().div_ceil(12).max(1)).collect();
         let curve = |label: String, stroke, points| Curve { label, stroke, points };
-        motion.push(curve(slope.variant.to_owned(), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.x)).collect()));
+        displacement.push(curve(
+            slope.variant.to_owned(),
+            Stroke::Markers,
+            thin.iter().map(|(t, s)| (*t, s.x)).collect(),
+        ));
         spin.push(curve(slope.variant.to_owned(), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.omega)).collect()));
         let exact = |of: &dyn Fn(f64) -> f64| (0..=50).map(|k| f64::from(k) / 50.0).map(|t| (t, of(t))).collect();
-        motion.push(curve(format!("{}, rigid", slope.variant), Stroke::Dashed, exact(&|t| grain.rigid_incline(t).x)));
+        displacement.push(curve(
+            format!("{}, rigid", slope.variant),
+            Stroke::Dashed,
+            exact(&|t| grain.rigid_incline(t).x),
+        ));
         spin.push(curve(format!("{}, rigid", slope.variant), Stroke::Dashed, exact(&|t| grain.rigid_incline(t).omega)));
     }
     Ok(vec![
@@ -275,7 +346,7 @@ pub fn figures(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunErro
             "Displacement down the slope",
             "dem:lammps at overlap/R = 1e-3 (markers) and the rigid answer (dashes).",
             [Axis::linear("time t (s)"), Axis::linear("displacement x (m)")],
-            motion,
+            displacement,
         ),
         Figure::graph(
             "spin",
