@@ -140,7 +140,8 @@ pub fn globe(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Patch> {
         .collect()
 }
 
-/// The surface of a rectangle, counter-clockwise from its lower corner.
+/// The surface of a rectangle, counter-clockwise: the middles of pieces at most `spacing` long, so that none stands on a corner, where
+/// it would bear on two sides.
 #[must_use]
 pub fn rectangle(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Patch> {
     let corners = [low, Vector3::new(high.x, low.y, 0.0), high, Vector3::new(low.x, high.y, 0.0)];
@@ -151,7 +152,7 @@ pub fn rectangle(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Pat
         let count = (along.norm() / spacing).ceil().max(1.0) as usize;
         let step = along / count as f64;
         let area = Vector3::new(step.y, -step.x, 0.0);
-        patches.extend((0..count).map(|number| Patch { position: from + step * number as f64, area }));
+        patches.extend((0..count).map(|number| Patch { position: from + step * (number as f64 + 0.5), area }));
     }
     patches
 }
@@ -207,6 +208,9 @@ mod tests {
         assert!((volume / (4.0 / 3.0 * PI) - 1.0).abs() < 1e-12);
         let rectangle = rectangle(Vector3::zeros(), Vector3::new(2.0, 1.0, 0.0), 0.3);
         assert!(rectangle.iter().map(|patch| patch.area).sum::<Vector3<f64>>().norm() < 1e-12);
+        // What lies on a side is all of that side's own, and nothing of the next.
+        let below: f64 = rectangle.iter().filter(|patch| patch.position.y == 0.0).map(|patch| patch.area.norm()).sum();
+        assert!((below - 2.0).abs() < 1e-12);
         let circle = circle(Vector3::zeros(), 1.0, 0.3, 1.0);
         assert_eq!(circle.len() % 4, 0);
         assert!(circle.iter().map(|patch| patch.area).sum::<Vector3<f64>>().norm() < 1e-12);
