@@ -8,8 +8,11 @@ use crate::rows::rigid::Row;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case =
-    incline::case(["incline-disc", "A disc on an inclined plane", include_str!("scene.toml")], &claims, figures);
+pub(crate) static CASE: Case = incline::case(
+    ["incline-disc", "A disc on an inclined plane", include_str!("scene.toml"), include_str!("derivation.md")],
+    &claims,
+    figures,
+);
 
 static INCLINE: Incline = Incline {
     case: &CASE,

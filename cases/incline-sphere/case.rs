@@ -8,8 +8,16 @@ use crate::rows::rigid::Row;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case =
-    incline::case(["incline-sphere", "A sphere on an inclined plane", include_str!("scene.toml")], &claims, figures);
+pub(crate) static CASE: Case = incline::case(
+    [
+        "incline-sphere",
+        "A sphere on an inclined plane",
+        include_str!("scene.toml"),
+        include_str!("../incline-disc/derivation.md"),
+    ],
+    &claims,
+    figures,
+);
 
 static INCLINE: Incline = Incline {
     case: &CASE,

@@ -19,9 +19,9 @@ pub(crate) struct Incline {
     pub set_down: (&'static str, Dashpots),
 }
 
-/// The case, of which the two say name, title and scene.
+/// The case, of which the two say name, title, scene and derivation.
 pub(crate) const fn case(
-    [name, title, scene]: [&'static str; 3],
+    [name, title, scene, derivation]: [&'static str; 4],
     claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
     figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
 ) -> Case {
@@ -31,7 +31,7 @@ pub(crate) const fn case(
         claim: "A grain released from rest rolls or slips as Coulomb friction says: displacement, velocity and spin follow \
                 the rigid answer up to the compliance of the contact, and the compliant answer to the step's own error.",
         scene,
-        derivation: include_str!("../../incline-disc/derivation.md"),
+        derivation,
         weakness: "One contact that never opens and whose normal never turns, started at its static overlap: nothing is \
                    said about impact, about history on a turning contact, or about grains against grains. A wrong μ is \
                    felt only where the grain slips, a wrong inertia mostly where it rolls: read the slopes together.",
