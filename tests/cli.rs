@@ -68,7 +68,10 @@ fn help_of_every_command() {
 
 #[test]
 fn version() {
-    assert_eq!(help(&["--version"]), concat!("grainbench ", env!("CARGO_PKG_VERSION"), "\n"));
+    assert_eq!(
+        help(&["--version"]),
+        concat!("grainbench ", env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")\n")
+    );
 }
 
 #[test]
@@ -149,6 +152,7 @@ fn run_leaves_its_files_and_a_summary() {
     insta::assert_snapshot!(settled.join("\n"));
     let out = directory.path().join("deep/out");
     let expected = [
+        "badge.svg",
         "figures/squash-elastic.svg",
         "figures/squash-forces.svg",
         "index.html",

@@ -1,7 +1,9 @@
 //! Plots, pages and result files, made from records and verdicts only: no solver is needed to redo them.
 
+pub mod badge;
 pub mod elements;
 pub mod export;
+pub mod github;
 pub mod headline;
 pub mod judged;
 pub mod junit;

@@ -8,6 +8,7 @@ use grainbench_harness::figure::{Drawing, Figure, Graph};
 use grainbench_scene::text::tamed;
 use thiserror::Error;
 
+use crate::badge::badge;
 use crate::export::series_csv::harmless;
 use crate::junit::junit_xml;
 use crate::page;
@@ -73,8 +74,9 @@ pub enum LoadError {
     },
 }
 
-/// Writes `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml` and `figures/CASE-NAME.svg` into
-/// `dir`, the data of graphs as `.csv` and films as `.png` beside them, and what the page has no room for; all of them or none.
+/// Writes `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml`, `badge.svg` and
+/// `figures/CASE-NAME.svg` into `dir`, the data of graphs as `.csv` and films as `.png` beside them, and what the page has no room
+/// for; all of them or none.
 ///
 /// # Errors
 /// When the disk refuses or a figure cannot be drawn.
@@ -115,6 +117,7 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
     out.write("rows.csv", rows)?;
     let junit = junit_xml(report).map_err(|error| encode("junit.xml")(error.to_string()))?;
     out.write("junit.xml", junit)?;
+    out.write("badge.svg", badge(report))?;
     let page = page::render(report)?;
     out.write("index.html", page.html)?;
     for (path, text) in page.beside {

@@ -1,6 +1,6 @@
 //! The summary as plain text.
 
-use grainbench_harness::verdict::Outcome;
+use grainbench_harness::verdict::{Outcome, Verdict};
 
 use crate::headline::{self, Headline};
 use crate::line;
@@ -35,13 +35,19 @@ pub fn summary_table(report: &Report) -> String {
     text
 }
 
-/// Every row that fails or broke, and every negative control that stayed green, a line each.
+/// Whether a row that ended so makes a run red: a stale reference does too.
+#[must_use]
+pub fn is_red(verdict: &Verdict) -> bool {
+    matches!(verdict.outcome, Outcome::Fail | Outcome::Stale | Outcome::Broken)
+}
+
+/// Every row that fails, broke or is stale, and every negative control that stayed green, a line each.
 #[must_use]
 pub fn failing_lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
     for section in &report.sections {
         for verdict in &section.verdicts {
-            if matches!(verdict.outcome, Outcome::Fail | Outcome::Broken) {
+            if is_red(verdict) {
                 lines.push(format!("✗ {}", line::verdict(verdict)));
             }
         }

@@ -1,6 +1,6 @@
 //! `grainbench conform`: what every solver owes, whatever its method.
 
-use super::cores::share;
+use super::cores::{at_once, share};
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
 use super::run::{exit_code, says_nothing};
@@ -74,7 +74,7 @@ pub(crate) fn section(named: &[String]) -> Result<Option<Section>, Fault> {
     let judged: Vec<_> = solvers.iter().map(|_| OnceLock::new()).collect();
     share(
         solvers.len(),
-        1,
+        at_once(1),
         || true,
         |number| {
             let (solver, terms) = &solvers[number];

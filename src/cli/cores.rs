@@ -11,14 +11,18 @@ pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// Does pieces of work by number, as many at once as there are cores for runs of so many threads each, until all are done or
-/// no more are to be begun. Gives how many were left out.
+/// How many runs of so many threads each this machine has cores for.
+pub(crate) fn at_once(threads: usize) -> usize {
+    (cores() / threads).max(1)
+}
+
+/// Does pieces of work by number, so many at once, until all are done or no more are to be begun. Gives how many were left out.
 ///
 /// Plain threads: gates wait for runs that they share, and a pool that lends a waiting thread to another gate could let a run
 /// wait for itself.
 pub(crate) fn share(
     pieces: usize,
-    threads: usize,
+    at_once: usize,
     goes_on: impl Fn() -> bool + Sync,
     work: impl Fn(usize) + Sync,
 ) -> usize {
@@ -26,7 +30,7 @@ pub(crate) fn share(
     let take =
         || if goes_on() { Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&piece| piece < pieces) } else { None };
     std::thread::scope(|scope| {
-        for _ in 0..(cores() / threads).clamp(1, pieces.max(1)) {
+        for _ in 0..at_once.clamp(1, pieces.max(1)) {
             scope.spawn(|| {
                 while let Some(piece) = take() {
                     work(piece);

@@ -16,12 +16,17 @@ pub(crate) type Outcome = Result<ExitCode, Fault>;
 pub(crate) enum Fault {
     /// Bad input or usage: exit code 2.
     Input(String),
+    /// The same, with the names that are known, which are told one a line.
+    Unknown(String, Vec<String>),
     /// A solver of ours broke: exit code 1.
     Broken(String),
 }
 
 /// Exit code of a run with a row that fails, a control that stayed green, or a solver that broke.
 pub(crate) const RED: u8 = 1;
+
+/// More names than these are told one a line.
+const MOST_ON_A_LINE: usize = 6;
 
 /// Exit code of bad input or usage, the same that clap has for its own.
 const BAD_INPUT: u8 = 2;
@@ -49,26 +54,35 @@ impl Fault {
         let mut names: Vec<&str> = known.clone().into_iter().collect();
         let mut seen = BTreeSet::new();
         names.retain(|name| seen.insert(*name));
-        let names = names.join(", ");
         let help = did_you_mean(word, known).map(|help| format!(" ({help})")).unwrap_or_default();
-        Self::Input(format!("expected {what}, one of {names}; found `{word}`{help}"))
+        if names.len() > MOST_ON_A_LINE {
+            let message = format!("expected {what}, found `{word}`{help}; there are:");
+            return Self::Unknown(message, names.into_iter().map(str::to_owned).collect());
+        }
+        Self::Input(format!("expected {what}, one of {}; found `{word}`{help}", names.join(", ")))
     }
 
     /// Says it on the standard error and gives the exit code.
     pub(crate) fn report(&self) -> ExitCode {
-        let (message, code) = match self {
-            Self::Input(message) => (message, BAD_INPUT),
-            Self::Broken(message) => (message, RED),
+        let (message, names, code) = match self {
+            Self::Input(message) => (message, &[][..], BAD_INPUT),
+            Self::Unknown(message, names) => (message, &names[..], BAD_INPUT),
+            Self::Broken(message) => (message, &[][..], RED),
         };
         say("error", message);
+        for name in names {
+            let _ = writeln!(io::stderr(), "  {}", tamed(name, |_| false));
+        }
         ExitCode::from(code)
     }
 }
 
 impl Display for Fault {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (Self::Input(message) | Self::Broken(message)) = self;
-        formatter.write_str(message)
+        match self {
+            Self::Input(message) | Self::Broken(message) => formatter.write_str(message),
+            Self::Unknown(message, names) => write!(formatter, "{message} {}", names.join(", ")),
+        }
     }
 }
 

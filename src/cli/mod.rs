@@ -3,16 +3,21 @@
 mod check;
 mod checkpoint;
 mod compare;
+mod completions;
 mod conform;
 mod cores;
 mod cost;
 mod deck;
+mod earlier;
 mod effects;
 mod exit;
 mod fields;
+mod filter;
+mod github;
 mod interrupt;
 mod keep;
 mod list;
+mod pattern;
 mod progress;
 mod provenance;
 mod race;
@@ -29,17 +34,20 @@ mod step;
 mod strangers;
 mod subject;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use exit::Fault;
 use grainbench::lanes::Processor;
 use std::process::ExitCode;
+
+/// The version, with the commit that the program is built from.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")");
 
 /// How far to trust a solver of granular simulations, and what that trust costs.
 ///
 /// Runs benchmark cases, judges their gates, and leaves a page with the results. Without a command: `run`, with the
 /// options below.
 #[derive(Parser)]
-#[command(name = "grainbench", version, args_conflicts_with_subcommands = true)]
+#[command(name = "grainbench", version = VERSION, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -82,6 +90,10 @@ enum Command {
     Schema(schema::Arguments),
     /// Make page and figures from what a run left, without any solver: of a report again, or pictures of a simulation.
     Report(report::Arguments),
+    /// Print what a shell needs to complete commands and options.
+    Completions(completions::Arguments),
+    /// Print the manual page, or leave one for each command in a directory.
+    Man(completions::ManArguments),
 }
 
 /// Reads the command line, does what it says, and says how it went.
@@ -108,6 +120,8 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Scene(arguments)) => scene::scene(&arguments),
         Some(Command::Schema(arguments)) => schema::schema(&arguments),
         Some(Command::Report(arguments)) => report::report(&arguments),
+        Some(Command::Completions(arguments)) => completions::completions(&arguments, Cli::command()),
+        Some(Command::Man(arguments)) => completions::man(&arguments, Cli::command()),
     };
     done.unwrap_or_else(|fault: Fault| fault.report())
 }

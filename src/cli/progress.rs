@@ -1,6 +1,7 @@
 //! Progress for people who watch a terminal; silence for files and pipes.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::Duration;
 
@@ -14,9 +15,11 @@ impl Progress {
             return Self(None);
         }
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
-        let template = format!("{{bar:30}} {{human_pos}}/{{human_len}} {what}, {{eta}} left  {{msg}}");
+        let template = format!("{{bar:30}} {{human_pos}}/{{human_len}} {what}, {{left}}  {{msg}}");
         if let Ok(style) = ProgressStyle::with_template(&template) {
-            bar.set_style(style);
+            bar.set_style(style.with_key("left", |state: &ProgressState, text: &mut dyn Write| {
+                let _ = text.write_str(&left(state.pos(), state.eta()));
+            }));
         }
         bar.enable_steady_tick(Duration::from_millis(200));
         Self(Some(bar))
@@ -26,6 +29,14 @@ impl Progress {
     pub(crate) fn now(&self, what: &str) {
         if let Some(bar) = &self.0 {
             bar.set_message(what.to_owned());
+        }
+    }
+
+    /// Says something that stays, above the bar where there is one.
+    pub(crate) fn tell(&self, line: &str) {
+        match &self.0 {
+            Some(bar) => bar.println(line),
+            None => eprintln!("{line}"),
         }
     }
 
@@ -45,10 +56,35 @@ impl Progress {
     }
 }
 
+/// How long it will take yet, in words: while anything is left it is never no time.
+fn left(done: u64, estimate: Duration) -> String {
+    match estimate.as_secs() {
+        _ if done == 0 => "time left not known yet".to_owned(),
+        0 => "less than a second left".to_owned(),
+        seconds @ 1..60 => format!("{seconds} s left"),
+        seconds @ 60..3600 => format!("{} min {} s left", seconds / 60, seconds % 60),
+        seconds => format!("{} h {} min left", seconds / 3600, seconds % 3600 / 60),
+    }
+}
+
 impl Drop for Progress {
     fn drop(&mut self) {
         if let Some(bar) = &self.0 {
             bar.finish_and_clear();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_takes_time() {
+        assert_eq!(left(0, Duration::ZERO), "time left not known yet");
+        assert_eq!(left(999, Duration::from_millis(300)), "less than a second left");
+        assert_eq!(left(9, Duration::from_secs(59)), "59 s left");
+        assert_eq!(left(9, Duration::from_secs(61)), "1 min 1 s left");
+        assert_eq!(left(9, Duration::from_secs(7260)), "2 h 1 min left");
     }
 }

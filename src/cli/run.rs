@@ -1,14 +1,18 @@
 //! `grainbench run`: judge the gates of cases and write the report.
 
 use super::conform;
-use super::cores::{MOST_THREADS, share};
+use super::cores::{MOST_THREADS, at_once, share};
+use super::earlier::Earlier;
 use super::exit::{self, Fault, Outcome, RED, check_writable, print};
+use super::filter::Filters;
+use super::github;
 use super::interrupt::Interrupt;
 use super::keep::{self, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::select::{self, Selected};
 use grainbench::cases::{registry, solvers};
+use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
 use grainbench::harness::run::{Done, Run, Set};
@@ -17,7 +21,10 @@ use grainbench::harness::verdict::{self, Control, Verdict};
 use grainbench::reference::outside::Outside;
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
-use grainbench::reports::{Report, RunCost, Section, summary_table, write_report, write_report_and_parquet};
+use grainbench::reports::terminal::failing_lines;
+use grainbench::reports::{
+    Headline, Report, RunCost, Section, line, summary_table, write_report, write_report_and_parquet,
+};
 use grainbench::scene::solver::RunError;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,7 +35,7 @@ use std::time::Instant;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Cases to run, of the registry or of your own in a folder with `scene.toml` and `claims.toml`; all of the registry when
-    /// none is named.
+    /// none is named. `*`, `?` and `[…]` stand for parts of names: 'incline-*', '*/60deg*'.
     #[arg(value_name = "CASE|CASE/VARIANT|FOLDER")]
     pub(crate) cases: Vec<String>,
     #[command(flatten)]
@@ -45,6 +52,16 @@ pub(crate) struct Options {
     /// Only gates at these resolution levels: `default`, `all`, or names such as `dt=.1`.
     #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
     levels: Vec<String>,
+    /// Only rows whose quantity or source has these words in it or is of this pattern, whose kind of evidence it is, or that end
+    /// so (all are run then, and the exit code is that of all). Of several filters of one key one must fit.
+    #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
+    filter: Vec<String>,
+    /// Only rows that failed in the report of `--out`, or whose control stayed green there.
+    #[arg(long, conflicts_with = "keep")]
+    rerun_failed: bool,
+    /// Tell which rows and controls end otherwise than in this earlier report.
+    #[arg(long, value_name = "DIR|results.json")]
+    against: Option<PathBuf>,
     /// Directory for the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
@@ -72,15 +89,27 @@ pub(crate) struct Options {
     /// Threads of each run; as many runs at once as the machine has cores for. The bits do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     threads: u16,
+    /// Runs at once; as many as the machine has cores for where none are named.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    jobs: Option<u16>,
+    /// Print the counts and what failed, and no table.
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Tell each row as it is judged, on the standard error.
+    #[arg(short, long)]
+    verbose: bool,
 }
 
 /// Runs the named cases, all when none is named.
 pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
-    let selected = select::select(cases, &options.solver, &options.levels)?;
+    let filters = Filters::read(&options.filter)?;
+    let earlier = options.against.as_deref().map(|path| Earlier::read("--against", path)).transpose()?;
+    let mut selected = select::select(cases, &options.solver, &options.levels)?;
+    narrow(&mut selected, options, &filters)?;
     check_writable(&options.out)?;
     let kept = if options.as_kept { Some(keep::read(keep::program(&selected)?)?) } else { None };
-    if let Some(case) = cases.first().filter(|_| options.keep) {
-        return Err(Fault::input(format!("--keep: expected all cases, found `{case}` named")));
+    if let Some(part) = cases.iter().chain(&options.filter).next().filter(|_| options.keep) {
+        return Err(Fault::input(format!("--keep: expected all cases, found `{part}` named")));
     }
     let keeping = if options.keep { Some(keep::program(&selected)?) } else { None };
     let start = Instant::now();
@@ -88,7 +117,8 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let interrupt = Interrupt::listen();
     let (mut sections, left) = judge(&selected, options, thorough, &interrupt);
     // What every solver owes belongs to the whole registry, and not to a case.
-    if cases.is_empty() && (options.levels.is_empty() || thorough) && left == 0 {
+    let is_whole = cases.is_empty() && options.filter.is_empty() && !options.rerun_failed;
+    if is_whole && (options.levels.is_empty() || thorough) && left == 0 {
         sections.extend(conform::section(&options.solver)?);
     }
     let mut words = words(cases, options);
@@ -98,33 +128,82 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     }
     let provenance = provenance(words, start.elapsed().as_secs_f64());
     // They stand beside the whole registry, and not beside a case of it.
-    let (judged, measured) = if cases.is_empty() && options.solver.is_empty() {
+    let (judged, measured) = if is_whole && options.solver.is_empty() {
         (grainbench::peers::kept().map_err(Fault::input)?, grainbench::kept::measured().map_err(Fault::input)?)
     } else {
         (Vec::new(), Measurements::default())
     };
-    let report = Report { provenance, sections, judged, measured };
+    let mut report = Report { provenance, sections, judged, measured };
     if let Some(program) = keeping {
         if left > 0 {
             return Err(Fault::input(format!("--keep: expected a whole run, found {left} checks left out")));
         }
         keep(program, &report)?;
     }
+    let is_mute = selected.iter().any(|of| of.stranger.is_some()) && says_nothing(&report);
+    let code = exit_code(&report, options.strict);
+    if filters.asks_for_outcomes() {
+        show(&mut report, &filters);
+    }
     let write = if options.parquet { write_report_and_parquet } else { write_report };
     write(&options.out, &report).map_err(Fault::writing)?;
     if options.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {
-        print(&format!("{}\n{}\n", summary_table(&report), options.out.join("index.html").display()))?;
+        print(&summary(&report, options))?;
     }
-    let is_mute = selected.iter().any(|of| of.stranger.is_some()) && says_nothing(&report);
+    github::tell(&report, options.json)?;
+    if let Some(earlier) = &earlier {
+        let changes = earlier.changes(&report);
+        let none = ["nothing: every row and every control ended as it did, with the same value".to_owned()];
+        let lines = if changes.is_empty() { &none[..] } else { &changes[..] };
+        lines.iter().for_each(|line| exit::say("changed", line));
+    }
     if let Some(kept) = kept {
         let otherwise = kept.otherwise(&report);
         otherwise.iter().for_each(|line| exit::say("otherwise than kept", line));
         let is_red = left > 0 || is_mute || !otherwise.is_empty();
         return Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS });
     }
-    if left > 0 || is_mute { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, options.strict)) }
+    Ok(if left > 0 || is_mute { ExitCode::from(RED) } else { code })
+}
+
+/// Leaves the claims that filters mean and, where that is asked for, that were red in the report that `--out` holds.
+fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &Filters) -> Result<(), Fault> {
+    let before = if options.rerun_failed { Some(Earlier::read("--rerun-failed", &options.out)?) } else { None };
+    for of_case in &mut *selected {
+        let case = of_case.case.name;
+        let is_meant = |claim: &Claim| before.as_ref().is_none_or(|before| before.was_red(case, claim));
+        of_case.claims.retain(|claim| filters.means(claim) && is_meant(claim));
+    }
+    selected.retain(|of_case| !of_case.claims.is_empty());
+    if selected.is_empty() {
+        let what = if options.rerun_failed { "that failed there" } else { "that the filters mean" };
+        return Err(Fault::input(format!("expected at least one gate {what}, found none")));
+    }
+    Ok(())
+}
+
+/// Leaves the rows that end as it is asked for, with their controls.
+fn show(report: &mut Report, filters: &Filters) {
+    for section in &mut report.sections {
+        section.verdicts.retain(|row| filters.shows(row));
+        let verdicts = &section.verdicts;
+        section.controls.retain(|control| {
+            verdicts.iter().any(|row| row.variant == control.variant && row.quantity == control.quantity)
+        });
+    }
+    report.sections.retain(|section| !section.verdicts.is_empty());
+}
+
+/// What is printed of a report.
+fn summary(report: &Report, options: &Options) -> String {
+    let page = options.out.join("index.html");
+    if !options.quiet {
+        return format!("{}\n{}\n", summary_table(report), page.display());
+    }
+    let failing: String = failing_lines(report).into_iter().map(|line| line + "\n").collect();
+    format!("{failing}{}\n", Headline::of_report(report).sentence())
 }
 
 /// Success, or red when a row failed or has a stale reference, a control stayed green, a solver of ours broke, or nothing
@@ -172,6 +251,10 @@ fn words(cases: &[String], options: &Options) -> Vec<String> {
     if options.no_controls {
         words.push("--no-controls".to_owned());
     }
+    words.extend(options.filter.iter().map(|filter| format!("--filter {filter}")));
+    if options.rerun_failed {
+        words.push("--rerun-failed".to_owned());
+    }
     words
 }
 
@@ -193,11 +276,12 @@ enum Task {
 
 /// Sections of what was done, and how many checks were left out because somebody asked to end.
 fn judge(selected: &[Selected], options: &Options, thorough: bool, interrupt: &Interrupt) -> (Vec<Section>, usize) {
-    let threads = usize::from(options.threads);
     let work: Vec<Work<'_>> = selected.iter().map(|selected| Work::new(selected, options, thorough)).collect();
     let tasks = tasks(selected, !options.no_controls);
     let progress = Progress::new(tasks.len() as u64, "checks");
-    let left = share(tasks.len(), threads, || !interrupt.is_asked(), |piece| do_task(&work, &tasks[piece], &progress));
+    let jobs = options.jobs.map_or_else(|| at_once(usize::from(options.threads)), usize::from);
+    let do_piece = |piece: usize| do_task(&work, &tasks[piece], &progress, options.verbose);
+    let left = share(tasks.len(), jobs, || !interrupt.is_asked(), do_piece);
     drop(progress);
     (work.into_iter().map(Work::section).collect(), left)
 }
@@ -218,13 +302,16 @@ fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
     tasks
 }
 
-fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress) {
+fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) {
     let (Task::Judge(case, _) | Task::Control(case, _) | Task::Draw(case)) = *task;
     let at = &work[case];
     progress.now(at.selected.case.name);
     match *task {
         Task::Judge(_, gate) => {
-            at.verdicts[gate].get_or_init(|| at.runner.judge(&at.selected.claims[gate]));
+            let row = at.verdicts[gate].get_or_init(|| at.runner.judge(&at.selected.claims[gate]));
+            if verbose {
+                progress.tell(&format!("{}: {}", row.outcome.word(), line::verdict(row)));
+            }
         }
         Task::Control(_, gate) => {
             let gate_of = &at.selected.claims[gate];

@@ -1,6 +1,7 @@
 //! Which claims a command line means.
 
 use super::exit::Fault;
+use super::pattern;
 use super::solver;
 use super::subject::Variant;
 use grainbench::cases::registry::CASES;
@@ -54,6 +55,7 @@ pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Sel
 /// The claims of the cases (`CASE`, `CASE/VARIANT` or a folder; all of the registry when none is named) whose rows are of one
 /// of the solvers and that need one of the levels, in the order of the registry.
 fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
+    let cases = pattern::expanded(cases)?;
     let named = cases.iter().map(|name| Variant::read_with_folders(name)).collect::<Result<Vec<_>, _>>()?;
     let in_registry = |named: &&Variant<'_>| CASES.iter().any(|case| std::ptr::eq(*case, named.case));
     let folders = named.iter().filter(|named| !in_registry(named)).map(|named| named.case);

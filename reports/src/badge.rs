@@ -1,0 +1,57 @@
+//! A badge for a readme: how many rows passed, green where nothing is red.
+
+use maud::html;
+
+use crate::headline::Headline;
+use crate::report::Report;
+
+/// Width of a letter (px), on average, of the sans-serif letters of a badge.
+const LETTER: usize = 7;
+
+/// The badge as SVG.
+#[must_use]
+pub fn badge(report: &Report) -> String {
+    let counts = Headline::of_report(report);
+    let red = counts.rows() - counts.pass - counts.amber() + (counts.controls - counts.controls_red);
+    let words = if counts.rows() == 0 {
+        "nothing judged".to_owned()
+    } else if red > 0 {
+        format!("{red} red of {}", counts.rows())
+    } else {
+        format!("{} of {} pass", counts.pass, counts.rows())
+    };
+    let colour = if red > 0 || counts.rows() == 0 { "#b3261e" } else { "#2e7d32" };
+    let (name, left) = ("grainbench", "grainbench".len() * LETTER + 10);
+    let right = words.len() * LETTER + 10;
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" width=(left + right) height="20" role="img" aria-label={ (name) ": " (words) } {
+            title { (name) ": " (words) }
+            rect width=(left) height="20" fill="#444" {}
+            rect x=(left) width=(right) height="20" fill=(colour) {}
+            g fill="#fff" text-anchor="middle" font-family="Verdana, DejaVu Sans, sans-serif" font-size="11" {
+                text x=(left / 2) y="14" { (name) }
+                text x=(left + right / 2) y="14" { (words) }
+            }
+        }
+    }
+    .into_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn says_what_is_red() {
+        let mut report = sample::report();
+        assert!(badge(&report).contains("red of"), "{}", badge(&report));
+        for section in &mut report.sections {
+            section.verdicts.retain(|row| row.outcome == grainbench_harness::verdict::Outcome::Pass);
+            section.controls.retain(|control| control.turned_red);
+        }
+        assert!(badge(&report).contains("pass") && badge(&report).contains("#2e7d32"), "{}", badge(&report));
+        report.sections.clear();
+        assert!(badge(&report).contains("nothing judged") && badge(&report).contains("#b3261e"));
+    }
+}

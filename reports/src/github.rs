@@ -1,0 +1,97 @@
+//! What a job on GitHub shows of a report: a summary in Markdown, and a line for each red row that its log is annotated with.
+
+use std::fmt::Write;
+
+use grainbench_harness::verdict::Verdict;
+
+use crate::headline::Headline;
+use crate::line;
+use crate::report::Report;
+use crate::terminal::{failing_lines, is_red};
+
+/// Most rows that a summary names: a job's summary holds one megabyte.
+const MOST: usize = 100;
+
+/// Counts, what is red, and a line a case.
+#[must_use]
+pub fn summary(report: &Report) -> String {
+    let mut text = format!("## grainbench: {}\n\n", Headline::of_report(report).sentence());
+    let failing = failing_lines(report);
+    for line in failing.iter().take(MOST) {
+        let _ = writeln!(text, "- {}", escaped(line));
+    }
+    if failing.len() > MOST {
+        let _ = writeln!(text, "- and {} more", failing.len() - MOST);
+    }
+    text.push_str("\n| case | passed | red | amber | controls red |\n|---|---|---|---|---|\n");
+    for section in &report.sections {
+        let counts = Headline::of_section(section);
+        let red = counts.rows() - counts.pass - counts.amber();
+        let (name, controls) = (escaped(&section.name), format!("{}/{}", counts.controls_red, counts.controls));
+        let _ =
+            writeln!(text, "| {name} | {}/{} | {red} | {} | {controls} |", counts.pass, counts.rows(), counts.amber());
+    }
+    let provenance = &report.provenance;
+    let _ = write!(text, "\n{} {}, {}\n", provenance.version, provenance.commit, escaped(&provenance.machine));
+    text
+}
+
+/// Text of other people in Markdown: nothing in it is markup, and it ends no cell and no line.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '\n' | '\r' => escaped.push(' '),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' | '!' => escaped.extend(['\\', character]),
+            _ => escaped.push(character),
+        }
+    }
+    escaped
+}
+
+/// A workflow command for each red row and each control that stayed green.
+#[must_use]
+pub fn annotations(report: &Report) -> Vec<String> {
+    let error = |title: &str, message: &str| format!("::error title={}::{}", property(title), data(message));
+    let mut lines = Vec::new();
+    for section in &report.sections {
+        let red = |row: &&Verdict| is_red(row);
+        lines.extend(section.verdicts.iter().filter(red).map(|row| error(&row.quantity, &line::verdict(row))));
+        let green = section.controls.iter().filter(|control| !control.turned_red);
+        lines.extend(green.map(|control| error(&control.quantity, &line::control(control))));
+    }
+    lines
+}
+
+/// The message of a workflow command, which has to stand on one line.
+fn data(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
+}
+
+/// A property of a workflow command, which `,` and `:` would end.
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn reads_well() {
+        insta::assert_snapshot!(summary(&sample::report()));
+        insta::assert_snapshot!(annotations(&sample::report()).join("\n"));
+    }
+
+    /// A quantity comes from whoever wrote a case: it begins no command of its own.
+    #[test]
+    fn names_are_no_commands_and_no_markup() {
+        let mut report = sample::report();
+        report.sections[0].verdicts[0].quantity = "a\n::stop-commands::x, 5 % | <img>".to_owned();
+        report.sections[0].verdicts[0].outcome = grainbench_harness::verdict::Outcome::Fail;
+        assert!(annotations(&report).iter().all(|line| line.lines().count() == 1));
+        assert!(annotations(&report)[0].starts_with("::error title=a%0A%3A%3Astop-commands%3A%3Ax%2C 5 %25 | <img>::"));
+        assert!(summary(&report).contains("\\| \\<img\\>"));
+    }
+}

@@ -1,0 +1,52 @@
+//! `grainbench completions` and `grainbench man`: what shells and readers of manuals need, made from the commands themselves.
+
+use super::exit::{Fault, Outcome, check_writable, print};
+use grainbench::reports::StagedDir;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// What `completions` takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The shell.
+    shell: clap_complete::Shell,
+}
+
+/// What `man` takes.
+#[derive(clap::Args)]
+pub(crate) struct ManArguments {
+    /// A directory for the pages of all commands; without it the page of `grainbench` is printed.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Prints the script of a shell.
+pub(crate) fn completions(arguments: &Arguments, mut command: clap::Command) -> Outcome {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut command, "grainbench", &mut script);
+    print(&String::from_utf8_lossy(&script))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints the page of the program, or leaves one for each command.
+pub(crate) fn man(arguments: &ManArguments, mut command: clap::Command) -> Outcome {
+    command.build();
+    let page = |command: clap::Command| {
+        let mut text = Vec::new();
+        clap_mangen::Man::new(command).render(&mut text).map_err(Fault::input)?;
+        Ok::<_, Fault>(text)
+    };
+    let Some(out) = &arguments.out else {
+        print(&String::from_utf8_lossy(&page(command)?))?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    check_writable(out)?;
+    let mut staged = StagedDir::new(out).map_err(Fault::writing)?;
+    for of in command.get_subcommands() {
+        let name = of.get_display_name().unwrap_or_else(|| of.get_name());
+        staged.write(format!("{name}.1"), page(of.clone())?).map_err(Fault::writing)?;
+    }
+    staged.write("grainbench.1", page(command)?).map_err(Fault::writing)?;
+    staged.commit().map_err(Fault::writing)?;
+    Ok(ExitCode::SUCCESS)
+}

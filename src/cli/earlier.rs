@@ -1,0 +1,91 @@
+//! What an earlier run left: which rows and controls ended how.
+
+use super::exit::Fault;
+use grainbench::harness::claim::Claim;
+use grainbench::harness::verdict::{Control, Verdict};
+use grainbench::reports::terminal::is_red;
+use grainbench::reports::{Report, line, number};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// What tells a row from all others.
+type Name = [String; 5];
+
+/// The rows and controls of a `results.json`.
+#[derive(Deserialize)]
+pub(crate) struct Earlier {
+    verdicts: Vec<Verdict>,
+    controls: Vec<Control>,
+}
+
+fn name(row: &Verdict) -> Name {
+    [&row.case, &row.variant, &row.solver, &row.resolution, &row.quantity].map(String::clone)
+}
+
+impl Earlier {
+    /// Reads the directory of a report, or its `results.json`. `place` is what it was given to.
+    pub(crate) fn read(place: &str, path: &Path) -> Result<Self, Fault> {
+        let file = if path.is_dir() { path.join("results.json") } else { path.to_owned() };
+        let fault = |found: String| {
+            let expected = "the directory of a report, or its results.json";
+            Fault::input(format!("{place}: {}: expected {expected}, found {found}", file.display()))
+        };
+        let text = std::fs::read_to_string(&file).map_err(|error| fault(error.to_string()))?;
+        serde_json::from_str(&text).map_err(|error| fault(format!("other text: {error}")))
+    }
+
+    /// Whether a claim of a case was red: its row, as that of any solver, or its control, which stayed green.
+    pub(crate) fn was_red(&self, case: &str, claim: &Claim) -> bool {
+        let variant = claim.runs.first().map_or("", |run| run.variant);
+        let resolution = claim.resolution();
+        let rows = self.verdicts.iter().filter(|row| is_red(row));
+        let mut rows = rows.map(|row| (&row.case, &row.variant, &row.quantity, &row.resolution));
+        let mut controls = self.controls.iter().filter(|control| !control.turned_red);
+        rows.any(|(of, at, quantity, level)| {
+            of == case && at == variant && *quantity == claim.quantity && *level == resolution
+        }) || controls
+            .any(|control| control.case == case && control.variant == variant && control.quantity == claim.quantity)
+    }
+
+    /// What is otherwise in a report, a line a row or control: what turned red first.
+    pub(crate) fn changes(&self, report: &Report) -> Vec<String> {
+        let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
+        let before: BTreeMap<Name, &Verdict> = self.verdicts.iter().map(|row| (name(row), row)).collect();
+        let now: BTreeMap<Name, &Verdict> = rows().map(|row| (name(row), row)).collect();
+        let (mut red, mut other, mut moved) = (Vec::new(), Vec::new(), 0_usize);
+        for row in rows() {
+            let Some(was) = before.get(&name(row)) else {
+                other.push(format!("new, is {}: {}", row.outcome.word(), line::verdict(row)));
+                continue;
+            };
+            if was.outcome == row.outcome {
+                moved += usize::from(was.value != row.value);
+                continue;
+            }
+            let words = format!("was {}, is {}: {}", was.outcome.word(), row.outcome.word(), line::verdict(row));
+            if is_red(row) { red.push(words) } else { other.push(words) }
+        }
+        for section in &report.sections {
+            let of_case = self.verdicts.iter().filter(|row| row.case == section.name);
+            for row in of_case.filter(|row| !now.contains_key(&name(row))) {
+                other.push(format!("not judged now, was {}: {}", row.outcome.word(), line::verdict(row)));
+            }
+            for control in section.controls.iter().filter(|control| !control.turned_red) {
+                let same = |was: &&Control| {
+                    (&was.case, &was.variant, &was.solver, &was.quantity)
+                        == (&control.case, &control.variant, &control.solver, &control.quantity)
+                };
+                if self.controls.iter().find(same).is_some_and(|was| was.turned_red) {
+                    red.push(format!("was red, stayed green: {}", line::control(control)));
+                }
+            }
+        }
+        red.extend(other);
+        if moved > 0 {
+            let of = number::count(now.len() as u64);
+            red.push(format!("{moved} of {of} rows ended as they did and have another value"));
+        }
+        red
+    }
+}

@@ -1,0 +1,129 @@
+//! `--filter`: which rows of the cases named are meant, by what they are and how they end.
+
+use super::exit::Fault;
+use glob::{MatchOptions, Pattern};
+use grainbench::harness::claim::Claim;
+use grainbench::harness::evidence::Evidence;
+use grainbench::harness::verdict::{Outcome, Verdict};
+use grainbench::reports::headline::OUTCOMES;
+
+/// Small and capital letters are alike, and `*` goes over everything.
+const LOOSE: MatchOptions =
+    MatchOptions { case_sensitive: false, require_literal_separator: false, require_literal_leading_dot: false };
+
+/// What rows are chosen by.
+const KEYS: [&str; 4] = ["quantity", "source", "evidence", "outcome"];
+
+/// One `--filter KEY=WHAT`.
+#[derive(Clone, Debug)]
+enum Filter {
+    Quantity(Pattern),
+    Source(Pattern),
+    Evidence(Evidence),
+    Outcome(Outcome),
+}
+
+/// All of them: a row is meant that is meant by one of each key.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Filters(Vec<Filter>);
+
+impl Filters {
+    /// Reads `KEY=WHAT`, several of them.
+    pub(crate) fn read(texts: &[String]) -> Result<Self, Fault> {
+        texts.iter().map(|text| read(text)).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// Whether a claim is to be judged: what is known of it beforehand is meant.
+    pub(crate) fn means(&self, claim: &Claim) -> bool {
+        self.of_one_key(|filter| match filter {
+            Filter::Quantity(pattern) => Some(pattern.matches_with(&claim.quantity, LOOSE)),
+            _ => None,
+        }) && self.of_one_key(|filter| match filter {
+            Filter::Source(pattern) => Some(pattern.matches_with(&claim.source.words(), LOOSE)),
+            _ => None,
+        }) && self.of_one_key(|filter| match filter {
+            Filter::Evidence(evidence) => Some(claim.evidence() == *evidence),
+            _ => None,
+        })
+    }
+
+    /// Whether a row that was judged is to be shown: it ended as it is asked for.
+    pub(crate) fn shows(&self, row: &Verdict) -> bool {
+        self.of_one_key(|filter| match filter {
+            Filter::Outcome(outcome) => Some(row.outcome == *outcome),
+            _ => None,
+        })
+    }
+
+    /// Whether rows are asked for by how they end.
+    pub(crate) fn asks_for_outcomes(&self) -> bool {
+        self.0.iter().any(|filter| matches!(filter, Filter::Outcome(_)))
+    }
+
+    /// Whether one of the filters of a key lets pass, or there is none of that key.
+    fn of_one_key(&self, passes: impl Fn(&Filter) -> Option<bool>) -> bool {
+        let mut answers = self.0.iter().filter_map(passes).peekable();
+        answers.peek().is_none() || answers.any(|passes| passes)
+    }
+}
+
+fn read(text: &str) -> Result<Filter, Fault> {
+    let Some((key, what)) = text.split_once('=') else {
+        let expected = KEYS.map(|key| format!("{key}=…")).join(", ");
+        return Err(Fault::input(format!("--filter: expected one of {expected}, found `{text}`")));
+    };
+    match key {
+        "quantity" => pattern(what).map(Filter::Quantity),
+        "source" => pattern(what).map(Filter::Source),
+        "evidence" => {
+            let found = Evidence::ALL.into_iter().find(|evidence| evidence.word() == what);
+            let known = Evidence::ALL.map(Evidence::word);
+            found.map(Filter::Evidence).ok_or_else(|| Fault::unknown("a kind of evidence for --filter", what, known))
+        }
+        "outcome" => {
+            let found = OUTCOMES.into_iter().find(|outcome| outcome.word() == what);
+            let known = OUTCOMES.map(Outcome::word);
+            found.map(Filter::Outcome).ok_or_else(|| Fault::unknown("an outcome for --filter", what, known))
+        }
+        _ => Err(Fault::unknown("a key for --filter", key, KEYS)),
+    }
+}
+
+/// A pattern of the shell; words without `*`, `?` and `[` are looked for anywhere.
+fn pattern(what: &str) -> Result<Pattern, Fault> {
+    let text = if super::pattern::is_one(what) { what.to_owned() } else { format!("*{what}*") };
+    super::pattern::read("--filter", &text)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    fn row(outcome: Outcome) -> Verdict {
+        Verdict { outcome, ..Verdict::open("case", "quantity", "1") }
+    }
+
+    #[test]
+    fn rows_are_shown_that_end_in_one_of_the_ways_asked_for() {
+        let filters = Filters::read(&["outcome=fail".to_owned(), "outcome=known".to_owned()]).unwrap();
+        assert!(filters.asks_for_outcomes());
+        let shown = OUTCOMES.into_iter().filter(|outcome| filters.shows(&row(*outcome)));
+        assert_eq!(shown.collect::<Vec<_>>(), [Outcome::Fail, Outcome::Known]);
+        assert!(OUTCOMES.into_iter().all(|outcome| Filters::default().shows(&row(outcome))));
+    }
+
+    #[test]
+    fn words_are_found_anywhere_and_patterns_are_whole() {
+        let finds = |what: &str, text: &str| pattern(what).unwrap().matches_with(text, LOOSE);
+        assert!(finds("Spin", "final spin, rolling") && !finds("spin*", "final spin") && finds("*spin*", "final spin"));
+        assert!(finds("*", "") && !finds("?", "ab"));
+    }
+
+    #[test]
+    fn what_is_no_filter_is_refused() {
+        for text in ["spin", "quantitiy=spin", "outcome=failed", "evidence=", "quantity=[", "=", ""] {
+            assert!(Filters::read(&[text.to_owned()]).is_err(), "{text}");
+        }
+    }
+}
