@@ -103,10 +103,12 @@ fn what_failed_is_run_again_alone() {
         (Some(2), "error: expected at least one gate that failed there, found none")
     );
     changed(here, |old| old["verdicts"][3]["verdict"] = "fail".into());
-    let wanted = results(here, "grainbench-out")["verdicts"][3]["quantity"].clone();
+    let wanted = results(here, "grainbench-out")["verdicts"][3].clone();
     assert_eq!(again().code, Some(0));
     let found = results(here, "old");
-    assert!(rows(&found, "quantity").iter().all(|quantity| wanted == **quantity), "{found}");
+    for key in ["variant", "solver", "quantity", "resolution"] {
+        assert!(rows(&found, key).iter().all(|word| wanted[key] == **word), "{key}: {found}");
+    }
     changed(here, |old| old["controls"][0]["turned_red"] = false.into());
     let wanted = results(here, "grainbench-out")["controls"][0]["quantity"].clone();
     assert_eq!(again().code, Some(0));

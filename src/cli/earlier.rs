@@ -35,17 +35,19 @@ impl Earlier {
         serde_json::from_str(&text).map_err(|error| fault(format!("other text: {error}")))
     }
 
-    /// Whether a claim of a case was red: its row, as that of any solver, or its control, which stayed green.
-    pub(crate) fn was_red(&self, case: &str, claim: &Claim) -> bool {
+    /// Whether a claim of a case was red: its row by this solver, or its control, which stayed green.
+    pub(crate) fn was_red(&self, case: &str, solver: &str, claim: &Claim) -> bool {
         let variant = claim.runs.first().map_or("", |run| run.variant);
+        let sought = [case, variant, solver, claim.quantity.as_str()];
+        let is_it =
+            |row: &&Verdict| [&row.case, &row.variant, &row.solver, &row.quantity].map(String::as_str) == sought;
         let resolution = claim.resolution();
-        let rows = self.verdicts.iter().filter(|row| is_red(row));
-        let mut rows = rows.map(|row| (&row.case, &row.variant, &row.quantity, &row.resolution));
-        let mut controls = self.controls.iter().filter(|control| !control.turned_red);
-        rows.any(|(of, at, quantity, level)| {
-            of == case && at == variant && *quantity == claim.quantity && *level == resolution
-        }) || controls
-            .any(|control| control.case == case && control.variant == variant && control.quantity == claim.quantity)
+        let mut rows = self.verdicts.iter().filter(is_it).filter(|row| row.resolution == resolution);
+        let is_its = |control: &&Control| {
+            [&control.case, &control.variant, &control.solver, &control.quantity].map(String::as_str) == sought
+        };
+        let mut controls = self.controls.iter().filter(is_its);
+        rows.any(is_red) || controls.any(|control| !control.turned_red)
     }
 
     /// What is otherwise in a report, a line a row or control: what turned red first.

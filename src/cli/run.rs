@@ -173,7 +173,10 @@ fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &Filters) ->
     let before = if options.rerun_failed { Some(Earlier::read("--rerun-failed", &options.out)?) } else { None };
     for of_case in &mut *selected {
         let case = of_case.case.name;
-        let is_meant = |claim: &Claim| before.as_ref().is_none_or(|before| before.was_red(case, claim));
+        let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
+        let solver =
+            |claim: &Claim| stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default().to_owned();
+        let is_meant = |claim: &Claim| before.as_ref().is_none_or(|before| before.was_red(case, &solver(claim), claim));
         of_case.claims.retain(|claim| filters.means(claim) && is_meant(claim));
     }
     selected.retain(|of_case| !of_case.claims.is_empty());
