@@ -2,10 +2,11 @@
 
 use crate::average::{Mean, mean};
 use crate::column::{COLUMNS, Column, Grains};
-use crate::element::{Element, elements, elements_moving, interpolated, mean_grain};
+use crate::contact_stress::{Stress, tells_interval};
+use crate::element::{Element, elements_moving, interpolated, mean_grain};
 use crate::grid::Grid;
 use crate::mask::{Masked, Masks};
-use crate::motion::{motion, movers_between};
+use crate::motion::{motion, movers, movers_between};
 use crate::trails::Trails;
 use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Dimension;
@@ -51,6 +52,8 @@ pub struct Course {
     pub between: bool,
     /// Tracers, where they are asked for.
     pub trails: Option<Trails>,
+    /// Which stress elements have; where nobody asks, the mean over the time between frames if it is told.
+    pub stress: Option<Stress>,
     before: Option<Snapshot>,
 }
 
@@ -66,6 +69,7 @@ impl Course {
             frames: Vec::new(),
             between,
             trails: None,
+            stress: None,
             before: None,
         }
     }
@@ -73,17 +77,21 @@ impl Course {
     /// Adds a snapshot. Between snapshots there are velocities from the second on: the first then adds no frame.
     pub fn add(&mut self, snapshot: Snapshot) {
         self.grains.mean = self.grains.mean.or_else(|| mean_grain(&snapshot, self.space)).filter(|of| of.1.is_finite());
-        let elements = match &self.before {
-            Some(before) if self.between => {
-                let motion = motion(&movers_between(before, &snapshot), self.space.count(), &self.grid);
-                elements_moving(&snapshot, motion, self.space, &self.grid)
-            }
+        if self.stress.is_none() && tells_interval(&snapshot) {
+            self.stress = Some(Stress::Interval);
+            // One stress or the other: of frames before it the mean is not known.
+            self.frames.iter_mut().flat_map(|frame| &mut frame.elements).for_each(|element| element.stress = None);
+        }
+        let movers = match &self.before {
+            Some(before) if self.between => movers_between(before, &snapshot),
             None if self.between => {
                 self.before = Some(snapshot);
                 return;
             }
-            _ => elements(&snapshot, self.space, &self.grid),
+            _ => movers(&snapshot),
         };
+        let motion = motion(&movers, self.space.count(), &self.grid);
+        let elements = elements_moving(&snapshot, motion, self.stress.unwrap_or_default(), self.space, &self.grid);
         let inside: usize = elements.iter().map(|element| element.motion.members).sum();
         let all = if snapshot.points.is_empty() { snapshot.grains.len() } else { snapshot.points.len() };
         let masked = self.masks.of(&elements, &self.grid);

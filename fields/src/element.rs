@@ -1,7 +1,7 @@
 //! Granular elements: what the cells of a grid hold, the same for grains and for material points (Rycroft, Kamrin and Bazant
 //! 2009, §3).
 
-use crate::contact_stress::contact_stress;
+use crate::contact_stress::{Stress, contact_stress};
 use crate::grid::Grid;
 use crate::motion::{Motion, motion, movers};
 use crate::packing::packing_fraction;
@@ -73,14 +73,20 @@ impl Element {
 /// grains.
 #[must_use]
 pub fn elements(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<Element> {
-    elements_moving(snapshot, motion(&movers(snapshot), space.count(), grid), space, grid)
+    elements_moving(snapshot, motion(&movers(snapshot), space.count(), grid), Stress::Instant, space, grid)
 }
 
-/// The same with a motion that was found otherwise, such as between two snapshots.
+/// The same with a motion that was found otherwise, such as between two snapshots, and one stress or the other.
 #[must_use]
-pub fn elements_moving(snapshot: &Snapshot, motion: Vec<Motion>, space: Dimension, grid: &Grid) -> Vec<Element> {
+pub fn elements_moving(
+    snapshot: &Snapshot,
+    motion: Vec<Motion>,
+    stress: Stress,
+    space: Dimension,
+    grid: &Grid,
+) -> Vec<Element> {
     let dimension = space.count();
-    let stress = contact_stress(snapshot, dimension, grid);
+    let stress = contact_stress(snapshot, dimension, grid, stress);
     let filled = packing_fraction(snapshot, space, grid);
     let element = |(cell, (motion, packing_fraction)): (usize, (Motion, f64))| Element {
         packing_fraction,

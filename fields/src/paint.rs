@@ -246,6 +246,8 @@ mod tests {
             force: None,
             torque: None,
             plastic_strain: 0.0,
+            virial: None,
+            mean_virial: None,
         };
         Snapshot {
             step: 0,

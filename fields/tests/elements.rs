@@ -25,6 +25,8 @@ fn grain(id: u32, position: Vector3<f64>) -> GrainState {
         force: None,
         torque: None,
         plastic_strain: 0.0,
+        virial: None,
+        mean_virial: None,
     }
 }
 

@@ -177,6 +177,8 @@ impl GrainDump {
             force: None,
             torque: None,
             plastic_strain: 0.0,
+            virial: None,
+            mean_virial: None,
         })
     }
 }

@@ -3,6 +3,7 @@
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
 use super::simulate::{path_and_value, positive};
 use grainbench::fields::column::COLUMNS;
+use grainbench::fields::contact_stress::Stress;
 use grainbench::fields::course::Course;
 use grainbench::fields::grid::Grid;
 use grainbench::fields::mask::{Masks, Orifice};
@@ -60,6 +61,10 @@ pub(crate) struct Arguments {
     /// Takes velocities from where grains were in the frame before, in place of those of the instant.
     #[arg(long)]
     between: bool,
+    /// Which stress of grains is read: that of the instant, or its mean over the time since the frame before, which is taken where
+    /// nobody asks and a run tells it (`mean-virial`).
+    #[arg(long, value_name = "WHICH", value_parser = ["instant", "mean"])]
+    stress: Option<String>,
     /// Follows elements that move with the flow, which begin in boxes of this size (m): a number for all axes, or one for each.
     #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive)]
     tracers: Vec<f64>,
@@ -84,6 +89,9 @@ pub(crate) struct Arguments {
     /// Directory for tables, image data and pictures.
     #[arg(long, value_name = "DIR", default_value = "grainbench-fields")]
     out: PathBuf,
+    /// Writes the tables as Parquet too.
+    #[arg(long)]
+    parquet: bool,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
@@ -140,7 +148,7 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
         )));
     };
     let summary = Summary::of(&course, there.to_string(), usize::from(arguments.blocks));
-    write_elements(&arguments.out, &course, &summary).map_err(Fault::writing)?;
+    write_elements(&arguments.out, &course, &summary, arguments.parquet).map_err(Fault::writing)?;
     if arguments.json {
         print_json(&summary)?;
     } else {
@@ -248,6 +256,8 @@ fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
     let grid = Grid::filling((low, high), size);
     let plane = if up.0 == 0 { [1, 0] } else { [0, up.0] };
     let mut course = Course::new(grid, space, plane, masks, arguments.between);
+    course.stress =
+        arguments.stress.as_deref().map(|which| if which == "mean" { Stress::Interval } else { Stress::Instant });
     if !arguments.tracers.is_empty() {
         let size = size_of(&arguments.tracers, "--tracers", [low, high], dimension)?;
         course.trails = Some(Trails::new(Grid::filling((low, high), size)));

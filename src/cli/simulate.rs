@@ -186,6 +186,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         Some(store) => SnapshotStore::for_checkpoint(&store.path),
         None => SnapshotStore::for_output(&arguments.out),
     };
+    snapshots = snapshots.holding(&scene.columns);
     if arguments.asks_for_no_snapshots() {
         snapshots = snapshots.in_short();
     }

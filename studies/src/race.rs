@@ -9,6 +9,7 @@ use crate::Follow;
 use crate::clock::cpu_seconds;
 use grainbench_harness::statistics::range;
 use grainbench_reports::Provenance;
+use grainbench_scene::columns::Columns;
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver};
 use serde::{Deserialize, Serialize};
@@ -137,6 +138,7 @@ fn for_steps(scene: &Scene, steps: u64) -> Scene {
         snapshots: 0,
         snapshot_times: Vec::new(),
         snapshot_contacts: false,
+        columns: Columns::default(),
         probes: vec![Probe { name: "all".to_owned(), target: ProbeTarget::System }],
         ..scene.clone()
     }

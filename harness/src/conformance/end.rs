@@ -97,6 +97,8 @@ mod tests {
             force: None,
             torque: None,
             plastic_strain: 0.0,
+            virial: None,
+            mean_virial: None,
         };
         let end = |speeds: [f64; 2]| End { time: 1.0, grains: speeds.map(grain).to_vec(), time_step: 0.1, steps: 10.0 };
         assert_eq!(end([0.0, 0.0]).apart(&end([1.0, -3.0])), 3.0);

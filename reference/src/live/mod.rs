@@ -121,6 +121,7 @@ impl Solver for Live {
         for (column, values) in logged::read(&deck.logged, &log, &observed.series) {
             observed.add(scene, &column, values);
         }
+        observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));
         complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing), screen.clone()))?;
         watch.progress(stepping.steps, stepping.steps);
         let seconds = log.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum();

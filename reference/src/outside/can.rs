@@ -13,7 +13,7 @@ pub(super) fn lacks(manifest: &Manifest, scene: &Scene, resolution: &Resolution)
     if !can.dimension.contains(&dimension) {
         return Some(format!("it declares no scenes of {dimension} dimensions"));
     }
-    if let Some(what) = scene.passing() {
+    if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
         return Some(format!("{what} cannot be declared"));
     }
     if !scene.grains.is_empty() && manifest.output.grains.is_none() {

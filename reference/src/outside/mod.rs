@@ -414,7 +414,8 @@ impl Solver for Outside {
             Said::Cannot(reason) => return Err(cannot(reason)),
             Said::Failed(failure) => return Err(fail(failure)),
         };
-        let observed = self.observe(scene, &stepping, folder.path()).map_err(fail)?;
+        let mut observed = self.observe(scene, &stepping, folder.path()).map_err(fail)?;
+        observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));
         complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing)))?;
         watch.progress(stepping.steps, stepping.steps);
         let seconds = match told {

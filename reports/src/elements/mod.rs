@@ -1,6 +1,7 @@
 //! Granular elements as files: tables, image data for ParaView, a summary and pictures.
 
 mod image_data;
+mod sheet;
 mod summary;
 mod tables;
 
@@ -19,17 +20,22 @@ use std::path::Path;
 const DRAWN: [&str; 4] = ["speed", "sine_of_friction", "packing_fraction", "shear_rate"];
 
 /// Writes `elements.csv` (a row an element and frame), `means.csv` (a row a cell), `tracers.csv` where tracers
-/// were asked for, `summary.json`, `elements/` with image data
+/// were asked for, the same tables as Parquet where that is, `summary.json`, `elements/` with image data
 /// a frame and a collection of them, and, of a sheet of cells, `index.html` with pictures or films, all of them or none.
 ///
 /// # Errors
 /// When the disk refuses or a figure cannot be drawn.
-pub fn write_elements(dir: &Path, course: &Course, summary: &Summary) -> Result<(), SaveError> {
+pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: bool) -> Result<(), SaveError> {
     let mut out = StagedDir::new(dir)?;
-    out.write_with("elements.csv", |file| tables::write_elements(course, file))?;
-    out.write_with("means.csv", |file| tables::write_means(course, summary.blocks, file))?;
-    if let Some(trails) = &course.trails {
-        out.write_with("tracers.csv", |file| tables::write_trails(course, trails, file))?;
+    let tables = || {
+        let trails = course.trails.as_ref().map(|trails| tables::trails(course, trails));
+        [tables::elements(course), tables::means(course, summary.blocks)].into_iter().chain(trails)
+    };
+    for table in tables() {
+        out.write_with(format!("{}.csv", table.name), |file| table.csv(file))?;
+    }
+    for table in tables().filter(|_| parquet) {
+        out.write_with(format!("{}.parquet", table.name), |file| table.parquet(file))?;
     }
     let text = serde_json::to_string_pretty(summary)
         .map_err(|error| SaveError::Encode { file: "summary.json", reason: error.to_string() })?;

@@ -25,8 +25,10 @@ pub struct Summary {
     pub low: [f64; 3],
     /// Which velocities these are.
     pub velocity: &'static str,
-    /// Whether contacts were told: without them there is no stress.
+    /// Whether there is stress: without contacts there is none.
     pub stress: bool,
+    /// Which stress it is.
+    pub which_stress: &'static str,
     /// What is left out of the means.
     pub masks: String,
     /// Elements that are left out, of all frames, and how many there are.
@@ -79,6 +81,7 @@ impl Summary {
             low: course.grid.low.into(),
             velocity: if course.between { "velocities between frames" } else { "velocities of the instant" },
             stress: course.frames.iter().any(|frame| frame.elements.iter().any(|element| element.stress.is_some())),
+            which_stress: course.stress.unwrap_or_default().words(),
             masks: course.masks.words(),
             left_out: [masked().filter(|masked| masked.any()).count(), masked().count()],
             outside: course.frames.iter().map(|frame| frame.outside).max().unwrap_or(0),
@@ -94,13 +97,17 @@ impl Summary {
     pub fn words(&self) -> String {
         let [x, y, z] = self.cells;
         let [left_out, all] = self.left_out;
-        let stress = if self.stress { "" } else { " No contacts were told: there is no stress." };
+        let (which, none) = if self.stress {
+            (format!(", {}", self.which_stress), "")
+        } else {
+            (String::new(), " No contacts were told: there is no stress.")
+        };
         let outside = match self.outside {
             0 => String::new(),
             count => format!(" Up to {count} grains or points of a frame are in no cell."),
         };
         format!(
-            "{} frames of {x} × {y} × {z} cells, {}; means {} ({left_out} of {all} elements left out).{stress}{outside}",
+            "{} frames of {x} × {y} × {z} cells, {}{which}; means {} ({left_out} of {all} elements left out).{none}{outside}",
             self.frames, self.velocity, self.masks
         )
     }

@@ -22,16 +22,24 @@ pub(super) trait Columns {
         }
     }
 
+    /// Numbers that may be absent as a whole.
+    fn told_numbers<const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<[f64; N]>) {
+        let mut all = true;
+        let mut numbers = value.unwrap_or([0.0; N]);
+        for (name, number) in names.into_iter().zip(&mut numbers) {
+            let mut told = value.is_some().then_some(*number);
+            self.told(name, &mut told);
+            all &= told.is_some();
+            *number = told.unwrap_or(*number);
+        }
+        *value = all.then_some(numbers);
+    }
+
     /// The components of a vector that may be absent as a whole.
     fn told_vector(&mut self, names: [&'static str; 3], value: &mut Option<Vector3<f64>>) {
-        let mut components = value.map_or([None; 3], |vector| [vector.x, vector.y, vector.z].map(Some));
-        for (name, component) in names.into_iter().zip(&mut components) {
-            self.told(name, component);
-        }
-        *value = match components {
-            [Some(x), Some(y), Some(z)] => Some(Vector3::new(x, y, z)),
-            _ => None,
-        };
+        let mut components = value.map(Into::into);
+        self.told_numbers(names, &mut components);
+        *value = components.map(Vector3::from);
     }
 }
 

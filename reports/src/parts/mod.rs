@@ -15,4 +15,4 @@ pub(crate) use columns::Values;
 pub use end::End;
 pub use folder::each_snapshot;
 pub use store::{READABLE, SnapshotStore, StoreError};
-pub(crate) use table::whole;
+pub(crate) use table::{Grouped, whole};

@@ -71,14 +71,19 @@ struct Lazy<R> {
 }
 
 impl<R: Row> Lazy<R> {
-    fn add(&mut self, directory: &Path, rows: impl Iterator<Item = Stepped<R>>) -> io::Result<()> {
+    fn add(
+        &mut self,
+        directory: &Path,
+        without: &[&'static str],
+        rows: impl Iterator<Item = Stepped<R>>,
+    ) -> io::Result<()> {
         let mut rows = rows.peekable();
         if rows.peek().is_none() {
             return Ok(());
         }
         let writer = match &mut self.writer {
             Some(writer) => writer,
-            none => none.insert(TableWriter::new(directory)?),
+            none => none.insert(TableWriter::new(directory, without)?),
         };
         writer.add(rows)
     }
@@ -102,11 +107,13 @@ pub(super) struct OpenPart {
     bodies: Lazy<BodyState>,
     points: Lazy<PointState>,
     rows: u64,
+    /// Columns of grains that are not written.
+    without: Vec<&'static str>,
 }
 
 impl OpenPart {
-    /// Begins a part that is to stand in a folder.
-    pub(super) fn begin(folder: &Path) -> io::Result<Self> {
+    /// Begins a part that is to stand in a folder, without some columns of grains.
+    pub(super) fn begin(folder: &Path, without: &[&'static str]) -> io::Result<Self> {
         let directory = temporary_in(folder)?;
         fs::create_dir(directory.path().join("part"))?;
         Ok(Self {
@@ -118,6 +125,7 @@ impl OpenPart {
             bodies: Lazy { writer: None },
             points: Lazy { writer: None },
             rows: 0,
+            without: without.to_vec(),
         })
     }
 
@@ -134,12 +142,12 @@ impl OpenPart {
             })
         }
         let directory = self.directory.path().join("part");
-        self.frames.add(&directory, rows(first, snapshots, |of| std::iter::once(Frame::of(of))))?;
-        self.grains.add(&directory, rows(first, snapshots, |of| of.grains.iter().copied()))?;
-        self.contacts.add(&directory, rows(first, snapshots, |of| of.told_contacts().iter().copied()))?;
-        self.walls.add(&directory, rows(first, snapshots, |of| of.walls.iter().cloned()))?;
-        self.bodies.add(&directory, rows(first, snapshots, |of| of.bodies.iter().cloned()))?;
-        self.points.add(&directory, rows(first, snapshots, |of| of.points.iter().copied()))?;
+        self.frames.add(&directory, &[], rows(first, snapshots, |of| std::iter::once(Frame::of(of))))?;
+        self.grains.add(&directory, &self.without, rows(first, snapshots, |of| of.grains.iter().copied()))?;
+        self.contacts.add(&directory, &[], rows(first, snapshots, |of| of.told_contacts().iter().copied()))?;
+        self.walls.add(&directory, &[], rows(first, snapshots, |of| of.walls.iter().cloned()))?;
+        self.bodies.add(&directory, &[], rows(first, snapshots, |of| of.bodies.iter().cloned()))?;
+        self.points.add(&directory, &[], rows(first, snapshots, |of| of.points.iter().copied()))?;
         self.rows += snapshots.iter().map(rows_of).sum::<u64>();
         Ok(())
     }
@@ -151,7 +159,7 @@ impl OpenPart {
 
     /// Ends the part and puts it into the folder, as the `number`th.
     pub(super) fn close(self, folder: &Path, number: usize) -> io::Result<Seal> {
-        let Self { directory, frames, grains, contacts, walls, bodies, points, rows } = self;
+        let Self { directory, frames, grains, contacts, walls, bodies, points, rows, .. } = self;
         let hashes =
             [frames.close()?, grains.close()?, contacts.close()?, walls.close()?, bodies.close()?, points.close()?];
         let hash = together(&hashes);

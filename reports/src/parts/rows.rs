@@ -1,7 +1,8 @@
 //! What the tables of a part hold: one row a snapshot, a grain, a contact, a wall, a body, a material point. Units are
 //! SI, as those of [`grainbench_scene::record`].
 
-use super::columns::{Columns, Row};
+use super::columns::{Columns as Visit, Row};
+use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::record::{BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, WallState};
 use nalgebra::Vector3;
 
@@ -10,6 +11,21 @@ const VELOCITY: [&str; 3] = ["vx", "vy", "vz"];
 const SPIN: [&str; 3] = ["omegax", "omegay", "omegaz"];
 const FORCE: [&str; 3] = ["fx", "fy", "fz"];
 const TORQUE: [&str; 3] = ["tqx", "tqy", "tqz"];
+
+const VIRIAL: [&str; 6] = ["virial_xx", "virial_yy", "virial_zz", "virial_xy", "virial_yz", "virial_zx"];
+const MEAN_VIRIAL: [&str; 6] =
+    ["mean_virial_xx", "mean_virial_yy", "mean_virial_zz", "mean_virial_xy", "mean_virial_yz", "mean_virial_zx"];
+
+/// Columns of grains that snapshots do not hold.
+pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
+    let of: [(Chosen, Vec<&'static str>); 4] = [
+        (Chosen::Spin, [&SPIN[..], &["angle"]].concat()),
+        (Chosen::Force, [FORCE, TORQUE].concat()),
+        (Chosen::Virial, VIRIAL.to_vec()),
+        (Chosen::MeanVirial, MEAN_VIRIAL.to_vec()),
+    ];
+    of.into_iter().filter(|(chosen, _)| !columns.has(*chosen)).flat_map(|(_, names)| names).collect()
+}
 
 /// A snapshot without what the other tables hold.
 pub(super) struct Frame(pub(super) Snapshot);
@@ -45,7 +61,7 @@ impl Row for Frame {
         })
     }
 
-    fn visit(&mut self, columns: &mut impl Columns) {
+    fn visit(&mut self, columns: &mut impl Visit) {
         let snapshot = &mut self.0;
         columns.vector(["low_x", "low_y", "low_z"], &mut snapshot.bounds.0);
         columns.vector(["high_x", "high_y", "high_z"], &mut snapshot.bounds.1);
@@ -74,10 +90,12 @@ impl Row for GrainState {
             force: None,
             torque: None,
             plastic_strain: 0.0,
+            virial: None,
+            mean_virial: None,
         }
     }
 
-    fn visit(&mut self, columns: &mut impl Columns) {
+    fn visit(&mut self, columns: &mut impl Visit) {
         whole(columns, "id", &mut self.id);
         whole(columns, "material", &mut self.material);
         columns.number("radius", &mut self.radius);
@@ -89,6 +107,8 @@ impl Row for GrainState {
         columns.told_vector(FORCE, &mut self.force);
         columns.told_vector(TORQUE, &mut self.torque);
         columns.number("plastic_strain", &mut self.plastic_strain);
+        columns.told_numbers(VIRIAL, &mut self.virial);
+        columns.told_numbers(MEAN_VIRIAL, &mut self.mean_virial);
     }
 }
 
@@ -108,7 +128,7 @@ impl Row for ContactState {
         }
     }
 
-    fn visit(&mut self, columns: &mut impl Columns) {
+    fn visit(&mut self, columns: &mut impl Visit) {
         whole(columns, "grain", &mut self.grain);
         let (word, mut number) = match self.partner {
             Partner::Grain(id) => ("grain", i64::from(id)),
@@ -147,7 +167,7 @@ impl Row for WallState {
         Self { name: String::new(), corners: Vec::new(), infinite: false, force: None }
     }
 
-    fn visit(&mut self, columns: &mut impl Columns) {
+    fn visit(&mut self, columns: &mut impl Visit) {
         columns.word("name", &mut self.name);
         columns.flag("infinite", &mut self.infinite);
         let mut corners = [0, 1, 2, 3].map(|at| self.corners.get(at).copied());
@@ -175,7 +195,7 @@ impl Row for BodyState {
         }
     }
 
-    fn visit(&mut self, columns: &mut impl Columns) {
+    fn visit(&mut self, columns: &mut impl Visit) {
         columns.word("name", &mut self.name);
         columns.number("mass", &mut self.mass);
         columns.number("inertia", &mut self.inertia);
@@ -203,7 +223,7 @@ impl Row for PointState {
         }
     }
 
-    fn visit(&mut self, columns: &mut impl Columns) {
+    fn visit(&mut self, columns: &mut impl Visit) {
         let (word, mut number) = match self.owner {
             Owner::Grain(id) => ("grain", i64::from(id)),
             Owner::Body(place) => ("body", i64::from(place)),
@@ -241,7 +261,7 @@ impl<R: Row> Row for Stepped<R> {
         Self { snapshot: 0, step: 0, time: 0.0, row: R::blank() }
     }
 
-    fn visit(&mut self, columns: &mut impl Columns) {
+    fn visit(&mut self, columns: &mut impl Visit) {
         whole(columns, "snapshot", &mut self.snapshot);
         whole(columns, "step", &mut self.step);
         columns.number("time", &mut self.time);
@@ -250,7 +270,7 @@ impl<R: Row> Row for Stepped<R> {
 }
 
 /// A whole number of any size. The files are our own: what does not fit was never written.
-fn whole<T: Copy + TryFrom<i64> + TryInto<i64>>(columns: &mut impl Columns, name: &'static str, value: &mut T) {
+fn whole<T: Copy + TryFrom<i64> + TryInto<i64>>(columns: &mut impl Visit, name: &'static str, value: &mut T) {
     let mut number = (*value).try_into().unwrap_or(i64::MAX);
     columns.whole(name, &mut number);
     *value = T::try_from(number).unwrap_or(*value);

@@ -7,6 +7,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use grainbench_scene::columns::Columns;
 use grainbench_scene::record::Snapshot;
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
@@ -14,6 +15,7 @@ use thiserror::Error;
 
 use super::end::End;
 use super::part::{OpenPart, PartReader, Seal, files, rows_of};
+use super::rows::left_out;
 use crate::scratch::{sweep, temporary_in};
 use crate::write::{WriteError, parent_of};
 
@@ -75,6 +77,8 @@ pub struct SnapshotStore {
     in_short: bool,
     /// Whether snapshots were left out for that.
     left_out: bool,
+    /// Columns of grains that parts do without.
+    without: Vec<&'static str>,
 }
 
 /// What a checkpoint keeps of the snapshots before it: those that waited, and where the others are.
@@ -114,7 +118,14 @@ impl SnapshotStore {
             end: None,
             in_short: false,
             left_out: false,
+            without: Vec::new(),
         }
+    }
+
+    /// The same for a run whose snapshots hold these columns: its parts have no others.
+    #[must_use]
+    pub fn holding(self, columns: &Columns) -> Self {
+        Self { without: left_out(columns), ..self }
     }
 
     /// The same for a run whose snapshots are not wanted in any format: of one that is not [`READABLE`] the last is kept, if
@@ -312,7 +323,7 @@ impl SnapshotStore {
         self.waiting_bytes = 0;
         let open = match &mut self.open {
             Some(open) => open,
-            none => none.insert(OpenPart::begin(&folder)?),
+            none => none.insert(OpenPart::begin(&folder, &self.without)?),
         };
         open.add(self.snapshots - waiting.len() as u64, &waiting)?;
         if open.bytes() >= PART { self.close() } else { Ok(()) }

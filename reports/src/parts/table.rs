@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use std::path::Path;
 use std::sync::Arc;
 
-use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::get_typed_column_reader;
 use parquet::column::writer::ColumnWriterImpl;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
@@ -24,25 +24,40 @@ const GROUP: usize = 1 << 13;
 /// Columns with few different values, which a dictionary makes small.
 const REPEATED: [&str; 8] = ["snapshot", "step", "time", "material", "radius", "mass", "partner", "owner"];
 
+/// The column that counts: of its numbers the differences are small.
+const COUNTED: &str = "id";
+
 /// A table in the making.
 pub(super) struct TableWriter<R> {
     file: SerializedFileWriter<Hashed>,
+    /// Columns that are not written.
+    without: Vec<&'static str>,
     row: PhantomData<R>,
 }
 
 impl<R: Row> TableWriter<R> {
-    /// Begins a file.
-    pub(super) fn new(directory: &Path) -> io::Result<Self> {
+    /// Begins a file without columns of these names.
+    pub(super) fn new(directory: &Path, without: &[&'static str]) -> io::Result<Self> {
         let file = Hashed { file: File::create(directory.join(file_name(R::TABLE)))?, hash: blake3::Hasher::new() };
         let mut properties =
             WriterProperties::builder().set_compression(Compression::SNAPPY).set_dictionary_enabled(false);
         for name in REPEATED {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
-        let columns = Gathered::of::<R>(&mut []).columns;
+        // Bytes of one place stand together: those of leading digits are much alike, those of digits that were rounded away zeros.
+        let mut columns = Gathered::of::<R>(&mut []).columns;
+        columns.retain(|(name, _)| !without.contains(name));
+        for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {
+            let encoding = match values {
+                Values::Number(_) | Values::Told(_) => Encoding::BYTE_STREAM_SPLIT,
+                Values::Whole(_) if *name == COUNTED => Encoding::DELTA_BINARY_PACKED,
+                _ => continue,
+            };
+            properties = properties.set_column_encoding(ColumnPath::from(*name), encoding);
+        }
         let schema = schema(R::TABLE, columns.iter().map(|(name, values)| (*name, values))).map_err(told)?;
         let file = SerializedFileWriter::new(file, schema, Arc::new(properties.build())).map_err(told)?;
-        Ok(Self { file, row: PhantomData })
+        Ok(Self { file, without: without.to_vec(), row: PhantomData })
     }
 
     /// Adds rows.
@@ -55,7 +70,7 @@ impl<R: Row> TableWriter<R> {
             let gathered = Gathered::of(&mut group);
             drop(group);
             let mut writer = self.file.next_row_group().map_err(told)?;
-            for (_, values) in &gathered.columns {
+            for (_, values) in gathered.columns.iter().filter(|(name, _)| !self.without.contains(name)) {
                 write(&mut writer, values).map_err(told)?;
             }
             writer.close().map_err(told)?;
@@ -112,7 +127,11 @@ impl<R: Row> TableReader<R> {
         self.group += 1;
         let count = group.metadata().num_rows() as usize;
         let shapes = Gathered::of::<R>(&mut []).columns;
-        let column = |(at, (_, shape)): (usize, &(&str, Values))| -> Result<Values, ParquetError> {
+        let names = group.metadata().schema_descr();
+        let column = |(name, shape): &(&str, Values)| -> Result<Values, ParquetError> {
+            let Some(at) = (0..names.num_columns()).find(|&at| names.column(at).name() == *name) else {
+                return absent(name, shape, count);
+            };
             let reader = group.get_column_reader(at)?;
             let nothing = |value: &ByteArray| String::from_utf8_lossy(value.data()).into_owned();
             Ok(match shape {
@@ -127,8 +146,17 @@ impl<R: Row> TableReader<R> {
                 }
             })
         };
-        let columns = shapes.iter().enumerate().map(column).collect::<Result<Vec<Values>, _>>().map_err(told)?;
+        let columns = shapes.iter().map(column).collect::<Result<Vec<Values>, _>>().map_err(told)?;
         Ok(Scattered::rows(&columns, count))
+    }
+}
+
+/// A column that was not written: nobody told its values.
+fn absent(name: &str, shape: &Values, count: usize) -> Result<Values, ParquetError> {
+    match shape {
+        Values::Number(_) => Ok(Values::Number(vec![f64::NAN; count])),
+        Values::Told(_) => Ok(Values::Told(vec![None; count])),
+        _ => Err(ParquetError::General(format!("expected a column `{name}`, found none"))),
     }
 }
 
@@ -137,18 +165,37 @@ pub(super) fn file_name(table: &str) -> String {
     format!("{table}.parquet")
 }
 
+/// A table in a file, written a group of rows at a time.
+pub(crate) struct Grouped<W: Write + Send> {
+    file: SerializedFileWriter<W>,
+}
+
+impl<W: Write + Send> Grouped<W> {
+    /// Begins a table of columns like these.
+    pub(crate) fn new(table: &str, like: &[(String, Values)], file: W) -> io::Result<Self> {
+        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
+        let schema = schema(table, like.iter().map(|(name, values)| (name.as_str(), values))).map_err(told)?;
+        Ok(Self { file: SerializedFileWriter::new(file, schema, Arc::new(properties)).map_err(told)? })
+    }
+
+    /// Adds rows: columns of one length, in their order.
+    pub(crate) fn add(&mut self, columns: &[(String, Values)]) -> io::Result<()> {
+        let mut group = self.file.next_row_group().map_err(told)?;
+        columns.iter().try_for_each(|(_, values)| write(&mut group, values)).map_err(told)?;
+        group.close().map(drop).map_err(told)
+    }
+
+    /// Ends the file.
+    pub(crate) fn close(self) -> io::Result<()> {
+        self.file.close().map(drop).map_err(told)
+    }
+}
+
 /// A whole table in a file: columns of one length, by their names.
 pub(crate) fn whole(table: &str, columns: &[(String, Values)], file: impl Write + Send) -> io::Result<()> {
-    let write_all = || -> Result<(), ParquetError> {
-        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
-        let schema = schema(table, columns.iter().map(|(name, values)| (name.as_str(), values)))?;
-        let mut file = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
-        let mut group = file.next_row_group()?;
-        columns.iter().try_for_each(|(_, values)| write(&mut group, values))?;
-        group.close()?;
-        file.close().map(drop)
-    };
-    write_all().map_err(told)
+    let mut grouped = Grouped::new(table, columns, file)?;
+    grouped.add(columns)?;
+    grouped.close()
 }
 
 fn schema<'a>(table: &str, columns: impl Iterator<Item = (&'a str, &'a Values)>) -> Result<Arc<Type>, ParquetError> {

@@ -38,6 +38,8 @@ pub trait Simulation: Send {
     /// The state at this step: grains, contacts, walls and energies. The contacts are taken away: whoever looks again at the
     /// same step is told none.
     fn look(&mut self) -> Look;
+    /// The same for a snapshot, with means over the time since the last one.
+    fn look_for_snapshot(&mut self) -> Look;
 }
 
 impl<S: Geometry> Simulation for Simulated<S> {
@@ -75,5 +77,13 @@ impl<S: Geometry> Simulation for Simulated<S> {
 
     fn look(&mut self) -> Look {
         crate::observe::look(self)
+    }
+
+    fn look_for_snapshot(&mut self) -> Look {
+        let mut look = crate::observe::look(self);
+        if let Some(mean) = &mut self.mean_virial {
+            mean.tell(&mut look.snapshot.grains);
+        }
+        look
     }
 }

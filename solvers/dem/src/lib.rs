@@ -27,6 +27,7 @@ mod geometry;
 mod grains;
 mod laws;
 mod listed;
+mod mean_virial;
 mod motion;
 mod neighbours;
 mod observe;

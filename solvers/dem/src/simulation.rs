@@ -9,6 +9,7 @@ use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
 use crate::grains::{ABSENT, Grains};
 use crate::laws::Laws;
+use crate::mean_virial::MeanVirial;
 use crate::motion::{Motion, Moving};
 use crate::neighbours::Neighbours;
 use crate::seen::{Energies, Seen};
@@ -16,6 +17,7 @@ use crate::share::{Evaluation, FEWEST, Share};
 use crate::stability::stable_fraction;
 use crate::walls::{MovingWall, NearWall};
 use grainbench_lanes::{Processor, Team};
+use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::record::{ContactState, Counts};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Broken, Cause, Subject};
@@ -63,6 +65,8 @@ pub(crate) struct Simulated<S: Geometry> {
     /// Whether the energy budget is asked for.
     pub(crate) accounting: bool,
     pub(crate) accounts: Accounts,
+    /// Mean V σ of grains, where snapshots are asked for it.
+    pub(crate) mean_virial: Option<Box<MeanVirial>>,
     /// Mass of the grains that are not driven (kg).
     free_mass: f64,
     /// How many of the entries of the scene have come.
@@ -103,6 +107,10 @@ impl<S: Geometry> Simulated<S> {
             cost: Counts::default(),
             accounting: scene.asks_for_budget(),
             accounts: Accounts::default(),
+            mean_virial: {
+                let of = |columns: &Columns| MeanVirial::new(scene.grains.len(), columns.mean_every);
+                scene.columns.has(Chosen::MeanVirial).then(|| Box::new(of(&scene.columns)))
+            },
             free_mass: {
                 let groups = scene.driven_group_of_grains();
                 let free = scene.grains.iter().zip(groups).filter(|(_, group)| group.is_none());
@@ -162,6 +170,15 @@ impl<S: Geometry> Simulated<S> {
         Some(contacts)
     }
 
+    /// Adds the contacts of this step, which were recorded, to the mean V σ, if it is one of those that are looked at.
+    fn add_virials(&mut self) {
+        let Self { mean_virial, neighbours, seen_at_walls, scene, step, .. } = self;
+        if let Some(mean) = mean_virial.as_mut().filter(|mean| mean.is_due(*step)) {
+            let of = |list: usize| neighbours.shares.iter().flat_map(move |share| &share.seen()[list].contacts);
+            mean.add(seen_at_walls.contacts.iter().chain(of(0)).chain(of(1)), &scene.grains);
+        }
+    }
+
     /// Takes `steps` cycles.
     pub(crate) fn take_cycles(&mut self, steps: u64) -> Result<(), Box<Broken>> {
         let team = self.team.clone();
@@ -174,7 +191,8 @@ impl<S: Geometry> Simulated<S> {
         let mut has_moved = false;
         for left in (0..steps).rev() {
             // The last cycle leaves its contacts to be looked at.
-            let (record, move_on) = (self.accounting || left == 0, at_once && left > 0);
+            let looked_at = self.mean_virial.as_ref().is_some_and(|mean| mean.is_due(self.step + 1));
+            let (record, move_on) = (self.accounting || left == 0 || looked_at, at_once && left > 0);
             self.cycle(record, has_moved, move_on)?;
             has_moved = move_on;
         }
@@ -206,6 +224,9 @@ impl<S: Geometry> Simulated<S> {
             self.rebuild()?;
         }
         self.evaluate_forces(record, self.motion.time_step, move_on);
+        if record {
+            self.add_virials();
+        }
         if record && self.accounting {
             self.account();
         }

@@ -238,8 +238,8 @@ impl Stepper for Running<'_> {
         Ok(())
     }
 
-    fn look(&mut self, _snapshot: bool) -> Look {
-        self.simulation.look()
+    fn look(&mut self, snapshot: bool) -> Look {
+        if snapshot { self.simulation.look_for_snapshot() } else { self.simulation.look() }
     }
 
     fn counts(&self) -> Counts {

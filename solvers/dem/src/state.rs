@@ -5,6 +5,7 @@
 use crate::accounts::Accounts;
 use crate::geometry::Geometry;
 use crate::grains::Grains;
+use crate::mean_virial::MeanVirial;
 use crate::neighbours::Neighbours;
 use crate::simulation::Simulated;
 use crate::walls::WallMemory;
@@ -25,6 +26,7 @@ struct State<S: Geometry> {
     cost: Counts,
     accounts: Accounts,
     entered: usize,
+    mean_virial: Option<Box<MeanVirial>>,
     recorder: Recorder,
 }
 
@@ -40,6 +42,7 @@ impl<S: Geometry> Simulated<S> {
             cost: self.cost,
             accounts: self.accounts.clone(),
             entered: self.entered,
+            mean_virial: self.mean_virial.clone(),
             recorder: recorder.clone(),
         };
         Checkpoint::keep(identity, self.step, &state)
@@ -53,7 +56,12 @@ impl<S: Geometry> Simulated<S> {
     ) -> Result<Recorder, CheckpointError> {
         let state: State<S> = checkpoint.state(identity)?;
         let count = state.grains.len();
-        let same = state.grains.is_of(&self.scene, self.forces.turn())
+        let same_mean = match (&state.mean_virial, &self.mean_virial) {
+            (Some(state), Some(own)) => state.is_of(own),
+            (state, own) => state.is_none() && own.is_none(),
+        };
+        let same = same_mean
+            && state.grains.is_of(&self.scene, self.forces.turn())
             && state.entered <= self.scene.stays.entries.len()
             && state.neighbours.is_of(count, self.forces.layout())
             && state.walls.len() == self.walls.len()
@@ -71,6 +79,7 @@ impl<S: Geometry> Simulated<S> {
         self.cost = state.cost;
         self.accounts = state.accounts;
         self.entered = state.entered;
+        self.mean_virial = state.mean_virial;
         Ok(state.recorder)
     }
 }

@@ -8,7 +8,7 @@ use grainbench_scene::scene::{Duration, Scene, WallShape};
 
 /// Why the scene cannot be run, if it cannot.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
-    if let Some(what) = scene.passing() {
+    if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
         return Some(format!("it has {what}, which was written for `dem` alone"));
     }
     let flat = scene.dimension.count() == 2;

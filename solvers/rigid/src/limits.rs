@@ -10,7 +10,7 @@ const DEEPEST: f64 = 0.25;
 
 /// Why the scene cannot be run, if it cannot.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
-    if let Some(what) = scene.passing() {
+    if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
         return Some(format!("it has {what}, which was written for `dem` alone"));
     }
     if let Some(what) = scene.round_wall() {

@@ -109,7 +109,8 @@ impl Course<'_> {
                 }
                 _ => None,
             };
-            if let Some(end) = end {
+            if let Some(mut end) = end {
+                self.scene.columns.keep(&mut end);
                 let (series, snapshots) = recorder.finish();
                 watch.broke(Remains { series, snapshots, end });
             }

@@ -7,6 +7,7 @@ pub mod body;
 pub mod budget;
 mod check;
 pub mod checkpoint;
+pub mod columns;
 pub mod contact_law;
 pub mod drive;
 pub mod effect;
@@ -38,6 +39,7 @@ pub mod space;
 pub mod stays;
 pub mod terms;
 pub mod text;
+pub mod virial;
 
 /// The vectors of scenes and records, for who writes a solver.
 pub use nalgebra;

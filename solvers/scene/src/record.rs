@@ -53,7 +53,8 @@ pub struct GrainState {
     pub position: Vector3<f64>,
     /// Velocity at the time of the snapshot (m/s).
     pub velocity: Vector3<f64>,
-    /// Angular velocity (rad/s).
+    /// Angular velocity (rad/s); not a number where nobody told it.
+    #[serde(with = "untold")]
     pub spin: Vector3<f64>,
     /// Rotation since the start (rad), about z; absent in three dimensions, and where a program did not tell it.
     pub angle: Option<f64>,
@@ -64,6 +65,12 @@ pub struct GrainState {
     /// Equivalent plastic strain, its mean over the mass; zero for a grain that does not yield.
     #[serde(default)]
     pub plastic_strain: f64,
+    /// V σ of the instant: xx, yy, zz, xy, yz, zx (J; J/m for discs), where it is asked for (see [`crate::virial`]).
+    #[serde(default)]
+    pub virial: Option<[f64; 6]>,
+    /// The same, its mean over the time since the snapshot before; none in the first.
+    #[serde(default)]
+    pub mean_virial: Option<[f64; 6]>,
 }
 
 impl GrainState {
@@ -82,6 +89,8 @@ impl GrainState {
             force: None,
             torque: None,
             plastic_strain: 0.0,
+            virial: None,
+            mean_virial: None,
         }
     }
 }
@@ -445,4 +454,18 @@ pub struct Record {
     pub snapshots: Vec<Snapshot>,
     /// What it cost.
     pub cost: Cost,
+}
+
+/// A vector that is not a number where nobody told it: absent in a file, for JSON has no such number.
+mod untold {
+    use nalgebra::Vector3;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(vector: &Vector3<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+        vector.iter().all(|component| !component.is_nan()).then_some(vector).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'d, D: Deserializer<'d>>(deserializer: D) -> Result<Vector3<f64>, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or_else(|| Vector3::repeat(f64::NAN)))
+    }
 }

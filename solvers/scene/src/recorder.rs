@@ -100,7 +100,11 @@ impl Recorder {
     /// Takes down the sample that is due at the step of `look`; hands on the snapshot where one is due.
     pub fn take(&mut self, scene: &Scene, look: Look) -> Option<Snapshot> {
         self.sample(scene, &look);
-        self.is_snapshot(look.snapshot.step).then_some(look.snapshot)
+        self.is_snapshot(look.snapshot.step).then(|| {
+            let mut snapshot = look.snapshot;
+            scene.columns.keep(&mut snapshot);
+            snapshot
+        })
     }
 
     /// Step of the last sample.

@@ -2,6 +2,7 @@
 
 pub use crate::body::Block;
 use crate::body::Start;
+use crate::columns::{Chosen, Columns};
 use crate::contact_law::ContactLaw;
 use crate::end_state::Springs;
 use crate::file::GrainShape;
@@ -320,6 +321,8 @@ pub struct Scene {
     pub snapshot_times: Vec<f64>,
     /// Whether snapshots of other programs hold the contacts between grains too.
     pub snapshot_contacts: bool,
+    /// What snapshots hold.
+    pub columns: Columns,
     /// Named time series.
     pub probes: Vec<Probe>,
     /// Places that [`ProbeTarget::Point`] refers to.
@@ -380,6 +383,12 @@ impl Scene {
             return Some("contacts that remember at the start (`springs = false` beside the state leaves that out)");
         }
         self.walls.iter().any(|wall| wall.until.is_some()).then_some("walls that are taken away")
+    }
+
+    /// What snapshots are asked for that is found during the run, in words, if anything is: not every solver does that.
+    #[must_use]
+    pub fn gathered(&self) -> Option<&'static str> {
+        self.columns.has(Chosen::MeanVirial).then_some("a mean over time in its snapshots (`mean-virial`)")
     }
 
     /// Walls that are round, in words, if there are any: not every solver has them.

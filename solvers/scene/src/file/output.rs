@@ -1,5 +1,6 @@
 //! The keys of `output`: how often samples and snapshots are taken.
 
+use crate::columns::Chosen;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,4 +24,15 @@ pub struct OutputSpec {
     /// Whether snapshots of other programs hold the contacts between grains, as those of our solvers always do.
     #[serde(default)]
     pub contacts: bool,
+    /// What snapshots hold beside id, material, radius, mass, position and velocity of every grain: any of `spin`, `force`,
+    /// `contacts`, and V σ of grains, of the instant (`virial`) or its mean over the time since the snapshot before
+    /// (`mean-virial`). The first three when absent.
+    #[serde(default)]
+    pub columns: Option<Vec<Chosen>>,
+    /// Significant digits that numbers in snapshots keep, 1 to 15; all when absent. Files take the less room the fewer there are.
+    #[serde(default)]
+    pub digits: Option<u8>,
+    /// Cycles between those that `mean-virial` is the mean of. A cycle that is looked at takes about as long as two.
+    #[serde(default)]
+    pub mean_every_cycles: Option<u64>,
 }

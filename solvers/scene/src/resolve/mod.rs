@@ -2,6 +2,7 @@
 
 use crate::body::{Settle, Start};
 use crate::check::Checker;
+use crate::columns::{Chosen, Columns};
 use crate::error::SceneError;
 use crate::file::{DomainSpec, GrainShape, GravitySpec, ManufacturedSpec, SceneFile, SettleSpec};
 use crate::manufactured::Manufactured;
@@ -122,6 +123,7 @@ impl Resolver<'_> {
             snapshots: file.output.snapshots,
             snapshot_times: self.snapshot_times()?,
             snapshot_contacts: file.output.contacts,
+            columns: self.columns()?,
             probes,
             spots,
             deformable,
@@ -263,6 +265,26 @@ impl Resolver<'_> {
             return Err(self.check.error("output.snapshot_times", &expected, &outside.to_string()));
         }
         Ok(times.clone())
+    }
+
+    fn columns(&self) -> Result<Columns, SceneError> {
+        let (check, output) = (&self.check, &self.file.output);
+        let chosen = output.columns.clone().unwrap_or_else(|| Columns::USUAL.to_vec());
+        if let Some(digits) = output.digits.filter(|digits| !(1..=15).contains(digits)) {
+            return Err(check.error("output.digits", "1 to 15 digits", &digits.to_string()));
+        }
+        if output.mean_every_cycles.is_some() && !chosen.contains(&Chosen::MeanVirial) {
+            return Err(check.error(
+                "output.mean_every_cycles",
+                "`mean-virial` among the columns",
+                "no mean to be taken",
+            ));
+        }
+        let mean_every = output.mean_every_cycles.unwrap_or(1);
+        if mean_every == 0 {
+            return Err(check.error("output.mean_every_cycles", "one cycle or more", "0"));
+        }
+        Ok(Columns { chosen, digits: output.digits, mean_every })
     }
 
     fn material(&self, key: &str, name: &str) -> Result<u16, SceneError> {

@@ -1,0 +1,144 @@
+//! What snapshots hold beside where grains are and how fast: chosen columns, in chosen digits.
+
+use crate::record::{GrainState, Snapshot};
+use crate::virial;
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Something that a snapshot may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Chosen {
+    /// Spin of every grain, and in the plane its angle.
+    Spin,
+    /// Sum of forces and of torques on every grain.
+    Force,
+    /// Every contact.
+    Contacts,
+    /// V σ of every grain, of the instant (see [`crate::virial`]).
+    Virial,
+    /// V σ of every grain, its mean over the time since the snapshot before.
+    MeanVirial,
+}
+
+/// What the snapshots of a run hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Columns {
+    /// Beside id, material, radius, mass, position and velocity.
+    pub chosen: Vec<Chosen>,
+    /// Significant digits that the numbers of grains and contacts keep; none for all. Radius and mass keep all.
+    pub digits: Option<u8>,
+    /// Steps between those that a mean is taken over.
+    pub mean_every: u64,
+}
+
+impl Default for Columns {
+    fn default() -> Self {
+        Self { chosen: Self::USUAL.to_vec(), digits: None, mean_every: 1 }
+    }
+}
+
+impl Columns {
+    /// What is held where a scene does not say.
+    pub const USUAL: [Chosen; 3] = [Chosen::Spin, Chosen::Force, Chosen::Contacts];
+
+    /// Whether something is held.
+    #[must_use]
+    pub fn has(&self, of: Chosen) -> bool {
+        self.chosen.contains(&of)
+    }
+
+    /// Leaves in a snapshot what is asked for, finds what its contacts tell, and rounds. What is left out is told as what nobody
+    /// told: absent, and not a number where it cannot be.
+    pub fn keep(&self, snapshot: &mut Snapshot) {
+        if *self == Self::default() {
+            return;
+        }
+        if self.has(Chosen::Virial)
+            && let Some(virials) = virial::virials(snapshot)
+        {
+            snapshot.grains.iter_mut().zip(virials).for_each(|(grain, virial)| grain.virial = Some(virial));
+        }
+        if !self.has(Chosen::Contacts) {
+            snapshot.contacts = None;
+        }
+        let keep_bits = self.digits.map(bits);
+        for grain in &mut snapshot.grains {
+            self.keep_of(grain);
+            if let Some(bits) = keep_bits {
+                round_grain(grain, bits);
+            }
+        }
+        if let Some(bits) = keep_bits {
+            for contact in snapshot.contacts.iter_mut().flatten() {
+                let vectors = [&mut contact.point, &mut contact.normal, &mut contact.shear_force];
+                let numbers = vectors.into_iter().flatten().chain([&mut contact.overlap, &mut contact.normal_force]);
+                numbers.for_each(|number| *number = rounded(*number, bits));
+            }
+        }
+    }
+
+    fn keep_of(&self, grain: &mut GrainState) {
+        if !self.has(Chosen::Spin) {
+            (grain.spin, grain.angle) = (Vector3::repeat(f64::NAN), None);
+        }
+        if !self.has(Chosen::Force) {
+            (grain.force, grain.torque) = (None, None);
+        }
+    }
+}
+
+fn round_grain(grain: &mut GrainState, bits: u32) {
+    let GrainState { position, velocity, spin, angle, force, torque, virial, mean_virial, .. } = grain;
+    let vectors = [Some(position), Some(velocity), Some(spin), force.as_mut(), torque.as_mut()];
+    let tensors = [virial.as_mut(), mean_virial.as_mut()];
+    let numbers = vectors.into_iter().flatten().flatten().chain(tensors.into_iter().flatten().flatten()).chain(angle);
+    numbers.for_each(|number| *number = rounded(*number, bits));
+}
+
+/// Bits after the first that so many digits need: 10⁻ᵈ/2 of a number or less is lost.
+fn bits(digits: u8) -> u32 {
+    (f64::from(digits) * std::f64::consts::LOG2_10).ceil() as u32
+}
+
+/// A number with so many bits after its first, to the nearest. What follows are zeros, of which a file takes no room.
+fn rounded(number: f64, bits: u32) -> f64 {
+    if bits >= 52 || !number.is_finite() {
+        return number;
+    }
+    let dropped = 52 - bits;
+    // A carry goes on into the exponent, as it should: the next number up is a power of two.
+    let half = 1_u64 << (dropped - 1);
+    let found = f64::from_bits((number.to_bits() + half) >> dropped << dropped);
+    if found.is_finite() { found } else { number }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_kept_and_no_more() {
+        for digits in 1..=15 {
+            let bits = bits(digits);
+            let allowed = 0.5 * 10_f64.powi(-i32::from(digits));
+            let mut worst = 0.0_f64;
+            for at in 1..2000 {
+                let number =
+                    (f64::from(at) * 0.7).exp2() * (1.0 + 1.0 / f64::from(at)) * if at % 2 == 0 { -1.0 } else { 1.0 };
+                if !number.is_finite() {
+                    break;
+                }
+                worst = worst.max((rounded(number, bits) / number - 1.0).abs());
+            }
+            assert!(worst <= allowed && worst > 0.01 * allowed, "{digits} digits: {worst}");
+        }
+        assert_eq!(
+            [0.0, -0.0, 1.0, -2.5].map(|number: f64| rounded(number, 10).to_bits()),
+            [0.0, -0.0, 1.0, -2.5].map(f64::to_bits)
+        );
+        assert!(rounded(f64::NAN, 10).is_nan() && rounded(f64::MAX, 10).is_finite());
+        assert_eq!(rounded(2.0 - f64::EPSILON, 10), 2.0);
+    }
+}
