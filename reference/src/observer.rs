@@ -109,7 +109,8 @@ impl<'s> Observer<'s> {
     /// in the order of its columns; without them printed numbers are taken as exact.
     ///
     /// # Errors
-    /// When it lacks the id or the position of a grain, or has another number of grains than the scene, or the contacts
+    /// When it lacks the id or the position of a grain, or has another number of grains than the scene (or more, where grains
+    /// leave it), or the contacts
     /// of its step are missing where those of others are told.
     pub fn take(
         &mut self,
@@ -151,7 +152,8 @@ impl<'s> Observer<'s> {
                     Shift::Outwards => unknown.copysign(value),
                 }
             };
-            let grains = (1..).zip(&self.scene.grains).zip(&order).map(|((id, grain), &row)| {
+            let grains = order.iter().map(|&(place, row)| {
+                let (id, grain) = (place as u32 + 1, &self.scene.grains[place]);
                 let row = snapshot.row(row);
                 let told = |column: Option<usize>| Some(*row.get(column?)? + value(row, column, 1.0));
                 // What is not told is no number; along an axis that the scene does not have it is zero.
@@ -170,9 +172,9 @@ impl<'s> Observer<'s> {
                 }
             });
             let mut seen = Snapshot::of_grains(self.scene, snapshot.step, time, grains.collect());
-            let id = |grain: usize| columns.id.map_or(1, |id| snapshot.row(order[grain])[id] as u64);
+            let id = |grain: usize| columns.id.map_or(1, |id| snapshot.row(order[grain].1)[id] as u64);
             let of_wall = |wall: usize, grain: usize| {
-                let row = snapshot.row(order[grain]);
+                let row = snapshot.row(order[grain].1);
                 let at = columns.walls[wall];
                 all(&at[..self.scene.dimension.count()]).then(|| PairForce {
                     force: Vector3::from(at.map(|at| at.and_then(|at| row.get(at)).copied().unwrap_or(0.0))),
@@ -239,18 +241,35 @@ impl<'s> Observer<'s> {
         })
     }
 
-    /// The row of each grain: ids in their order are the grains in that of the scene.
-    fn order(&self, file: &str, snapshot: &DumpSnapshot, columns: &Columns) -> Result<Vec<usize>, ReadError> {
+    /// The grains that are there, by their place in the scene, each with its row: ids in their order are the grains in that of
+    /// the scene. Of a scene that grains leave, an id is the place itself, from 1.
+    fn order(&self, file: &str, snapshot: &DumpSnapshot, columns: &Columns) -> Result<Vec<(usize, usize)>, ReadError> {
         let (rows, grains) = (snapshot.rows(), self.scene.grains.len());
-        if rows != grains {
+        let wrong = |expected: String, found: String| Err(ReadError::at(file, snapshot.first_line, expected, found));
+        let may_leave = self.scene.stays.removal.is_some() && rows < grains;
+        if rows != grains && !may_leave {
             let expected = format!("as many grains as the scene has, {grains}, at step {}", snapshot.step);
-            return Err(ReadError::at(file, snapshot.first_line, expected, format!("{rows}")));
+            return wrong(expected, format!("{rows}"));
         }
         let mut order: Vec<usize> = (0..rows).collect();
-        if let Some(id) = columns.id {
-            order.sort_by(|&a, &b| snapshot.row(a)[id].total_cmp(&snapshot.row(b)[id]));
+        let Some(id) = columns.id else { return Ok(order.into_iter().enumerate().collect()) };
+        let id = |row: usize| snapshot.row(row)[id];
+        order.sort_by(|&a, &b| id(a).total_cmp(&id(b)));
+        if !may_leave {
+            return Ok(order.into_iter().enumerate().collect());
         }
-        Ok(order)
+        let mut there: Vec<(usize, usize)> = Vec::with_capacity(rows);
+        for row in order {
+            let place = (1..=grains).contains(&(id(row) as usize)).then(|| id(row) as usize - 1);
+            match place.filter(|&place| there.last().is_none_or(|&(before, _)| before < place)) {
+                Some(place) => there.push((place, row)),
+                None => {
+                    let expected = format!("ids from 1 to {grains}, each once, at step {}", snapshot.step);
+                    return wrong(expected, format!("{}", id(row)));
+                }
+            }
+        }
+        Ok(there)
     }
 
     /// What was observed.
@@ -335,6 +354,7 @@ fn is_known(scene: &Scene, name: &str, known: &Known) -> bool {
             "rotational_energy" | "largest_spin" => known.spin,
             _ => quantity.starts_with("angular_momentum") && known.velocity && known.spin,
         },
+        Some(ProbeTarget::Count) => true,
         _ => false,
     }
 }

@@ -5,10 +5,10 @@ use grainbench_scene::scene::Scene;
 
 use super::outline::is_flat;
 
-/// The lines that move driven grains, and the name of the group of the others.
-pub(crate) fn driven(scene: &Scene) -> (Vec<String>, &'static str) {
+/// The lines that move driven grains of the group of `grains`, and the name of the group of the others.
+pub(crate) fn driven(scene: &Scene, grains: &'static str) -> (Vec<String>, &'static str) {
     if scene.driven.is_empty() {
-        return (Vec::new(), "all");
+        return (Vec::new(), grains);
     }
     let mut lines = Vec::new();
     let mut groups = String::new();
@@ -21,7 +21,7 @@ pub(crate) fn driven(scene: &Scene) -> (Vec<String>, &'static str) {
         lines.push(format!("fix drive{number} driven{number} move linear {:?} {:?} {across}", velocity.x, velocity.y));
         groups.push_str(&format!(" driven{number}"));
     }
-    lines.push(format!("group free subtract all{groups}"));
+    lines.push(format!("group free subtract {grains}{groups}"));
     if scene.laws.iter().flatten().any(ContactLaw::has_damping) {
         // What is frozen is as heavy as a wall to dashpots; `fix move` moves it all the same.
         lines.push(format!("group heavy union{groups}"));

@@ -20,16 +20,24 @@ pub(crate) struct Logged {
 /// Components of the virial, in the order of both programs.
 const VIRIAL: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
 
-/// The commands that make the columns, and the columns; `force` names the program's vector of the forces of a wall on
-/// the grains, by the wall's number.
+/// What a program calls its sums.
+pub(crate) struct Sums<'a> {
+    /// The temperature that its pressure leaves out.
+    pub(crate) temperature: &'a str,
+    /// The group of the grains.
+    pub(crate) grains: &'a str,
+    /// The command and the components of the force of a wall on the grains, by the wall's number from 1.
+    pub(crate) force: &'a dyn Fn(usize) -> (String, [String; 3]),
+    /// How far a piston has gone, by the wall's number; none where it has none.
+    pub(crate) advance: &'a dyn Fn(usize) -> Option<String>,
+}
+
+/// The commands that make the columns, and the columns.
 ///
 /// The pressure of the programs counts forces between grains at the time of the step, as they moved the grains. It is
 /// per volume of a box that grows with the grains, so that it is brought to the volume of the scene's domain.
-pub(crate) fn logged(
-    scene: &Scene,
-    temperature: &str,
-    force: impl Fn(usize) -> (String, [String; 3]),
-) -> Result<(String, Vec<Logged>), String> {
+pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<Logged>), String> {
+    let Sums { temperature, grains, force, advance } = program;
     let (mut commands, mut all) = (String::new(), Vec::new());
     let mut take = |column: String, formula: String| {
         let name = format!("g{}", all.len() + 1);
@@ -45,6 +53,11 @@ pub(crate) fn logged(
                     take(format!("{}.force_{axis}", probe.name), format!("-{component}"));
                 }
             }
+            ProbeTarget::Piston(wall) => {
+                if let Some(formula) = advance(wall + 1) {
+                    take(format!("{}.advance", probe.name), formula);
+                }
+            }
             ProbeTarget::Stress => {
                 let Some(domain) = scene.domain else {
                     return Err(
@@ -54,8 +67,8 @@ pub(crate) fn logged(
                 let count = scene.dimension.count();
                 let volume: f64 = (domain.high - domain.low).iter().take(count).product();
                 commands.push_str(&format!(
-                    "compute virial all pressure {temperature} virial\ncompute touch all contact/atom\n\
-                     compute touching all reduce ave c_touch\n"
+                    "compute virial all pressure {temperature} virial\ncompute touch {grains} contact/atom\n\
+                     compute touching {grains} reduce ave c_touch\n"
                 ));
                 for (at, pair) in (1..).zip(VIRIAL) {
                     if count == 3 || !pair.contains('z') {

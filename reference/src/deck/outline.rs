@@ -12,7 +12,7 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     if scene.grains.is_empty() {
         return Err("it has no grain".to_owned());
     }
-    if let Some(what) = scene.passing() {
+    if let Some(what) = scene.gathered() {
         return Err(format!("it has {what}, which decks do not write"));
     }
     if scene.global_damping != 0.0 {

@@ -21,6 +21,11 @@ fn step_of(moment: Moment, stepping: &Stepping) -> Result<Option<u64>, String> {
     Ok((step < stepping.steps).then_some(step))
 }
 
+/// The first step at which a wall is not there any more that stands until a time (s).
+pub(crate) fn gone_at(until: f64, stepping: &Stepping) -> u64 {
+    (until * (1.0 - 1e-9) / stepping.time_step).ceil() as u64
+}
+
 /// The steps at which some wall changes its velocity, in order, 0 among them and the end last.
 pub(crate) fn changes<'m>(motions: impl Iterator<Item = &'m Motion>, stepping: &Stepping) -> Result<Vec<u64>, String> {
     let mut steps = vec![0, stepping.steps];

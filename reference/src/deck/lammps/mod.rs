@@ -1,6 +1,7 @@
 //! LAMMPS: contacts of `gran/hooke/history` and its like between grains and at walls.
 
 mod contact;
+mod passing;
 mod region;
 
 use grainbench_scene::effects::Effects;
@@ -8,7 +9,7 @@ use grainbench_scene::scene::{Scene, Wall};
 
 use crate::deck::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
 use crate::deck::driven::driven;
-use crate::deck::logged::logged;
+use crate::deck::logged::{Sums, logged};
 use crate::deck::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
 use crate::deck::program::Peer;
 use crate::deck::{
@@ -41,13 +42,17 @@ impl Peer for Lammps {
 }
 
 fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+    passing::refuse(scene)?;
     one_inertia(scene, inertia_factor(scene))?;
     if let Some(what) = scene.round_wall().filter(|_| scene.laws.iter().flatten().any(|law| law.is_hertz())) {
         return Err(format!("{what}, and LAMMPS puts its curvature into Hertz' law, where it is a plane here"));
     }
     // LAMMPS reads the density of a data file as a sphere's, in two dimensions too.
-    let data = data_file(scene, scene.materials.len(), box_of(scene), of_sphere);
-    let (commands, logged) = logged(scene, "NULL", forces_of_wall)?;
+    let data = data_file(scene, scene.materials.len() + passing::more_types(scene), box_of(scene), of_sphere);
+    let advance = |wall: usize| passing::advance(scene, wall);
+    let grains = passing::grains(scene);
+    let program = Sums { temperature: "NULL", grains, force: &forces_of_wall, advance: &advance };
+    let (commands, logged) = logged(scene, &program)?;
     let printed = thermo(&commands, &logged, stepping);
     let names = names(scene);
     let input = input(scene, stepping, &printed, &names)?;
@@ -83,7 +88,8 @@ fn forces_of_wall(number: usize) -> (String, [String; 3]) {
 
 /// What lets a wall tell its forces, where a probe asks for them.
 fn tells(scene: &Scene, number: u32) -> &'static str {
-    if asks_for_wall(scene, number as usize) { " contacts" } else { "" }
+    let is_pressed = scene.walls[number as usize - 1].piston.is_some();
+    if asks_for_wall(scene, number as usize) || is_pressed { " contacts" } else { "" }
 }
 
 fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Result<String, String> {
@@ -99,6 +105,8 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
     }
     say(&boundary(scene, GROWING));
     say("newton off\ncomm_modify vel yes\nread_data data.grains");
+    let grains = passing::grains(scene);
+    passing::atoms(scene)?.iter().for_each(|line| say(line));
     say(&format!("neighbor {:?} bin\nneigh_modify every 1 delay 0 check yes", skin(scene)));
     let effects = Effects::of(scene);
     if effects.hertz && effects.restitution {
@@ -110,12 +118,14 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
     let strength = scene.gravity.norm();
     if strength > 0.0 {
         let g = scene.gravity;
-        say(&format!("fix gravity all gravity {strength:?} vector {:?} {:?} {:?}", g.x, g.y, g.z));
+        say(&format!("fix gravity {grains} gravity {strength:?} vector {:?} {:?} {:?}", g.x, g.y, g.z));
     }
     for (number, wall) in (1..).zip(&scene.walls) {
         say(&wall_lines(scene, wall, number, stepping)?);
     }
-    let (lines, free) = driven(scene);
+    passing::press(scene, stepping)?.iter().for_each(|line| say(line));
+    passing::removal(scene).iter().for_each(|line| say(line));
+    let (lines, free) = driven(scene, grains);
     lines.iter().for_each(|line| say(line));
     say(&format!("fix motion {free} nve/sphere{}", if has_discs(scene) { " disc" } else { "" }));
     if flat {
@@ -129,7 +139,7 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
     let of_pairs = of_pairs.join(" ");
     let dump = |name: &str, interval: u64, [file, contacts]: [&str; 2]| {
         let grains = format!(
-            "dump {name} all custom {interval} {file} {columns}\ndump_modify {name} format float %.17g sort id time yes units yes"
+            "dump {name} {grains} custom {interval} {file} {columns}\ndump_modify {name} format float %.17g sort id time yes units yes"
         );
         if of_pairs.is_empty() {
             return grains;
@@ -153,7 +163,9 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
 fn wall_lines(scene: &Scene, wall: &Wall, number: u32, stepping: &Stepping) -> Result<String, String> {
     let Some(law) = at_wall(scene, wall.material, &wall.name)? else { return Ok(String::new()) };
     let tells = tells(scene, number);
-    if let Some(plane) = AxisPlane::of(wall) {
+    let grains = passing::grains(scene);
+    let ways = passing::ways(scene, wall, number as usize, stepping);
+    if let Some(plane) = AxisPlane::of(wall).filter(|_| ways.iter().all(String::is_empty)) {
         let axis = AXES[plane.axis];
         let (low, high) = if plane.is_low {
             (format!("{:?}", plane.at), "NULL".to_owned())
@@ -161,8 +173,8 @@ fn wall_lines(scene: &Scene, wall: &Wall, number: u32, stepping: &Stepping) -> R
             ("NULL".to_owned(), format!("{:?}", plane.at))
         };
         let shear = plane.shear.map(|(along, speed)| format!(" shear {} {speed:?}", AXES[along])).unwrap_or_default();
-        return Ok(format!("fix wall{number} all wall/gran {law} {axis}plane {low} {high}{shear}{tells}"));
+        return Ok(format!("fix wall{number} {grains} wall/gran {law} {axis}plane {low} {high}{shear}{tells}"));
     }
-    let region = region(wall, number, stepping)?;
-    Ok(format!("{region}\nfix wall{number} all wall/gran/region {law} region wall{number}{tells}"))
+    let region = region(wall, number, stepping, &ways)?;
+    Ok(format!("{region}\nfix wall{number} {grains} wall/gran/region {law} region wall{number}{tells}"))
 }

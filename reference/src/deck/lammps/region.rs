@@ -19,15 +19,17 @@ struct Placed {
     rotation: Vector3<f64>,
 }
 
-/// The commands that define the region `wallN` and its motion.
-pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping) -> Result<String, String> {
+/// The commands that define the region `wallN` and its motion, to which other `ways` along the axes add up.
+pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping, ways: &[String; 3]) -> Result<String, String> {
     let motion = &wall.motion;
     let Placed { shape, centre, rotation } = placed(wall)?;
     let (mut lines, mut moves) = (String::new(), String::new());
-    if motion.phases.iter().any(|phase| phase.velocity != Vector3::zeros()) {
+    if motion.phases.iter().any(|phase| phase.velocity != Vector3::zeros()) || ways.iter().any(|way| !way.is_empty()) {
         moves.push_str(" move");
         for (axis, name) in AXES.into_iter().enumerate() {
-            let path = course(motion, |phase| phase.velocity[axis], stepping);
+            let prescribed = course(motion, |phase| phase.velocity[axis], stepping);
+            let all = [prescribed.as_str(), &ways[axis]];
+            let path = all.into_iter().filter(|way| !way.is_empty()).collect::<Vec<_>>().join("+");
             if path.is_empty() {
                 moves.push_str(" NULL");
             } else {

@@ -6,6 +6,7 @@
 mod contact;
 mod mesh;
 mod moduli;
+mod passing;
 
 use std::fmt::Write as _;
 
@@ -16,7 +17,7 @@ use nalgebra::{Unit, Vector3};
 
 use crate::deck::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
 use crate::deck::driven::driven;
-use crate::deck::logged::logged;
+use crate::deck::logged::{Sums, logged};
 use crate::deck::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
 use crate::deck::program::Peer;
 use crate::deck::schedule::{Rates, changes, rates_from};
@@ -57,6 +58,7 @@ impl Peer for Liggghts {
 }
 
 fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+    passing::refuse(scene)?;
     if let Some(what) = scene.round_wall() {
         return Err(format!("{what}: LIGGGHTS has cylinders without ends, and of a mesh flat triangles"));
     }
@@ -87,7 +89,9 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     let corners = if meshes.is_empty() { (low, high) } else { around((low, high), &meshes, reach, stepping) };
     let types = 2 * scene.materials.len();
     let data = data_file(scene, types, corners, if flat { of_disc } else { of_sphere });
-    let (commands, logged) = logged(scene, "thermo_temp", |number| forces_of_wall(number, &meshes))?;
+    let force = |number: usize| forces_of_wall(number, &meshes);
+    let (commands, logged) =
+        logged(scene, &Sums { temperature: "thermo_temp", grains: "all", force: &force, advance: &|_| None })?;
     let printed = thermo(&commands, &logged, stepping);
     let names = names(scene, &meshes);
     let input = input(scene, stepping, flat, &meshes, &printed, &names)?;
@@ -231,7 +235,7 @@ fn input(
             names.join(" ")
         ));
     }
-    let (lines, free) = driven(scene);
+    let (lines, free) = driven(scene, "all");
     lines.iter().for_each(|line| say(line));
     say(&format!("fix motion {free} nve/sphere"));
     if flat {
@@ -261,7 +265,7 @@ fn input(
         say("compute pairs all pair/gran/local id force");
     }
     say(&dump("samples", stepping.interval, [SAMPLES, CONTACTS]));
-    say(&runs(stepping, meshes)?);
+    say(&runs(scene, stepping, meshes)?);
     if !stepping.ends_on_a_sample() {
         let no_more = if of_pairs.is_empty() { "" } else { "\nundump samples2" };
         say(&format!("undump samples{no_more}\n{}\nrun 0", dump("end", 1, [END, END_CONTACTS])));
@@ -269,12 +273,19 @@ fn input(
     Ok(text)
 }
 
-/// The runs, one for each stretch in which no mesh changes its velocity or its spin.
-fn runs(stepping: &Stepping, meshes: &[Mesh<'_>]) -> Result<String, String> {
-    let changes = changes(meshes.iter().map(|mesh| &mesh.wall.motion), stepping)?;
+/// The runs, one for each stretch in which no mesh changes its velocity or its spin and no wall is taken away.
+fn runs(scene: &Scene, stepping: &Stepping, meshes: &[Mesh<'_>]) -> Result<String, String> {
+    let gone = passing::gone(scene, stepping);
+    let mut changes = changes(meshes.iter().map(|mesh| &mesh.wall.motion), stepping)?;
+    changes.extend(gone.iter().map(|&(_, step)| step).filter(|&step| step < stepping.steps));
+    changes.sort_unstable();
+    changes.dedup();
     let mut text = String::new();
     let mut now = vec![Rates::default(); meshes.len()];
     for stretch in changes.windows(2) {
+        for (number, _) in gone.iter().filter(|&&(_, step)| step == stretch[0]) {
+            let _ = writeln!(text, "unfix wall{number}");
+        }
         for (mesh, now) in meshes.iter().zip(&mut now) {
             let motion = &mesh.wall.motion;
             let (number, rates) = (mesh.number, rates_from(motion, stretch[0], stepping)?);

@@ -1,0 +1,163 @@
+//! Decks of scenes with what is there for a while and what is pressed: each is written and then runs as ours does, or refused with
+//! what the program lacks.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use grainbench::cases::solvers;
+use grainbench::reference::deck::{Program, write_deck};
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, RunError};
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+const STEP: Resolution = Resolution::TimeStep(1e-3);
+
+/// Spheres of mass one over a floor that ends in the middle.
+const HEAD: &str = r#"title = "Passing"
+dimension = 3
+duration = 5.0
+gravity = [0.0, 0.0, -1.0]
+domain = { low = [-3.0, 0.0, -10.0], high = [3.0, 4.0, 10.0], periodic = [false, true, false] }
+materials.m.density = 1.909859317102744
+contacts.all = { between = ["m", "m"], normal_stiffness = 2e4, tangential_stiffness = 6e3, friction = 0.5, normal_damping = 20.0 }
+output = { every = 0.05, snapshots = 19 }
+grains.ball = { material = "m", radius = 0.5, lattice = { origin = [-2.4, 0.7, 0.55], spacing = [1.05, 1.3, 1.02], count = [5, 3, 2] } }
+"#;
+
+const LEDGE: &str = "walls.ledge = { material = 'm', rectangle = { corner = [-3.0, -1.0, 0.0], edges = [[3.0, 0.0, 0.0], [0.0, 6.0, 0.0]] } }\n";
+const FLOOR: &str = "[walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n";
+const LID: &str = "[walls.lid]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 2.1], normal = [0.0, 0.0, -1.0] }\n\
+    motion = [{ velocity = [0.2, 0.0, 0.0] }]\n[probes]\nlid = { piston = 'lid' }\non-lid = { wall = 'lid' }\n";
+
+fn scene(text: &str) -> Scene {
+    let source = SceneSource::from_text("passing", Path::new(""), text);
+    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Our run in the convention of a program and its own; none where it is not installed, which it must be where every change is
+/// checked.
+fn both(text: &str, program: &str) -> Option<[Record; 2]> {
+    let run = |solver: &str| solvers::by_name(solver).unwrap().run(&scene(text), &STEP, &mut ());
+    let ours = run(&format!("dem:{program}")).unwrap_or_else(|error| panic!("{error}"));
+    match run(program) {
+        Ok(theirs) => Some([ours, theirs]),
+        Err(RunError::NotAvailable { .. }) if std::env::var_os("CI").is_none() => None,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// The largest distance between grains of one id, of snapshots of one step up to a time (s): each has the same grains.
+fn apart([ours, theirs]: &[Record; 2], until: f64) -> f64 {
+    let mut worst = 0.0_f64;
+    let mut compared = 0;
+    for (ours, theirs) in ours.snapshots.iter().zip(&theirs.snapshots).filter(|(ours, _)| ours.time <= until) {
+        assert_eq!(ours.step, theirs.step);
+        let ids = |of: &[grainbench::scene::record::GrainState]| of.iter().map(|grain| grain.id).collect::<Vec<_>>();
+        assert_eq!(ids(&ours.grains), ids(&theirs.grains), "at {}", ours.time);
+        for (a, b) in ours.grains.iter().zip(&theirs.grains) {
+            worst = worst.max((a.position - b.position).norm());
+            compared += 1;
+        }
+    }
+    assert!(compared > 100, "{compared}");
+    worst
+}
+
+fn column_apart([ours, theirs]: &[Record; 2], name: &str) -> [f64; 2] {
+    let (a, b) = (ours.series.column(name).unwrap(), theirs.series.column(name).unwrap());
+    let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    [off, a.iter().map(|a| a.abs()).fold(0.0, f64::max)]
+}
+
+/// What falls over the ledge leaves at the same steps, and what it left goes on alike.
+#[test]
+fn grains_leave_lammps_as_they_leave_ours() {
+    let removal = "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0], every_cycles = 30 }\n";
+    let text = format!(
+        "{}{LEDGE}probes.grains = {{ count = true }}\n",
+        HEAD.replacen("grains.ball", &format!("{removal}grains.ball"), 1)
+    );
+    let Some(records) = both(&text, "lammps") else { return };
+    let left = records[0].series.column("grains.left").unwrap();
+    assert!(left[0] == 0.0 && (3.0..30.0).contains(left.last().unwrap()), "{left:?}");
+    assert_eq!(records[1].series.column("grains.left").unwrap(), left);
+    let found = apart(&records, 5.0);
+    assert!(found < 1e-8, "{found}");
+    // Without it they stay: the control.
+    let all = both(&format!("{HEAD}{LEDGE}"), "lammps").unwrap();
+    assert_eq!(all[1].snapshots.last().unwrap().grains.len(), 30);
+}
+
+/// A floor that is taken away lets go of all at the same step.
+#[test]
+fn a_wall_is_taken_away_in_lammps_as_in_ours() {
+    let text = |until: &str| format!("{HEAD}{FLOOR}until = {until}\n");
+    let Some(records) = both(&text("3.0005"), "lammps") else { return };
+    let found = apart(&records, 5.0);
+    assert!(found < 1e-8, "{found}");
+    let [ours, theirs] = both(&text("3.0015"), "lammps").unwrap();
+    assert!(
+        apart(&[ours, records[1].clone()], 5.0) > 1e-4 && apart(&[records[0].clone(), theirs], 5.0) > 1e-4,
+        "a step is seen"
+    );
+}
+
+/// LIGGGHTS leaves out half of the last push of a wall, where ours leaves out all: what has rested on it then falls slower by ½ g Δt.
+#[test]
+fn a_wall_is_taken_away_in_liggghts_but_for_half_a_push() {
+    let single = HEAD
+        .replace("count = [5, 3, 2]", "count = [1, 1, 1]")
+        .replace("0.55]", "0.49995]")
+        .replace("snapshots = 19", "snapshots = 199");
+    let Some([ours, theirs]) = both(&format!("{single}{FLOOR}until = 2.0\n"), "liggghts") else { return };
+    let end = |record: &Record| record.snapshots.last().unwrap().grains[0].position.z;
+    let (found, half) = (end(&theirs) - end(&ours), 0.5 * 1e-3 * 3.0);
+    assert!((found - half).abs() < 1e-6, "{found} for {half}");
+}
+
+/// A lid that is pressed and sheared, without and with damping.
+#[test]
+fn a_piston_presses_in_lammps_as_in_ours() {
+    for (piston, of_grains) in [("force = 40.0, mass = 20.0", 1e-8), ("force = 40.0, mass = 20.0, damping = 2.0", 1e-4)]
+    {
+        let text = |lid: &str| format!("{HEAD}{FLOOR}{lid}");
+        let pressed = LID.replace("motion", &format!("piston = {{ {piston} }}\nmotion"));
+        let Some(records) = both(&text(&pressed), "lammps") else { return };
+        let found = apart(&records, 1.0);
+        assert!(found < of_grains, "{piston}: {found}");
+        let [advance, far] = column_apart(&records, "lid.advance");
+        assert!(advance < 1e2 * of_grains && far > 0.01, "{piston}: {advance} of {far}");
+        // A lid with another mass is another one.
+        let [ours, _] = both(&text(&pressed.replace("mass = 20.0", "mass = 20.2")), "lammps").unwrap();
+        assert!(apart(&[ours, records[1].clone()], 1.0) > 1e-5);
+    }
+}
+
+/// What a program does not do it says, and which.
+#[test]
+fn what_a_program_lacks_is_said() {
+    let said = |text: &str, program: Program| match write_deck(&scene(text), &STEP, program) {
+        Ok(deck) => panic!("{}", deck.files[0].1),
+        Err(error) => error.to_string(),
+    };
+    let poured = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\n\
+        poured = { count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 8.0], high = [0.0, 4.0, 8.0] }\n";
+    let removal =
+        HEAD.replacen("grains.ball", "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0] }\ngrains.ball", 1);
+    let pressed = LID.replace("motion", "piston = { force = 40.0, mass = 20.0 }\nmotion");
+    let gone = |wall: &str| format!("{HEAD}{wall}");
+    let ledge = LEDGE.replace("material = 'm',", "material = 'm', until = 1.0,");
+    let round =
+        "walls.side = { material = 'm', cylinder = { axis = [[0.0, 2.0, -9.0], [0.0, 2.0, 9.0]], radius = 4.0 } }\n";
+    let text: Vec<String> = vec![
+        said(&format!("{HEAD}{poured}"), Program::LAMMPS),
+        said(&format!("{HEAD}{poured}"), Program::LIGGGHTS),
+        said(&removal, Program::LIGGGHTS),
+        said(&format!("{HEAD}{pressed}"), Program::LIGGGHTS),
+        said(&gone(&ledge), Program::LIGGGHTS),
+        said(&format!("{HEAD}{FLOOR}until = 1.0\n[probes]\nfloor = {{ wall = 'floor' }}\n"), Program::LIGGGHTS),
+        said(&gone(round), Program::LIGGGHTS),
+    ];
+    insta::assert_snapshot!(text.join("\n"));
+}
