@@ -1,5 +1,5 @@
-//! Decks of scenes with what is there for a while and what is pressed: each is written and then runs as ours does, or refused with
-//! what the program lacks.
+//! Decks of scenes with what is there for a while and what is pressed: each is written and then runs as ours does, or is refused
+//! with what the program lacks.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -22,10 +22,13 @@ domain = { low = [-3.0, 0.0, -10.0], high = [3.0, 4.0, 10.0], periodic = [false,
 materials.m.density = 1.909859317102744
 contacts.all = { between = ["m", "m"], normal_stiffness = 2e4, tangential_stiffness = 6e3, friction = 0.5, normal_damping = 20.0 }
 output = { every = 0.05, snapshots = 19 }
-grains.ball = { material = "m", radius = 0.5, lattice = { origin = [-2.4, 0.7, 0.55], spacing = [1.05, 1.3, 1.02], count = [5, 3, 2] } }
+grains.ball.material = "m"
+grains.ball.radius = 0.5
+grains.ball.lattice = { origin = [-2.4, 0.7, 0.55], spacing = [1.05, 1.3, 1.02], count = [5, 3, 2] }
 "#;
 
-const LEDGE: &str = "walls.ledge = { material = 'm', rectangle = { corner = [-3.0, -1.0, 0.0], edges = [[3.0, 0.0, 0.0], [0.0, 6.0, 0.0]] } }\n";
+const LEDGE: &str = "walls.ledge.material = 'm'\n\
+    walls.ledge.rectangle = { corner = [-3.0, -1.0, 0.0], edges = [[3.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }\n";
 const FLOOR: &str = "[walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n";
 const LID: &str = "[walls.lid]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 2.1], normal = [0.0, 0.0, -1.0] }\n\
     motion = [{ velocity = [0.2, 0.0, 0.0] }]\n[probes]\nlid = { piston = 'lid' }\non-lid = { wall = 'lid' }\n";
@@ -76,7 +79,7 @@ fn grains_leave_lammps_as_they_leave_ours() {
     let removal = "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0], every_cycles = 30 }\n";
     let text = format!(
         "{}{LEDGE}probes.grains = {{ count = true }}\n",
-        HEAD.replacen("grains.ball", &format!("{removal}grains.ball"), 1)
+        HEAD.replacen("grains.ball.material", &format!("{removal}grains.ball.material"), 1)
     );
     let Some(records) = both(&text, "lammps") else { return };
     let left = records[0].series.column("grains.left").unwrap();
@@ -103,7 +106,8 @@ fn a_wall_is_taken_away_in_lammps_as_in_ours() {
     );
 }
 
-/// LIGGGHTS leaves out half of the last push of a wall, where ours leaves out all: what has rested on it then falls slower by ½ g Δt.
+/// LIGGGHTS leaves out half of the last push of a wall, where ours leaves out all: what has rested on it then falls slower by
+/// ½ g Δt.
 #[test]
 fn a_wall_is_taken_away_in_liggghts_but_for_half_a_push() {
     let single = HEAD
@@ -143,11 +147,14 @@ fn what_a_program_lacks_is_said() {
     };
     let poured = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\n\
         poured = { count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 8.0], high = [0.0, 4.0, 8.0] }\n";
-    let removal =
-        HEAD.replacen("grains.ball", "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0] }\ngrains.ball", 1);
+    let removal = HEAD.replacen(
+        "grains.ball.material",
+        "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0] }\ngrains.ball.material",
+        1,
+    );
     let pressed = LID.replace("motion", "piston = { force = 40.0, mass = 20.0 }\nmotion");
     let gone = |wall: &str| format!("{HEAD}{wall}");
-    let ledge = LEDGE.replace("material = 'm',", "material = 'm', until = 1.0,");
+    let ledge = LEDGE.replace("material = 'm'\n", "material = 'm'\nwalls.ledge.until = 1.0\n");
     let round =
         "walls.side = { material = 'm', cylinder = { axis = [[0.0, 2.0, -9.0], [0.0, 2.0, 9.0]], radius = 4.0 } }\n";
     let text: Vec<String> = vec![

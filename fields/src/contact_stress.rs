@@ -7,8 +7,8 @@
 //! Δx goes from the centre of a grain to its contact and F acts on it there, so compression is negative; contacts with walls
 //! count as all others do. The two are one: for a grain in equilibrium ∫σ dV = Σ Δx⊗F by Gauss' theorem. A grain counts as a
 //! whole to the cell of its centre, so that T of a single cell scatters by as much as grains stick out of it; summed over
-//! cells nothing is lost. Momentum flux is left out. Where V σ is told of each grain, its cell is that of its centre at the time of
-//! the snapshot.
+//! cells nothing is lost. Momentum flux is left out. Where V σ is told of each grain, its cell is that of its centre at the
+//! time of the snapshot.
 
 use crate::grid::{Grid, inside};
 use grainbench_scene::record::{GrainState, Partner, Snapshot};

@@ -61,8 +61,8 @@ pub(crate) struct Arguments {
     /// Takes velocities from where grains were in the frame before, in place of those of the instant.
     #[arg(long)]
     between: bool,
-    /// Which stress of grains is read: that of the instant, or its mean over the time since the frame before, which is taken where
-    /// nobody asks and a run tells it (`mean-virial`).
+    /// Which stress of grains is read: that of the instant, or its mean over the time since the frame before, which is taken
+    /// where nobody asks and a run tells it (`mean-virial`).
     #[arg(long, value_name = "WHICH", value_parser = ["instant", "mean"])]
     stress: Option<String>,
     /// Follows elements that move with the flow, which begin in boxes of this size (m): a number for all axes, or one for each.

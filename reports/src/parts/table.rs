@@ -44,7 +44,8 @@ impl<R: Row> TableWriter<R> {
         for name in REPEATED {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
-        // Bytes of one place stand together: those of leading digits are much alike, those of digits that were rounded away zeros.
+        // Bytes of one place stand together: those of leading digits are much alike, those of digits that were rounded away
+        // zeros.
         let mut columns = Gathered::of::<R>(&mut []).columns;
         columns.retain(|(name, _)| !without.contains(name));
         for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {

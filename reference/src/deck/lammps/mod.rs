@@ -139,7 +139,8 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
     let of_pairs = of_pairs.join(" ");
     let dump = |name: &str, interval: u64, [file, contacts]: [&str; 2]| {
         let grains = format!(
-            "dump {name} {grains} custom {interval} {file} {columns}\ndump_modify {name} format float %.17g sort id time yes units yes"
+            "dump {name} {grains} custom {interval} {file} {columns}\n\
+             dump_modify {name} format float %.17g sort id time yes units yes"
         );
         if of_pairs.is_empty() {
             return grains;

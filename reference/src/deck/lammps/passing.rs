@@ -1,9 +1,10 @@
 //! What is there for a while, and what is pressed: grains that leave, walls that are taken away, pistons.
 //!
-//! A grain that leaves is deleted by `fix evaporate` in the region outside the box of `removal`, at the same steps. A wall that is
-//! taken away goes so far behind itself that nothing meets it. A piston is a plane that follows an atom, which meets no grain and
-//! is as heavy as the piston; on it act the force that presses, that of the grains on the plane, and a drag. With velocities half
-//! a step before the forces, v' = (v (1 − c Δt/2) + (F − F_n)/M Δt)/(1 + c Δt/2) is a force of (F − F_n − M c v)/(1 + c Δt/2).
+//! A grain that leaves is deleted by `fix evaporate` in the region outside the box of `removal`, at the same steps. A wall
+//! that is taken away goes so far behind itself that nothing meets it. A piston is a plane that follows an atom, which meets no
+//! grain and is as heavy as the piston; on it act the force that presses, that of the grains on the plane, and a drag. With
+//! velocities half a step before the forces, v' = (v (1 − c Δt/2) + (F − F_n)/M Δt)/(1 + c Δt/2) is a force of
+//! (F − F_n − M c v)/(1 + c Δt/2).
 
 use grainbench_scene::scene::{Piston, Scene, Wall, WallShape};
 use nalgebra::Vector3;
@@ -16,9 +17,12 @@ use crate::deck::schedule::gone_at;
 /// Refuses what LAMMPS does not do as the scene says it.
 pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
     if !scene.stays.entries.is_empty() {
-        return Err("its grains are poured at places and times of their own: LAMMPS (`fix pour`, `fix deposit`) draws both by itself, \
-                    and takes a grain of a given place between two runs only; begin with the deposit (`simulate --state`)"
-            .to_owned());
+        return Err(
+            "its grains are poured at places and times of their own: LAMMPS (`fix pour`, `fix deposit`) draws \
+                    both itself, and takes a grain of a given place between two runs only; begin with the \
+                    deposit (`simulate --state`)"
+                .to_owned(),
+        );
     }
     if scene.springs.is_some() {
         return Err("its contacts remember something at the start, and a data file of LAMMPS holds no springs (`springs = false` \

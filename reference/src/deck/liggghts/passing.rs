@@ -10,24 +10,28 @@ use crate::deck::schedule::gone_at;
 /// Refuses what LIGGGHTS does not do as the scene says it.
 pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
     if !scene.stays.entries.is_empty() {
-        return Err("its grains are poured at places and times of their own: LIGGGHTS (`fix insert`) draws both by itself; begin with \
-                    the deposit (`simulate --state`)"
-            .to_owned());
+        return Err(
+            "its grains are poured at places and times of their own: LIGGGHTS (`fix insert`) draws both itself; \
+                    begin with the deposit (`simulate --state`)"
+                .to_owned(),
+        );
     }
     if scene.stays.removal.is_some() {
-        return Err("grains are taken out of it: LIGGGHTS has no `fix evaporate`, and loses grains beyond its box only when it makes \
-                    its lists anew, which is at no step of the scene's"
+        return Err("grains are taken out of it: LIGGGHTS has no `fix evaporate`, and loses grains beyond its box only when it \
+                    makes its lists anew, which is at no step of the scene's"
             .to_owned());
     }
     if scene.walls.iter().any(|wall| wall.piston.is_some()) {
-        return Err("it has a wall that is pressed: the servo wall of LIGGGHTS (`mesh/surface/stress/servo`) is a controller that sets \
-                    a speed, and has no mass"
+        return Err("it has a wall that is pressed: the servo wall of LIGGGHTS (`mesh/surface/stress/servo`) is a controller that \
+                    sets a speed, and has no mass"
             .to_owned());
     }
     if scene.springs.is_some() {
-        return Err("its contacts remember something at the start, and a data file of LIGGGHTS holds no springs (`springs = false` \
-                    beside the state leaves that out)"
-            .to_owned());
+        return Err(
+            "its contacts remember something at the start, and a data file of LIGGGHTS holds no springs (`springs = \
+                    false` beside the state leaves that out)"
+                .to_owned(),
+        );
     }
     for (number, wall) in (1..).zip(&scene.walls).filter(|(_, wall)| wall.until.is_some()) {
         if AxisPlane::of(wall).is_none() {
