@@ -113,7 +113,10 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                 span { i.f0 {} "fails" } span { i.cannot {} "cannot express it" }
             }
             @if !report.judged.is_empty() {
-                p.note { "The last columns are other people's programs, judged when somebody ran them: " a href="#peers" { "what they are" } "." }
+                p.note {
+                    "The last columns are other people's programs, judged when somebody ran them: "
+                    a href="#peers" { "what they are" } "."
+                }
             }
         }
     }

@@ -15,7 +15,10 @@ pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str
     let costs = report.measured.cost.as_ref();
     html! {
         header id="summary" {
-            p.kicker { "grainbench " (report.provenance.version) " · " (report.provenance.date) " · commit " (report.provenance.commit) }
+            p.kicker {
+                "grainbench " (report.provenance.version) " · " (report.provenance.date)
+                " · commit " (report.provenance.commit)
+            }
             h1 {
                 @if counts.rows() == 0 {
                     "Nothing was judged"

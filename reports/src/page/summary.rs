@@ -87,7 +87,8 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
         (over_dem(costs))
         p.note {
             "Joined: geometric mean over the quantities in which a solver reaches 10, 1 and .1 %, below how many of those it was "
-            "asked for. Small: every setting that no other of its settings beats, errors below 10⁻¹⁰ left out. Times are of the stepping "
+            "asked for. Small: every setting that no other of its settings beats, errors below 10⁻¹⁰ left out. "
+            "Times are of the stepping "
             "loop. Measured " (stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
             "; " code { "grainbench cost --keep" } " does it again, for the report of all cases too."
             @if !stamp.changed.is_empty() {

@@ -26,8 +26,9 @@ pub(crate) fn render(study: &Study) -> Markup {
             }
             h3 { "Scenes by effects" }
             p.note {
-                "Of an effect that is on: what changes most without it, in units of what its gate allows, and what it costs as particle-steps "
-                "and contact evaluations with it over those without. Of one that is off: = where it is inert in every bit, ≠ where not."
+                "Of an effect that is on: what changes most without it, in units of what its gate allows, and what "
+                "it costs as particle-steps and contact evaluations with it over those without. Of one that is off: "
+                "= where it is inert in every bit, ≠ where not."
             }
             (heat(&study.ledger))
             h3 { "The ledger" }

@@ -94,7 +94,8 @@ fn against_exact(study: &Study) -> Option<Figure> {
         Figure::graph(
             "found-exact",
             "Largest stable steps against the exact limits",
-            "Every assembly with an exact limit, in units of √(m/k); below the line a solver breaks earlier than central differences do.",
+            "Every assembly with an exact limit, in units of √(m/k); below the line a solver breaks earlier than central \
+             differences do.",
             [Axis::linear("exact limit / √(m/k)"), Axis::linear("largest stable step / √(m/k)")],
             curves,
         )

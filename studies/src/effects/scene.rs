@@ -104,8 +104,8 @@ impl Asked<'_> {
     }
 }
 
-/// The farthest that a column is from that of the whole scene at the same sample, in units of its largest value; not a number where
-/// one of them has none, none where the whole scene tells nothing.
+/// The farthest that a column is from that of the whole scene at the same sample, in units of its largest value; not a number
+/// where one of them has none, none where the whole scene tells nothing.
 fn farthest(whole: &Record, without: &Record, column: usize) -> Option<f64> {
     let values = whole.series.values.get(column)?;
     let scale = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |scale, value| scale.max(value.abs()));

@@ -52,7 +52,8 @@ pub(super) fn draw(stroke: Stroke, look: &Look, pieces: &[Vec<Place>]) -> Markup
             Stroke::Line => {
                 (marks(pieces.iter().filter(|piece| piece.len() == 1).flatten().copied(), look, true, 4.2))
                 // Evenly along x, and for each shape elsewhere, so that curves on top of each other show theirs.
-                (marks(pieces.iter().flat_map(|piece| along(piece, MARKS_ON_A_LINE, 0.15 + 0.7 * fraction_of(look.marker))), look, false, 4.2))
+                @let shift = 0.15 + 0.7 * fraction_of(look.marker);
+                (marks(pieces.iter().flat_map(|piece| along(piece, MARKS_ON_A_LINE, shift)), look, false, 4.2))
             }
             Stroke::Dashed => {}
             Stroke::Beside => { (marks(all(), look, false, 2.8)) }

@@ -24,7 +24,8 @@ pub(super) fn cases() -> Vec<HardCase> {
             asked: &["dem"],
             ..case(
                 "heap-of-990-for-1e6-steps",
-                "a heap of 44 rows of discs comes to rest and stays: no disc is off its place by R/10 after 10⁶ steps of springs, none moves",
+                "a heap of 44 rows of discs comes to rest and stays: no disc is off its place by R/10 after 10⁶ steps of \
+                 springs, none moves",
                 &heap(),
                 at_rest,
             )
