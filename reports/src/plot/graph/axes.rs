@@ -6,9 +6,9 @@ use super::{LABEL, Panel, TICK, px};
 use crate::plot::text_width;
 
 /// Draws the grid, the axes, their ticks and labels; the lower axis is labelled where it has a label.
-pub(super) fn draw(panel: &Panel<'_>, y_label: &str, x_label: Option<&String>) -> Markup {
+pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&String>) -> Markup {
     let frame = panel.frame;
-    let (x_ticks, y_ticks) = (panel.x.ticks(), panel.y.ticks());
+    let (x_ticks, y_ticks) = (panel.x().ticks(), panel.y().ticks());
     let mut free_from = f64::NEG_INFINITY;
     // Two labels never run into each other.
     let mut labels = Vec::new();

@@ -20,7 +20,7 @@ fn is_told(curve: &Curve) -> bool {
 }
 
 /// Draws it to the right of a panel.
-pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel: &Panel<'_>) -> Markup {
+pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel: &Panel) -> Markup {
     let told: Vec<usize> = (0..legend.len()).filter(|&at| is_told(&graph.curves[at])).collect();
     let left = panel.frame.right + 18.0;
     let entries = tops(graph, legend, panel, &told);
@@ -38,7 +38,7 @@ pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel:
 }
 
 /// Where the first line of each entry stands.
-fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel<'_>, told: &[usize]) -> Vec<(usize, f64)> {
+fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, told: &[usize]) -> Vec<(usize, f64)> {
     let frame = panel.frame;
     let (first, last) = (frame.top + 6.0, frame.bottom + 40.0);
     let height = |at: usize| LEGEND_LINE * legend[at].len() as f64;
@@ -47,9 +47,9 @@ fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel<'_>, told: &[usize]
     let gap = ((last - first - whole) / told.len().max(1) as f64).clamp(0.0, 7.0);
     let end = |at: usize| {
         let joined = matches!(graph.curves[at].stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine);
-        let shown = graph.curves[at].points.iter().filter(|point| panel.x.shows(point.0) && panel.y.shows(point.1));
+        let shown = graph.curves[at].points.iter().filter(|point| panel.x().shows(point.0) && panel.y().shows(point.1));
         let last = shown.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|_| joined)?;
-        (panel.x.position(last.0) > 0.75).then(|| panel.up(last.1))
+        (panel.x().position(last.0) > 0.75).then(|| panel.up(last.1))
     };
     let ends: Option<Vec<(usize, f64)>> = told.iter().map(|&at| Some((at, end(at)?))).collect();
     let stacked = |order: Vec<usize>| {

@@ -8,6 +8,8 @@ mod legend;
 
 use grainbench_harness::figure::{Curve, Graph, Stroke};
 use maud::{Markup, html};
+use plotters::coord::CoordTranslate;
+use plotters::coord::cartesian::Cartesian2d;
 
 use super::palette::{self, Marker};
 use super::scale::Scale;
@@ -43,28 +45,50 @@ struct Frame {
     bottom: f64,
 }
 
-/// A frame with its axes.
-struct Panel<'a> {
+/// A frame with its axes: a plane in tenths of the drawing's units, for plotters places everything on whole numbers.
+struct Panel {
     frame: Frame,
-    x: &'a Scale,
-    y: &'a Scale,
+    plane: Cartesian2d<Scale, Scale>,
 }
 
-impl Panel<'_> {
+fn tenths(length: f64) -> i32 {
+    (10.0 * length).round() as i32
+}
+
+impl Panel {
+    fn new(frame: Frame, x: &Scale, y: &Scale) -> Self {
+        // Lengths on the drawing run downwards.
+        let limits = (tenths(frame.left)..tenths(frame.right), tenths(frame.bottom)..tenths(frame.top));
+        Self { frame, plane: Cartesian2d::new(x.clone(), y.clone(), limits) }
+    }
+
+    fn x(&self) -> &Scale {
+        self.plane.x_spec()
+    }
+
+    fn y(&self) -> &Scale {
+        self.plane.y_spec()
+    }
+
+    fn place(&self, point: &(f64, f64)) -> Place {
+        let (across, up) = self.plane.translate(point);
+        (0.1 * f64::from(across), 0.1 * f64::from(up))
+    }
+
     fn across(&self, value: f64) -> f64 {
-        self.frame.left + self.x.position(value) * (self.frame.right - self.frame.left)
+        self.place(&(value, self.plane.get_y_range().start)).0
     }
 
     fn up(&self, value: f64) -> f64 {
-        self.frame.bottom - self.y.position(value) * (self.frame.bottom - self.frame.top)
+        self.place(&(self.plane.get_x_range().start, value)).1
     }
 
     /// The pieces of a curve: a line breaks where points are missing, for joining over the gap would invent data.
     fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
         points
-            .split(|point| !(self.x.shows(point.0) && self.y.shows(point.1)))
+            .split(|point| !(self.x().shows(point.0) && self.y().shows(point.1)))
             .filter(|piece| !piece.is_empty())
-            .map(|piece| curves::thin(piece.iter().map(|point| (self.across(point.0), self.up(point.1))).collect()))
+            .map(|piece| curves::thin(piece.iter().map(|point| self.place(point)).collect()))
             .collect()
     }
 }
@@ -137,10 +161,10 @@ pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
         top: 48.0,
         bottom: form.height - 58.0 - 17.0 * notes.len() as f64,
     };
-    let panel = Panel { frame, x: &x, y: &y };
+    let panel = Panel::new(frame, &x, &y);
     let below = difference.as_ref().map(|difference| {
         let frame = Frame { top: frame.bottom + 22.0, bottom: frame.bottom + BELOW, ..frame };
-        (Panel { frame, x: &x, y: &difference.scale }, difference)
+        (Panel::new(frame, &x, &difference.scale), difference)
     });
     let body = html! {
         rect width=(form.width) height=(height) fill="#fff" {}
