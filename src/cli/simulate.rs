@@ -94,6 +94,9 @@ pub(crate) struct Arguments {
     /// Leave the state at the end here, with what contacts remember, for another scene to begin with (`grains.NAME.state`).
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
+    /// Round that state, so that it takes half the room: positions to 2⁻³⁶ of a radius, all else to 24 bits.
+    #[arg(long, requires = "state")]
+    rounded: bool,
     /// Directory for the record.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
@@ -228,7 +231,8 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     export::write_run(&record, &mut snapshots, &formats, &mut out).map_err(Fault::writing)?;
     out.commit().map_err(Fault::writing)?;
     if let Some(path) = &arguments.state {
-        let bytes = state.map(|state| state.to_bytes()).transpose().map_err(Fault::input)?;
+        let form = if arguments.rounded { EndState::to_rounded_bytes } else { EndState::to_bytes };
+        let bytes = state.as_ref().map(form).transpose().map_err(Fault::input)?;
         write_file(path, bytes.unwrap_or_default()).map_err(Fault::writing)?;
     }
     if arguments.json {

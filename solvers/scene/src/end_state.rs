@@ -2,13 +2,15 @@
 //! contacts remember. A data file loses the springs of contacts, and with them the friction that holds a heap up.
 //!
 //! On disk: the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an [`EndState`] in
-//! postcard's format, which keeps every bit of a number.
+//! postcard's format, which keeps every bit of a number; or, where little room is what matters, the form of `rounded_state`.
 
+use crate::rounded_state::{self, Packed};
 use crate::sealed::{self, Broken};
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use nalgebra::Vector3;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 
@@ -80,37 +82,72 @@ impl EndState {
     /// # Errors
     /// When the state has a part that cannot be written down, in words.
     pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
-        let body = postcard::to_allocvec(self).map_err(|error| error.to_string())?;
-        let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
-        let packed = packed.write_all(&body).and_then(|()| packed.finish()).map_err(|error| error.to_string())?;
-        Ok(sealed::seal(MAGIC, FORMAT, &packed))
+        sealed_body(self, MAGIC, FORMAT)
     }
 
-    /// A state from the bytes of a file.
+    /// The bytes of a file in a third of the room: positions, velocities, spins and springs are rounded in it.
+    ///
+    /// # Errors
+    /// When the state has a part that cannot be rounded, in words.
+    pub fn to_rounded_bytes(&self) -> Result<Vec<u8>, String> {
+        sealed_body(&Packed::of(self)?, rounded_state::MAGIC, rounded_state::FORMAT)
+    }
+
+    /// A state from the bytes of a file, of either form.
     ///
     /// # Errors
     /// What was found in its place, in words.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
-        let packed = sealed::open(MAGIC, FORMAT, bytes).map_err(|broken| match broken {
-            Broken::Foreign => "another kind of file".to_owned(),
-            Broken::Older(found) => format!("format {found}, which an older version of the program wrote"),
-            Broken::Newer(found) => format!("format {found}, which a newer version of the program wrote"),
-            Broken::Length(expected, found) => {
-                format!("{found} bytes where it says {expected}: it is cut off or changed")
-            }
-            Broken::Changed => "bytes that are not those that were written".to_owned(),
-        })?;
-        let mut body = Vec::new();
-        let unpacked = ZlibDecoder::new(packed).take(MOST).read_to_end(&mut body);
-        unpacked.map_err(|error| error.to_string())?;
-        let state: Self = postcard::from_bytes(&body).map_err(|error| error.to_string())?;
+        let state: Self = if bytes.starts_with(rounded_state::MAGIC) {
+            body_of::<Packed>(bytes, rounded_state::MAGIC, rounded_state::FORMAT)?.state()?
+        } else {
+            body_of(bytes, MAGIC, FORMAT)?
+        };
         let count = state.grains.len();
         let is_place = |place: &u32| (*place as usize) < count;
         let of_grains = state.springs.pairs.iter().all(|(a, b, _)| a != b && is_place(a) && is_place(b))
             && state.springs.walls.iter().all(|(grain, ..)| is_place(grain))
             && state.grains.iter().all(|grain| usize::from(grain.material) < state.materials.len());
-        if of_grains { Ok(state) } else { Err("springs or materials of grains that it does not have".to_owned()) }
+        let numbers = |grain: &StateGrain| [grain.position, grain.velocity, grain.spin].iter().all(is_finite);
+        let of_springs = |memory: &[f64]| memory.iter().all(|number| number.is_finite());
+        let finite = state.grains.iter().all(numbers)
+            && state.springs.pairs.iter().all(|(.., memory)| of_springs(memory))
+            && state.springs.walls.iter().all(|(.., memory)| of_springs(memory));
+        match (of_grains, finite) {
+            (true, true) => Ok(state),
+            (true, false) => Err("a number that is not finite".to_owned()),
+            (false, _) => Err("springs or materials of grains that it does not have".to_owned()),
+        }
     }
+}
+
+fn is_finite(vector: &Vector3<f64>) -> bool {
+    vector.iter().all(|number| number.is_finite())
+}
+
+/// Something as a sealed file of a kind.
+fn sealed_body(body: &impl Serialize, magic: &[u8], format: u32) -> Result<Vec<u8>, String> {
+    let body = postcard::to_allocvec(body).map_err(|error| error.to_string())?;
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
+    let packed = packed.write_all(&body).and_then(|()| packed.finish()).map_err(|error| error.to_string())?;
+    Ok(sealed::seal(magic, format, &packed))
+}
+
+/// What a sealed file of a kind holds.
+fn body_of<T: DeserializeOwned>(bytes: &[u8], magic: &[u8], format: u32) -> Result<T, String> {
+    let packed = sealed::open(magic, format, bytes).map_err(|broken| match broken {
+        Broken::Foreign => "another kind of file".to_owned(),
+        Broken::Older(found) => format!("format {found}, which an older version of the program wrote"),
+        Broken::Newer(found) => format!("format {found}, which a newer version of the program wrote"),
+        Broken::Length(expected, found) => {
+            format!("{found} bytes where it says {expected}: it is cut off or changed")
+        }
+        Broken::Changed => "bytes that are not those that were written".to_owned(),
+    })?;
+    let mut body = Vec::new();
+    let unpacked = ZlibDecoder::new(packed).take(MOST).read_to_end(&mut body);
+    unpacked.map_err(|error| error.to_string())?;
+    postcard::from_bytes(&body).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]
@@ -141,14 +178,54 @@ mod tests {
     fn a_state_comes_back_in_every_bit_and_wherever_it_is_cut_or_changed_it_is_refused() {
         let whole = state().to_bytes().unwrap();
         assert_eq!(format!("{:?}", EndState::from_bytes(&whole).unwrap()), format!("{:?}", state()));
-        for length in 0..whole.len() {
-            assert!(EndState::from_bytes(&whole[..length]).is_err(), "cut at {length}");
-            let mut changed = whole.clone();
-            changed[length] ^= 1;
-            assert!(EndState::from_bytes(&changed).is_err(), "changed at {length}");
+        for whole in [whole, state().to_rounded_bytes().unwrap()] {
+            for length in 0..whole.len() {
+                assert!(EndState::from_bytes(&whole[..length]).is_err(), "cut at {length}");
+                let mut changed = whole.clone();
+                changed[length] ^= 1;
+                assert!(EndState::from_bytes(&changed).is_err(), "changed at {length}");
+            }
         }
         let strange =
             EndState { springs: Springs { pairs: vec![(0, 2, Vec::new())], ..Springs::default() }, ..state() };
         assert!(EndState::from_bytes(&strange.to_bytes().unwrap()).is_err());
+        assert!(EndState::from_bytes(&strange.to_rounded_bytes().unwrap()).is_err());
+    }
+
+    #[test]
+    fn a_state_is_rounded_once_and_by_as_much_as_is_said() {
+        let mut exact = state();
+        // Two sizes, walls by name, contacts in both senses.
+        let third = StateGrain { size: [0.3, 0.2, 0.05], position: Vector3::new(-70.1, 1.0 / 3.0, 1e-3), ..exact.grains[0] };
+        exact.grains.push(third);
+        exact.grains[1].velocity = Vector3::new(1.0 / 3.0, -1e-30, 7.0);
+        exact.springs.pairs = vec![(0, 2, vec![0.1]), (1, 0, vec![-1e-5]), (1, 2, vec![0.0])];
+        exact.springs.walls = vec![(0, "right".to_owned(), vec![0.7]), (2, "floor".to_owned(), vec![-0.5])];
+        let bytes = exact.to_rounded_bytes().unwrap();
+        let rounded = EndState::from_bytes(&bytes).unwrap();
+        assert_eq!(rounded.to_rounded_bytes().unwrap(), bytes, "rounding what is rounded changes nothing");
+        // .3 lies between 2⁻² and 2⁻¹.
+        let step = (-2.0_f64 - 36.0).exp2();
+        for (found, exact) in rounded.grains.iter().zip(&exact.grains) {
+            assert_eq!((found.material, found.size), (exact.material, exact.size));
+            assert!((found.position - exact.position).amax() <= 0.5 * step);
+            for (found, exact) in found.velocity.iter().zip(&exact.velocity).chain(found.spin.iter().zip(&exact.spin)) {
+                assert!((found - exact).abs() <= exact.abs() * (-24.0_f64).exp2());
+            }
+        }
+        assert!((rounded.grains[2].position.y - 1.0 / 3.0).abs() > 1e-3 * step, "a third is no multiple");
+        let of = |springs: &Springs| {
+            let pairs = springs.pairs.iter().map(|(a, b, memory)| format!("{a} {b} {}", memory[0] as f32));
+            pairs.chain(springs.walls.iter().map(|(a, b, memory)| format!("{a} {b} {}", memory[0] as f32))).collect::<Vec<_>>()
+        };
+        assert_eq!(of(&rounded.springs), of(&exact.springs));
+        // What cannot be rounded is refused, and not written down wrongly.
+        exact.grains[0].position.x = 1e9;
+        assert!(exact.to_rounded_bytes().is_err());
+        exact.grains[0].position.x = f64::NAN;
+        assert!(exact.to_rounded_bytes().is_err());
+        exact.grains[0].position.x = 0.0;
+        exact.springs.pairs[0].2.push(1.0);
+        assert!(exact.to_rounded_bytes().is_err());
     }
 }

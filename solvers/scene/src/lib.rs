@@ -31,6 +31,7 @@ pub mod record;
 pub mod recorder;
 pub mod refined;
 pub mod resolve;
+mod rounded_state;
 pub mod scene;
 mod sealed;
 pub mod solver;

@@ -1,0 +1,225 @@
+//! A state at the end of a run in a third of the room: what a scene of a hundred thousand grains can begin from and be kept in a
+//! tree of sources.
+//!
+//! It is rounded once, when it is written, and comes back as it was rounded, so that every solver begins with the same numbers:
+//!
+//! ```text
+//! positions                    to whole multiples of s = 2⁻³⁶ of the power of two at or below the smallest radius
+//! velocities, spins, springs   to 24 bits
+//! sizes, materials, contacts   not at all
+//! ```
+//!
+//! A centre is moved by s/2 along an axis, so that a contact of stiffness k is off by less than √3 k s: for spheres of diameter
+//! d with k = 2·10⁵ mg/d by 3·10⁻⁶ of a grain's weight, where the overlaps of a heap are of the order of 10⁻⁴ d, thus 10⁷ s.
+//! The heap comes to rest anew within a few contact times, and the springs of its contacts, which hold it, stay what they were
+//! within 6·10⁻⁸ of themselves.
+//!
+//! On disk: the line `grainbench rounded state <format>`, length and hash (see `sealed`), and a zlib stream of a [`Packed`] in
+//! postcard's format. A column has the lowest bytes of all its numbers first, then all the next ones: high bytes hardly differ,
+//! and what does not differ takes no room.
+
+use crate::end_state::{EndState, Springs, StateGrain};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a file begins with, before the number of its format.
+pub(crate) const MAGIC: &[u8] = b"grainbench rounded state ";
+/// The format that this program writes.
+pub(crate) const FORMAT: u32 = 1;
+/// Binary digits of a position below the power of two at or below the smallest radius.
+const DIGITS: i32 = 36;
+/// Multiples of the step that a position may be: as far as they are exact.
+const FARTHEST: f64 = (1_u64 << 53) as f64;
+
+/// What is packed.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Packed {
+    of: [String; 2],
+    dimension: usize,
+    time: f64,
+    materials: Vec<String>,
+    /// What positions are multiples of (m).
+    step: f64,
+    /// Materials and sizes that grains have.
+    kinds: Vec<(u16, [f64; 3])>,
+    layout: String,
+    /// How many numbers a contact remembers.
+    numbers: u32,
+    /// Walls that contacts remember.
+    names: Vec<String>,
+    /// Kind, multiples along three axes, velocity and spin of grains.
+    grains: [Vec<u8>; 10],
+    /// Of contacts between grains: the first less that of the one before, the second less the first.
+    pairs: [Vec<u8>; 2],
+    /// Of contacts with walls: the grain less that of the one before, the wall.
+    walls: [Vec<u8>; 2],
+    /// What contacts between grains remember, then those with walls: a column a number.
+    springs: Vec<Vec<u8>>,
+}
+
+/// Numbers byte by byte, all the lowest ones first.
+fn column<const N: usize>(numbers: impl Iterator<Item = [u8; N]>) -> Vec<u8> {
+    let all: Vec<[u8; N]> = numbers.collect();
+    (0..N).flat_map(|byte| all.iter().map(move |number| number[byte])).collect()
+}
+
+/// The numbers of a column.
+fn numbers<const N: usize>(column: &[u8]) -> Result<Vec<[u8; N]>, String> {
+    if !column.len().is_multiple_of(N) {
+        return Err(format!("a column of {} bytes, where each number has {N}", column.len()));
+    }
+    let count = column.len() / N;
+    Ok((0..count).map(|at| std::array::from_fn(|byte| column[byte * count + at])).collect())
+}
+
+fn singles(values: impl Iterator<Item = f64>) -> Vec<u8> {
+    column(values.map(|value| (value as f32).to_le_bytes()))
+}
+
+fn read_singles(column: &[u8]) -> Result<Vec<f64>, String> {
+    Ok(numbers(column)?.into_iter().map(|bytes| f64::from(f32::from_le_bytes(bytes))).collect())
+}
+
+/// Places, each less the one that `from` says.
+fn places(values: impl Iterator<Item = (u32, u32)>) -> Vec<u8> {
+    column(values.map(|(place, from)| place.wrapping_sub(from).to_le_bytes()))
+}
+
+fn read_places(column: &[u8]) -> Result<Vec<u32>, String> {
+    Ok(numbers(column)?.into_iter().map(u32::from_le_bytes).collect())
+}
+
+/// Places that each follow on the one before.
+fn following(steps: &[u32]) -> Vec<u32> {
+    let mut place = 0_u32;
+    let next = |step: &u32| {
+        place = place.wrapping_add(*step);
+        place
+    };
+    steps.iter().map(next).collect()
+}
+
+/// Each with the one before it, the first with 0.
+fn after(places: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
+    places.iter().copied().zip(std::iter::once(0).chain(places.iter().copied()))
+}
+
+impl Packed {
+    /// Rounds a state.
+    pub(crate) fn of(state: &EndState) -> Result<Self, String> {
+        let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);
+        let step = if smallest.is_finite() { (smallest.log2().floor() - f64::from(DIGITS)).exp2() } else { 1.0 };
+        let far = |grain: &StateGrain| !grain.position.iter().all(|&along| (along / step).abs() < FARTHEST);
+        if !(step > 0.0) || state.grains.iter().any(far) {
+            return Err("a grain that is too far away or too small to be rounded".to_owned());
+        }
+        let mut kinds = Vec::new();
+        let mut known = BTreeMap::new();
+        let mut kind = |grain: &StateGrain| {
+            let key = (grain.material, grain.size.map(f64::to_bits));
+            *known.entry(key).or_insert_with(|| {
+                kinds.push((grain.material, grain.size));
+                kinds.len() as u32 - 1
+            })
+        };
+        let of_kinds = places(state.grains.iter().map(|grain| (kind(grain), 0)));
+        let position = |axis: usize| {
+            column(state.grains.iter().map(|grain| ((grain.position[axis] / step).round() as i64).to_le_bytes()))
+        };
+        let velocity = |axis: usize| singles(state.grains.iter().map(|grain| grain.velocity[axis]));
+        let spin = |axis: usize| singles(state.grains.iter().map(|grain| grain.spin[axis]));
+        let Springs { layout, pairs, walls } = &state.springs;
+        let memories = || pairs.iter().map(|pair| &pair.2).chain(walls.iter().map(|wall| &wall.2));
+        let count = memories().next().map_or(0, Vec::len);
+        if memories().any(|memory| memory.len() != count) {
+            return Err("contacts that remember different amounts of numbers".to_owned());
+        }
+        let mut names: Vec<String> = walls.iter().map(|wall| wall.1.clone()).collect();
+        names.sort();
+        names.dedup();
+        let name = |of: &String| names.binary_search(of).unwrap_or_default() as u32;
+        let firsts: Vec<u32> = pairs.iter().map(|pair| pair.0).collect();
+        let at_walls: Vec<u32> = walls.iter().map(|wall| wall.0).collect();
+        Ok(Self {
+            of: state.of.clone(),
+            dimension: state.dimension,
+            time: state.time,
+            materials: state.materials.clone(),
+            step,
+            grains: [
+                of_kinds,
+                position(0),
+                position(1),
+                position(2),
+                velocity(0),
+                velocity(1),
+                velocity(2),
+                spin(0),
+                spin(1),
+                spin(2),
+            ],
+            pairs: [places(after(&firsts)), places(pairs.iter().map(|pair| (pair.1, pair.0)))],
+            walls: [places(after(&at_walls)), places(walls.iter().map(|wall| (name(&wall.1), 0)))],
+            springs: (0..count).map(|number| singles(memories().map(|memory| memory[number]))).collect(),
+            kinds,
+            layout: layout.clone(),
+            numbers: count as u32,
+            names,
+        })
+    }
+
+    /// The state as it was rounded.
+    pub(crate) fn state(&self) -> Result<EndState, String> {
+        let kinds = read_places(&self.grains[0])?;
+        let positions = [1, 2, 3].map(|axis| numbers::<8>(&self.grains[axis]));
+        let [x, y, z] = positions;
+        let positions = [x?, y?, z?];
+        let singles: Vec<Vec<f64>> = self.grains[4..].iter().map(|of| read_singles(of)).collect::<Result<_, _>>()?;
+        let lengths = positions.iter().map(Vec::len).chain(singles.iter().map(Vec::len));
+        let firsts = following(&read_places(&self.pairs[0])?);
+        let seconds = read_places(&self.pairs[1])?;
+        let at_walls = following(&read_places(&self.walls[0])?);
+        let names = read_places(&self.walls[1])?;
+        let springs: Vec<Vec<f64>> = self.springs.iter().map(|of| read_singles(of)).collect::<Result<_, _>>()?;
+        let contacts = firsts.len() + at_walls.len();
+        let fits = lengths.into_iter().all(|length| length == kinds.len())
+            && kinds.iter().all(|&kind| (kind as usize) < self.kinds.len())
+            && seconds.len() == firsts.len()
+            && names.len() == at_walls.len()
+            && names.iter().all(|&name| (name as usize) < self.names.len())
+            && springs.len() == self.numbers as usize
+            && springs.iter().all(|of| of.len() == contacts);
+        if !fits {
+            return Err("columns that do not fit one another".to_owned());
+        }
+        let vector = |of: &dyn Fn(usize) -> f64| Vector3::new(of(0), of(1), of(2));
+        let grain = |(at, &kind): (usize, &u32)| {
+            let (material, size) = self.kinds[kind as usize];
+            StateGrain {
+                material,
+                size,
+                position: vector(&|axis| i64::from_le_bytes(positions[axis][at]) as f64 * self.step),
+                velocity: vector(&|axis| singles[axis][at]),
+                spin: vector(&|axis| singles[3 + axis][at]),
+            }
+        };
+        let memory = |contact: usize| springs.iter().map(|of| of[contact]).collect::<Vec<f64>>();
+        let pair = |(at, (&first, &second)): (usize, (&u32, &u32))| (first, first.wrapping_add(second), memory(at));
+        let wall = |(at, (&grain, &name)): (usize, (&u32, &u32))| {
+            (grain, self.names[name as usize].clone(), memory(firsts.len() + at))
+        };
+        Ok(EndState {
+            of: self.of.clone(),
+            dimension: self.dimension,
+            time: self.time,
+            materials: self.materials.clone(),
+            grains: kinds.iter().enumerate().map(grain).collect(),
+            springs: Springs {
+                layout: self.layout.clone(),
+                pairs: firsts.iter().zip(&seconds).enumerate().map(pair).collect(),
+                walls: at_walls.iter().zip(&names).enumerate().map(wall).collect(),
+            },
+        })
+    }
+}
