@@ -38,5 +38,5 @@ fn claims() -> Vec<Claim> {
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, BINS))
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Pushed, BINS))
 }

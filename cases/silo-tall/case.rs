@@ -38,6 +38,7 @@ static DRAINED: Drained = Drained {
         prototype::TALL_INERTIA_6,
         prototype::TALL_INERTIA_7,
         prototype::TALL_INERTIA_8,
+        prototype::TALL_INERTIA_9,
     ],
 };
 
@@ -61,5 +62,5 @@ fn claims() -> Vec<Claim> {
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, DRAINED.bins))
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Drained, DRAINED.bins))
 }

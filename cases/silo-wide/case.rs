@@ -38,6 +38,7 @@ static DRAINED: Drained = Drained {
         prototype::WIDE_INERTIA_6,
         prototype::WIDE_INERTIA_7,
         prototype::WIDE_INERTIA_8,
+        prototype::WIDE_INERTIA_9,
     ],
 };
 
@@ -55,5 +56,5 @@ fn claims() -> Vec<Claim> {
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, DRAINED.bins))
+    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Drained, DRAINED.bins))
 }

@@ -99,6 +99,37 @@ pub struct ForcePlot {
     pub bars: Vec<ForceBar>,
 }
 
+/// Lines of one kind in a drawing to scale.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lines {
+    /// What they are, in the legend.
+    pub label: String,
+    /// Both ends of each, and its width as a part of the widest that there can be.
+    pub lines: Vec<([f64; 2], [f64; 2], f64)>,
+}
+
+/// A part of the plane with lines in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sheet {
+    /// What stands above it.
+    pub title: String,
+    /// Lower and upper corner of what is seen.
+    pub seen: [[f64; 2]; 2],
+    /// Lower and upper corner of a part that is marked.
+    pub marked: Option<[[f64; 2]; 2]>,
+    /// The lines, in the order in which they are drawn; a kind has the same place in all sheets, and may be empty.
+    pub kinds: Vec<Lines>,
+}
+
+/// Sheets beside one another, both axes of each to one scale, so that angles are what they are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LinePlot {
+    /// Labels of the horizontal and of the vertical axis.
+    pub axes: [String; 2],
+    /// The sheets.
+    pub sheets: Vec<Sheet>,
+}
+
 /// How the values of a field are coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Shades {
@@ -157,6 +188,8 @@ pub enum Drawing {
     Forces(ForcePlot),
     /// A field, as pictures or as a film.
     Field(Field),
+    /// Lines to scale.
+    Lines(LinePlot),
 }
 
 /// One figure of a case.
@@ -191,6 +224,17 @@ impl Figure {
             title: title.to_owned(),
             caption: caption.to_owned(),
             drawing: Drawing::Field(field),
+        }
+    }
+
+    /// Lines to scale.
+    #[must_use]
+    pub fn lines(name: &str, title: &str, caption: &str, plot: LinePlot) -> Self {
+        Self {
+            name: name.to_owned(),
+            title: title.to_owned(),
+            caption: caption.to_owned(),
+            drawing: Drawing::Lines(plot),
         }
     }
 

@@ -5,7 +5,7 @@ pub use crate::claim::{Claim, Measure, claim};
 pub use crate::control::Control;
 pub use crate::course::{Plate, from_start, no_more, samples};
 pub use crate::expect::{Bound, Expected, Measured};
-pub use crate::figure::{Axis, Curve, Figure, Stroke};
+pub use crate::figure::{Axis, Curve, Figure, LinePlot, Lines, Sheet, Stroke};
 pub use crate::reading::{Reader, Reading, Table};
 pub use crate::run::{Change, Done, Missing, Run};
 pub use crate::runner::Runner;

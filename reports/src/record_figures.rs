@@ -298,7 +298,7 @@ mod tests {
         }
         let panels = figures.iter().filter_map(|figure| match &figure.drawing {
             Drawing::Field(field) => Some(field.panels.len()),
-            Drawing::Graph(_) | Drawing::Forces(_) => None,
+            Drawing::Graph(_) | Drawing::Forces(_) | Drawing::Lines(_) => None,
         });
         // Plastic strain is told by material points alone.
         assert!(panels.clone().count() > 5 && panels.clone().filter(|count| *count == 2).count() > 4);

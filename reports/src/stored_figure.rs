@@ -1,7 +1,7 @@
 //! Reading figures back. A run that blew up has points that are not finite; JSON writes those as `null`, and here
 //! `null` becomes not-a-number again, which every drawer leaves out and counts.
 
-use grainbench_harness::figure::{Axis, Curve, Drawing, Field, Figure, ForceBar, ForcePlot, Graph, Stroke};
+use grainbench_harness::figure::{Axis, Curve, Drawing, Field, Figure, ForceBar, ForcePlot, Graph, LinePlot, Stroke};
 use serde::{Deserialize, Deserializer};
 
 /// A number, or `null`.
@@ -22,6 +22,7 @@ enum StoredDrawing {
     Graph(StoredGraph),
     Forces(StoredForces),
     Field(Field),
+    Lines(LinePlot),
 }
 
 #[derive(Deserialize)]
@@ -78,6 +79,7 @@ impl StoredFigure {
                 StoredDrawing::Graph(graph) => Drawing::Graph(graph.read()),
                 StoredDrawing::Forces(forces) => Drawing::Forces(forces.read()),
                 StoredDrawing::Field(field) => Drawing::Field(field),
+                StoredDrawing::Lines(lines) => Drawing::Lines(lines),
             },
         }
     }

@@ -97,23 +97,23 @@ pub(crate) fn share(values: &[f64], [low, high]: [f64; 2]) -> f64 {
     values.iter().filter(|value| (low..=high).contains(*value)).count() as f64 / values.len() as f64
 }
 
-/// A pair of quantities of all flowing elements of the bulk.
-fn pairs(done: &Done, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Missing> {
+/// A pair of quantities of all elements of the bulk that shear at so high a rate.
+fn pairs(done: &Done, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Missing> {
     let [a, b] = names;
     let rows = Rows::of(done.table("elements")?, ["time", "side", "surface", "shear_rate", a, b])?;
-    let flows = |row: &[f64; 6]| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0 && row[3] >= FLOWING;
+    let flows = |row: &[f64; 6]| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0 && row[3] >= rate;
     let found: Vec<[f64; 2]> = rows.whole().filter(flows).map(|row| [row[4], row[5]]).collect();
     if found.len() < FEWEST { Err(Missing(format!("{FEWEST} flowing elements"))) } else { Ok(found) }
 }
 
 /// Pearson's correlation of sin φ after Mohr and Coulomb with Drucker and Prager's ratio.
 pub(crate) fn of_criteria(done: &Done) -> Result<f64, Missing> {
-    Ok(correlation(&pairs(done, ["sine_of_friction", "drucker_prager"])?))
+    Ok(correlation(&pairs(done, FLOWING, ["sine_of_friction", "drucker_prager"])?))
 }
 
 /// Pearson's correlation of log |D₀| of the instant with that from where grains were .2 τ before.
 pub(crate) fn of_rates(done: &Done) -> Result<f64, Missing> {
-    let pairs = pairs(done, ["shear_rate", "shear_rate_between"])?;
+    let pairs = pairs(done, FLOWING, ["shear_rate", "shear_rate_between"])?;
     Ok(correlation(&pairs.into_iter().map(|pair| pair.map(f64::ln)).collect::<Vec<_>>()))
 }
 
@@ -138,10 +138,37 @@ pub(crate) const INERTIA: [[f64; 2]; 10] = [
     [0.4, 0.6],
 ];
 
-/// Mean packing fraction of each bin of |I₀|, of the flowing bulk without the elements at sides; none of a bin with few.
+/// Mean packing fraction of each bin of |I₀|, of the bulk without the elements at sides, whether they flow or creep; none of a
+/// bin with few.
 pub(crate) fn over_inertia(done: &Done) -> Result<[Option<f64>; INERTIA.len()], Missing> {
-    let pairs = pairs(done, ["inertial_number", "packing_fraction"])?;
+    let pairs = pairs(done, 0.0, ["inertial_number", "packing_fraction"])?;
     Ok(INERTIA.map(|bin| in_bin(&pairs, bin)))
+}
+
+/// The same of elements that flow, of which the first bin has none: |D₀| of .02/τ is |I₀| of .007 at the pressure of 15 d.
+pub(crate) fn over_inertia_flowing(done: &Done) -> Result<[Option<f64>; INERTIA.len()], Missing> {
+    let pairs = pairs(done, FLOWING, ["inertial_number", "packing_fraction"])?;
+    Ok(INERTIA.map(|bin| in_bin(&pairs, bin)))
+}
+
+/// What is found in every bin that another has, beside what that one has: a bin that is lacking is told, not passed over.
+pub(crate) fn in_bins_of(
+    found: &[Option<f64>; INERTIA.len()],
+    others: impl Iterator<Item = (usize, f64)>,
+) -> Result<Vec<[f64; 2]>, Missing> {
+    let pair = |(bin, other): (usize, f64)| {
+        let [low, high] = INERTIA[bin];
+        let lacking = || Missing(format!("{FEWEST} elements with |I₀| of {low} to {high}"));
+        found[bin].map(|found| [found, other]).ok_or_else(lacking)
+    };
+    let pairs: Vec<[f64; 2]> = others.map(pair).collect::<Result<_, _>>()?;
+    if pairs.is_empty() { Err(Missing("bin of |I₀| to compare".to_owned())) } else { Ok(pairs) }
+}
+
+/// The pair that lies farthest apart.
+pub(crate) fn worst(pairs: &[[f64; 2]]) -> [f64; 2] {
+    let apart = |[found, expected]: &&[f64; 2]| (found - expected).abs();
+    pairs.iter().max_by(|a, b| apart(a).total_cmp(&apart(b))).copied().unwrap_or([f64::NAN; 2])
 }
 
 /// Mean of the second of pairs whose first lies in a bin.

@@ -1,6 +1,7 @@
 //! Figures of silos, as the paper draws them, from what was read of their runs.
 
-use super::ensemble::{INERTIA, over_inertia, over_strain, strained};
+use super::axes;
+use super::ensemble::{Flow, INERTIA, over_inertia, over_strain, strained};
 use super::reader::{ELEMENT, STEADY};
 use grainbench_fields::element_picture::Sheet;
 use grainbench_fields::grid::Grid;
@@ -16,13 +17,16 @@ const CLOUD: usize = 600;
 /// An inertial number below which an element rests: grains that are held have one of rounding.
 const STILL: f64 = 1e-5;
 
-/// All figures of a silo: the film, φ over |I₀| beside the prototype's bins, sin φ over φ along tracers, φ over strain.
-pub(crate) fn all(done: &Done, bins: &[Cited]) -> Vec<Figure> {
-    [film(done), over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten().collect()
+/// All figures of a silo: the film, axes of stress and rate, single forces, φ over |I₀| beside the prototype's bins, sin φ
+/// over φ along tracers, φ over strain.
+pub(crate) fn all(done: &Done, flow: Flow, bins: &[Cited]) -> Vec<Figure> {
+    let axes = axes::all(done, flow).into_iter();
+    let graphs = [over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten();
+    film(done).into_iter().chain(axes).chain(graphs).collect()
 }
 
 /// Columns of a table as rows in which every number is one.
-fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
+pub(super) fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
     let columns: Vec<&[f64]> = names.iter().filter_map(|name| table.column(name)).collect();
     if columns.len() < N {
         return Vec::new();

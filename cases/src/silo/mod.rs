@@ -3,9 +3,11 @@
 //!
 //! Source: C. H. Rycroft, K. Kamrin and M. Z. Bazant, *Assessing continuum postulates in simulations of granular flow* (2009).
 
+mod axes;
 pub(crate) mod claims;
 pub(crate) mod ensemble;
 pub(crate) mod figures;
+mod instant;
 mod reader;
 
 pub(crate) use reader::ELEMENTS;

@@ -1,6 +1,8 @@
 //! Reads the snapshots of a silo as granular elements of 2.5 d across, as blocks of 5 d, and along tracers.
 
 use grainbench_fields::column::COLUMNS;
+use super::ensemble::Flow;
+use super::instant;
 use grainbench_fields::course::Course;
 use grainbench_fields::element::{Element, elements};
 use grainbench_fields::grid::Grid;
@@ -22,7 +24,7 @@ pub(super) const ELEMENT: f64 = 2.5;
 pub(super) const STEADY: f64 = 6.0;
 /// Frames whose stresses and motions are averaged into a window.
 const WINDOW: usize = 20;
-/// Most rows of elements that are kept: of larger runs some frames only.
+/// Most rows of elements that are kept, and of blocks of single frames: of larger runs some frames only.
 const MOST_ROWS: usize = 30_000;
 /// The plane in which axes turn: x and z.
 const PLANE: [usize; 2] = [0, 2];
@@ -45,16 +47,21 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
     let height = ((top / (2.0 * ELEMENT)).ceil() + 1.0) * 2.0 * ELEMENT;
     let corners = (Vector3::new(width[0], depth[0], 0.0), Vector3::new(width[1], depth[1], height));
     let of = |size: f64| Grid::filling(corners, Vector3::new(size, depth[1] - depth[0], size));
+    let blocks = of(2.0 * ELEMENT);
+    let frames = scene.snapshots as usize + 2;
     let mut course = Course::new(of(ELEMENT), Dimension::Three, PLANE, MASKS, false);
     course.trails = Some(Trails::new(of(2.0 * ELEMENT)));
     Box::new(Silo {
         course,
-        blocks: of(2.0 * ELEMENT),
+        every_blocks: (blocks.cells() * frames).div_ceil(MOST_ROWS).max(1),
+        blocks,
+        flow: if scene.driven.is_empty() { Flow::Drained } else { Flow::Pushed },
         before: None,
         rates: Vec::new(),
         window: Vec::new(),
         of_blocks: Table::new("blocks", &BLOCKS),
         whole: Table::new("whole", &WHOLE),
+        axes: Table::new("axes", &instant::AXES),
     })
 }
 
@@ -96,6 +103,10 @@ const WHOLE: [&str; 5] = ["time", "grains", "packing_fraction", "shear_over_pres
 struct Silo {
     course: Course,
     blocks: Grid,
+    /// Every how many frames the blocks of a single one are kept.
+    every_blocks: usize,
+    /// What makes the grains flow.
+    flow: Flow,
     /// The grains of the snapshot before.
     before: Option<Snapshot>,
     /// |D₀| of every element from where grains were in the frame before.
@@ -104,6 +115,8 @@ struct Silo {
     window: Vec<Vec<Element>>,
     of_blocks: Table,
     whole: Table,
+    /// Axes of the blocks of the last frame.
+    axes: Table,
 }
 
 impl Reader for Silo {
@@ -115,13 +128,15 @@ impl Reader for Silo {
         });
         self.rates.push(between.unwrap_or_default());
         self.see_blocks(&snapshot);
-        self.before = Some(Snapshot { contacts: None, ..snapshot.clone() });
+        self.before = Some(snapshot.clone());
         self.course.add(snapshot);
         self.see_whole();
     }
 
     fn end(self: Box<Self>) -> Vec<Table> {
-        vec![self.elements(), self.tracers(), self.of_blocks, self.whole]
+        let forces = self.before.as_ref().map(|last| instant::forces(last, instant::part(self.flow)));
+        let all = [self.elements(), self.tracers()].into_iter();
+        all.chain(forces).chain([self.of_blocks, self.whole, self.axes]).collect()
     }
 }
 
@@ -129,7 +144,10 @@ impl Silo {
     /// Adds the blocks of a snapshot, and those of the window that ends with it.
     fn see_blocks(&mut self, snapshot: &Snapshot) {
         let blocks = elements(snapshot, Dimension::Three, &self.blocks);
-        add_blocks(&mut self.of_blocks, &self.blocks, snapshot.time, 1, &blocks);
+        if self.course.frames.len().is_multiple_of(self.every_blocks) {
+            add_blocks(&mut self.of_blocks, &self.blocks, snapshot.time, 1, &blocks);
+        }
+        self.axes = instant::axes(&blocks, &MASKS.of(&blocks, &self.blocks), &self.blocks);
         if snapshot.time < STEADY - 1e-9 {
             return;
         }

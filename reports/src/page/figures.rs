@@ -17,7 +17,7 @@ const SEEN: usize = 2;
 const fn class(drawing: &Drawing) -> &'static str {
     match drawing {
         Drawing::Graph(_) => "plot graph",
-        Drawing::Forces(_) | Drawing::Field(_) => "plot",
+        Drawing::Forces(_) | Drawing::Field(_) | Drawing::Lines(_) => "plot",
     }
 }
 

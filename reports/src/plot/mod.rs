@@ -3,6 +3,7 @@
 pub mod field;
 pub mod forces;
 pub mod graph;
+pub mod lines;
 pub mod palette;
 mod reel;
 pub mod scale;
@@ -36,6 +37,7 @@ pub fn draw(figure: &Figure) -> Result<String, DrawError> {
     let svg = match &figure.drawing {
         Drawing::Graph(graph) => graph::draw(&figure.title, graph),
         Drawing::Forces(plot) => forces::draw(&figure.title, plot),
+        Drawing::Lines(plot) => lines::draw(&figure.title, plot),
         Drawing::Field(field) => field::draw(&figure.title, field)
             .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() })?,
     };

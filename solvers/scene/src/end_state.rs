@@ -85,7 +85,7 @@ impl EndState {
         sealed_body(self, MAGIC, FORMAT)
     }
 
-    /// The bytes of a file in a third of the room: positions, velocities, spins and springs are rounded in it.
+    /// The bytes of a file in half the room: positions, velocities, spins and springs are rounded in it.
     ///
     /// # Errors
     /// When the state has a part that cannot be rounded, in words.

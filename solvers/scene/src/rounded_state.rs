@@ -1,4 +1,4 @@
-//! A state at the end of a run in a third of the room: what a scene of a hundred thousand grains can begin from and be kept in a
+//! A state at the end of a run in half the room: what a scene of a hundred thousand grains can begin from and be kept in a
 //! tree of sources.
 //!
 //! It is rounded once, when it is written, and comes back as it was rounded, so that every solver begins with the same numbers:

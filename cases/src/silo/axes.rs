@@ -1,0 +1,96 @@
+//! Figures 4 and 5 of the paper: the axes of stress and rate of the blocks of the last frame, and the single forces in a part of
+//! it.
+
+use super::ensemble::Flow;
+use super::figures::rows;
+use super::instant::part;
+use grainbench_harness::prelude::*;
+
+/// Half the length of an axis of D (d).
+const RATE: f64 = 1.6;
+/// Half the length of the longest axes of T but for a twentieth (d): blocks are 5 d wide.
+const STRESS: f64 = 2.4;
+/// Widths of the lines, as parts of the widest.
+const WIDTHS: [f64; 3] = [0.2, 0.4, 0.2];
+
+/// Both figures; none of a run of which neither axes nor forces were read.
+pub(super) fn all(done: &Done, flow: Flow) -> Vec<Figure> {
+    let Some(kinds) = kinds(done) else { return Vec::new() };
+    let time = done.table("whole").ok().and_then(|whole| whole.column("time")?.last().copied()).unwrap_or(f64::NAN);
+    [whole(done, flow, time, &kinds), detail(done, flow, time, kinds)].into_iter().flatten().collect()
+}
+
+/// The axes of every block as lines.
+fn kinds(done: &Done) -> Option<Vec<Lines>> {
+    let table = done.table("axes").ok()?;
+    let of_stress = |x: &'static str, z: &'static str| rows(table, ["x", "z", x, z]);
+    let [smallest, middle, largest] =
+        [("smallest_x", "smallest_z"), ("middle_x", "middle_z"), ("largest_x", "largest_z")].map(|(x, z)| of_stress(x, z));
+    let mut lengths: Vec<f64> = smallest.iter().chain(&largest).map(|row| row[2].hypot(row[3])).collect();
+    lengths.sort_by(f64::total_cmp);
+    let longest = *lengths.get(lengths.len().checked_sub(1)? * 19 / 20)?;
+    let scale = if longest > 0.0 { STRESS / longest } else { 1.0 };
+    let lines = |rows: &[[f64; 4]], scale: f64, width: f64| -> Vec<_> {
+        let end = |&[x, z, a, b]: &[f64; 4], side: f64| [x + side * scale * a, z + side * scale * b];
+        rows.iter().map(|row| (end(row, -1.0), end(row, 1.0), width)).collect()
+    };
+    let rates = [rows(table, ["x", "z", "shortens_x", "shortens_z"]), rows(table, ["x", "z", "lengthens_x", "lengthens_z"])];
+    Some(vec![
+        Lines {
+            label: "smallest and middle axis of T, √|principal value of its deviator| long".to_owned(),
+            lines: lines(&[smallest, middle].concat(), scale, WIDTHS[0]),
+        },
+        Lines { label: "largest axis of T".to_owned(), lines: lines(&largest, scale, WIDTHS[1]) },
+        Lines {
+            label: "smallest and largest axis of D, where |D₀| is above .02/τ".to_owned(),
+            lines: lines(&rates.concat(), RATE, WIDTHS[2]),
+        },
+    ])
+}
+
+fn labels() -> [String; 2] {
+    ["x (d)".to_owned(), "z (d)".to_owned()]
+}
+
+/// Every block (figure 4).
+fn whole(done: &Done, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> {
+    let domain = done.scene.domain.as_ref()?;
+    let places = rows(done.table("axes").ok()?, ["x", "z"]);
+    let top = places.iter().map(|row| row[1]).fold(0.0, f64::max) + 2.5;
+    let seen = [[domain.low.x, 0.0], [domain.high.x, top]];
+    let title = format!("t = {time} τ, blocks of 5 d");
+    let sheet = Sheet { title, seen, marked: Some(part(flow)), kinds: kinds.to_vec() };
+    let caption = "Axes of the deviator of the stress of blocks of 5 d by 8 d by 5 d, of one moment and projected on the \
+                   plane, and of the rate of deformation where the block flows (figure 4 of the paper). The paper finds \
+                   both within about 12° of one another wherever there is appreciable deformation, smooth stresses, and \
+                   none of the shocks of limit-state plasticity. The black frame is the part of the next figure; where \
+                   the paper's lies its text does not say.";
+    Some(Figure::lines("axes", "Axes of stress and of rate", caption, LinePlot { axes: labels(), sheets: vec![sheet] }))
+}
+
+/// The blocks in a part, and the single forces there (figure 5).
+fn detail(done: &Done, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figure> {
+    let forces = rows(done.table("forces").ok()?, ["from_x", "from_z", "to_x", "to_z", "force"]);
+    let largest = forces.iter().map(|row| row[4]).fold(0.0, f64::max);
+    if largest <= 0.0 {
+        return None;
+    }
+    let mean = forces.iter().map(|row| row[4]).sum::<f64>() / forces.len() as f64;
+    let line = |row: &[f64; 5]| ([row[0], row[1]], [row[2], row[3]], row[4] / largest);
+    let label = format!(
+        "force between two grains, as wide as it is large; {} of them, mean {mean:.1}, largest {largest:.0} mg",
+        forces.len()
+    );
+    let seen = part(flow);
+    let empty = |kind: &Lines| Lines { label: String::new(), lines: kind.lines[..0].to_vec() };
+    let of_forces: Vec<Lines> = kinds.iter().map(empty).collect();
+    let of_forces = [of_forces, vec![Lines { label, lines: forces.iter().map(line).collect() }]].concat();
+    let sheets = vec![
+        Sheet { title: format!("axes, t = {time} τ"), seen, marked: None, kinds },
+        Sheet { title: "single forces, all along the period of 8 d".to_owned(), seen, marked: None, kinds: of_forces },
+    ];
+    let caption = "Left: the part that is framed above. Right: the forces of its contacts from centre to centre. They differ \
+                   from one to the next by more than their mean, in chains that show no element, and yet the axes of the \
+                   blocks are smooth (figure 5 of the paper).";
+    Some(Figure::lines("forces", "Axes, and the forces that they are means of", caption, LinePlot { axes: labels(), sheets }))
+}

@@ -1,0 +1,91 @@
+//! What the last frame of a silo is drawn from: principal axes of stress and rate of its blocks, and the forces of the contacts
+//! in a part of it (figures 4 and 5 of the paper).
+
+use super::ensemble::{FLOWING, Flow};
+use grainbench_fields::element::Element;
+use grainbench_fields::grid::Grid;
+use grainbench_fields::mask::Masked;
+use grainbench_fields::tensor::{deviator, principal};
+use grainbench_harness::reading::Table;
+use grainbench_scene::record::{Partner, Snapshot};
+use nalgebra::{Matrix3, Vector3};
+
+/// Columns of the table of axes: of a block, the three axes of T from the smallest principal value to the largest, each
+/// projected on the plane of x and z and √|principal value of its deviator| long (√(mg/d²)); then, where the block flows, the
+/// axes of the smallest and the largest principal value of D, projected.
+pub(super) const AXES: [&str; 12] = [
+    "x", "z", "smallest_x", "smallest_z", "middle_x", "middle_z", "largest_x", "largest_z", "shortens_x", "shortens_z",
+    "lengthens_x", "lengthens_z",
+];
+/// Columns of the table of forces: of a contact between grains, their centres and the size of the force.
+pub(super) const FORCES: [&str; 5] = ["from_x", "from_z", "to_x", "to_z", "force"];
+
+/// The part of a silo whose single forces are shown: lower and upper corner in x and z (d).
+pub(super) const fn part(flow: Flow) -> [[f64; 2]; 2] {
+    match flow {
+        // Where the funnel leaves the slit.
+        Flow::Drained => [[0.0, 2.5], [10.0, 12.5]],
+        // Where bands of shear begin at the edge of what is moved.
+        Flow::Pushed => [[-5.0, 7.5], [5.0, 17.5]],
+    }
+}
+
+/// The axes of the blocks of a frame that hold enough.
+pub(super) fn axes(blocks: &[Element], masked: &[Masked], grid: &Grid) -> Table {
+    let mut table = Table::new("axes", &AXES);
+    for (cell, element) in blocks.iter().enumerate().filter(|(cell, _)| !masked[*cell].few && !masked[*cell].surface) {
+        let Some(stress) = element.stress else { continue };
+        let middle = grid.middle(cell);
+        let mut row = vec![Some(middle.x), Some(middle.z)];
+        let flat = |axis: Vector3<f64>| [Some(axis.x), Some(axis.z)];
+        let of_stress = long(&stress);
+        row.extend(of_stress.into_iter().flat_map(flat));
+        if let Some(gradient) = element.motion.gradient.filter(|_| element.shear_rate() >= Some(FLOWING)) {
+            let of_rate = principal(&gradient.symmetric_part(), 3);
+            row.extend([of_rate.axes[0], of_rate.axes[2]].into_iter().flat_map(flat));
+        }
+        table.push(&row);
+    }
+    table
+}
+
+/// Axes of a stress, each √|principal value of the deviator| long.
+fn long(stress: &Matrix3<f64>) -> [Vector3<f64>; 3] {
+    let of = principal(&deviator(stress, 3), 3);
+    [0, 1, 2].map(|number| of.axes[number] * of.values[number].abs().sqrt())
+}
+
+/// The contacts between grains of a snapshot whose contact point is in a part of the silo.
+pub(super) fn forces(snapshot: &Snapshot, [low, high]: [[f64; 2]; 2]) -> Table {
+    let mut table = Table::new("forces", &FORCES);
+    for contact in snapshot.told_contacts() {
+        let at = [contact.point.x, contact.point.z];
+        let Partner::Grain(other) = contact.partner else { continue };
+        if (0..2).any(|axis| at[axis] < low[axis] || at[axis] > high[axis]) {
+            continue;
+        }
+        let radius = |id: u32| Some(snapshot.grain(id)?.radius);
+        let (Some(one), Some(two)) = (radius(contact.grain), radius(other)) else { continue };
+        // By the contact, so that a pair across the period is not drawn across the silo.
+        let from = contact.point - contact.normal * one;
+        let to = contact.point + contact.normal * two;
+        let force = (contact.shear_force - contact.normal * contact.normal_force).norm();
+        table.push(&[from.x, from.z, to.x, to.z, force].map(Some));
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_as_long_as_the_roots_of_the_deviator() {
+        // p = 3: the deviator is diag(−2, 1, 1) less what makes them distinct.
+        let stress = Matrix3::from_diagonal(&Vector3::new(-5.0, -2.1, -1.9));
+        let [smallest, middle, largest] = long(&stress).map(|axis| axis.abs());
+        assert!((smallest - Vector3::new(2.0_f64.sqrt(), 0.0, 0.0)).norm() < 1e-12);
+        assert!((middle - Vector3::new(0.0, 0.9_f64.sqrt(), 0.0)).norm() < 1e-12);
+        assert!((largest - Vector3::new(0.0, 0.0, 1.1_f64.sqrt())).norm() < 1e-12);
+    }
+}

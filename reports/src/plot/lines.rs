@@ -1,0 +1,224 @@
+//! Lines to scale: sheets beside one another, both axes of each to one scale, so that an angle on the page is the angle.
+
+use grainbench_harness::figure::{LinePlot, Lines, Sheet};
+use maud::{Markup, html};
+
+use super::scale::Scale;
+use super::{FONTS, WIDTH, text_width, wrap};
+
+/// Room at the left of a sheet, for its numbers and its label.
+const LEFT: f64 = 62.0;
+/// Room between a sheet and what follows at the right.
+const RIGHT: f64 = 14.0;
+/// Room for the title of the drawing and those of sheets.
+const TOP: f64 = 68.0;
+/// Room for numbers and label below a sheet.
+const FOOT: f64 = 54.0;
+/// Height of a line of the legend.
+const LINE: f64 = 24.0;
+const TALLEST: f64 = 620.0;
+/// Width of the widest line.
+const WIDEST: f64 = 5.0;
+/// Widths that are told apart: lines of one are one path.
+const WIDTHS: usize = 12;
+/// Blue, purple, orange, ink: apart without colour vision by their brightness, and by the widths that they are given.
+const COLOURS: [&str; 4] = ["#0072b2", "#8b2f8f", "#e08214", "#222"];
+
+/// Draws lines as a complete SVG document. What is not finite is left out and counted.
+#[must_use]
+pub fn draw(title: &str, plot: &LinePlot) -> String {
+    let count = plot.sheets.len().max(1) as f64;
+    let across: f64 = plot.sheets.iter().map(|sheet| size(sheet)[0]).sum::<f64>().max(f64::MIN_POSITIVE);
+    let up = plot.sheets.iter().map(|sheet| size(sheet)[1]).fold(f64::MIN_POSITIVE, f64::max);
+    // Sheets of one size share a scale; each is as wide as its share of the room.
+    let scale = ((WIDTH - count * (LEFT + RIGHT)) / across).min(TALLEST / up);
+    let drawn = across * scale + count * (LEFT + RIGHT);
+    let bottom = TOP + up * scale;
+    let mut left = 0.5 * (WIDTH - drawn);
+    let mut missing = 0;
+    let mut sheets = Vec::new();
+    for sheet in &plot.sheets {
+        let view = View { scale, left: left + LEFT, bottom, seen: sheet.seen };
+        sheets.push(draw_sheet(sheet, &view, &plot.axes, &mut missing));
+        left += LEFT + size(sheet)[0] * scale + RIGHT;
+    }
+    let kinds = legend(&plot.sheets);
+    let rows: Vec<(usize, Vec<String>)> =
+        kinds.into_iter().map(|(place, label)| (place, wrap(&label, 15.0, WIDTH - 110.0))).collect();
+    let (mut y, mut keys) = (bottom + FOOT + 6.0, Vec::new());
+    for (place, lines) in &rows {
+        keys.push(key(*place, lines, y));
+        y += LINE * lines.len() as f64;
+    }
+    let height = y + if missing > 0 { LINE } else { 4.0 };
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
+            aria-label=(title) font-family=(FONTS) {
+            title { (title) }
+            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
+            text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (title) }
+            @for sheet in &sheets { (sheet) }
+            @for key in &keys { (key) }
+            @if missing > 0 {
+                text x=(px(WIDTH - 10.0)) y=(px(y + 8.0)) text-anchor="end" fill="#666" font-size="13" {
+                    (match missing {
+                        1 => "(1 line without a finite place not shown)".to_owned(),
+                        more => format!("({more} lines without a finite place not shown)"),
+                    })
+                }
+            }
+        }
+    }
+    .into_string()
+}
+
+fn size(sheet: &Sheet) -> [f64; 2] {
+    let [low, high] = sheet.seen;
+    [0, 1].map(|axis| if (high[axis] - low[axis]).is_finite() { (high[axis] - low[axis]).max(0.0) } else { 0.0 })
+}
+
+/// From the plane to the units of the drawing, y up.
+struct View {
+    scale: f64,
+    left: f64,
+    bottom: f64,
+    seen: [[f64; 2]; 2],
+}
+
+impl View {
+    fn at(&self, point: [f64; 2]) -> [f64; 2] {
+        let low = self.seen[0];
+        [self.left + (point[0] - low[0]) * self.scale, self.bottom - (point[1] - low[1]) * self.scale]
+    }
+
+    /// Corner and size of a part of the plane, as a rectangle is drawn.
+    fn rectangle(&self, [low, high]: [[f64; 2]; 2]) -> [String; 4] {
+        let ([x, y], [right, foot]) = (self.at([low[0], high[1]]), self.at([high[0], low[1]]));
+        [x, y, right - x, foot - y].map(px)
+    }
+}
+
+fn draw_sheet(sheet: &Sheet, view: &View, [across, up]: &[String; 2], missing: &mut usize) -> Markup {
+    let [x, y, width, height] = view.rectangle(sheet.seen);
+    let marked = sheet.marked.map(|part| view.rectangle(part));
+    let [low, high] = sheet.seen;
+    let middle = view.at([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])]);
+    let room = |axis: usize| (((high[axis] - low[axis]) * view.scale / 70.0) as u32).max(2);
+    let ticks = |axis: usize| Scale::fit([low[axis], high[axis]].into_iter(), false, 0.0, room(axis)).ticks();
+    let foot = view.bottom;
+    html! {
+        @let lines = wrap(&sheet.title, 14.0, ((high[0] - low[0]) * view.scale).max(120.0));
+        @for (number, line) in lines.iter().rev().enumerate() {
+            text x=(px(middle[0])) y=(px(view.at(high)[1] - 9.0 - 16.0 * number as f64)) text-anchor="middle" font-size="14"
+                fill="#222" { (line) }
+        }
+        // A drawing within the drawing is cut off at its edges.
+        svg x=(x) y=(y) width=(width) height=(height) viewBox=(format!("{x} {y} {width} {height}")) {
+            g fill="none" stroke-linecap="round" {
+                @for (place, kind) in sheet.kinds.iter().enumerate() { (kind_of_lines(kind, place, view, missing)) }
+            }
+        }
+        rect x=(x) y=(y) width=(width) height=(height) fill="none" stroke="#222" {}
+        @if let Some([x, y, width, height]) = marked {
+            rect x=(x) y=(y) width=(width) height=(height) fill="none" stroke="#000" stroke-width="2.5" {}
+        }
+        g font-size="13" fill="#222" {
+            @for tick in ticks(0) {
+                @let x = px(view.at([tick.value, low[1]])[0]);
+                line x1=(x) y1=(px(foot)) x2=(x) y2=(px(foot + 5.0)) stroke="#222" {}
+                text x=(x) y=(px(foot + 19.0)) text-anchor="middle" { (tick.label.unwrap_or_default()) }
+            }
+            @for tick in ticks(1) {
+                @let y = view.at([low[0], tick.value])[1];
+                line x1=(px(view.left - 5.0)) y1=(px(y)) x2=(px(view.left)) y2=(px(y)) stroke="#222" {}
+                text x=(px(view.left - 8.0)) y=(px(y + 4.5)) text-anchor="end" { (tick.label.unwrap_or_default()) }
+            }
+            text x=(px(middle[0])) y=(px(foot + 39.0)) text-anchor="middle" font-size="14" { (across) }
+            @let x = px(view.left - 40.0);
+            text x=(x) y=(px(middle[1])) text-anchor="middle" font-size="14"
+                transform=(format!("rotate(-90 {x} {})", px(middle[1]))) { (up) }
+        }
+    }
+}
+
+fn kind_of_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -> Markup {
+    let mut paths = vec![String::new(); WIDTHS + 1];
+    for (from, to, width) in &kind.lines {
+        let is_finite = |point: &[f64; 2]| point.iter().all(|along| along.is_finite());
+        if !(is_finite(from) && is_finite(to) && width.is_finite()) {
+            *missing += 1;
+            continue;
+        }
+        let ([x, y], [to_x, to_y]) = (view.at(*from), view.at(*to));
+        let class = (width.clamp(0.0, 1.0) * WIDTHS as f64).round() as usize;
+        paths[class].push_str(&format!("M{x:.1} {y:.1}L{to_x:.1} {to_y:.1}"));
+    }
+    let colour = COLOURS[place % COLOURS.len()];
+    html! {
+        @for (class, path) in paths.iter().enumerate().filter(|(_, path)| !path.is_empty()) {
+            path d=(path) stroke=(colour) stroke-width=(px(0.3 + WIDEST * class as f64 / WIDTHS as f64)) {}
+        }
+    }
+}
+
+/// The kinds that there are, by their places.
+fn legend(sheets: &[Sheet]) -> Vec<(usize, String)> {
+    let most = sheets.iter().map(|sheet| sheet.kinds.len()).max().unwrap_or(0);
+    let label = |place: usize| {
+        let mut all = sheets.iter().filter_map(|sheet| sheet.kinds.get(place));
+        all.find(|kind| !kind.lines.is_empty()).map(|kind| (place, kind.label.clone()))
+    };
+    (0..most).filter_map(label).collect()
+}
+
+fn key(place: usize, lines: &[String], y: f64) -> Markup {
+    let widest = lines.iter().map(|line| text_width(line, 15.0)).fold(0.0, f64::max);
+    let left = (0.5 * (WIDTH - widest - 46.0)).max(40.0).min(LEFT + 40.0);
+    html! {
+        line x1=(px(left)) y1=(px(y)) x2=(px(left + 34.0)) y2=(px(y)) stroke=(COLOURS[place % COLOURS.len()])
+            stroke-width="3" stroke-linecap="round" {}
+        @for (number, line) in lines.iter().enumerate() {
+            text x=(px(left + 46.0)) y=(px(y + 5.0 + LINE * number as f64)) font-size="15" fill="#222" { (line) }
+        }
+    }
+}
+
+fn px(length: f64) -> String {
+    let text = format!("{length:.1}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet(lines: Vec<([f64; 2], [f64; 2], f64)>) -> Sheet {
+        let kinds = vec![Lines { label: "axes <of> T".to_owned(), lines }];
+        Sheet { title: "left".to_owned(), seen: [[0.0, 0.0], [10.0, 20.0]], marked: Some([[1.0; 2], [2.0; 2]]), kinds }
+    }
+
+    fn plot(sheets: Vec<Sheet>) -> LinePlot {
+        LinePlot { axes: ["x (d)".to_owned(), "z (d)".to_owned()], sheets }
+    }
+
+    #[test]
+    fn both_axes_have_one_scale_and_what_is_not_finite_is_counted() {
+        let lines = vec![([0.0, 0.0], [5.0, 5.0], 1.0), ([f64::NAN, 0.0], [1.0, 1.0], 0.5)];
+        let svg = draw("lines", &plot(vec![sheet(lines), sheet(Vec::new())]));
+        let path = svg.split("d=\"M").nth(1).and_then(|rest| rest.split('"').next()).unwrap_or_default();
+        let ends: Vec<f64> = path.split(['L', ' ']).filter_map(|number| number.parse().ok()).collect();
+        let [x, y, to_x, to_y] = ends[..] else { panic!("{path}") };
+        assert!(((to_x - x) - (y - to_y)).abs() < 0.15 && to_x - x > 100.0, "{path}");
+        assert!(svg.contains("(1 line without a finite place not shown)") && !svg.contains("NaN"));
+        assert!(svg.contains("axes &lt;of&gt; T") && svg.contains("z (d)"));
+        assert_eq!(svg.matches("stroke-width=\"2.5\"").count(), 2, "a marked part in each sheet");
+    }
+
+    #[test]
+    fn an_empty_plot_is_still_a_drawing() {
+        for sheets in [Vec::new(), vec![Sheet { seen: [[0.0; 2]; 2], ..sheet(Vec::new()) }]] {
+            let svg = draw("nothing", &plot(sheets));
+            assert!(svg.starts_with("<svg") && !svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+        }
+    }
+}
