@@ -95,6 +95,14 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     assert!(apart(&end, &start) == 0.0, "it begins where the other ended");
     let [uninterrupted, _] = ends(path, "whole");
     assert!(apart(&uninterrupted, &later) < 1e-10, "{}", apart(&uninterrupted, &later));
+    // So does one that is rounded, but for what rounding moves.
+    simulate(path, "rounding", &scene(12.0, DROPPED), &["--state", "rounded.state", "--rounded"]);
+    let sizes = ["heap.state", "rounded.state"].map(|file| std::fs::metadata(path.join(file)).unwrap().len());
+    assert!(3 * sizes[1] < 2 * sizes[0], "{sizes:?}");
+    simulate(path, "rounded", &taken("").replace("heap.state", "rounded.state"), &[]);
+    let [later, _] = ends(path, "rounded");
+    let moved = apart(&uninterrupted, &later);
+    assert!(0.0 < moved && moved < 1e-8, "{moved}");
     let [later, _] = ends(path, "without");
     assert!(apart(&uninterrupted, &later) > 1e-5, "{}", apart(&uninterrupted, &later));
     // At rest the state is the same again, but for what still moves.

@@ -2,6 +2,7 @@
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{Drained, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
+use crate::silo::collapse;
 use crate::silo::ensemble::Flow;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
@@ -55,6 +56,8 @@ fn claims() -> Vec<Claim> {
         silo.turn(prototype::TALL_TURN),
         silo.symmetry(),
         silo.beside_lammps(GONE, gone),
+        collapse::of_drains(silo.run.clone(), &collapse::TENTH[0]),
+        collapse::of_strained(silo.run.clone(), &collapse::TENTH),
     ];
     all.extend(silo.of_every());
     all.extend(silo.of_drains(&DRAINED));
@@ -62,5 +65,8 @@ fn claims() -> Vec<Claim> {
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Drained, DRAINED.bins))
+    let done = runner.run(&silo().run)?;
+    let mut all = crate::silo::figures::all(&done, Flow::Drained, DRAINED.bins);
+    all.extend(collapse::figures(&done, "tall silo, drained", &collapse::TENTH));
+    Ok(all)
 }

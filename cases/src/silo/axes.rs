@@ -1,14 +1,14 @@
 //! Figures 4 and 5 of the paper: the axes of stress and rate of the blocks of the last frame, and the single forces in a part of
 //! it.
 
-use super::ensemble::Flow;
+use super::ensemble::{self, Flow};
 use super::figures::rows;
 use super::instant::part;
 use grainbench_harness::prelude::*;
 
 /// Half the length of an axis of D (d).
 const RATE: f64 = 1.6;
-/// Half the length of the longest axes of T but for a twentieth (d): blocks are 5 d wide.
+/// Half the length of the longest axes of T but for a tenth (d): blocks are 5 d wide.
 const STRESS: f64 = 2.4;
 /// Widths of the lines, as parts of the widest.
 const WIDTHS: [f64; 3] = [0.2, 0.4, 0.2];
@@ -25,16 +25,18 @@ fn kinds(done: &Done) -> Option<Vec<Lines>> {
     let table = done.table("axes").ok()?;
     let of_stress = |x: &'static str, z: &'static str| rows(table, ["x", "z", x, z]);
     let [smallest, middle, largest] =
-        [("smallest_x", "smallest_z"), ("middle_x", "middle_z"), ("largest_x", "largest_z")].map(|(x, z)| of_stress(x, z));
+        [("smallest_x", "smallest_z"), ("middle_x", "middle_z"), ("largest_x", "largest_z")]
+            .map(|(x, z)| of_stress(x, z));
     let mut lengths: Vec<f64> = smallest.iter().chain(&largest).map(|row| row[2].hypot(row[3])).collect();
     lengths.sort_by(f64::total_cmp);
-    let longest = *lengths.get(lengths.len().checked_sub(1)? * 19 / 20)?;
+    let longest = *lengths.get(lengths.len().checked_sub(1)? * 9 / 10)?;
     let scale = if longest > 0.0 { STRESS / longest } else { 1.0 };
     let lines = |rows: &[[f64; 4]], scale: f64, width: f64| -> Vec<_> {
         let end = |&[x, z, a, b]: &[f64; 4], side: f64| [x + side * scale * a, z + side * scale * b];
         rows.iter().map(|row| (end(row, -1.0), end(row, 1.0), width)).collect()
     };
-    let rates = [rows(table, ["x", "z", "shortens_x", "shortens_z"]), rows(table, ["x", "z", "lengthens_x", "lengthens_z"])];
+    let rates =
+        [rows(table, ["x", "z", "shortens_x", "shortens_z"]), rows(table, ["x", "z", "lengthens_x", "lengthens_z"])];
     Some(vec![
         Lines {
             label: "smallest and middle axis of T, √|principal value of its deviator| long".to_owned(),
@@ -58,7 +60,9 @@ fn whole(done: &Done, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> 
     let places = rows(done.table("axes").ok()?, ["x", "z"]);
     let top = places.iter().map(|row| row[1]).fold(0.0, f64::max) + 2.5;
     let seen = [[domain.low.x, 0.0], [domain.high.x, top]];
-    let title = format!("t = {time} τ, blocks of 5 d");
+    let apart = ensemble::angles(done, flow, false, "largest").map(|angles| ensemble::mean(&angles));
+    let apart = apart.map_or_else(|_| String::new(), |mean| format!("; largest axes {mean:.1}° apart from 6 τ on"));
+    let title = format!("t = {time} τ, blocks of 5 d{apart}");
     let sheet = Sheet { title, seen, marked: Some(part(flow)), kinds: kinds.to_vec() };
     let caption = "Axes of the deviator of the stress of blocks of 5 d by 8 d by 5 d, of one moment and projected on the \
                    plane, and of the rate of deformation where the block flows (figure 4 of the paper). The paper finds \
@@ -92,5 +96,10 @@ fn detail(done: &Done, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figur
     let caption = "Left: the part that is framed above. Right: the forces of its contacts from centre to centre. They differ \
                    from one to the next by more than their mean, in chains that show no element, and yet the axes of the \
                    blocks are smooth (figure 5 of the paper).";
-    Some(Figure::lines("forces", "Axes, and the forces that they are means of", caption, LinePlot { axes: labels(), sheets }))
+    Some(Figure::lines(
+        "forces",
+        "Axes, and the forces that they are means of",
+        caption,
+        LinePlot { axes: labels(), sheets },
+    ))
 }

@@ -195,6 +195,10 @@ pub(crate) fn plateau(done: &Done) -> Result<f64, Missing> {
     Ok(mean(&enough(pairs.collect(), "strained tracers")?))
 }
 
+/// Bounds of the bins of strain.
+pub(crate) const STRAIN: [[f64; 2]; 8] =
+    [[0.02, 0.04], [0.04, 0.08], [0.08, 0.1], [0.1, 0.15], [0.15, 0.2], [0.2, 0.3], [0.3, 0.4], [0.4, 0.8]];
+
 /// Mean packing fraction of tracers in bins of strain.
 pub(crate) fn over_strain(done: &Done, bins: &[[f64; 2]]) -> Result<Vec<Option<f64>>, Missing> {
     let pairs = strained(done)?;

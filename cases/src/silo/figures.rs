@@ -1,7 +1,7 @@
 //! Figures of silos, as the paper draws them, from what was read of their runs.
 
 use super::axes;
-use super::ensemble::{Flow, INERTIA, over_inertia, over_strain, strained};
+use super::ensemble::{Flow, INERTIA, STRAIN, over_inertia, over_strain, strained};
 use super::reader::{ELEMENT, STEADY};
 use grainbench_fields::element_picture::Sheet;
 use grainbench_fields::grid::Grid;
@@ -140,10 +140,6 @@ fn along_tracers(done: &Done) -> Option<Figure> {
         ],
     ))
 }
-
-/// Bounds of the bins of strain.
-const STRAIN: [[f64; 2]; 8] =
-    [[0.02, 0.04], [0.04, 0.08], [0.08, 0.1], [0.1, 0.15], [0.15, 0.2], [0.2, 0.3], [0.3, 0.4], [0.4, 0.8]];
 
 /// φ over |E| (figure 8).
 fn over_hencky(done: &Done) -> Option<Figure> {

@@ -14,8 +14,18 @@ use nalgebra::{Matrix3, Vector3};
 /// projected on the plane of x and z and √|principal value of its deviator| long (√(mg/d²)); then, where the block flows, the
 /// axes of the smallest and the largest principal value of D, projected.
 pub(super) const AXES: [&str; 12] = [
-    "x", "z", "smallest_x", "smallest_z", "middle_x", "middle_z", "largest_x", "largest_z", "shortens_x", "shortens_z",
-    "lengthens_x", "lengthens_z",
+    "x",
+    "z",
+    "smallest_x",
+    "smallest_z",
+    "middle_x",
+    "middle_z",
+    "largest_x",
+    "largest_z",
+    "shortens_x",
+    "shortens_z",
+    "lengthens_x",
+    "lengthens_z",
 ];
 /// Columns of the table of forces: of a contact between grains, their centres and the size of the force.
 pub(super) const FORCES: [&str; 5] = ["from_x", "from_z", "to_x", "to_z", "force"];
@@ -23,10 +33,10 @@ pub(super) const FORCES: [&str; 5] = ["from_x", "from_z", "to_x", "to_z", "force
 /// The part of a silo whose single forces are shown: lower and upper corner in x and z (d).
 pub(super) const fn part(flow: Flow) -> [[f64; 2]; 2] {
     match flow {
-        // Where the funnel leaves the slit.
-        Flow::Drained => [[0.0, 2.5], [10.0, 12.5]],
-        // Where bands of shear begin at the edge of what is moved.
-        Flow::Pushed => [[-5.0, 7.5], [5.0, 17.5]],
+        // Where the funnel meets what rests beside it.
+        Flow::Drained => [[0.0, 5.0], [10.0, 15.0]],
+        // Over the edge of what is moved, where a band of shear goes up.
+        Flow::Pushed => [[-5.0, 10.0], [5.0, 20.0]],
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod axes;
 pub(crate) mod claims;
+pub(crate) mod collapse;
 pub(crate) mod ensemble;
 pub(crate) mod figures;
 mod instant;

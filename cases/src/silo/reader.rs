@@ -1,8 +1,8 @@
 //! Reads the snapshots of a silo as granular elements of 2.5 d across, as blocks of 5 d, and along tracers.
 
-use grainbench_fields::column::COLUMNS;
 use super::ensemble::Flow;
 use super::instant;
+use grainbench_fields::column::COLUMNS;
 use grainbench_fields::course::Course;
 use grainbench_fields::element::{Element, elements};
 use grainbench_fields::grid::Grid;

@@ -4,7 +4,7 @@ use grainbench_harness::figure::{LinePlot, Lines, Sheet};
 use maud::{Markup, html};
 
 use super::scale::Scale;
-use super::{FONTS, WIDTH, text_width, wrap};
+use super::{FONTS, WIDTH, wrap};
 
 /// Room at the left of a sheet, for its numbers and its label.
 const LEFT: f64 = 62.0;
@@ -44,7 +44,7 @@ pub fn draw(title: &str, plot: &LinePlot) -> String {
     }
     let kinds = legend(&plot.sheets);
     let rows: Vec<(usize, Vec<String>)> =
-        kinds.into_iter().map(|(place, label)| (place, wrap(&label, 15.0, WIDTH - 110.0))).collect();
+        kinds.into_iter().map(|(place, label)| (place, wrap(&label, 15.0, WIDTH - LEFT - 56.0))).collect();
     let (mut y, mut keys) = (bottom + FOOT + 6.0, Vec::new());
     for (place, lines) in &rows {
         keys.push(key(*place, lines, y));
@@ -172,13 +172,11 @@ fn legend(sheets: &[Sheet]) -> Vec<(usize, String)> {
 }
 
 fn key(place: usize, lines: &[String], y: f64) -> Markup {
-    let widest = lines.iter().map(|line| text_width(line, 15.0)).fold(0.0, f64::max);
-    let left = (0.5 * (WIDTH - widest - 46.0)).max(40.0).min(LEFT + 40.0);
     html! {
-        line x1=(px(left)) y1=(px(y)) x2=(px(left + 34.0)) y2=(px(y)) stroke=(COLOURS[place % COLOURS.len()])
+        line x1=(px(LEFT)) y1=(px(y)) x2=(px(LEFT + 34.0)) y2=(px(y)) stroke=(COLOURS[place % COLOURS.len()])
             stroke-width="3" stroke-linecap="round" {}
         @for (number, line) in lines.iter().enumerate() {
-            text x=(px(left + 46.0)) y=(px(y + 5.0 + LINE * number as f64)) font-size="15" fill="#222" { (line) }
+            text x=(px(LEFT + 46.0)) y=(px(y + 5.0 + LINE * number as f64)) font-size="15" fill="#222" { (line) }
         }
     }
 }

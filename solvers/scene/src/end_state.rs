@@ -196,7 +196,8 @@ mod tests {
     fn a_state_is_rounded_once_and_by_as_much_as_is_said() {
         let mut exact = state();
         // Two sizes, walls by name, contacts in both senses.
-        let third = StateGrain { size: [0.3, 0.2, 0.05], position: Vector3::new(-70.1, 1.0 / 3.0, 1e-3), ..exact.grains[0] };
+        let third =
+            StateGrain { size: [0.3, 0.2, 0.05], position: Vector3::new(-70.1, 1.0 / 3.0, 1e-3), ..exact.grains[0] };
         exact.grains.push(third);
         exact.grains[1].velocity = Vector3::new(1.0 / 3.0, -1e-30, 7.0);
         exact.springs.pairs = vec![(0, 2, vec![0.1]), (1, 0, vec![-1e-5]), (1, 2, vec![0.0])];
@@ -216,7 +217,9 @@ mod tests {
         assert!((rounded.grains[2].position.y - 1.0 / 3.0).abs() > 1e-3 * step, "a third is no multiple");
         let of = |springs: &Springs| {
             let pairs = springs.pairs.iter().map(|(a, b, memory)| format!("{a} {b} {}", memory[0] as f32));
-            pairs.chain(springs.walls.iter().map(|(a, b, memory)| format!("{a} {b} {}", memory[0] as f32))).collect::<Vec<_>>()
+            pairs
+                .chain(springs.walls.iter().map(|(a, b, memory)| format!("{a} {b} {}", memory[0] as f32)))
+                .collect::<Vec<_>>()
         };
         assert_eq!(of(&rounded.springs), of(&exact.springs));
         // What cannot be rounded is refused, and not written down wrongly.

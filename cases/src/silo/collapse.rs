@@ -1,0 +1,119 @@
+//! Whether the elements of several flows lie on one curve, as the paper has it: what is kept of other silos, beside a run.
+
+use super::ensemble::{self, INERTIA, STRAIN};
+use crate::kept;
+use crate::registry::by_name;
+use grainbench_harness::prelude::*;
+use std::sync::Arc;
+
+/// A flow of this size: its case, the variant that is read as elements, and what it is called in a figure.
+pub(crate) struct Other {
+    pub(crate) case: &'static str,
+    pub(crate) variant: &'static str,
+    pub(crate) label: &'static str,
+    /// In how many bins of strain it has tracers, from |E| = .1 on.
+    pub(crate) strained: usize,
+}
+
+/// The other two flows at a tenth of the size of the paper's.
+pub(crate) const TENTH: [Other; 2] = [
+    Other { case: "silo-wide", variant: "drained", label: "wide silo, drained", strained: 5 },
+    Other { case: "silo-push", variant: "pushed", label: "wide silo, pushed", strained: 3 },
+];
+
+impl Other {
+    /// What is kept of its run.
+    fn done(&self) -> Result<Done, Missing> {
+        let lacking = |reason: String| Missing(format!("kept run of {}/{}: {reason}", self.case, self.variant));
+        let case = by_name(self.case).ok_or_else(|| lacking("there is no such case".to_owned()))?;
+        let run = (case.claims)().into_iter().flat_map(|claim| claim.runs);
+        let run = run.into_iter().find(|run| run.kept && run.variant == self.variant);
+        let run = run.ok_or_else(|| lacking("none is read".to_owned()))?;
+        let scene = case.variant(run.variant).map_err(|error| lacking(error.to_string()))?;
+        let left = kept::load(case, &run, &scene, None).ok_or_else(|| lacking("nothing is kept".to_owned()))?;
+        let left = left.map_err(|error| lacking(error.to_string()))?;
+        let (scene, record, tables) = (Arc::new(scene), Arc::new(left.record), Arc::new(left.tables));
+        Ok(Done { scene, record, tables, kept: Some(left.made) })
+    }
+}
+
+/// A silo that drains lies on the curve of φ over |I₀| of another.
+pub(crate) fn of_drains(run: Run, other: &'static Other) -> Claim {
+    claim("packing fraction over |I₀| beside that of the wide silo, worst bin", "1")
+        .of(run)
+        .agrees(Source::Ourselves("what is kept of the wide silo's run of the same size"), |done| {
+            let theirs = ensemble::over_inertia(&other.done()?)?;
+            let theirs = theirs.into_iter().enumerate().filter_map(|(bin, packing)| Some((bin, packing?)));
+            let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, theirs)?;
+            let [found, expected] = ensemble::worst(&pairs);
+            Ok(Measured::new(found, expected, 1.0))
+        })
+        .within(required(0.008, "asked for before: two drains of the prototype are .005 to .008 apart; in units of φ"))
+        .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one))
+}
+
+/// Bins of strain below |E| = .1, in which flows differ by the deposits that they begin with.
+const FEW_STRAINS: usize = 3;
+
+/// Three flows lie on one curve of φ over |E|.
+pub(crate) fn of_strained(run: Run, others: &'static [Other]) -> Claim {
+    claim("packing fraction over |E| from .1 on beside that of the other flows, worst bin", "1")
+        .of(run)
+        .agrees(Source::Ourselves("what is kept of the other silos' runs of the same size"), |done| {
+            let ours = ensemble::over_strain(&done[0], &STRAIN)?;
+            let mut pairs = Vec::new();
+            for other in others {
+                let theirs = ensemble::over_strain(&other.done()?, &STRAIN)?;
+                for bin in FEW_STRAINS..FEW_STRAINS + other.strained {
+                    let lacking =
+                        || Missing(format!("tracers with |E| of {:?}, or {} has none", STRAIN[bin], other.label));
+                    pairs.push([ours[bin].ok_or_else(lacking)?, theirs[bin].ok_or_else(lacking)?]);
+                }
+            }
+            let [found, expected] = ensemble::worst(&pairs);
+            Ok(Measured::new(found, expected, 1.0))
+        })
+        .within(required(0.013, "asked for before: runs of the prototype agree within .013 there; in units of φ"))
+        .refuses(Control::misread("radii a hundredth too large", ensemble::larger_radii))
+}
+
+/// The curves of three flows, over |I₀| and over |E| (figures 6 and 8 of the paper show all three simulations).
+pub(crate) fn figures(done: &Done, label: &str, others: &[Other]) -> Vec<Figure> {
+    let mut flows = vec![(label, done.clone())];
+    flows.extend(others.iter().filter_map(|other| Some((other.label, other.done().ok()?))));
+    let over_rate = |done: &Done| -> Option<Vec<(f64, f64)>> {
+        let all = ensemble::over_inertia(done).ok()?;
+        let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
+        Some(all.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect())
+    };
+    let over_strain = |done: &Done| -> Option<Vec<(f64, f64)>> {
+        let all = ensemble::over_strain(done, &STRAIN).ok()?;
+        let middle = |bin: &[f64; 2]| 0.5 * (bin[0] + bin[1]);
+        Some(STRAIN.iter().zip(all).filter_map(|(bin, packing)| Some((middle(bin), packing?))).collect())
+    };
+    let curves = |of: &dyn Fn(&Done) -> Option<Vec<(f64, f64)>>| -> Vec<Curve> {
+        let curve = |(label, done): &(&str, Done)| Some(Curve::new(*label, Stroke::MarkedLine, of(done)?));
+        flows.iter().filter_map(curve).collect()
+    };
+    let packing = || Axis::linear("packing fraction φ (1)");
+    vec![
+        Figure::graph(
+            "inertia-of-flows",
+            "Packing fraction over the inertial number, three flows",
+            "Means of bins of three flows. The paper sees one curve, a property of the material: the two silos that drain \
+             lie on one. The pushed bed is looser at the same |I₀|, in LAMMPS as in ours: it is still on its way, and how \
+             far an element has been strained counts beside how fast.",
+            [Axis::log("inertial number |I₀| (1)"), packing()],
+            curves(&over_rate),
+        ),
+        Figure::graph(
+            "strain-of-flows",
+            "Packing fraction over strain, three flows",
+            "Means of bins of labelled boxes of 5 d. The paper sees a sharp collapse of all three simulations: \
+             here they are within .006 of one another from |E| = .1 on. Below, each begins with the packing fraction of its \
+             deposit.",
+            [Axis::linear("Hencky strain |E| (1)"), packing()],
+            curves(&over_strain),
+        ),
+    ]
+}
