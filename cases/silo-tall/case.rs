@@ -2,8 +2,8 @@
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{Drained, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
-use crate::silo::collapse;
 use crate::silo::ensemble::Flow;
+use crate::silo::{collapse, flows};
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
@@ -67,6 +67,6 @@ fn claims() -> Vec<Claim> {
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done = runner.run(&silo().run)?;
     let mut all = crate::silo::figures::all(&done, Flow::Drained, DRAINED.bins);
-    all.extend(collapse::figures(&done, "tall silo, drained", &collapse::TENTH));
+    all.extend(flows::figures(&done, "tall silo, drained", &collapse::TENTH));
     Ok(all)
 }

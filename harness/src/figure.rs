@@ -99,7 +99,7 @@ pub struct ForcePlot {
     pub bars: Vec<ForceBar>,
 }
 
-/// Lines of one kind in a drawing to scale.
+/// Lines of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lines {
     /// What they are, in the legend.
@@ -121,11 +121,13 @@ pub struct Sheet {
     pub kinds: Vec<Lines>,
 }
 
-/// Sheets beside one another, both axes of each to one scale, so that angles are what they are.
+/// Sheets with lines beside one another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LinePlot {
     /// Labels of the horizontal and of the vertical axis.
     pub axes: [String; 2],
+    /// Whether both axes have one scale, so that angles are what they are.
+    pub to_scale: bool,
     /// The sheets.
     pub sheets: Vec<Sheet>,
 }
@@ -188,7 +190,7 @@ pub enum Drawing {
     Forces(ForcePlot),
     /// A field, as pictures or as a film.
     Field(Field),
-    /// Lines to scale.
+    /// Lines in the plane.
     Lines(LinePlot),
 }
 
@@ -227,7 +229,7 @@ impl Figure {
         }
     }
 
-    /// Lines to scale.
+    /// Lines in the plane.
     #[must_use]
     pub fn lines(name: &str, title: &str, caption: &str, plot: LinePlot) -> Self {
         Self {

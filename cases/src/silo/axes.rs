@@ -69,7 +69,12 @@ fn whole(done: &Done, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> 
                    both within about 12° of one another wherever there is appreciable deformation, smooth stresses, and \
                    none of the shocks of limit-state plasticity. The black frame is the part of the next figure; where \
                    the paper's lies its text does not say.";
-    Some(Figure::lines("axes", "Axes of stress and of rate", caption, LinePlot { axes: labels(), sheets: vec![sheet] }))
+    Some(Figure::lines(
+        "axes",
+        "Axes of stress and of rate",
+        caption,
+        LinePlot { axes: labels(), to_scale: true, sheets: vec![sheet] },
+    ))
 }
 
 /// The blocks in a part, and the single forces there (figure 5).
@@ -100,6 +105,6 @@ fn detail(done: &Done, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figur
         "forces",
         "Axes, and the forces that they are means of",
         caption,
-        LinePlot { axes: labels(), sheets },
+        LinePlot { axes: labels(), to_scale: true, sheets },
     ))
 }

@@ -1,6 +1,6 @@
 //! Whether the elements of several flows lie on one curve, as the paper has it: what is kept of other silos, beside a run.
 
-use super::ensemble::{self, INERTIA, STRAIN};
+use super::ensemble::{self, STRAIN};
 use crate::kept;
 use crate::registry::by_name;
 use grainbench_harness::prelude::*;
@@ -23,7 +23,7 @@ pub(crate) const TENTH: [Other; 2] = [
 
 impl Other {
     /// What is kept of its run.
-    fn done(&self) -> Result<Done, Missing> {
+    pub(super) fn done(&self) -> Result<Done, Missing> {
         let lacking = |reason: String| Missing(format!("kept run of {}/{}: {reason}", self.case, self.variant));
         let case = by_name(self.case).ok_or_else(|| lacking("there is no such case".to_owned()))?;
         let run = (case.claims)().into_iter().flat_map(|claim| claim.runs);
@@ -41,7 +41,7 @@ impl Other {
 pub(crate) fn of_drains(run: Run, other: &'static Other) -> Claim {
     claim("packing fraction over |I₀| beside that of the wide silo, worst bin", "1")
         .of(run)
-        .agrees(Source::Ourselves("what is kept of the wide silo's run of the same size"), |done| {
+        .agrees(Source::Ourselves("what is kept of the wide silo's run of the same size"), move |done| {
             let theirs = ensemble::over_inertia(&other.done()?)?;
             let theirs = theirs.into_iter().enumerate().filter_map(|(bin, packing)| Some((bin, packing?)));
             let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, theirs)?;
@@ -59,7 +59,7 @@ const FEW_STRAINS: usize = 3;
 pub(crate) fn of_strained(run: Run, others: &'static [Other]) -> Claim {
     claim("packing fraction over |E| from .1 on beside that of the other flows, worst bin", "1")
         .of(run)
-        .agrees(Source::Ourselves("what is kept of the other silos' runs of the same size"), |done| {
+        .agrees(Source::Ourselves("what is kept of the other silos' runs of the same size"), move |done| {
             let ours = ensemble::over_strain(&done[0], &STRAIN)?;
             let mut pairs = Vec::new();
             for other in others {
@@ -75,45 +75,4 @@ pub(crate) fn of_strained(run: Run, others: &'static [Other]) -> Claim {
         })
         .within(required(0.013, "asked for before: runs of the prototype agree within .013 there; in units of φ"))
         .refuses(Control::misread("radii a hundredth too large", ensemble::larger_radii))
-}
-
-/// The curves of three flows, over |I₀| and over |E| (figures 6 and 8 of the paper show all three simulations).
-pub(crate) fn figures(done: &Done, label: &str, others: &[Other]) -> Vec<Figure> {
-    let mut flows = vec![(label, done.clone())];
-    flows.extend(others.iter().filter_map(|other| Some((other.label, other.done().ok()?))));
-    let over_rate = |done: &Done| -> Option<Vec<(f64, f64)>> {
-        let all = ensemble::over_inertia(done).ok()?;
-        let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
-        Some(all.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect())
-    };
-    let over_strain = |done: &Done| -> Option<Vec<(f64, f64)>> {
-        let all = ensemble::over_strain(done, &STRAIN).ok()?;
-        let middle = |bin: &[f64; 2]| 0.5 * (bin[0] + bin[1]);
-        Some(STRAIN.iter().zip(all).filter_map(|(bin, packing)| Some((middle(bin), packing?))).collect())
-    };
-    let curves = |of: &dyn Fn(&Done) -> Option<Vec<(f64, f64)>>| -> Vec<Curve> {
-        let curve = |(label, done): &(&str, Done)| Some(Curve::new(*label, Stroke::MarkedLine, of(done)?));
-        flows.iter().filter_map(curve).collect()
-    };
-    let packing = || Axis::linear("packing fraction φ (1)");
-    vec![
-        Figure::graph(
-            "inertia-of-flows",
-            "Packing fraction over the inertial number, three flows",
-            "Means of bins of three flows. The paper sees one curve, a property of the material: the two silos that drain \
-             lie on one. The pushed bed is looser at the same |I₀|, in LAMMPS as in ours: it is still on its way, and how \
-             far an element has been strained counts beside how fast.",
-            [Axis::log("inertial number |I₀| (1)"), packing()],
-            curves(&over_rate),
-        ),
-        Figure::graph(
-            "strain-of-flows",
-            "Packing fraction over strain, three flows",
-            "Means of bins of labelled boxes of 5 d. The paper sees a sharp collapse of all three simulations: \
-             here they are within .006 of one another from |E| = .1 on. Below, each begins with the packing fraction of its \
-             deposit.",
-            [Axis::linear("Hencky strain |E| (1)"), packing()],
-            curves(&over_strain),
-        ),
-    ]
 }

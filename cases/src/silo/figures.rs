@@ -35,9 +35,9 @@ pub(super) fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64;
     (0..table.rows()).map(row).filter(|row: &[f64; N]| row.iter().all(|number| number.is_finite())).collect()
 }
 
-/// Evenly chosen points of many.
-fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    let every = points.len().div_ceil(CLOUD).max(1);
+/// So many evenly chosen points of many.
+pub(super) fn thinned(points: Vec<(f64, f64)>, most: usize) -> Vec<(f64, f64)> {
+    let every = points.len().div_ceil(most).max(1);
     points.into_iter().step_by(every).collect()
 }
 
@@ -81,12 +81,17 @@ fn film(done: &Done) -> Option<Figure> {
     Some(Figure::field("elements", "Granular elements of the flow", caption, field))
 }
 
+/// |I₀| and φ of the elements of the bulk in the steady flow, but for those that are held.
+pub(super) fn flowing(done: &Done) -> Vec<(f64, f64)> {
+    let Ok(table) = done.table("elements") else { return Vec::new() };
+    let all = rows(table, ["time", "side", "surface", "inertial_number", "packing_fraction"]).into_iter();
+    let flows = |row: &[f64; 5]| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0 && row[3] >= STILL;
+    all.filter(flows).map(|row| (row[3], row[4])).collect()
+}
+
 /// φ over |I₀| (figure 6).
 fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
-    let table = done.table("elements").ok()?;
-    let cloud = rows(table, ["time", "side", "surface", "inertial_number", "packing_fraction"]).into_iter();
-    let flows = |row: &[f64; 5]| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0 && row[3] >= STILL;
-    let cloud = cloud.filter(flows).map(|row| (row[3], row[4]));
+    let cloud = flowing(done);
     let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
     let ours = over_inertia(done).ok()?;
     let ours = ours.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect();
@@ -102,7 +107,7 @@ fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
         [Axis::log("inertial number |I₀| (1)"), Axis::linear("packing fraction φ (1)")],
         vec![
             Curve::new("mean of bins", Stroke::MarkedLine, ours),
-            Curve::new("elements", Stroke::Beside, thinned(cloud.collect())),
+            Curve::new("elements", Stroke::Beside, thinned(cloud, CLOUD)),
             Curve::new("prototype, mean of bins", Stroke::Markers, theirs),
             Curve::new("fit of the paper", Stroke::Dashed, line),
         ],
@@ -135,7 +140,7 @@ fn along_tracers(done: &Done) -> Option<Figure> {
         [Axis::linear("packing fraction φ (1)"), Axis::linear("sin φ of friction (1)")],
         vec![
             Curve::new("at the start", Stroke::Markers, starts),
-            Curve::new("on their way", Stroke::Beside, thinned(cloud)),
+            Curve::new("on their way", Stroke::Beside, thinned(cloud, CLOUD)),
             Curve::new("at the end", Stroke::Markers, last),
         ],
     ))
@@ -156,7 +161,7 @@ fn over_hencky(done: &Done) -> Option<Figure> {
         [Axis::linear("Hencky strain |E| (1)"), Axis::linear("packing fraction φ (1)")],
         vec![
             Curve::new("mean of bins", Stroke::MarkedLine, means),
-            Curve::new("tracers", Stroke::Beside, thinned(cloud)),
+            Curve::new("tracers", Stroke::Beside, thinned(cloud, CLOUD)),
         ],
     ))
 }

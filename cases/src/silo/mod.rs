@@ -8,6 +8,7 @@ pub(crate) mod claims;
 pub(crate) mod collapse;
 pub(crate) mod ensemble;
 pub(crate) mod figures;
+pub(crate) mod flows;
 mod instant;
 mod reader;
 

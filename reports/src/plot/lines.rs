@@ -1,4 +1,5 @@
-//! Lines to scale: sheets beside one another, both axes of each to one scale, so that an angle on the page is the angle.
+//! Lines in the plane, on sheets beside one another: with one scale for both axes, so that an angle on the page is the angle, or
+//! with as much room as there is.
 
 use grainbench_harness::figure::{LinePlot, Lines, Sheet};
 use maud::{Markup, html};
@@ -17,6 +18,8 @@ const FOOT: f64 = 54.0;
 /// Height of a line of the legend.
 const LINE: f64 = 24.0;
 const TALLEST: f64 = 620.0;
+/// Height of sheets whose axes have scales of their own.
+const FREE: f64 = 420.0;
 /// Width of the widest line.
 const WIDEST: f64 = 5.0;
 /// Widths that are told apart: lines of one are one path.
@@ -30,17 +33,19 @@ pub fn draw(title: &str, plot: &LinePlot) -> String {
     let count = plot.sheets.len().max(1) as f64;
     let across: f64 = plot.sheets.iter().map(|sheet| size(sheet)[0]).sum::<f64>().max(f64::MIN_POSITIVE);
     let up = plot.sheets.iter().map(|sheet| size(sheet)[1]).fold(f64::MIN_POSITIVE, f64::max);
-    // Sheets of one size share a scale; each is as wide as its share of the room.
-    let scale = ((WIDTH - count * (LEFT + RIGHT)) / across).min(TALLEST / up);
-    let drawn = across * scale + count * (LEFT + RIGHT);
-    let bottom = TOP + up * scale;
+    // Sheets share a scale; each is as wide as its share of the room.
+    let widest = (WIDTH - count * (LEFT + RIGHT)) / across;
+    let one = widest.min(TALLEST / up);
+    let scale = if plot.to_scale { [one, one] } else { [widest, FREE / up] };
+    let drawn = across * scale[0] + count * (LEFT + RIGHT);
+    let bottom = TOP + up * scale[1];
     let mut left = 0.5 * (WIDTH - drawn);
     let mut missing = 0;
     let mut sheets = Vec::new();
     for sheet in &plot.sheets {
         let view = View { scale, left: left + LEFT, bottom, seen: sheet.seen };
         sheets.push(draw_sheet(sheet, &view, &plot.axes, &mut missing));
-        left += LEFT + size(sheet)[0] * scale + RIGHT;
+        left += LEFT + size(sheet)[0] * scale[0] + RIGHT;
     }
     let kinds = legend(&plot.sheets);
     let rows: Vec<(usize, Vec<String>)> =
@@ -79,7 +84,7 @@ fn size(sheet: &Sheet) -> [f64; 2] {
 
 /// From the plane to the units of the drawing, y up.
 struct View {
-    scale: f64,
+    scale: [f64; 2],
     left: f64,
     bottom: f64,
     seen: [[f64; 2]; 2],
@@ -88,7 +93,7 @@ struct View {
 impl View {
     fn at(&self, point: [f64; 2]) -> [f64; 2] {
         let low = self.seen[0];
-        [self.left + (point[0] - low[0]) * self.scale, self.bottom - (point[1] - low[1]) * self.scale]
+        [self.left + (point[0] - low[0]) * self.scale[0], self.bottom - (point[1] - low[1]) * self.scale[1]]
     }
 
     /// Corner and size of a part of the plane, as a rectangle is drawn.
@@ -103,11 +108,11 @@ fn draw_sheet(sheet: &Sheet, view: &View, [across, up]: &[String; 2], missing: &
     let marked = sheet.marked.map(|part| view.rectangle(part));
     let [low, high] = sheet.seen;
     let middle = view.at([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])]);
-    let room = |axis: usize| (((high[axis] - low[axis]) * view.scale / 70.0) as u32).max(2);
+    let room = |axis: usize| (((high[axis] - low[axis]) * view.scale[axis] / 70.0) as u32).max(2);
     let ticks = |axis: usize| Scale::fit([low[axis], high[axis]].into_iter(), false, 0.0, room(axis)).ticks();
     let foot = view.bottom;
     html! {
-        @let lines = wrap(&sheet.title, 14.0, ((high[0] - low[0]) * view.scale).max(120.0));
+        @let lines = wrap(&sheet.title, 14.0, ((high[0] - low[0]) * view.scale[0]).max(120.0));
         @for (number, line) in lines.iter().rev().enumerate() {
             text x=(px(middle[0])) y=(px(view.at(high)[1] - 9.0 - 16.0 * number as f64)) text-anchor="middle" font-size="14"
                 fill="#222" { (line) }
@@ -196,7 +201,7 @@ mod tests {
     }
 
     fn plot(sheets: Vec<Sheet>) -> LinePlot {
-        LinePlot { axes: ["x (d)".to_owned(), "z (d)".to_owned()], sheets }
+        LinePlot { axes: ["x (d)".to_owned(), "z (d)".to_owned()], to_scale: true, sheets }
     }
 
     #[test]
@@ -210,6 +215,8 @@ mod tests {
         assert!(svg.contains("(1 line without a finite place not shown)") && !svg.contains("NaN"));
         assert!(svg.contains("axes &lt;of&gt; T") && svg.contains("z (d)"));
         assert_eq!(svg.matches("stroke-width=\"2.5\"").count(), 2, "a marked part in each sheet");
+        let free = draw("lines", &LinePlot { to_scale: false, ..plot(vec![sheet(Vec::new())]) });
+        assert!(free.contains("height=\"420\""), "{free}");
     }
 
     #[test]

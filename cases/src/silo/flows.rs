@@ -1,0 +1,124 @@
+//! Three flows in one figure: figures 6, 7 and 8 of the paper, each of which shows all of its simulations.
+
+use super::collapse::Other;
+use super::ensemble::{self, INERTIA, STRAIN};
+use super::figures::{flowing, rows, thinned};
+use super::reader::ELEMENT;
+use grainbench_harness::prelude::*;
+
+/// Largest inertial number of figure 6: beyond it are the elements over the slit.
+const FASTEST: f64 = 0.15;
+/// Frames that a tracer's course is averaged over: stresses of an instant are noisy.
+const SMOOTH: usize = 5;
+/// What is seen of packing fractions, of sin φ and of strain.
+const SEEN: [[f64; 2]; 3] = [[0.5, 0.65], [0.0, 0.8], [0.0, 0.9]];
+
+/// A flow with what it is called.
+type Flows = [(&'static str, Done)];
+
+/// The figures of a run and of what is kept of other flows.
+pub(crate) fn figures(done: &Done, label: &'static str, others: &[Other]) -> Vec<Figure> {
+    let mut flows = vec![(label, done.clone())];
+    flows.extend(others.iter().filter_map(|other| Some((other.label, other.done().ok()?))));
+    vec![over_rate(&flows), along_tracers(&flows), over_strain(&flows)]
+}
+
+/// φ over |I₀|, on even axes (figure 6).
+fn over_rate(flows: &Flows) -> Figure {
+    let mut curves = Vec::new();
+    for (label, done) in flows {
+        let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
+        let means = ensemble::over_inertia(done).unwrap_or_default().into_iter().enumerate();
+        let means = means.filter_map(|(bin, packing)| Some((middle(bin), packing?)));
+        let means = means.filter(|(rate, _)| *rate <= FASTEST).collect();
+        curves.push(Curve::new(*label, Stroke::MarkedLine, means));
+        let cloud = flowing(done).into_iter().filter(|(rate, _)| *rate <= FASTEST).collect();
+        curves.push(Curve::new(format!("{label}: elements"), Stroke::Beside, thinned(cloud, 250)));
+    }
+    let line = [0.0, 0.012].map(|rate: f64| (rate, 0.635 - rate / 0.123)).to_vec();
+    curves.push(Curve::new("|I₀| = .123 (.635 − φ), the paper's fit", Stroke::Dashed, line));
+    let caption = "Small points are elements at one moment of the steady flow, large ones means of bins (figure 6 of the \
+                   paper, which sees one curve and fits the dashed line). The silos that drain lie on one curve, which is \
+                   no line. The pushed bed is looser at the same |I₀|, in LAMMPS as in ours: it is still on its way to \
+                   where it shears steadily.";
+    let axes = [Axis::linear("inertial number |I₀| (1)"), Axis::linear("packing fraction φ (1)")];
+    Figure::graph("inertia-of-flows", "Packing fraction over the inertial number, three flows", caption, axes, curves)
+}
+
+/// Courses of the tracers of a flow in two of their quantities, each averaged over some frames.
+fn courses(done: &Done, names: [&str; 2], kind: usize) -> Vec<([f64; 2], [f64; 2], f64)> {
+    let Ok(table) = done.table("tracers") else { return Vec::new() };
+    let all = rows(table, ["tracer", "z", names[0], names[1]]);
+    let mut tracers: Vec<f64> = all.iter().map(|row| row[0]).collect();
+    tracers.sort_by(f64::total_cmp);
+    tracers.dedup();
+    let mut lines = Vec::new();
+    for tracer in tracers {
+        let of = |row: &&[f64; 4]| row[0] == tracer && row[1] > ELEMENT;
+        let course: Vec<[f64; 2]> = all.iter().filter(of).map(|row| [row[2], row[3]]).collect();
+        let mean =
+            |some: &[[f64; 2]]| [0, 1].map(|axis| some.iter().map(|at| at[axis]).sum::<f64>() / some.len() as f64);
+        let smooth: Vec<[f64; 2]> = course.chunks(SMOOTH).map(mean).collect();
+        lines.extend(smooth.windows(2).map(|pair| (pair[0], pair[1], WIDTHS[kind % WIDTHS.len()])));
+    }
+    lines
+}
+
+/// Widths of the lines of the flows, as parts of the widest.
+const WIDTHS: [f64; 3] = [0.3, 0.15, 0.3];
+
+/// Courses of the tracers of all flows.
+fn traces(flows: &Flows, names: [&str; 2], axes: [&str; 2], seen: [[f64; 2]; 2], means: Vec<Lines>) -> LinePlot {
+    let kind = |(kind, (label, done)): (usize, &(&str, Done))| Lines {
+        label: (*label).to_owned(),
+        lines: courses(done, names, kind),
+    };
+    let kinds = flows.iter().enumerate().map(kind).chain(means).collect();
+    let sheet = Sheet { title: format!("tracers, means over {SMOOTH} frames"), seen, marked: None, kinds };
+    LinePlot { axes: axes.map(str::to_owned), to_scale: false, sheets: vec![sheet] }
+}
+
+/// sin φ over φ (figure 7).
+fn along_tracers(flows: &Flows) -> Figure {
+    let [packing, sine, _] = SEEN;
+    let names = ["packing_fraction", "sine_of_friction"];
+    let axes = ["packing fraction φ (1)", "sin φ of friction (1)"];
+    let plot = traces(flows, names, axes, [[packing[0], sine[0]], [packing[1], sine[1]]], Vec::new());
+    let medians: Vec<String> = flows
+        .iter()
+        .filter_map(|(label, done)| Some(format!("{:.2} ({label})", ensemble::onset(done).ok()?)))
+        .collect();
+    let caption = format!(
+        "Each line is the course of an element (figure 7 of the paper). They begin at the right; those that fail go up to \
+         their largest sin φ while they are dense, and then to the left. The paper sees about .6 before any dilation; here \
+         the median of the largest sin φ of an instant before φ has dropped by .02 is {}.",
+        medians.join(", ")
+    );
+    Figure::lines("tracers-of-flows", "sin φ over the packing fraction along tracers, three flows", &caption, plot)
+}
+
+/// φ over |E| (figure 8).
+fn over_strain(flows: &Flows) -> Figure {
+    let [packing, _, strain] = SEEN;
+    let plateau =
+        flows.iter().filter_map(|(label, done)| Some(format!("{:.3} ({label})", ensemble::plateau(done).ok()?)));
+    let plateau: Vec<String> = plateau.collect();
+    // The mean of the first flow leads the eye.
+    let means = flows.first().and_then(|(label, done)| Some((label, ensemble::over_strain(done, &STRAIN).ok()?)));
+    let means = means.map(|(label, all)| {
+        let middle = |bin: &[f64; 2]| 0.5 * (bin[0] + bin[1]);
+        let points: Vec<[f64; 2]> =
+            STRAIN.iter().zip(all).filter_map(|(bin, packing)| Some([middle(bin), packing?])).collect();
+        let lines = points.windows(2).map(|pair| (pair[0], pair[1], 0.7)).collect();
+        Lines { label: format!("{label}: means of bins"), lines }
+    });
+    let axes = ["Hencky strain |E| (1)", "packing fraction φ (1)"];
+    let seen = [[strain[0], packing[0]], [strain[1], packing[1]]];
+    let plot = traces(flows, ["strain", "packing_fraction"], axes, seen, means.into_iter().collect());
+    let caption = format!(
+        "Each line is the course of an element (figure 8 of the paper, which sees a sharp collapse of its simulations). They \
+         begin with the packing fraction of their deposits and come to one plateau, beyond |E| = .4 of {}.",
+        plateau.join(", ")
+    );
+    Figure::lines("strain-of-flows", "Packing fraction over strain, three flows", &caption, plot)
+}
