@@ -180,13 +180,16 @@ fn in_bin(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> Option<f64> {
 /// Strain |E| beyond which the packing fraction has come to its plateau.
 const PLATEAU: f64 = 0.4;
 
-/// Height above which tracers are looked at (d): below it they leave.
-const LEAVING: f64 = 2.5;
+/// Height above which tracers are looked at (d): below it they leave, or boxes of 5 d have grains that are held.
+pub(crate) fn lowest(done: &Done) -> f64 {
+    if done.scene.driven.is_empty() { 2.5 } else { 10.0 }
+}
 
 /// Strain |E| and packing fraction of tracers.
 pub(crate) fn strained(done: &Done) -> Result<Vec<[f64; 2]>, Missing> {
     let rows = Rows::of(done.table("tracers")?, ["z", "strain", "packing_fraction"])?;
-    Ok(rows.whole().filter(|row| row[0] > LEAVING).map(|[_, strain, packing]| [strain, packing]).collect())
+    let lowest = lowest(done);
+    Ok(rows.whole().filter(|row| row[0] > lowest).map(|[_, strain, packing]| [strain, packing]).collect())
 }
 
 /// Mean packing fraction of tracers strained beyond [`PLATEAU`].

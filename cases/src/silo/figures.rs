@@ -118,6 +118,7 @@ fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
 fn along_tracers(done: &Done) -> Option<Figure> {
     let table = done.table("tracers").ok()?;
     let all = rows(table, ["tracer", "z", "packing_fraction", "sine_of_friction"]);
+    let lowest = super::ensemble::lowest(done);
     let mut starts: Vec<(f64, f64)> = Vec::new();
     let (mut cloud, mut last) = (Vec::new(), Vec::new());
     let mut tracers: Vec<f64> = all.iter().map(|row| row[0]).collect();
@@ -125,7 +126,7 @@ fn along_tracers(done: &Done) -> Option<Figure> {
     tracers.dedup();
     for tracer in tracers {
         let course: Vec<(f64, f64)> =
-            all.iter().filter(|row| row[0] == tracer && row[1] > ELEMENT).map(|row| (row[2], row[3])).collect();
+            all.iter().filter(|row| row[0] == tracer && row[1] > lowest).map(|row| (row[2], row[3])).collect();
         starts.extend(course.first());
         last.extend(course.last());
         cloud.extend(course);

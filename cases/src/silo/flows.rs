@@ -3,7 +3,6 @@
 use super::collapse::Other;
 use super::ensemble::{self, INERTIA, STRAIN};
 use super::figures::{flowing, rows, thinned};
-use super::reader::ELEMENT;
 use grainbench_harness::prelude::*;
 
 /// Largest inertial number of figure 6: beyond it are the elements over the slit.
@@ -46,34 +45,31 @@ fn over_rate(flows: &Flows) -> Figure {
 }
 
 /// Courses of the tracers of a flow in two of their quantities, each averaged over some frames.
-fn courses(done: &Done, names: [&str; 2], kind: usize) -> Vec<([f64; 2], [f64; 2], f64)> {
+fn courses(done: &Done, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64)> {
     let Ok(table) = done.table("tracers") else { return Vec::new() };
     let all = rows(table, ["tracer", "z", names[0], names[1]]);
     let mut tracers: Vec<f64> = all.iter().map(|row| row[0]).collect();
     tracers.sort_by(f64::total_cmp);
     tracers.dedup();
-    let mut lines = Vec::new();
+    let (mut lines, lowest) = (Vec::new(), ensemble::lowest(done));
     for tracer in tracers {
-        let of = |row: &&[f64; 4]| row[0] == tracer && row[1] > ELEMENT;
+        let of = |row: &&[f64; 4]| row[0] == tracer && row[1] > lowest;
         let course: Vec<[f64; 2]> = all.iter().filter(of).map(|row| [row[2], row[3]]).collect();
         let mean =
             |some: &[[f64; 2]]| [0, 1].map(|axis| some.iter().map(|at| at[axis]).sum::<f64>() / some.len() as f64);
         let smooth: Vec<[f64; 2]> = course.chunks(SMOOTH).map(mean).collect();
-        lines.extend(smooth.windows(2).map(|pair| (pair[0], pair[1], WIDTHS[kind % WIDTHS.len()])));
+        lines.extend(smooth.windows(2).map(|pair| (pair[0], pair[1], WIDTH)));
     }
     lines
 }
 
-/// Widths of the lines of the flows, as parts of the widest.
-const WIDTHS: [f64; 3] = [0.3, 0.15, 0.3];
+/// Width of the lines, as a part of the widest.
+const WIDTH: f64 = 0.15;
 
 /// Courses of the tracers of all flows.
 fn traces(flows: &Flows, names: [&str; 2], axes: [&str; 2], seen: [[f64; 2]; 2], means: Vec<Lines>) -> LinePlot {
-    let kind = |(kind, (label, done)): (usize, &(&str, Done))| Lines {
-        label: (*label).to_owned(),
-        lines: courses(done, names, kind),
-    };
-    let kinds = flows.iter().enumerate().map(kind).chain(means).collect();
+    let kind = |(label, done): &(&str, Done)| Lines { label: (*label).to_owned(), lines: courses(done, names) };
+    let kinds = flows.iter().map(kind).chain(means).collect();
     let sheet = Sheet { title: format!("tracers, means over {SMOOTH} frames"), seen, marked: None, kinds };
     LinePlot { axes: axes.map(str::to_owned), to_scale: false, sheets: vec![sheet] }
 }

@@ -31,8 +31,9 @@ const COLOURS: [&str; 4] = ["#0072b2", "#8b2f8f", "#e08214", "#222"];
 #[must_use]
 pub fn draw(title: &str, plot: &LinePlot) -> String {
     let count = plot.sheets.len().max(1) as f64;
-    let across: f64 = plot.sheets.iter().map(|sheet| size(sheet)[0]).sum::<f64>().max(f64::MIN_POSITIVE);
-    let up = plot.sheets.iter().map(|sheet| size(sheet)[1]).fold(f64::MIN_POSITIVE, f64::max);
+    let some = |length: f64| if length > 0.0 { length } else { 1.0 };
+    let across = some(plot.sheets.iter().map(|sheet| size(sheet)[0]).sum());
+    let up = some(plot.sheets.iter().map(|sheet| size(sheet)[1]).fold(0.0, f64::max));
     // Sheets share a scale; each is as wide as its share of the room.
     let widest = (WIDTH - count * (LEFT + RIGHT)) / across;
     let one = widest.min(TALLEST / up);

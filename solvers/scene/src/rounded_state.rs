@@ -27,8 +27,8 @@ use std::collections::BTreeMap;
 pub(crate) const MAGIC: &[u8] = b"grainbench rounded state ";
 /// The format that this program writes.
 pub(crate) const FORMAT: u32 = 1;
-/// Binary digits of a position below the power of two at or below the smallest radius.
-const DIGITS: i32 = 36;
+/// What positions are rounded to, in units of the power of two at or below the smallest radius: 2⁻³⁶.
+const ROUNDING: f64 = 1.0 / (1_u64 << 36) as f64;
 /// Multiples of the step that a position may be: as far as they are exact.
 const FARTHEST: f64 = (1_u64 << 53) as f64;
 
@@ -56,6 +56,11 @@ pub(crate) struct Packed {
     walls: [Vec<u8>; 2],
     /// What contacts between grains remember, then those with walls: a column a number.
     springs: Vec<Vec<u8>>,
+}
+
+/// The power of two at or below a number: its exponent alone.
+fn power_of_two(number: f64) -> f64 {
+    f64::from_bits(number.to_bits() & f64::INFINITY.to_bits())
 }
 
 /// Numbers byte by byte, all the lowest ones first.
@@ -109,7 +114,7 @@ impl Packed {
     /// Rounds a state.
     pub(crate) fn of(state: &EndState) -> Result<Self, String> {
         let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);
-        let step = if smallest.is_finite() { (smallest.log2().floor() - f64::from(DIGITS)).exp2() } else { 1.0 };
+        let step = if smallest.is_finite() { power_of_two(smallest) * ROUNDING } else { 1.0 };
         let far = |grain: &StateGrain| !grain.position.iter().all(|&along| (along / step).abs() < FARTHEST);
         if !(step > 0.0) || state.grains.iter().any(far) {
             return Err("a grain that is too far away or too small to be rounded".to_owned());
