@@ -26,8 +26,8 @@ impl Other {
     pub(super) fn done(&self) -> Result<Done, Missing> {
         let lacking = |reason: String| Missing(format!("kept run of {}/{}: {reason}", self.case, self.variant));
         let case = by_name(self.case).ok_or_else(|| lacking("there is no such case".to_owned()))?;
-        let run = (case.claims)().into_iter().flat_map(|claim| claim.runs);
-        let run = run.into_iter().find(|run| run.kept && run.variant == self.variant);
+        let mut runs = (case.claims)().into_iter().flat_map(|claim| claim.runs);
+        let run = runs.find(|run| run.kept && run.variant == self.variant);
         let run = run.ok_or_else(|| lacking("none is read".to_owned()))?;
         let scene = case.variant(run.variant).map_err(|error| lacking(error.to_string()))?;
         let left = kept::load(case, &run, &scene, None).ok_or_else(|| lacking("nothing is kept".to_owned()))?;

@@ -71,7 +71,7 @@ pub(super) fn forces(snapshot: &Snapshot, [low, high]: [[f64; 2]; 2]) -> Table {
     for contact in snapshot.told_contacts() {
         let at = [contact.point.x, contact.point.z];
         let Partner::Grain(other) = contact.partner else { continue };
-        if (0..2).any(|axis| at[axis] < low[axis] || at[axis] > high[axis]) {
+        if (0..2).any(|axis| !(low[axis]..=high[axis]).contains(&at[axis])) {
             continue;
         }
         let radius = |id: u32| Some(snapshot.grain(id)?.radius);

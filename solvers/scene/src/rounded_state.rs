@@ -116,7 +116,7 @@ impl Packed {
         let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);
         let step = if smallest.is_finite() { power_of_two(smallest) * ROUNDING } else { 1.0 };
         let far = |grain: &StateGrain| !grain.position.iter().all(|&along| (along / step).abs() < FARTHEST);
-        if !(step > 0.0) || state.grains.iter().any(far) {
+        if step <= 0.0 || state.grains.iter().any(far) {
             return Err("a grain that is too far away or too small to be rounded".to_owned());
         }
         let mut kinds = Vec::new();
