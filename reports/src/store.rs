@@ -75,8 +75,8 @@ pub enum LoadError {
 }
 
 /// Writes `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml`, `badge.svg` and
-/// `figures/CASE-NAME.svg` into `dir`, the data of graphs as `.csv` and films as `.png` beside them, and what the page has no room
-/// for; all of them or none.
+/// `figures/CASE-NAME.svg` into `dir`, the data of graphs as `.csv` and films as `.png` beside them, and what the page has
+/// no room for; all of them or none.
 ///
 /// # Errors
 /// When the disk refuses or a figure cannot be drawn.

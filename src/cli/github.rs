@@ -7,7 +7,8 @@ use std::env;
 use std::fs::OpenOptions;
 use std::io::Write;
 
-/// Adds to the job's summary, and prints annotations where standard output is not asked for by a program. Elsewhere it does nothing.
+/// Adds to the job's summary, and prints annotations where standard output is not asked for by a program. Elsewhere it does
+/// nothing.
 pub(crate) fn tell(report: &Report, is_json: bool) -> Result<(), Fault> {
     if let Some(path) = env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) {
         let file = OpenOptions::new().create(true).append(true).open(&path);

@@ -94,7 +94,7 @@ fn framed(figure: &Figure, name: &str, id: &str, shown: &Markup) -> Markup {
                     @match &figure.drawing {
                         Drawing::Graph(_) => { a href={ "figures/" (name) ".csv" } { "data (CSV)" } }
                         Drawing::Field(field) if field.times.len() > 1 => { a href={ "figures/" (name) ".png" } { "film" } }
-                        Drawing::Field(_) | Drawing::Forces(_) | Drawing::Lines(_) => { a href={ "figures/" (name) ".svg" } { "picture" } }
+                        _ => { a href={ "figures/" (name) ".svg" } { "picture" } }
                     }
                 }
             }

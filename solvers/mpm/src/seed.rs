@@ -140,8 +140,8 @@ pub fn globe(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Patch> {
         .collect()
 }
 
-/// The surface of a rectangle, counter-clockwise: the middles of pieces at most `spacing` long, so that none stands on a corner, where
-/// it would bear on two sides.
+/// The surface of a rectangle, counter-clockwise: the middles of pieces at most `spacing` long, so that none stands on a corner,
+/// where it would bear on two sides.
 #[must_use]
 pub fn rectangle(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Patch> {
     let corners = [low, Vector3::new(high.x, low.y, 0.0), high, Vector3::new(low.x, high.y, 0.0)];
