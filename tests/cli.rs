@@ -153,7 +153,9 @@ fn run_leaves_its_files_and_a_summary() {
     let out = directory.path().join("deep/out");
     let expected = [
         "badge.svg",
+        "figures/squash-elastic.csv",
         "figures/squash-elastic.svg",
+        "figures/squash-forces.csv",
         "figures/squash-forces.svg",
         "index.html",
         "junit.xml",
