@@ -54,7 +54,7 @@ mod tests {
     fn patterns_stand_for_cases_or_for_variants() {
         let expand = |name: &str| expanded(&[name.to_owned()]).map_err(|fault| fault.to_string());
         assert_eq!(expand("incline-*").unwrap(), ["incline-disc", "incline-sphere"]);
-        assert_eq!(expand("*/45deg*").unwrap(), ["incline-sphere/45deg-mu.495"]);
+        assert_eq!(expand("*-sphere/45deg*").unwrap(), ["incline-sphere/45deg-mu.495"]);
         assert_eq!(expand("squahs").unwrap(), ["squahs"], "a name is not looked up here");
         assert!(expand("incline-*x").unwrap_err().contains("incline-disc"));
         assert!(expand("[").unwrap_err().contains("expected a pattern"));
