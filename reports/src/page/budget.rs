@@ -64,13 +64,30 @@ pub(crate) fn fit(mut pieces: Vec<Piece>, limit: usize) -> (String, Vec<(String,
         })
         .collect();
     order.sort_unstable();
-    let mut beside = Vec::new();
+    let gain = |piece: &Piece| match piece {
+        Piece::Fixed(_) => 0,
+        Piece::Part(part) => part.whole.len() - part.link.len(),
+    };
+    let mut away = Vec::new();
     for (_, _, at) in order {
         if weight <= limit {
             break;
         }
+        weight -= gain(&pieces[at]);
+        away.push(at);
+    }
+    // One heavy piece may have made room for lighter ones that went before it: the most missed come back first.
+    for at in std::mem::take(&mut away).into_iter().rev() {
+        let with = weight + gain(&pieces[at]);
+        if with <= limit {
+            weight = with;
+        } else {
+            away.push(at);
+        }
+    }
+    let mut beside = Vec::new();
+    for at in away {
         if let Piece::Part(part) = &mut pieces[at] {
-            weight = weight - part.whole.len() + part.link.len();
             beside.extend(part.file.take());
             part.whole = std::mem::take(&mut part.link);
         }
@@ -110,5 +127,15 @@ mod tests {
         let (text, beside) = fit(pieces(), 250);
         assert!(text.contains('F') && text.contains("rr") && text.contains('C') && beside.len() == 2);
         assert_eq!(fit(pieces(), 0).1.len(), 3);
+    }
+
+    /// A figure of ninety had to go, which leaves room for the film of forty that went before it.
+    #[test]
+    fn what_fits_again_comes_back() {
+        let part = |rank, length: usize| {
+            Piece::Part(Part { rank, whole: "x".repeat(length), link: "l".to_owned(), file: None })
+        };
+        let pieces = vec![part(Rank::Films, 40), part(Rank::Figures, 90), Piece::Fixed("-".repeat(10))];
+        assert_eq!(fit(pieces, 60).0, format!("{}l{}", "x".repeat(40), "-".repeat(10)));
     }
 }
