@@ -403,7 +403,8 @@ fn lines_are_short_enough_to_read() {
 fn files_are_short_enough_to_read() {
     for (name, text) in texts() {
         let is_lock = name.ends_with("-lock.json");
-        let is_ours = [".rs", ".md", ".toml"].iter().any(|end| name.ends_with(end)) || name.starts_with(".ci") && !is_lock;
+        let is_ours =
+            [".rs", ".md", ".toml"].iter().any(|end| name.ends_with(end)) || name.starts_with(".ci") && !is_lock;
         let lines = text.lines().count();
         assert!(!is_ours || lines <= 700, "{name} has {lines} lines");
     }
