@@ -27,6 +27,8 @@ use crate::report::Report;
 /// The look of the page, and what it can do beyond being read.
 const CSS: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("page.js");
+/// Room for the tags around all of it (B).
+const FRAME: usize = 2_000;
 
 /// A page, and the files beside it that hold what it has no room for, by their paths.
 pub struct Page {
@@ -54,7 +56,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     let foot = html! { (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
     pieces.push(budget::Piece::Fixed(foot));
     pieces[0] = budget::Piece::Fixed(head.clone());
-    let fixed = CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();
+    let fixed = FRAME + CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();
     let (main, beside) = budget::fit(pieces, budget::PAGE.saturating_sub(fixed));
     let below = main.strip_prefix(&head).unwrap_or_default();
     // Rows that lie beside the page cannot be led to by their own addresses.

@@ -287,8 +287,9 @@ mod tests {
         assert_eq!(Checkpoint::from_bytes(&[0; 100]), Err(CheckpointError::Foreign));
         let older = [b"grainbench checkpoint 1\n".as_slice(), &bytes()[24..]].concat();
         assert_eq!(Checkpoint::from_bytes(&older), Err(CheckpointError::Older { found: 1 }));
-        let newer = [b"grainbench checkpoint 5\n".as_slice(), &bytes()[24..]].concat();
-        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found: 5 }));
+        let found = FORMAT + 1;
+        let newer = [format!("grainbench checkpoint {found}\n").as_bytes(), &bytes()[24..]].concat();
+        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found }));
     }
 
     #[test]
