@@ -13,7 +13,7 @@ use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, wr
 use grainbench::studies::Follow;
 use grainbench::studies::cost::against::compare;
 use grainbench::studies::cost::run::{Meter, Wanted};
-use grainbench::studies::cost::step;
+use grainbench::studies::cost::{load, step};
 use grainbench::studies::result_cache::ResultCache;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     /// Points that take more than twenty seconds too.
     #[arg(long, alias = "rungs", value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
     levels: String,
-    /// Measure too what a step costs, piece by piece; so it is where no case is named.
+    /// Measure too what a step costs, piece by piece, and of one grain and of ten thousand; so it is where no case is named.
     #[arg(long)]
     prices: bool,
     /// Measure every point anew, also those that were finished before.
@@ -70,10 +70,12 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     }
     let start = Instant::now();
     let prices = arguments.prices || arguments.cases.is_empty();
-    let mut follower = Follower::new(pieces as u64 + if prices { step::pieces(ROUNDS) } else { 0 }, "points");
+    let beside = if prices { step::pieces(ROUNDS) + load::laps(ROUNDS) } else { 0 };
+    let mut follower = Follower::new(pieces as u64 + beside, "points");
     let mut study = Study::new(provenance(words(arguments), 0.0));
     if prices {
         study.model = Some(step::measure(&Registry, ROUNDS, &mut follower).map_err(Fault::input)?);
+        study.loads = load::measure(&Registry, ROUNDS, &mut follower)?;
     }
     let mut asked = Vec::new();
     for (at, subject) in subjects.iter().enumerate() {

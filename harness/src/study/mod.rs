@@ -2,6 +2,7 @@
 //! and draw them without knowing any solver.
 
 pub mod ledger;
+pub mod load;
 pub mod point;
 pub mod stability;
 pub mod step;

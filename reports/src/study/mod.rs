@@ -2,6 +2,7 @@
 
 pub mod cost;
 pub mod effects;
+mod load;
 mod page;
 pub mod stability;
 mod step;
@@ -9,6 +10,7 @@ mod store;
 
 use crate::report::Provenance;
 use grainbench_harness::study::ledger::Entry;
+use grainbench_harness::study::load::Load;
 use grainbench_harness::study::point::{Change, Diagram};
 use grainbench_harness::study::stability::{Hard, Limit};
 use grainbench_harness::study::step::Model;
@@ -28,6 +30,9 @@ pub struct Study {
     /// What a step costs, piece by piece.
     #[serde(default)]
     pub model: Option<Model>,
+    /// What a step costs of few grains and of many.
+    #[serde(default)]
+    pub loads: Vec<Load>,
     /// What changed since another session.
     #[serde(default)]
     pub changes: Vec<Change>,
@@ -56,6 +61,7 @@ impl Study {
             provenance,
             diagrams: Vec::new(),
             model: None,
+            loads: Vec::new(),
             changes: Vec::new(),
             against: None,
             limits: Vec::new(),

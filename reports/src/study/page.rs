@@ -1,6 +1,6 @@
 //! The page of a study.
 
-use super::{Study, cost, effects, stability, step};
+use super::{Study, cost, effects, load, stability, step};
 use crate::measured::Costs;
 use crate::number;
 use crate::page::{provenance, scrolling, shell, slug, summary, unique};
@@ -100,6 +100,7 @@ fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
             }
             h3 { "Which solver for which scene at 1 %" }
             (which(study))
+            @if !study.loads.is_empty() { (load::render(&study.loads)?) }
             @for scatter in &scatters { (scatter) }
             @if let Some(model) = &study.model { (step::render(model)) }
         }

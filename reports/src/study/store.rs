@@ -1,12 +1,13 @@
 //! The files of a study: written whole, read back to redraw or to compare.
 
-use super::{Study, cost, page, stability};
+use super::{Study, cost, load, page, stability};
 use crate::report::Provenance;
 use crate::staged::StagedDir;
 use crate::store::{LoadError, SaveError};
 use crate::{page as shared, plot};
 use grainbench_harness::figure::Figure;
 use grainbench_harness::study::ledger::Entry;
+use grainbench_harness::study::load::Load;
 use grainbench_harness::study::point::Point;
 use grainbench_harness::study::stability::{Hard, Limit};
 use grainbench_harness::study::step::Model;
@@ -31,6 +32,8 @@ struct Results<'a> {
     effects: &'a [Entry],
     #[serde(skip_serializing_if = "Option::is_none")]
     prices: Option<&'a Model>,
+    #[serde(skip_serializing_if = "<[Load]>::is_empty")]
+    loads: &'a [Load],
 }
 
 /// What stays stable.
@@ -53,6 +56,7 @@ pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
         stability: Stability { limits: &study.limits, hard: &study.hard },
         effects: &study.ledger,
         prices: study.model.as_ref(),
+        loads: &study.loads,
     };
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
@@ -87,7 +91,7 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
         let figure = cost::figure(diagram);
         (format!("cost-{}-{}-{}", diagram.case, diagram.variant, figure.name), figure)
     });
-    let others = cost::scatters(study).into_iter().chain(stability::figures(study));
+    let others = cost::scatters(study).into_iter().chain(load::figure(&study.loads)).chain(stability::figures(study));
     diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 
@@ -98,6 +102,7 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
 pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
     let mut study = study.clone();
     study.model = None;
+    study.loads = Vec::new();
     for diagram in &mut study.diagrams {
         let mut kept: Vec<Point> = Vec::new();
         for line in cost::lines([&*diagram]) {

@@ -2,5 +2,6 @@
 
 pub mod against;
 pub mod knobs;
+pub mod load;
 pub mod run;
 pub mod step;

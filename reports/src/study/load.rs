@@ -1,0 +1,108 @@
+//! What a step costs of one grain, of a hundred and of ten thousand, as a table and a figure.
+
+use super::page::figure as framed;
+use crate::number;
+use crate::page::scrolling;
+use crate::plot::DrawError;
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::statistics::median;
+use grainbench_harness::study::load::{Lap, Load};
+use maud::{Markup, html};
+
+/// The median of the laps.
+fn middle(load: &Load, of: fn(&Lap) -> f64) -> f64 {
+    median(&load.laps.iter().map(of).collect::<Vec<_>>())
+}
+
+/// Processor time for a second of the motion, against grains; none where nothing was measured.
+pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
+    let mut curves: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
+    for load in loads.iter().filter(|load| !load.laps.is_empty()) {
+        let place = (load.grains as f64, middle(load, |lap| lap.second));
+        match curves.iter_mut().find(|(solver, _)| *solver == load.solver) {
+            Some((_, places)) => places.push(place),
+            None => curves.push((&load.solver, vec![place])),
+        }
+    }
+    let curves: Vec<Curve> =
+        curves.into_iter().map(|(solver, places)| Curve::new(solver, Stroke::MarkedLine, places)).collect();
+    (!curves.is_empty()).then(|| {
+        Figure::graph(
+            "cost-against-grains",
+            "Discs in a box: one, a hundred, ten thousand",
+            "Processor time of one thread for a second of the motion, start-up apart. Where a line is level, what a step costs \
+             by itself outweighs the grains; where it rises by ten for ten, each grain costs the same.",
+            [Axis::log("grains"), Axis::log("processor time a simulated second (s)")],
+            curves,
+        )
+    })
+}
+
+/// The table, the figure and their words.
+///
+/// # Errors
+/// When the figure cannot be drawn.
+pub(crate) fn render(loads: &[Load]) -> Result<Markup, DrawError> {
+    let picture = figure(loads).map(|figure| framed(&figure)).transpose()?;
+    let table = html! {
+        table.cases {
+            thead {
+                tr {
+                    th scope="col" { "Discs, solver" }
+                    th.n scope="col" { "Start-up" }
+                    th.n scope="col" { "A step" }
+                    th.n scope="col" { "A grain in a step" }
+                    th.n scope="col" { "A simulated second" }
+                }
+            }
+            tbody {
+                @for load in loads {
+                    tr {
+                        th scope="row" { (number::count(load.grains as u64)) ", " (load.solver) span.title { (load.resolution) } }
+                        @if let Some(reason) = &load.absent {
+                            td colspan="4" { (reason) }
+                        } @else {
+                            @let step = middle(load, |lap| lap.step);
+                            td.n { (number::seconds(middle(load, |lap| lap.start_up))) }
+                            td.n { (number::seconds(step)) }
+                            td.n { (number::seconds(step / load.grains as f64)) }
+                            td.n { (number::seconds(middle(load, |lap| lap.second))) }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    Ok(html! {
+        h3 { "From one grain to ten thousand" }
+        p {
+            "The quantities above are mostly of one grain or two. Here discs stand on each other in a box, and each solver takes "
+            "a usual resolution. Processor time of one thread, of a long run less a short one: all that is no step is start-up."
+        }
+        @if let Some(picture) = &picture { (picture) }
+        (scrolling("What a step costs of few grains and of many", &table))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grain_costs_a_step_over_the_grains_and_who_is_absent_says_why() {
+        let lap = Lap { start_up: 2e-3, step: 4e-6, second: 0.5 };
+        let load = |solver: &str, laps, absent| Load {
+            grains: 100,
+            solver: solver.to_owned(),
+            resolution: "dt=.1".to_owned(),
+            laps,
+            absent,
+        };
+        let loads = [load("dem", vec![lap], None), load("lammps", Vec::new(), Some("not installed".to_owned()))];
+        let page = render(&loads).unwrap().into_string();
+        for cell in ["2.00 ms", "4.00 µs", "40.0 ns", "500 ms", "not installed"] {
+            assert!(page.contains(cell), "{cell} is not in {page}");
+        }
+        assert!(figure(&loads[1..]).is_none());
+    }
+}
