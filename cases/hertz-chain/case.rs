@@ -69,6 +69,12 @@ fn scale(scene: &Scene) -> f64 {
     (4.0 * law.effective_modulus() / (2.0 * grain.radius * density.powf(1.5))).cbrt()
 }
 
+/// What the speed is over its scale and the sixth root of the force.
+fn coefficient(done: &Done) -> Result<f64, Missing> {
+    let (speed, force) = wave(done)?;
+    Ok(speed / (scale(&done.scene) * force.powf(1.0 / 6.0)))
+}
+
 fn claims() -> Vec<Claim> {
     let exponent = claim("exponent of the speed in the force", "1")
         .of_all(SPEEDS.map(strike))
@@ -78,11 +84,10 @@ fn claims() -> Vec<Claim> {
         .refuses(Control::scene("a dashpot of γ = 2000/s, which does not scale", |scene| {
             scene.change_laws(|law| law.normal_damping = 2000.0);
         }));
-    let coefficient = claim("coefficient of the speed", "1")
+    let of_speed = claim("coefficient of the speed", "1")
         .of(strike(1.0))
         .equals(Source::Derived("travelling wave of the discrete chain (derivation)"), |done| {
-            let (speed, force) = wave(&done[0])?;
-            Ok(Measured::new(speed / (scale(&done[0].scene) * force.powf(1.0 / 6.0)), COEFFICIENT, COEFFICIENT))
+            Ok(Measured::new(coefficient(&done[0])?, COEFFICIENT, COEFFICIENT))
         })
         .within(judged(
             2e-5,
@@ -110,28 +115,23 @@ fn claims() -> Vec<Claim> {
         let speed = scene.grains.last().map_or(0.0, |striker| striker.velocity.norm());
         k * (5.0 * grain.mass * speed * speed / (8.0 * k)).powf(0.6)
     });
-    [exponent, coefficient, rigid].into_iter().chain(programs).collect()
+    [exponent, of_speed, rigid].into_iter().chain(programs).collect()
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut measured = Vec::new();
     for speed in SPEEDS {
         let done = runner.run(&strike(speed))?;
-        if let Ok((speed, force)) = wave(&done) {
-            measured.push((force, speed));
-        }
+        measured.extend(coefficient(&done).ok().zip(wave(&done).ok()).map(|(found, (_, force))| (force, found)));
     }
-    let scale = scale(&*runner.scene(&strike(1.0))?);
-    let line = |coefficient: f64| -> Vec<(f64, f64)> {
-        let ends = [measured.first(), measured.last()];
-        ends.into_iter().flatten().map(|(force, _)| (*force, coefficient * scale * force.powf(1.0 / 6.0))).collect()
-    };
-    let (discrete, long_wave) = (line(COEFFICIENT), line(0.680_24));
+    let level = |coefficient: f64| measured.iter().map(|(force, _)| (*force, coefficient)).collect();
+    let (discrete, long_wave) = (level(COEFFICIENT), level(0.680_24));
     Ok(vec![Figure::graph(
         "speed",
-        "Speed of the solitary wave",
-        "Against the force of the wave itself; steel beads of 20 mm.",
-        [Axis::log("peak force F (N)"), Axis::log("speed V (m/s)")],
+        "Speed of the solitary wave over F^(1/6)",
+        "Against the force of the wave itself; steel beads of 20 mm. The speed is divided by (4E*/(2Rρ^(3/2)))^(1/3) F^(1/6), so \
+         that what is left is the coefficient: level for Hertz contacts, and that of beads and not of a continuum.",
+        [Axis::log("peak force F (N)"), Axis::linear("coefficient of the speed (1)")],
         vec![
             Curve::new("dem", Stroke::Markers, measured),
             Curve::new("discrete chain, .68867", Stroke::Dashed, discrete),

@@ -37,13 +37,38 @@ pub fn pictures(name: &str, shots: &[Shot<'_>], size: f64, range: (f64, f64)) ->
         Panel { title: title.clone(), frames: vec![frame], own: None }
     });
     let panels = panels.collect();
-    field(column, range, pixel, panels, (String::new(), vec![0.0]))
+    field(column, Units::SI, range, pixel, panels, (String::new(), vec![0.0]))
+}
+
+/// What lengths and times are counted in.
+#[derive(Clone, Copy)]
+pub struct Units {
+    /// Lengths.
+    pub length: &'static str,
+    /// Times.
+    pub time: &'static str,
+}
+
+impl Units {
+    /// Metres and seconds.
+    pub const SI: Self = Self { length: "m", time: "s" };
+
+    /// The unit of a kinematic column in these.
+    fn of(self, si: &str) -> String {
+        match si {
+            "m/s" => format!("{}/{}", self.length, self.time),
+            "1/s" => format!("1/{}", self.time),
+            other => other.to_owned(),
+        }
+    }
 }
 
 /// Quantities over a sheet of cells, one cell deep, at some times.
 pub struct Sheet {
     /// The cells.
     pub grid: Grid,
+    /// What its lengths and times are counted in.
+    pub units: Units,
     /// What tells the times apart, such as `time t (s)`.
     pub clock: String,
     /// The times.
@@ -68,7 +93,8 @@ pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
     };
     let words = if frames.iter().all(|frame| frame.time.is_finite()) { "time t (s)" } else { "step" };
     let times = frames.iter().map(|frame| frame.clock()).collect();
-    Sheet { grid: course.grid, clock: words.to_owned(), times, shown: names.iter().map(of).collect() }.film()
+    Sheet { grid: course.grid, units: Units::SI, clock: words.to_owned(), times, shown: names.iter().map(of).collect() }
+        .film()
 }
 
 impl Sheet {
@@ -89,13 +115,13 @@ impl Sheet {
                     level(frame.get(cell).copied().unwrap_or(f64::NAN), range)
                 })
             };
-            let own = Some((range, column.unit.to_owned()));
+            let own = Some((range, self.units.of(column.unit)));
             Some(Panel { title: column.words.to_owned(), frames: frames.iter().map(of).collect(), own })
         };
         let panels: Vec<Panel> = self.shown.iter().filter_map(panel).collect();
         let pixel = self.grid.cell[across] / f64::from(pixels);
         let clock = (self.clock.clone(), self.times.clone());
-        (!panels.is_empty()).then(|| field(&COLUMNS[0], (0.0, 1.0), pixel, panels, clock))
+        (!panels.is_empty()).then(|| field(&COLUMNS[0], self.units, (0.0, 1.0), pixel, panels, clock))
     }
 }
 
@@ -116,13 +142,14 @@ fn named(name: &str) -> &'static Column {
 
 fn field(
     column: &Column,
+    units: Units,
     range: (f64, f64),
     pixel: f64,
     panels: Vec<Panel>,
     (clock, times): (String, Vec<f64>),
 ) -> Field {
-    let (label, unit) = (column.words.to_owned(), column.unit.to_owned());
-    Field { label, unit, range, shades: Shades::Amount, pixel, panels, clock, times }
+    let (label, unit, length) = (column.words.to_owned(), units.of(column.unit), units.length.to_owned());
+    Field { label, unit, range, shades: Shades::Amount, pixel, length, panels, clock, times }
 }
 
 /// Cells of a sheet as rectangles, rows from the top, so many pixels across.

@@ -61,6 +61,7 @@ pub fn film(
             Quantity::Rotation => Shades::Signed,
         },
         pixel: view.pixel,
+        length: "m".to_owned(),
         panels: panels.collect(),
         clock: clock.to_owned(),
         times: times.to_vec(),

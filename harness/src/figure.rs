@@ -171,8 +171,10 @@ pub struct Field {
     pub range: (f64, f64),
     /// How they are coloured.
     pub shades: Shades,
-    /// Side of a pixel (m); zero where lengths have no unit.
+    /// Side of a pixel, in the unit of lengths; zero where they have none.
     pub pixel: f64,
+    /// Unit of lengths: `m`, or what a scene without units counts them in, such as a diameter `d`.
+    pub length: String,
     /// The panels, equally large.
     pub panels: Vec<Panel>,
     /// What the frames of a film are told apart by, such as `time t (s)`.

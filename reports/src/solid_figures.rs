@@ -307,6 +307,7 @@ fn field(
         range,
         shades,
         pixel: view.pixel,
+        length: "m".to_owned(),
         panels: shots.iter().map(panel).collect(),
         clock: "time t (s)".to_owned(),
         times: times.to_vec(),

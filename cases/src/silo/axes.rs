@@ -87,7 +87,7 @@ fn detail(done: &Done, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figur
     let mean = forces.iter().map(|row| row[4]).sum::<f64>() / forces.len() as f64;
     let line = |row: &[f64; 5]| ([row[0], row[1]], [row[2], row[3]], row[4] / largest);
     let label = format!(
-        "force between two grains, as wide as it is large; {} of them, mean {mean:.1}, largest {largest:.0} mg",
+        "force between two grains, as wide as it is large; {} of them, mean {mean:.1}, largest {largest:.0} m g",
         forces.len()
     );
     let seen = part(flow);

@@ -3,7 +3,7 @@
 use super::axes;
 use super::ensemble::{Flow, INERTIA, STRAIN, over_inertia, over_strain, strained};
 use super::reader::{ELEMENT, STEADY};
-use grainbench_fields::element_picture::Sheet;
+use grainbench_fields::element_picture::{Sheet, Units};
 use grainbench_fields::grid::Grid;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
@@ -73,7 +73,8 @@ fn film(done: &Done) -> Option<Figure> {
             }
         }
     }
-    let field = Sheet { grid, clock: "time t (τ)".to_owned(), times, shown }.film()?;
+    let field =
+        Sheet { grid, units: Units { length: "d", time: "τ" }, clock: "time t (τ)".to_owned(), times, shown }.film()?;
     let caption = "Speed, sin φ, packing fraction and rate of shear of elements of 2.5 d, beside each other; lengths \
                   in d, rates in 1/τ, speeds in d/τ. Cells of fewer than eight grains and those at the surface are \
                   blank. The paper sees a funnel over the slit, a plug above it that hardly shears, and sin φ \

@@ -86,7 +86,7 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
             }
             @if is_film { (clock(field, full, foot)) }
             // Where lengths have no unit there is none to draw.
-            @if field.pixel > 0.0 { (scale_bar(field.pixel / scale, panel.0, height - FOOT + 24.0)) }
+            @if field.pixel > 0.0 { (scale_bar(field.pixel / scale, &field.length, panel.0, height - FOOT + 24.0)) }
             @if each_its_own {
                 @for (at, panel_of) in field.panels.iter().enumerate() {
                     @if let Some((range, unit)) = &panel_of.own {
@@ -304,14 +304,14 @@ fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 
     }
 }
 
-/// A length that one can read, with `unit` metres to the unit of the drawing.
-fn scale_bar(unit: f64, room: f64, y: f64) -> Markup {
+/// A length that one can read, with `unit` lengths of a name to the unit of the drawing.
+fn scale_bar(unit: f64, name: &str, room: f64, y: f64) -> Markup {
     let longest = 0.4 * room * unit;
     let decade = 10_f64.powf(longest.log10().floor());
     let length =
         [5.0, 2.0, 1.0].into_iter().map(|round| round * decade).find(|round| *round <= longest).unwrap_or(decade);
     let drawn = length / unit;
-    let (factor, name) = with_prefix(length, "m");
+    let (factor, name) = with_prefix(length, name);
     html! {
         rect x=(px(MARGIN)) y=(px(y - 3.0)) width=(px(drawn)) height="4" fill="#222" {}
         text x=(px(MARGIN + drawn + 8.0)) y=(px(y + 4.0)) font-size="14" fill="#222" {
@@ -373,6 +373,7 @@ mod tests {
             range: (0.0, 2.5e6),
             shades: Shades::Glow,
             pixel: 1e-5,
+            length: "m".to_owned(),
             panels: (0..panels).map(panel).collect(),
             clock: "time t (s)".to_owned(),
             times: (0..frames).map(|frame| frame as f64).collect(),

@@ -117,6 +117,7 @@ mod tests {
             range: (0.0, 1.0),
             shades: Shades::Amount,
             pixel: 1.0,
+            length: "m".to_owned(),
             panels: vec![panel],
             clock: "t (s)".to_owned(),
             times: (0..frames).map(|frame| frame as f64).collect(),

@@ -5,7 +5,7 @@ use grainbench_harness::figure::{Curve, Graph, Stroke};
 use crate::plot::scale::Scale;
 
 /// Curves nearer than this part of the axis cannot be told apart by eye.
-const TOLD_APART: f64 = 0.012;
+const TOLD_APART: f64 = 0.03;
 
 /// Differences that are worth a panel.
 pub(super) struct Difference {
