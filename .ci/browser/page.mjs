@@ -126,6 +126,39 @@ if (film) {
 }
 await page.close();
 
+// The three ways from the first screen, each by a watch that starts where the page is seen.
+const ways = await open(1440);
+const watch = async (question, answer) => {
+  const begun = performance.now();
+  const found = await answer();
+  console.log(`${question}: ${found} (${Math.round(performance.now() - begun)} ms)`);
+  check(found, question);
+};
+await watch("who is right about rolling with friction: typed `rolling`", async () => {
+  await ways.keyboard.press("/");
+  await ways.keyboard.type("rolling");
+  await pause(300);
+  const rows = await ways.evaluate(() => [...document.querySelectorAll("table.verdicts tbody tr:not([hidden])")].map((row) => [row.dataset.s, row.dataset.o]));
+  const of = (solver) => rows.filter(([name]) => name === solver);
+  const told = ["rigid", "mpm", "mpm:2000"].filter((solver) => of(solver).length > 0);
+  return told.length === 3 && told.map((solver) => `${solver} ${of(solver).filter(([, outcome]) => outcome === "pass").length} of ${of(solver).length}`).join(", ");
+});
+await ways.keyboard.press("Escape");
+await watch("what mpm:2000 gets wrong: its card", () => ways.evaluate(() => {
+  const card = document.querySelector('[data-card="mpm:2000"]');
+  const text = card?.checkVisibility() ? card.textContent : "";
+  return /\d×|× ?\d|\d times/.test(text) && text.replace(/\s+/g, " ").slice(0, 200);
+}));
+await watch("what 1 % costs by mpm and by dem: the table beside the picture", () => ways.evaluate(() => {
+  const cells = (row) => [...row.cells].map((cell) => cell.textContent.trim());
+  const at = (head) => head.findIndex((text) => text.replace(/\s/g, "") === "1%");
+  const tables = [...document.querySelectorAll("table")].filter((table) => table.checkVisibility()).map((table) => [...table.rows].map(cells));
+  const rows = tables.find(([head]) => at(head) > 0) ?? [[]];
+  const told = rows.filter((row) => ["dem", "mpm"].includes(row[0]) && row[at(rows[0])]).map((row) => `${row[0]} ${row[at(rows[0])]}`);
+  return told.length === 2 && told.join(", ");
+}));
+await ways.close();
+
 // Anchors, with a script and without: the row that is asked for is opened and seen.
 const id = await (async () => { const first = await open(1440); const found = await first.evaluate(() => [...document.querySelectorAll("table.verdicts tbody tr")].at(-1).id); await first.close(); return found; })();
 for (const script of [true, false]) {
