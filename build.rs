@@ -17,6 +17,7 @@ fn main() {
     let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     println!("cargo::rustc-env=GRAINBENCH_RUSTC={}", words(&rustc, &["--version"]).unwrap_or_else(unknown));
     println!("cargo::rustc-env=GRAINBENCH_COMMIT={}", commit(&root).unwrap_or_else(unknown));
+    println!("cargo::rustc-env=GRAINBENCH_BUILD={}", build(Path::new(&root), &rustc));
     for (name, folders) in SOURCES {
         println!("cargo::rustc-env=GRAINBENCH_SOURCES_{name}={}", fingerprint(Path::new(&root), folders));
     }
@@ -30,6 +31,15 @@ fn main() {
             println!("cargo::rerun-if-changed={}", part.display());
         }
     }
+}
+
+/// Hash of what solvers are built with: compiler, its options, and the versions of all crates.
+fn build(root: &Path, rustc: &str) -> String {
+    let read = |file: &str| fs::read_to_string(root.join(file)).unwrap_or_default();
+    let set = |name: &str| env::var(name).unwrap_or_default();
+    let options = ["TARGET", "PROFILE", "OPT_LEVEL", "CARGO_CFG_TARGET_FEATURE", "CARGO_ENCODED_RUSTFLAGS"].map(set);
+    let all = [words(rustc, &["-vV"]).unwrap_or_default(), read("Cargo.lock"), read("Cargo.toml"), options.join(" ")];
+    blake3::hash(all.join("\n").as_bytes()).to_hex().to_string()
 }
 
 /// Hash of all files in some folders, by their paths and texts.

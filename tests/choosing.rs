@@ -172,6 +172,7 @@ fn a_job_is_told_in_its_own_way() {
             .arg(&script)
             .current_dir(here)
             .env("PATH", &path)
+            .env("GRAINBENCH_CACHE", "off")
             .env("GITHUB_ACTIONS", "true")
             .env("GITHUB_STEP_SUMMARY", here.join("summary.md"))
             .env("GITHUB_OUTPUT", here.join("output"))

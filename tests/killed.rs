@@ -99,7 +99,7 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
         }
         let before = standing(&out, pair.kind);
         let was_mixed = refuse_mixed(&out).is_err();
-        let mut child = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+        let mut child = common::program()
             .args(pair.runs[number % 2])
             .current_dir(path)
             .stdin(Stdio::null())

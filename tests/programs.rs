@@ -55,7 +55,7 @@ fn a_race_tells_who_took_no_part() {
 fn a_time_limit_that_is_no_time_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
-    let command = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+    let command = common::program()
         .args(["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"])
         .current_dir(directory.path())
         .env("GRAINBENCH_TIME_LIMIT", "2s")
@@ -78,7 +78,7 @@ fn a_program_and_its_folder_go_when_we_are_killed() {
     std::fs::write(&program, "#!/bin/sh\necho $$ > pid\nexec sleep 600\n").unwrap();
     std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
     std::fs::write(path.join("s.toml"), SCENE).unwrap();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+    let mut child = common::program()
         .args(["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"])
         .current_dir(path)
         .env("GRAINBENCH_LAMMPS", &program)

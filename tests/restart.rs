@@ -160,7 +160,7 @@ fn killed_and_continued(scene: &str, options: &[&str], every: &str) -> tempfile:
     assert_eq!(straight.code, Some(0), "{}", straight.err);
 
     let checkpoints = ["--checkpoint", "run.checkpoint", "--checkpoint-every", every];
-    let mut victim = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+    let mut victim = common::program()
         .current_dir(path)
         .args(simulate.iter().chain(&checkpoints).chain(&["--out", "killed"]))
         .stdout(Stdio::null())
@@ -214,12 +214,7 @@ fn a_run_that_breaks_leaves_what_there_is() {
 /// The largest resident memory (kB) of a run, as the system counts it.
 #[cfg(target_os = "linux")]
 fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_grainbench"))
-        .args(arguments)
-        .current_dir(path)
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = common::program().args(arguments).current_dir(path).stdout(Stdio::null()).spawn().unwrap();
     let mut peak = 0;
     while child.try_wait().unwrap().is_none() {
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
@@ -260,7 +255,7 @@ fn snapshots_and_checkpoints_take_no_memory() {
 #[cfg(target_os = "linux")]
 fn an_interrupted_run_leaves_what_is_finished() {
     let directory = tempfile::tempdir().unwrap();
-    let child = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+    let child = common::program()
         .args(["run", "--out", "out"])
         .current_dir(directory.path())
         .stdout(Stdio::null())

@@ -107,7 +107,7 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
     let mut state = 12345_u64;
     for _ in 0..10 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        let mut child = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+        let mut child = common::program()
             .args(COST)
             .args(["--out", "out"])
             .current_dir(folder.path())

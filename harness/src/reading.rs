@@ -101,6 +101,10 @@ impl Watch for Watcher {
 
     fn progress(&mut self, _done: u64, _total: u64) {}
 
+    fn keeps_snapshots(&self) -> bool {
+        self.reader.is_none()
+    }
+
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
         match &mut self.reader {
             None => Ok(Some(snapshot)),

@@ -1,5 +1,6 @@
 //! Commands: what can be asked for, and who answers.
 
+mod cache;
 mod check;
 mod checkpoint;
 mod compare;

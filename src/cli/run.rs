@@ -1,5 +1,6 @@
 //! `grainbench run`: judge the gates of cases and write the report.
 
+use super::cache;
 use super::conform;
 use super::cores::{MOST_THREADS, at_once, share};
 use super::earlier::Earlier;
@@ -11,12 +12,13 @@ use super::keep::{self, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::select::{self, Selected};
-use grainbench::cases::{registry, solvers};
+use grainbench::cases::solvers;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
 use grainbench::harness::run::{Done, Run, Set};
 use grainbench::harness::runner::Runner;
+use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{self, Control, Verdict};
 use grainbench::reference::outside::Outside;
 use grainbench::reports::measured::Measurements;
@@ -26,6 +28,7 @@ use grainbench::reports::{
     Headline, Report, RunCost, Section, line, summary_table, write_report, write_report_and_parquet,
 };
 use grainbench::scene::solver::RunError;
+use grainbench::studies::run_cache::RunCache;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
@@ -77,6 +80,9 @@ pub(crate) struct Options {
     /// Everything that is not green is red: amber rows, and programs that are not installed.
     #[arg(long)]
     strict: bool,
+    /// Do every run anew, also those that were finished before and are kept outside the tree.
+    #[arg(long)]
+    fresh: bool,
     /// Leave out the negative controls.
     #[arg(long)]
     no_controls: bool,
@@ -115,7 +121,8 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let start = Instant::now();
     let thorough = options.levels.iter().any(|level| level == "all");
     let interrupt = Interrupt::listen();
-    let (mut sections, left) = judge(&selected, options, thorough, &interrupt);
+    let cache = cache::open(options.fresh);
+    let (mut sections, left) = judge(&selected, options, thorough, cache.as_ref(), &interrupt);
     // What every solver owes belongs to the whole registry, and not to a case.
     let is_whole = cases.is_empty() && options.filter.is_empty() && !options.rerun_failed;
     if is_whole && (options.levels.is_empty() || thorough) && left == 0 {
@@ -123,8 +130,19 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     }
     let mut words = words(cases, options);
     if left > 0 {
-        exit::say("warning", &format!("interrupted: {left} checks were left out; the report holds what was finished"));
+        let kept = if cache.is_some() { ", and the next run goes on from the runs that were" } else { "" };
+        let what = format!("interrupted: {left} checks were left out; the report holds what was finished{kept}");
+        exit::say("warning", &what);
         words.push(format!("interrupted: {left} checks left out"));
+    }
+    if let Some(cache) = &cache {
+        cache.make_room();
+        if cache.taken() > 0 {
+            words.push(format!(
+                "{} runs taken from the cache of finished ones, with the times that they took",
+                cache.taken()
+            ));
+        }
     }
     let provenance = provenance(words, start.elapsed().as_secs_f64());
     // They stand beside the whole registry, and not beside a case of it.
@@ -278,8 +296,16 @@ enum Task {
 }
 
 /// Sections of what was done, and how many checks were left out because somebody asked to end.
-fn judge(selected: &[Selected], options: &Options, thorough: bool, interrupt: &Interrupt) -> (Vec<Section>, usize) {
-    let work: Vec<Work<'_>> = selected.iter().map(|selected| Work::new(selected, options, thorough)).collect();
+fn judge(
+    selected: &[Selected],
+    options: &Options,
+    thorough: bool,
+    cache: Option<&Arc<RunCache>>,
+    interrupt: &Interrupt,
+) -> (Vec<Section>, usize) {
+    let solvers = cache::solvers(cache);
+    let new = |selected| Work::new(selected, options, thorough, Arc::clone(&solvers));
+    let work: Vec<Work<'_>> = selected.iter().map(new).collect();
     let tasks = tasks(selected, !options.no_controls);
     let progress = Progress::new(tasks.len() as u64, "checks");
     let jobs = options.jobs.map_or_else(|| at_once(usize::from(options.threads)), usize::from);
@@ -339,8 +365,8 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) {
 }
 
 impl<'a> Work<'a> {
-    fn new(selected: &'a Selected, options: &Options, thorough: bool) -> Self {
-        let runner = registry::runner(selected.case).live(options.live).thorough(thorough);
+    fn new(selected: &'a Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Self {
+        let runner = Runner::new(selected.case, solvers).live(options.live).thorough(thorough);
         let runner = runner.controlled(!options.no_controls);
         // All levels are asked for: what is kept of runs is done anew too.
         let runner = if thorough { runner.afresh(Set::Paper) } else { runner };

@@ -1,5 +1,6 @@
 //! What tells one piece of work from another, in sixty-four digits.
 
+use grainbench_scene::checkpoint::fingerprint;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Resolution;
 use std::fs;
@@ -23,7 +24,7 @@ pub fn of_this_program() -> String {
 /// What a run is, by content: program, solver, scene, resolution, and what is read from it.
 #[must_use]
 pub fn of_run(program: &str, solver: &str, scene: &Scene, resolution: &Resolution, read: &str) -> String {
-    of_words(program, &[solver, &format!("{scene:?}"), &format!("{resolution:?}"), read])
+    of_words(program, &[solver, fingerprint(scene).to_hex().as_str(), &format!("{resolution:?}"), read])
 }
 
 /// What a piece of work is whose content is all in words.

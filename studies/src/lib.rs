@@ -11,6 +11,7 @@ pub mod effects;
 pub mod identity;
 pub mod race;
 pub mod result_cache;
+pub mod run_cache;
 pub mod stability;
 
 /// Someone who wants to know how far a study is.

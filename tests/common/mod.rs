@@ -16,6 +16,13 @@ pub(crate) struct Answer {
     pub(crate) err: String,
 }
 
+/// The program, which keeps and takes no finished runs: what a test sees was done for it.
+pub(crate) fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grainbench"));
+    command.env("GRAINBENCH_CACHE", "off");
+    command
+}
+
 /// Runs the program in a directory, so that messages hold relative paths.
 pub(crate) fn grainbench(directory: &Path, arguments: &[&str]) -> Answer {
     grainbench_in(directory, arguments, &[])
@@ -28,7 +35,7 @@ pub(crate) fn grainbench_alone(directory: &Path, arguments: &[&str]) -> Answer {
 }
 
 fn grainbench_in(directory: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> Answer {
-    let output = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+    let output = program()
         .args(arguments)
         .envs(environment.iter().copied())
         .current_dir(directory)

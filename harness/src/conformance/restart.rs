@@ -1,7 +1,7 @@
 //! A run that is continued from a checkpoint ends as the run that was never interrupted.
 
 use super::end::NoEnd;
-use super::rerun::lines;
+use super::rerun::differing;
 use super::row::{Found, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
@@ -28,12 +28,10 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     });
     rows.each(scenes, &terms.resolution, quantity, |named| {
         let mut halfway = Halfway::default();
-        let whole = lines(solver.run(&named.scene, &terms.resolution, &mut halfway)?);
+        let whole = solver.run(&named.scene, &terms.resolution, &mut halfway)?;
         let checkpoint = halfway.through_a_file().map_err(NoEnd::Run)?.ok_or_else(|| no_checkpoint(solver))?;
-        let continued = lines(solver.restart(&named.scene, &terms.resolution, &checkpoint, &mut ())?);
-        let longer = whole.len().abs_diff(continued.len());
-        let differ = whole.iter().zip(&continued).filter(|(a, b)| a != b).count() + longer;
-        Ok(Found::deviation(differ as f64, 1.0, 0.0))
+        let continued = solver.restart(&named.scene, &terms.resolution, &checkpoint, &mut ())?;
+        Ok(Found::deviation(differing(whole, continued) as f64, 1.0, 0.0))
     })
 }
 

@@ -54,8 +54,8 @@ pub(crate) fn pieces(
 
 /// A figure, and what stands in its place when there is no room for it.
 pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawError> {
-    let still = PreEscaped(plot::draw_small(figure)?);
-    let reel = plot::reel(figure)?;
+    let (still, reel) = plot::draw_small(figure)?;
+    let still = PreEscaped(still);
     let shown = html! {
         @if let Some(reel) = &reel {
             div.film data-title=(figure.title) data-film=(reel) {

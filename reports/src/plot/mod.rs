@@ -44,29 +44,16 @@ pub fn draw(figure: &Figure) -> Result<String, DrawError> {
     Ok(markup(&svg))
 }
 
-/// The same as light as a page wants it: a field with fewer pixels where it has many.
+/// The same as light as a page wants it: a field with fewer pixels where it has many, and, where it moves, the film packed for
+/// the script of the page.
 ///
 /// # Errors
 /// When frames of a field are not of one size.
-pub fn draw_small(figure: &Figure) -> Result<String, DrawError> {
-    let Drawing::Field(field) = &figure.drawing else { return draw(figure) };
+pub fn draw_small(figure: &Figure) -> Result<(String, Option<String>), DrawError> {
+    let Drawing::Field(field) = &figure.drawing else { return Ok((draw(figure)?, None)) };
     let wrong = |reason: std::io::Error| DrawError { figure: figure.name.clone(), reason: reason.to_string() };
-    let light = reel::light(field).map_err(wrong)?;
-    Ok(markup(&field::draw(&figure.title, &light).map_err(wrong)?))
-}
-
-/// A film packed for the script of a page; none where nothing moves.
-///
-/// # Errors
-/// When the frames are not of one size.
-pub fn reel(figure: &Figure) -> Result<Option<String>, DrawError> {
-    match &figure.drawing {
-        Drawing::Field(field) if field.times.len() > 1 => reel::light(field)
-            .and_then(|light| reel::reel(&light))
-            .map(Some)
-            .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() }),
-        _ => Ok(None),
-    }
+    let (light, reel) = reel::light(field).map_err(wrong)?;
+    Ok((markup(&field::draw(&figure.title, &light).map_err(wrong)?), reel))
 }
 
 /// A document without the characters that XML has no place for, whoever wrote the words in it.

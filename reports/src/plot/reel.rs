@@ -18,18 +18,20 @@ const FILM: usize = 45_000;
 const FRAMES: usize = 16;
 const ACROSS: u32 = 60;
 
-/// The field with as few pixels and frames as it must have to be light.
+/// The field with as few pixels and frames as it must have to be light; of a film, its reel too.
 ///
 /// # Errors
 /// When its frames do not fit each other.
-pub(crate) fn light(field: &Field) -> io::Result<Field> {
+pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
     let mut field = field.clone();
     let is_film = field.times.len() > 1;
     loop {
-        let weight = if is_film { reel(&field)?.len() } else { field::stills(&field)?.iter().map(Vec::len).sum() };
+        let reel = if is_film { Some(reel(&field)?) } else { None };
+        let stills = || Ok::<usize, io::Error>(field::stills(&field)?.iter().map(Vec::len).sum());
+        let weight = reel.as_ref().map_or_else(stills, |reel| Ok(reel.len()))?;
         let width = field.panels[0].frames[0].width;
         if weight <= if is_film { FILM } else { PICTURE } || width < 2 * ACROSS {
-            return Ok(field);
+            return Ok((field, reel));
         }
         field = if field.times.len() >= 2 * FRAMES { every_other(&field) } else { halved(&field) };
     }
@@ -40,7 +42,7 @@ pub(crate) fn light(field: &Field) -> io::Result<Field> {
 ///
 /// # Errors
 /// When its frames do not fit each other.
-pub(crate) fn reel(field: &Field) -> io::Result<String> {
+fn reel(field: &Field) -> io::Result<String> {
     let Frames { width, height, levels } = field::frames(field)?;
     let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
     let mut before: Option<&Vec<u8>> = None;
@@ -128,13 +130,14 @@ mod tests {
     fn what_is_heavy_is_made_light_and_keeps_its_end() {
         for (width, frames) in [(800, 1), (400, 60)] {
             let field = noise(width, frames);
-            let light = light(&field).unwrap();
+            let (light, packed) = light(&field).unwrap();
+            assert_eq!(packed, (frames > 1).then(|| reel(&light).unwrap()));
             assert!(light.panels[0].frames[0].width < width && light.times.last() == field.times.last());
             let size = f64::from(light.panels[0].frames[0].width) * light.pixel;
             assert!((size - f64::from(width)).abs() < 0.05 * f64::from(width), "{size}");
         }
         let small = noise(40, 1);
-        assert_eq!(light(&small).unwrap(), small);
+        assert_eq!(light(&small).unwrap(), (small, None));
     }
 
     #[test]

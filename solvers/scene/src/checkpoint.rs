@@ -141,7 +141,8 @@ impl RunIdentity {
 }
 
 /// The hash of everything in a scene. Debug output tells every bit of a number.
-fn fingerprint(scene: &Scene) -> blake3::Hash {
+#[must_use]
+pub fn fingerprint(scene: &Scene) -> blake3::Hash {
     struct Hashed(blake3::Hasher);
     impl fmt::Write for Hashed {
         fn write_str(&mut self, text: &str) -> fmt::Result {

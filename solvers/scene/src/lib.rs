@@ -17,6 +17,7 @@ pub mod error;
 pub mod file;
 pub mod generate;
 pub mod grains;
+pub mod kept_record;
 pub mod manufactured;
 pub mod material;
 pub mod memory;

@@ -469,6 +469,10 @@ pub trait Watch {
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
         Ok(Some(snapshot))
     }
+    /// Whether every snapshot stays in the record.
+    fn keeps_snapshots(&self) -> bool {
+        true
+    }
     /// Whether the state at the end is wanted, for another scene to begin with.
     fn wants_end_state(&self) -> bool {
         false
