@@ -137,6 +137,13 @@ fn schema_documents_every_key() {
     assert!(found.is_empty(), "without a description: {found:?}");
 }
 
+/// Editors read the schema from the tree.
+#[test]
+fn the_schema_in_the_tree_is_that_of_the_program() {
+    let directory = tempfile::tempdir().unwrap();
+    common::expect_file("scene.schema.json", &printed(directory.path(), &["schema"]));
+}
+
 #[test]
 fn run_leaves_its_files_and_a_summary() {
     let directory = tempfile::tempdir().unwrap();

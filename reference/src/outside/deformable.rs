@@ -45,6 +45,10 @@ pub struct Body {
     pub shape: BodyShape,
     /// Velocity at the start (m/s).
     pub velocity: [f64; 3],
+    /// Angular velocity ω at the start about the middle of its shape (rad/s), on top of it: ω × (x − c).
+    pub spin: [f64; 3],
+    /// Rates of stretch at the start along the axes (1/s), on top of both: aᵢ (xᵢ − cᵢ).
+    pub stretch: [f64; 3],
     /// By axis, what the lower side of a box may do and the upper one: `free`, `sliding` (kept from moving along its normal) or
     /// `fixed` (kept from moving at all).
     pub sides: [[&'static str; 2]; 3],
@@ -144,6 +148,8 @@ pub(super) fn bodies(scene: &Scene) -> Vec<Body> {
             }
         },
         velocity: vector(&body.velocity),
+        spin: vector(&body.spin),
+        stretch: vector(&body.stretch),
         sides: body.sides.map(|sides| sides.map(word)),
         wave: body.wave.map(|wave| Wave { amplitude: wave.amplitude, wave_number: wave.wave_number }),
     };

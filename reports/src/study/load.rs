@@ -100,7 +100,13 @@ mod tests {
         };
         let loads = [load("dem", vec![lap], None), load("lammps", Vec::new(), Some("not installed".to_owned()))];
         let page = render(&loads).unwrap().into_string();
-        for cell in ["2.00 ms", "4.00 µs", "40.0 ns", "500 ms", "not installed"] {
+        for cell in [
+            "<td class=\"n\">2 ms</td>",
+            "<td class=\"n\">4 µs</td>",
+            "<td class=\"n\">40 ns</td>",
+            "<td class=\"n\">500 ms</td>",
+            "not installed",
+        ] {
             assert!(page.contains(cell), "{cell} is not in {page}");
         }
         assert!(figure(&loads[1..]).is_none());

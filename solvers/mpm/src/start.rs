@@ -68,7 +68,10 @@ impl<S: Space> Simulation<S> {
                             let low = body.held.map_or(block.shape.centre().x, |(_, [low, _])| low.x);
                             wave.amplitude * libm::sin(wave.wave_number * (position.x - low))
                         });
-                        block.velocity + Vector3::new(wave, 0.0, 0.0)
+                        if let Some(affine) = points.affine.get_mut(at) {
+                            *affine = S::restrict_gradient(block.velocity_gradient());
+                        }
+                        block.velocity_at(position) + Vector3::new(wave, 0.0, 0.0)
                     }
                 };
                 let mut behind = if body.driven.is_some() { velocity } else { velocity - lag };

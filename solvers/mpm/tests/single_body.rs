@@ -151,3 +151,33 @@ fn what_cannot_be_run_is_refused() {
     assert!(matches!(refused(&incline, Resolution::TimeStep(1e-3)), RunError::Resolution { .. }));
     assert!(matches!(refused(&incline, Resolution::grid(f64::NAN, 2)), RunError::Resolution { .. }));
 }
+
+/// A thin ring that is stretched and turned at the start: ½ρ(a² + ω²) π/2 (R⁴ − r⁴) of kinetic energy, and ρω π/2 (R⁴ − r⁴) of
+/// angular momentum. Stretched alone it breathes with ω² = E/ρR²: after an eighth of the period half of the energy is elastic.
+#[test]
+fn a_ring_expands_and_turns_back() {
+    let ring = |more: &str, duration: f64| {
+        let text = format!(
+            "dimension = 2\nduration = {duration:e}\nmaterials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.0 }}\n\
+             [bodies.ring]\nmaterial = 'm'\nannulus = {{ centre = [1.0, 2.0], inner = 0.95, outer = 1.05 }}\n{more}\n\
+             [output]\nevery = {duration:e}\n[probes]\nall.system = true\n"
+        );
+        run("mpm", &text, 4.0, 2)
+    };
+    let second_moment = std::f64::consts::FRAC_PI_2 * (1.05_f64.powi(4) - 0.95_f64.powi(4));
+    let eighth = std::f64::consts::FRAC_PI_4 / 10.0;
+    let both = ring("stretch = [0.01, 0.01]\nspin = 0.02", eighth);
+    for (name, expected) in [
+        ("all.kinetic_energy", 0.5 * 1e-4 * second_moment),
+        ("all.rotational_energy", 0.5 * 4e-4 * second_moment),
+        ("all.angular_momentum", 0.02 * second_moment),
+    ] {
+        let found = column(&both, name)[0];
+        assert!((found / expected - 1.0).abs() < 0.01, "{name}: {found} for {expected}");
+    }
+    let breathing = ring("stretch = [0.01, 0.01]", eighth);
+    let energies = column(&breathing, "all.kinetic_energy");
+    assert!((energies[0] / (0.5 * 1e-4 * second_moment) - 1.0).abs() < 0.01, "{energies:?}");
+    let left = last(&breathing, "all.kinetic_energy") / energies[0];
+    assert!((left - 0.5).abs() < 0.01, "{left}");
+}

@@ -1,7 +1,7 @@
 //! Deformable bodies that are no grains, and how bodies start.
 
 use crate::manufactured::Manufactured;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Shape of a body that is no grain.
@@ -104,10 +104,29 @@ pub struct Block {
     pub shape: BlockShape,
     /// Velocity (m/s).
     pub velocity: Vector3<f64>,
+    /// Angular velocity ω about the middle of its shape (rad/s), on top of it: ω × (x − c).
+    pub spin: Vector3<f64>,
+    /// Rates of stretch a along the axes (1/s), on top of both: aᵢ (xᵢ − cᵢ).
+    pub stretch: Vector3<f64>,
     /// Sides that are held.
     pub sides: Sides,
     /// A velocity on top of it that varies along x.
     pub wave: Option<Wave>,
+}
+
+impl Block {
+    /// Its velocity at a place at the start (m/s), but for a wave.
+    #[must_use]
+    pub fn velocity_at(&self, place: Vector3<f64>) -> Vector3<f64> {
+        let arm = place - self.shape.centre();
+        self.velocity + self.spin.cross(&arm) + self.stretch.component_mul(&arm)
+    }
+
+    /// Gradient of that velocity (1/s), ∂vᵢ/∂xⱼ.
+    #[must_use]
+    pub fn velocity_gradient(&self) -> Matrix3<f64> {
+        self.spin.cross_matrix() + Matrix3::from_diagonal(&self.stretch)
+    }
 }
 
 /// A damped phase before the clock starts: bodies at rest come to equilibrium, then they are given their velocities and

@@ -1,5 +1,6 @@
 //! Generated grains: lattices, and random placement from a seed.
 
+use crate::radii::Radii;
 use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
@@ -21,6 +22,32 @@ pub fn lattice(origin: Vector3<f64>, spacing: Vector3<f64>, count: [u32; 3]) -> 
     centres
 }
 
+/// Centres of a close-packed lattice (m): rows along x, every other one half a spacing further; in space layers of them, each
+/// with its rows over the hollows of the layer below, the third above the first (face-centred cubic).
+#[must_use]
+pub fn close_packed(origin: Vector3<f64>, spacing: f64, count: [u32; 3]) -> Vec<Vector3<f64>> {
+    let row = spacing * 0.75_f64.sqrt();
+    let mut centres = lattice(Vector3::zeros(), Vector3::new(1.0, 1.0, 1.0), count);
+    for centre in &mut centres {
+        let [i, j, k] = [centre.x, centre.y, centre.z];
+        let layer = k % 3.0;
+        let along = i + 0.5 * ((j + layer) % 2.0);
+        let shifted = Vector3::new(spacing * along, row * (j + layer / 3.0), spacing * (2.0 / 3.0_f64).sqrt() * k);
+        *centre = origin + shifted;
+    }
+    centres
+}
+
+/// Moves each place by up to `most` (m), in a direction of its own; evenly over the ball, or the disc.
+pub fn perturb(places: &mut [Vector3<f64>], most: f64, seed: u64, dimension: Dimension) {
+    let mut generator = Pcg64::seed_from_u64(seed);
+    for place in places {
+        let share: f64 = generator.random();
+        let size = most * if dimension == Dimension::Two { share.sqrt() } else { libm::cbrt(share) };
+        *place += direction(&mut generator, dimension) * size;
+    }
+}
+
 /// A grain placed at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
@@ -39,17 +66,16 @@ pub struct Placed {
 pub fn random(
     count: u32,
     seed: u64,
-    radii: [f64; 2],
+    radii: &Radii,
     speed: f64,
     domain: &Domain,
     dimension: Dimension,
 ) -> Option<Vec<Placed>> {
     const TRIES: u32 = 10_000;
     let mut generator = Pcg64::seed_from_u64(seed);
-    let mut sizes: Vec<f64> =
-        (0..count).map(|_| radii[0] + (radii[1] - radii[0]) * generator.random::<f64>()).collect();
+    let mut sizes: Vec<f64> = (0..count).map(|_| radii.draw(&mut generator)).collect();
     sizes.sort_by(|a, b| b.total_cmp(a));
-    let cell = 2.0 * radii[1];
+    let cell = 2.0 * radii.largest();
     let mut taken: HashMap<[i64; 3], Vec<(Vector3<f64>, f64)>> = HashMap::new();
     let mut placed = Vec::with_capacity(sizes.len());
     for radius in sizes {
@@ -123,4 +149,35 @@ fn is_free(centre: Vector3<f64>, radius: f64, cell: f64, taken: &HashMap<[i64; 3
             })
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Six nearest neighbours in the plane, twelve in space, one spacing away; nobody is nearer.
+    #[test]
+    fn close_packed_grains_touch_their_neighbours() {
+        for (count, neighbours) in [([7, 7, 1], 6), ([7, 7, 7], 12)] {
+            let centres = close_packed(Vector3::new(1.0, 2.0, 3.0), 2.0, count);
+            let middle = centres[(count[0] * count[1] * (count[2] / 2) + 3 * count[0] + 3) as usize];
+            let mut distances: Vec<f64> = centres.iter().map(|centre| (centre - middle).norm()).collect();
+            distances.sort_by(f64::total_cmp);
+            assert!(distances[0] == 0.0 && (distances[1] - 2.0).abs() < 1e-12, "{:?}", &distances[..3]);
+            assert_eq!(distances.iter().filter(|distance| (*distance - 2.0).abs() < 1e-12).count(), neighbours);
+        }
+    }
+
+    #[test]
+    fn perturbed_centres_stay_near() {
+        let whole = lattice(Vector3::zeros(), Vector3::repeat(1.0), [10, 10, 1]);
+        let mut moved = whole.clone();
+        perturb(&mut moved, 0.1, 3, Dimension::Two);
+        let distances: Vec<f64> = whole.iter().zip(&moved).map(|(a, b)| (a - b).norm()).collect();
+        assert!(distances.iter().all(|distance| (0.0..=0.1).contains(distance)));
+        // Evenly over a disc: two thirds of its radius in the mean.
+        let mean = distances.iter().sum::<f64>() / 100.0;
+        assert!((mean - 0.0667).abs() < 0.006, "{mean}");
+        assert!(moved.iter().all(|centre| centre.z == 0.0));
+    }
 }

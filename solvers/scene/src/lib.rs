@@ -28,6 +28,7 @@ pub mod packing;
 pub mod perturbed;
 pub mod pouring;
 mod probe;
+pub mod radii;
 pub mod record;
 pub mod recorder;
 pub mod refined;

@@ -1,5 +1,6 @@
 //! The keys of `bodies`: deformable bodies that are no grains.
 
+use super::grains::SpinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +19,14 @@ pub struct BodySpec {
     /// Velocity (m/s).
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
+    /// Angular velocity at the start about the middle of its shape (rad/s): one number about z in two dimensions, a vector in
+    /// three.
+    #[serde(default)]
+    pub spin: Option<SpinSpec>,
+    /// Rates at which it is stretched at the start along the axes (1/s): a velocity of rate times distance from the middle of
+    /// its shape. The same rate along all axes lets a ring expand.
+    #[serde(default)]
+    pub stretch: Option<Vec<f64>>,
     /// An initial velocity along x that grows from the lower end of a box as the sine of a mode of a held bar.
     #[serde(default)]
     pub wave: Option<WaveSpec>,

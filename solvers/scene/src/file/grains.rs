@@ -1,5 +1,6 @@
 //! The keys of `grains`: groups of grains, placed one by one, in order or at random.
 
+use super::driven::RegionSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +22,7 @@ pub struct GrainsSpec {
     /// A single grain at this place (m).
     #[serde(default)]
     pub position: Option<Vec<f64>>,
-    /// Grains on a square or simple-cubic lattice.
+    /// Grains on a lattice.
     #[serde(default)]
     pub lattice: Option<LatticeSpec>,
     /// Grains placed at random without overlap, from a seed.
@@ -51,16 +52,36 @@ pub enum SpinSpec {
     Vector(Vec<f64>),
 }
 
-/// A square or simple-cubic lattice.
+/// A lattice: square or simple cubic, or close-packed.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeSpec {
     /// Centre of the first grain (m).
     pub origin: Vec<f64>,
-    /// Distance between neighbours along each axis (m).
-    pub spacing: Vec<f64>,
+    /// Distance between neighbours along each axis (m); close-packed, one number: that of nearest neighbours.
+    pub spacing: SpacingSpec,
     /// Number of grains along each axis; x runs fastest.
     pub count: Vec<u32>,
+    /// Close-packed: rows along x, every other one half a spacing further, √3/2 of a spacing apart (hexagonal); in space layers
+    /// of them along z, √(2/3) of a spacing apart, each third one above the first (face-centred cubic).
+    #[serde(default)]
+    pub close_packed: bool,
+    /// Centres are moved by up to this length (m), each in a direction of its own, from `seed`.
+    #[serde(default)]
+    pub perturbation: f64,
+    /// Seed of the perturbation: the same seed gives the same grains on every machine.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// Distance between neighbours.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged, expecting = "distances along each axis such as [1.0, 1.0], or, close-packed, one number")]
+pub enum SpacingSpec {
+    /// Of nearest neighbours (m).
+    Nearest(f64),
+    /// Along each axis (m).
+    Along(Vec<f64>),
 }
 
 /// Grains placed at random in the domain without overlap.
@@ -77,6 +98,37 @@ pub struct RandomSpec {
     /// Speed of every grain (m/s), in a random direction.
     #[serde(default)]
     pub speed: f64,
+    /// Radii of another distribution, in place of `radius_range`.
+    #[serde(default)]
+    pub radii: Option<RadiiSpec>,
+    /// The part of the domain that they are placed in, faces of which they keep off; all of it when absent.
+    #[serde(default)]
+    pub region: Option<RegionSpec>,
+}
+
+/// A distribution of radii: exactly one of `log_normal` and `by_mass`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RadiiSpec {
+    /// ln R is normally distributed.
+    #[serde(default)]
+    pub log_normal: Option<LogNormalSpec>,
+    /// A sieve curve: pairs of radius (m) and the share of the mass that is no larger, both rising, from a share of 0 to one of
+    /// 1; between two of them the mass is spread evenly over the radii.
+    #[serde(default)]
+    pub by_mass: Option<Vec<(f64, f64)>>,
+}
+
+/// R = median · exp(deviation · n), n normally distributed; drawn again outside `range`.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LogNormalSpec {
+    /// Median of R (m).
+    pub median: f64,
+    /// Standard deviation of ln R.
+    pub deviation: f64,
+    /// Smallest and largest radius (m).
+    pub range: [f64; 2],
 }
 
 /// Grains packed densely into the domain without overlap; faces that are not periodic are walls to the packing.

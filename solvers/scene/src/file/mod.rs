@@ -15,7 +15,8 @@ pub use crate::material::{ConstitutiveKind, MaterialSpec};
 pub use bodies::{AnnulusSpec, BodySpec, BoxSpec, SideSpec, WaveSpec};
 pub use driven::{DrivenSpec, RegionSpec};
 pub use grains::{
-    FileSpec, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, RemovalSpec, SpinSpec, StateSpec,
+    FileSpec, GrainsSpec, LatticeSpec, LogNormalSpec, PackedSpec, PouredSpec, RadiiSpec, RandomSpec, RemovalSpec,
+    SpacingSpec, SpinSpec, StateSpec,
 };
 pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
 pub use output::OutputSpec;
@@ -147,9 +148,37 @@ pub struct DomainSpec {
     pub low: Vec<f64>,
     /// Upper corner (m).
     pub high: Vec<f64>,
-    /// Which axes are periodic; none when absent.
+    /// Which axes are periodic, by name (`["x"]`) or one by one (`[true, false]`); none when absent.
     #[serde(default)]
-    pub periodic: Vec<bool>,
+    pub periodic: PeriodicSpec,
+}
+
+/// Periodic axes.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged, expecting = "names of axes such as [\"x\"], or whether each is periodic such as [true, false]")]
+pub enum PeriodicSpec {
+    /// Whether each axis is.
+    Each(Vec<bool>),
+    /// Those that are.
+    Named(Vec<AxisName>),
+}
+
+impl Default for PeriodicSpec {
+    fn default() -> Self {
+        Self::Each(Vec::new())
+    }
+}
+
+/// An axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum AxisName {
+    /// The first.
+    X,
+    /// The second, upwards in the plane.
+    Y,
+    /// The third.
+    Z,
 }
 
 /// A damped phase before the clock starts, in which bodies at rest come to equilibrium; then they are given their

@@ -38,6 +38,8 @@ impl Resolver<'_> {
             density,
             shape,
             velocity: check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?,
+            spin: check.spin(&key("spin"), spec.spin.as_ref())?,
+            stretch: check.vector_or_zero(&key("stretch"), spec.stretch.as_ref())?,
             sides: self.sides(name, spec)?,
             wave,
         })

@@ -3,7 +3,7 @@
 use super::{Groups, Resolver};
 use crate::end_state::Springs;
 use crate::error::SceneError;
-use crate::file::{FileSpec, GrainShape, GrainsSpec, PackedSpec};
+use crate::file::{FileSpec, GrainShape, GrainsSpec, PackedSpec, SpacingSpec};
 use crate::generate;
 use crate::memory;
 use crate::overlap::{self, Deepest};
@@ -87,7 +87,6 @@ impl Resolver<'_> {
         if let Some(lattice) = &spec.lattice {
             let key = |part: &str| format!("grains.{name}.lattice.{part}");
             let origin = check.vector(&key("origin"), &lattice.origin)?;
-            let spacing = check.vector(&key("spacing"), &lattice.spacing)?;
             let dimensions = check.dimension.count();
             if lattice.count.len() != dimensions || lattice.count.contains(&0) {
                 let expected = format!("{dimensions} counts of one or more");
@@ -97,7 +96,29 @@ impl Resolver<'_> {
             self.refuse_too_many(&key("count"), total)?;
             let count = [lattice.count[0], lattice.count[1], lattice.count.get(2).copied().unwrap_or(1)];
             let (radius, density) = (radius()?, density()?);
-            let centres = generate::lattice(origin, spacing, count);
+            let mut centres = match (&lattice.spacing, lattice.close_packed) {
+                (SpacingSpec::Along(spacing), false) => {
+                    generate::lattice(origin, check.vector(&key("spacing"), spacing)?, count)
+                }
+                (SpacingSpec::Nearest(spacing), true) => {
+                    generate::close_packed(origin, check.positive(&key("spacing"), *spacing, "distance (m)")?, count)
+                }
+                (SpacingSpec::Nearest(found), false) => {
+                    let expected = format!("{dimensions} distances, or `close_packed = true`");
+                    return Err(check.error(&key("spacing"), &expected, &found.to_string()));
+                }
+                (SpacingSpec::Along(found), true) => {
+                    return Err(check.error(
+                        &key("spacing"),
+                        "one number, that of nearest neighbours",
+                        &format!("{found:?}"),
+                    ));
+                }
+            };
+            let perturbation = check.not_negative(&key("perturbation"), lattice.perturbation, "length (m)")?;
+            if perturbation > 0.0 {
+                generate::perturb(&mut centres, perturbation, lattice.seed, check.dimension);
+            }
             grains.extend(centres.into_iter().map(|centre| grain(centre, radius, density, velocity)));
         }
         if let Some(random) = &spec.random {
@@ -106,23 +127,14 @@ impl Resolver<'_> {
             let Some(domain) = domain else {
                 return Err(check.error(&key("count"), "a `domain` to place grains in", "none"));
             };
-            let radii = match random.radius_range {
-                Some([small, large]) => {
-                    check.positive(&key("radius_range"), small, "radius (m)")?;
-                    if !large.is_finite() || large < small {
-                        return Err(check.error(
-                            &key("radius_range"),
-                            "a range upwards",
-                            &format!("{small} to {large}"),
-                        ));
-                    }
-                    [small, large]
-                }
-                None => [radius()?; 2],
+            let radii = self.radii(&format!("grains.{name}.random"), random, shape, &radius)?;
+            let part = match &random.region {
+                Some(region) => self.region_of(&key("region"), region, domain)?,
+                None => *domain,
             };
             let speed = check.not_negative(&key("speed"), random.speed, "speed (m/s)")?;
             let density = density()?;
-            let placed = generate::random(random.count, random.seed, radii, speed, domain, check.dimension)
+            let placed = generate::random(random.count, random.seed, &radii, speed, &part, check.dimension)
                 .ok_or_else(|| {
                     check.error(&key("count"), "room for all grains in the domain", &random.count.to_string())
                 })?;

@@ -4,7 +4,7 @@ use crate::body::{Settle, Start};
 use crate::check::Checker;
 use crate::columns::{Chosen, Columns};
 use crate::error::SceneError;
-use crate::file::{DomainSpec, GrainShape, GravitySpec, ManufacturedSpec, SceneFile, SettleSpec};
+use crate::file::{DomainSpec, GrainShape, GravitySpec, ManufacturedSpec, PeriodicSpec, SceneFile, SettleSpec};
 use crate::manufactured::Manufactured;
 use crate::scene::{Dimension, Domain, Duration, Sampling, Scene, Wall};
 use crate::source::SceneSource;
@@ -22,6 +22,7 @@ mod grains;
 mod laws;
 mod materials;
 mod probes;
+mod random;
 mod state;
 mod stays;
 mod walls;
@@ -222,15 +223,28 @@ impl Resolver<'_> {
         if check.dimension == Dimension::Two {
             (low.z, high.z) = (-0.5, 0.5);
         }
+        Ok(Domain { low, high, periodic: self.periodic(&spec.periodic)? })
+    }
+
+    fn periodic(&self, spec: &PeriodicSpec) -> Result<[bool; 3], SceneError> {
+        let dimensions = self.check.dimension.count();
+        let wrong = |expected: String, found: String| Err(self.check.error("domain.periodic", &expected, &found));
         let mut periodic = [false; 3];
-        if !spec.periodic.is_empty() {
-            if spec.periodic.len() != check.dimension.count() {
-                let expected = format!("{} values", check.dimension.count());
-                return Err(check.error("domain.periodic", &expected, &format!("{:?}", spec.periodic)));
+        match spec {
+            PeriodicSpec::Each(each) if each.is_empty() || each.len() == dimensions => {
+                periodic[..each.len()].copy_from_slice(each);
             }
-            periodic[..spec.periodic.len()].copy_from_slice(&spec.periodic);
+            PeriodicSpec::Each(each) => return wrong(format!("{dimensions} values"), format!("{each:?}")),
+            PeriodicSpec::Named(names) => {
+                for &name in names {
+                    if name as usize >= dimensions {
+                        return wrong("axes that the scene has, `x` and `y`".to_owned(), "`z`".to_owned());
+                    }
+                    periodic[name as usize] = true;
+                }
+            }
         }
-        Ok(Domain { low, high, periodic })
+        Ok(periodic)
     }
 
     fn duration(&self) -> Result<Duration, SceneError> {

@@ -1,0 +1,76 @@
+//! Radii and place of grains that are placed at random.
+
+use super::Resolver;
+use crate::error::SceneError;
+use crate::file::{GrainShape, RandomSpec, RegionSpec};
+use crate::radii::Radii;
+use crate::scene::Domain;
+
+impl Resolver<'_> {
+    /// The distribution of radii, of the group's `radius` where none is given.
+    pub(super) fn radii(
+        &self,
+        key: &str,
+        spec: &RandomSpec,
+        shape: GrainShape,
+        radius: &dyn Fn() -> Result<f64, SceneError>,
+    ) -> Result<Radii, SceneError> {
+        let check = &self.check;
+        let Some(radii) = &spec.radii else {
+            let Some(range) = spec.radius_range else { return Ok(Radii::Uniform([radius()?; 2])) };
+            return Ok(Radii::Uniform(self.range(&format!("{key}.radius_range"), range)?));
+        };
+        if spec.radius_range.is_some() {
+            return Err(check.error(key, "one of `radius_range` and `radii`", "both"));
+        }
+        let key = format!("{key}.radii");
+        check.exactly_one(&key, &[("log_normal", radii.log_normal.is_some()), ("by_mass", radii.by_mass.is_some())])?;
+        if let Some(spec) = &radii.log_normal {
+            let key = |part: &str| format!("{key}.log_normal.{part}");
+            let range = self.range(&key("range"), spec.range)?;
+            let median = check.positive(&key("median"), spec.median, "radius (m)")?;
+            let deviation = check.not_negative(&key("deviation"), spec.deviation, "ratio")?;
+            if !(range[0]..=range[1]).contains(&median) {
+                return Err(check.error(&key("median"), "a radius within `range`", &median.to_string()));
+            }
+            return Ok(Radii::LogNormal { median, deviation, range });
+        }
+        let curve = radii.by_mass.as_deref().unwrap_or_default();
+        let key = format!("{key}.by_mass");
+        let rises = curve.windows(2).all(|pair| pair[0].0 <= pair[1].0 && pair[0].1 <= pair[1].1);
+        let is_whole =
+            curve.first().is_some_and(|first| first.1 == 0.0) && curve.last().is_some_and(|last| last.1 == 1.0);
+        if !(rises && is_whole && curve.iter().all(|(radius, _)| radius.is_finite() && *radius > 0.0)) {
+            let expected =
+                "pairs [radius (m), share of the mass that is no larger], both rising, the share from 0 to 1";
+            return Err(check.error(&key, expected, &format!("{curve:?}")));
+        }
+        Ok(Radii::by_mass(curve, if shape == GrainShape::Disc { 2 } else { 3 }))
+    }
+
+    /// A smallest and a largest radius (m).
+    fn range(&self, key: &str, [small, large]: [f64; 2]) -> Result<[f64; 2], SceneError> {
+        self.check.positive(key, small, "radius (m)")?;
+        if !large.is_finite() || large < small {
+            return Err(self.check.error(key, "a range upwards", &format!("{small} to {large}")));
+        }
+        Ok([small, large])
+    }
+
+    /// The part of the domain within a box, which is periodic where it reaches from face to face.
+    pub(super) fn region_of(&self, key: &str, spec: &RegionSpec, domain: &Domain) -> Result<Domain, SceneError> {
+        let [low, high] = self.corners(key, &spec.low, &spec.high)?;
+        let mut part = *domain;
+        for axis in 0..self.check.dimension.count() {
+            if low[axis] < domain.low[axis] || high[axis] > domain.high[axis] {
+                let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+                let expected = format!("a box within the domain, {} to {}", domain.low[axis], domain.high[axis]);
+                return Err(self.check.error(key, &expected, &found));
+            }
+            let is_whole = low[axis] == domain.low[axis] && high[axis] == domain.high[axis];
+            (part.low[axis], part.high[axis]) = (low[axis], high[axis]);
+            part.periodic[axis] = domain.periodic[axis] && is_whole;
+        }
+        Ok(part)
+    }
+}
