@@ -71,6 +71,7 @@ fn grains_at_random_have_their_radii_and_their_region() {
         (format!("radii = {{ {normal} }}, radius_range = [0.1, 0.2]"), "random"),
         ("radii = { log_normal = { median = 0.9, deviation = 0.2, range = [0.2, 0.5] } }".to_owned(), "median"),
         ("radii = { log_normal = { median = 0.3, deviation = 0.2, range = [0.5, 0.2] } }".to_owned(), "range"),
+        ("radii = { log_normal = { median = 0.3, deviation = 0.2, range = [0.3, 0.3] } }".to_owned(), "range"),
         ("radii = { by_mass = [[0.2, 0.0], [0.4, 0.9]] }".to_owned(), "by_mass"),
         ("radii = { by_mass = [[0.2, 0.0], [0.1, 1.0]] }".to_owned(), "by_mass"),
         ("radii = { by_mass = [] }".to_owned(), "by_mass"),

@@ -6,6 +6,9 @@ use crate::file::{GrainShape, RandomSpec, RegionSpec};
 use crate::radii::Radii;
 use crate::scene::Domain;
 
+/// Share of a distribution that its range must hold: radii are drawn again until they are within it.
+const LEAST: f64 = 0.01;
+
 impl Resolver<'_> {
     /// The distribution of radii, of the group's `radius` where none is given.
     pub(super) fn radii(
@@ -32,6 +35,12 @@ impl Resolver<'_> {
             let deviation = check.not_negative(&key("deviation"), spec.deviation, "ratio")?;
             if !(range[0]..=range[1]).contains(&median) {
                 return Err(check.error(&key("median"), "a radius within `range`", &median.to_string()));
+            }
+            let share = |radius: f64| 0.5 * libm::erf((radius / median).ln() / (deviation * std::f64::consts::SQRT_2));
+            if deviation > 0.0 && share(range[1]) - share(range[0]) < LEAST {
+                let found = format!("{} to {} m", range[0], range[1]);
+                let expected = format!("a range that holds {LEAST} of the distribution or more");
+                return Err(check.error(&key("range"), &expected, &found));
             }
             return Ok(Radii::LogNormal { median, deviation, range });
         }
