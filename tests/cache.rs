@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Some seconds of runs, of points and of grains.
-const RUN: [&str; 4] = ["run", "two-discs", "disc-gas", "--quiet"];
+/// Half a second of runs, of points and of grains.
+const RUN: [&str; 4] = ["run", "column", "rolling-resistance", "--quiet"];
 
 /// The program with a cache of its own.
 fn program(directory: &Path, out: &str) -> Command {
@@ -47,9 +47,11 @@ fn what_was_finished_is_taken_and_says_so() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
     assert_eq!(taken(&mut program(here, "first"), here, "first"), (Some(0), 0));
+    // What took too little to be kept may take longer another time.
+    let kept = entries(here).len() as u64;
     let (code, again) = taken(&mut program(here, "second"), here, "second");
     assert_eq!((code, rows(here, "second")), (Some(0), rows(here, "first")));
-    assert_eq!(again, entries(here).len() as u64, "each is taken once");
+    assert_eq!(again, kept, "each is taken once");
     assert!(again > 5, "{again}");
     // Asked for anew, or without a cache: none is taken.
     assert_eq!(taken(program(here, "fresh").arg("--fresh"), here, "fresh"), (Some(0), 0));
@@ -69,6 +71,7 @@ fn what_is_damaged_foreign_or_older_is_done_again() {
         entries(here).into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect();
     let count = whole.len() as u64;
     let spoil = |how: &dyn Fn(usize, &[u8]) -> Vec<u8>| {
+        entries(here).iter().for_each(|path| fs::remove_file(path).unwrap());
         for (at, (path, bytes)) in whole.iter().enumerate() {
             fs::write(path, how(at, bytes)).unwrap();
         }
@@ -91,7 +94,8 @@ fn what_is_damaged_foreign_or_older_is_done_again() {
     let of_next = |at: usize, _: &[u8]| whole[(at + 1) % whole.len()].1.clone();
     assert_eq!(spoil(&of_next), (Some(0), 0), "the run of another name");
     // What was done again stands there whole.
-    assert_eq!(taken(&mut program(here, "last"), here, "last"), (Some(0), count));
+    let (code, again) = taken(&mut program(here, "last"), here, "last");
+    assert!(code == Some(0) && again >= count, "{again} of {count}");
 }
 
 #[test]
@@ -103,7 +107,8 @@ fn two_at_once_share_it() {
         assert_eq!(child.wait().unwrap().code(), Some(0));
     }
     assert_eq!(rows(here, "one"), rows(here, "two"));
-    assert_eq!(taken(&mut program(here, "three"), here, "three"), (Some(0), entries(here).len() as u64));
+    let kept = entries(here).len() as u64;
+    assert_eq!(taken(&mut program(here, "three"), here, "three"), (Some(0), kept));
 }
 
 /// Ctrl-C at ten moments: what was finished is kept, and in the end nothing is missing.
