@@ -82,7 +82,7 @@ pub(crate) fn expect_file(path: &str, wanted: &str) {
     let found = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         found == wanted,
-        "{} is out of date: UPDATE_README=1 cargo test --test readme --test peers --test cli writes it",
+        "{} is out of date: UPDATE_README=1 cargo test --test readme --test peers --test cli --test guide writes it",
         path.display()
     );
 }

@@ -1,0 +1,144 @@
+//! Blocks of `console`: what is typed, and what is answered.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// What stands for whatever may differ.
+const ANY: &str = "…";
+
+/// A command, and what the guide shows of its answer.
+pub(crate) struct Step {
+    pub(crate) line: usize,
+    command: String,
+    shown: Vec<String>,
+    exit: i32,
+}
+
+/// A block, and the programs that it needs.
+pub(crate) struct Block {
+    pub(crate) needs: Vec<String>,
+    pub(crate) steps: Vec<Step>,
+}
+
+/// The dialogues of a text.
+pub(crate) fn blocks(text: &str) -> Result<Vec<Block>, String> {
+    let mut found = Vec::new();
+    let mut needs = Vec::new();
+    let mut open: Option<Block> = None;
+    for (at, line) in text.lines().enumerate() {
+        let Some(block) = &mut open else {
+            if let Some(rest) = line.strip_prefix("<!-- needs ") {
+                let names = rest.strip_suffix(" -->").ok_or_else(|| format!("line {}: ` -->` is not there", at + 1))?;
+                needs = names.split(' ').map(str::to_owned).collect();
+            } else if line == "```console" {
+                open = Some(Block { needs: std::mem::take(&mut needs), steps: Vec::new() });
+            } else if !line.is_empty() {
+                needs.clear();
+            }
+            continue;
+        };
+        if line == "```" {
+            found.extend(open.take());
+        } else if let Some(command) = line.strip_prefix("$ ") {
+            block.steps.push(Step { line: at + 1, command: command.to_owned(), shown: Vec::new(), exit: 0 });
+        } else {
+            let step = block.steps.last_mut().ok_or_else(|| format!("line {}: an answer to no command", at + 1))?;
+            if let Some(code) = line.strip_prefix("# exit ") {
+                step.exit = code.parse().map_err(|_| format!("line {}: `{code}` is no exit code", at + 1))?;
+            } else {
+                step.shown.push(plain(line));
+            }
+        }
+    }
+    if open.is_some() { Err("a block does not end".to_owned()) } else { Ok(found) }
+}
+
+/// A line as one types it: spaces that do not break are spaces.
+fn plain(line: &str) -> String {
+    line.trim_end().replace(['\u{a0}', '\u{2009}', '\u{202f}'], " ")
+}
+
+/// Whether a line is as it is shown.
+pub(crate) fn hold(shown: &str, line: &str) -> bool {
+    let mut parts = shown.split(ANY);
+    let Some(mut rest) = line.strip_prefix(parts.next().unwrap_or_default()) else { return false };
+    let mut parts: Vec<&str> = parts.collect();
+    let Some(last) = parts.pop() else { return rest.is_empty() };
+    for part in parts {
+        let Some(at) = rest.find(part) else { return false };
+        rest = &rest[at + part.len()..];
+    }
+    rest.ends_with(last)
+}
+
+/// Whether what is shown is a part of an answer: lines that follow one another there, unless `…` stands between them.
+fn is_part(shown: &[String], answer: &[String]) -> bool {
+    let mut from = 0;
+    for run in shown.split(|line| line == ANY).filter(|run| !run.is_empty()) {
+        let fits = |window: &[String]| run.iter().zip(window).all(|(shown, line)| hold(shown, line));
+        match answer[from..].windows(run.len()).position(fits) {
+            Some(at) => from += at + run.len(),
+            None => return false,
+        }
+    }
+    true
+}
+
+/// Whether a program is here; under CI it must be.
+pub(crate) fn is_here(program: &str) -> bool {
+    let found = Command::new("sh").args(["-c", "command -v \"$0\"", program]).stdout(Stdio::null()).status();
+    let is_here = found.is_ok_and(|status| status.success());
+    assert!(is_here || std::env::var_os("CI").is_none(), "{program} is not here");
+    is_here
+}
+
+/// A copy of what a reader has: the guide and the examples, and the program on the path.
+pub(crate) struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    pub(crate) fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        for part in ["guide/scenes", "guide/claims", "examples/cpp", "examples/python", "examples/case"] {
+            let to = folder.path().join(part);
+            fs::create_dir_all(&to).unwrap();
+            for entry in fs::read_dir(crate::common::root(part)).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_file() && path.file_name().unwrap() != "one_grain" {
+                    fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
+                }
+            }
+        }
+        let programs = folder.path().join("bin");
+        fs::create_dir(&programs).unwrap();
+        std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_grainbench"), programs.join("grainbench")).unwrap();
+        Self { folder }
+    }
+
+    /// Types a command, and tells how its answer differs from what is shown.
+    pub(crate) fn run(&self, step: &Step) -> Result<(), String> {
+        let mut path = vec![self.folder.path().join("bin")];
+        path.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).collect::<Vec<PathBuf>>());
+        let output = Command::new("sh")
+            .args(["-c", &format!("exec 2>&1\n{}", step.command)])
+            .env("PATH", std::env::join_paths(path).unwrap())
+            .env_remove("GITHUB_ACTIONS")
+            .env_remove("GITHUB_STEP_SUMMARY")
+            .current_dir(self.folder.path().join("guide/scenes"))
+            .stdin(Stdio::null())
+            .output()
+            .map_err(|error| error.to_string())?;
+        let answer = String::from_utf8_lossy(&output.stdout);
+        let lines: Vec<String> = answer.lines().map(plain).collect();
+        let code = output.status.code();
+        if code != Some(step.exit) {
+            return Err(format!("`{}` ended with {code:?}, not {}:\n{answer}", step.command, step.exit));
+        }
+        if is_part(&step.shown, &lines) {
+            return Ok(());
+        }
+        Err(format!("`{}` answered\n{answer}and not, in this order,\n{}", step.command, step.shown.join("\n")))
+    }
+}

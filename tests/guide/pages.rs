@@ -1,0 +1,133 @@
+//! Chapters: what they include, and where their links lead.
+
+use crate::common::root;
+use std::fs;
+use std::path::Path;
+
+/// A chapter of the guide.
+#[derive(Clone)]
+pub(crate) struct Chapter {
+    pub(crate) name: String,
+    pub(crate) text: String,
+}
+
+/// Every chapter, by name.
+pub(crate) fn chapters() -> Vec<Chapter> {
+    let mut found: Vec<Chapter> = fs::read_dir(root("guide/src"))
+        .unwrap()
+        .map(|entry| entry.unwrap())
+        .map(|entry| Chapter {
+            name: entry.file_name().into_string().unwrap(),
+            text: fs::read_to_string(entry.path()).unwrap(),
+        })
+        .filter(|chapter| chapter.name != "SUMMARY.md")
+        .collect();
+    found.sort_by(|a, b| a.name.cmp(&b.name));
+    assert!(found.len() > 7, "{} chapters", found.len());
+    found
+}
+
+/// The text that a path, or a part of it by the anchors of mdBook, has.
+fn included(path: &str) -> Result<String, String> {
+    let (path, anchor) = path.split_once(':').map_or((path, None), |(path, anchor)| (path, Some(anchor)));
+    let file = root("guide/src").join(path);
+    let text = fs::read_to_string(&file).map_err(|error| format!("{path}: {error}"))?;
+    let Some(anchor) = anchor else { return Ok(text) };
+    let at = |mark: String| {
+        text.lines().position(|line| line.split_whitespace().collect::<Vec<_>>().join(" ").contains(&mark))
+    };
+    let start = at(format!("ANCHOR: {anchor}")).ok_or_else(|| format!("{path} has no anchor {anchor}"))?;
+    let end = at(format!("ANCHOR_END: {anchor}")).ok_or_else(|| format!("{path} has no end of {anchor}"))?;
+    Ok(text.lines().skip(start + 1).take(end.saturating_sub(start + 1)).collect::<Vec<_>>().join("\n"))
+}
+
+/// A chapter with what it includes.
+pub(crate) fn expanded(chapter: &Chapter) -> Result<String, String> {
+    let mut found = String::new();
+    let mut rest = chapter.text.as_str();
+    while let Some(at) = rest.find("{{#include ") {
+        let (before, from) = rest.split_at(at);
+        let end = from.find("}}").ok_or("an include does not end")?;
+        found += before;
+        found += included(from["{{#include ".len()..end].trim())?.trim_end();
+        rest = &from[end + 2..];
+    }
+    Ok(found + rest)
+}
+
+/// What a link to a heading is called.
+fn slug(heading: &str) -> String {
+    let words = heading.trim_start_matches('#').trim().to_lowercase();
+    words
+        .chars()
+        .filter(|c| c.is_alphanumeric() || "-_ ".contains(*c))
+        .map(|c| if c == ' ' { '-' } else { c })
+        .collect()
+}
+
+/// The targets of links of a text, outside of blocks and code.
+fn links(text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut is_code = false;
+    for line in text.lines() {
+        is_code ^= line.starts_with("```");
+        let plain: String = line.split('`').step_by(2).collect();
+        if !is_code {
+            found
+                .extend(plain.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(to, _)| to.to_owned()));
+        }
+    }
+    found
+}
+
+/// Links, includes and blocks that lead nowhere, and chapters that the summary does not have.
+pub(crate) fn lost_links(chapters: &[Chapter]) -> Vec<String> {
+    const LANGUAGES: [&str; 6] = ["console", "toml", "rust", "python", "cpp", "text"];
+    let summary = fs::read_to_string(root("guide/src/SUMMARY.md")).unwrap();
+    let listed = links(&summary);
+    let mut lost: Vec<String> = chapters
+        .iter()
+        .filter(|chapter| !listed.contains(&chapter.name))
+        .map(|chapter| format!("SUMMARY.md lacks {}", chapter.name))
+        .collect();
+    let summary = Chapter { name: "SUMMARY.md".to_owned(), text: summary };
+    for chapter in chapters.iter().chain([&summary]) {
+        let say = |what: String| format!("{}: {what}", chapter.name);
+        if let Err(error) = expanded(chapter) {
+            lost.push(say(error));
+        }
+        for link in links(&chapter.text).into_iter().filter(|link| !link.contains("://")) {
+            let (to, heading) = link.split_once('#').map_or((link.as_str(), None), |(to, part)| (to, Some(part)));
+            let to = if to.is_empty() { &chapter.name } else { to };
+            let text = fs::read_to_string(root("guide/src").join(Path::new(to)));
+            let has = |part: &str, text: &str| text.lines().any(|line| line.starts_with('#') && slug(line) == part);
+            let leads = text.is_ok_and(|text| heading.is_none_or(|part| has(part, &text)));
+            if !leads || to.contains('/') {
+                lost.push(say(format!("{link} leads nowhere")));
+            }
+        }
+        let fences = chapter.text.lines().filter_map(|line| line.strip_prefix("```")).filter(|word| !word.is_empty());
+        lost.extend(fences.filter(|word| !LANGUAGES.contains(word)).map(|word| say(format!("a block of `{word}`"))));
+    }
+    lost
+}
+
+/// Files beside the chapters that none of them includes, and scenes that none of them simulates.
+pub(crate) fn untold(chapters: &[Chapter]) -> Vec<String> {
+    let mut found = Vec::new();
+    for folder in ["scenes", "claims"] {
+        for entry in fs::read_dir(root("guide").join(folder)).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            let include = format!("{{{{#include ../{folder}/{name}}}}}");
+            let command = if folder == "scenes" { format!("simulate {name} ") } else { format!("../{folder}/{name}") };
+            let is_told = |chapter: &Chapter| {
+                let is_run = chapter.text.lines().any(|line| line.starts_with("$ ") && line.contains(&command));
+                chapter.text.contains(&include) && is_run
+            };
+            if !chapters.iter().any(is_told) {
+                found.push(format!("{folder}/{name}"));
+            }
+        }
+    }
+    found
+}
