@@ -124,6 +124,7 @@ impl Place {
         let output = Command::new("sh")
             .args(["-c", &format!("exec 2>&1\n{}", step.command)])
             .env("PATH", std::env::join_paths(path).unwrap())
+            .env("GRAINBENCH_CACHE", "off")
             .env_remove("GITHUB_ACTIONS")
             .env_remove("GITHUB_STEP_SUMMARY")
             .current_dir(self.folder.path().join("guide/scenes"))
