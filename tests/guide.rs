@@ -59,7 +59,13 @@ fn a_wrong_dialogue_is_refused() {
         let text = format!("```console\n{shown}\n```\n");
         blocks(&text)?.iter().flat_map(|block| &block.steps).try_for_each(|step| place.run(step))
     };
-    let right = "$ grainbench simulate belt.toml --solver dem --out belt\nscene      A disc is set down on a belt\n…\nsteps      …";
+    let right = [
+        "$ grainbench simulate belt.toml --solver dem --out belt",
+        "scene      A disc is set down on a belt",
+        "…",
+        "steps      …",
+    ];
+    let right = right.join("\n");
     assert_eq!(tried(right), Ok(()));
     for (from, to) in [
         ("A disc is", "A sphere is"),
