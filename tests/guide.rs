@@ -66,7 +66,7 @@ fn a_wrong_dialogue_is_refused() {
         "steps      …",
     ];
     let right = right.join("\n");
-    assert_eq!(tried(right), Ok(()));
+    assert_eq!(tried(&right), Ok(()));
     for (from, to) in [
         ("A disc is", "A sphere is"),
         ("simulate belt", "simulate bellt"),
