@@ -15,6 +15,8 @@ const RUN: [&str; 4] = ["run", "column", "rolling-resistance", "--quiet"];
 fn program(directory: &Path, out: &str) -> Command {
     let mut command = common::program();
     command.env("GRAINBENCH_CACHE", directory.join("cache")).current_dir(directory).args(RUN).args(["--out", out]);
+    // Other people's programs are not kept, and start in their own time.
+    command.envs([("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")]);
     command.stdin(Stdio::null());
     command
 }

@@ -1,4 +1,4 @@
-//! A badge for a readme: how many rows passed, green where nothing is red.
+//! A badge for a readme: how many rows passed, green where some did and nothing is red.
 
 use maud::html;
 
@@ -20,7 +20,13 @@ pub fn badge(report: &Report) -> String {
     } else {
         format!("{} of {} pass", counts.pass, counts.rows())
     };
-    let colour = if red > 0 || counts.rows() == 0 { "#b3261e" } else { "#2e7d32" };
+    let colour = match (red, counts.pass) {
+        (1.., _) => "#b3261e",
+        _ if counts.rows() == 0 => "#b3261e",
+        // Nothing is wrong, and nothing was shown.
+        (0, 0) => "#666",
+        (0, _) => "#2e7d32",
+    };
     let (name, left) = ("grainbench", "grainbench".len() * LETTER + 10);
     let right = words.len() * LETTER + 10;
     html! {
@@ -51,6 +57,10 @@ mod tests {
             section.controls.retain(|control| control.turned_red);
         }
         assert!(badge(&report).contains("pass") && badge(&report).contains("#2e7d32"), "{}", badge(&report));
+        for row in report.sections.iter_mut().flat_map(|section| &mut section.verdicts) {
+            row.outcome = grainbench_harness::verdict::Outcome::Unsupported;
+        }
+        assert!(badge(&report).contains("0 of") && !badge(&report).contains("#2e7d32"), "{}", badge(&report));
         report.sections.clear();
         assert!(badge(&report).contains("nothing judged") && badge(&report).contains("#b3261e"));
     }

@@ -62,7 +62,7 @@ pub struct ContactSpec {
     /// pull at release, c_n = 2ζ√(k_n m_eff) for linear, 2√(5/6) ζ√(S m_eff) with S = dF/dδ for Hertz contacts, and
     /// ζ = −ln e/√(π² + ln² e). The dashpot is half a step late and release falls within a step, so that what comes
     /// out is off by an amount of first order in the step: for .5, .490 between free grains and .480 against a driven one
-    /// at a tenth of the critical step, within .002 at a hundredth.
+    /// at a tenth of the critical step, within .002 at a hundredth. Dashpots add up: beside another one less comes out.
     #[serde(default)]
     pub restitution: Option<f64>,
     /// Coefficient of rolling resistance μ_r: a moment of at most μ_r R_eff F_n against rolling, R_eff = R₁R₂/(R₁+R₂),

@@ -36,9 +36,14 @@ fn help_suffix(help: Option<&str>) -> String {
 /// `did you mean …?` for a mistyped word, when one of the known words is close to it.
 #[must_use]
 pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    // A letter too few, too many, another or two in the wrong order: nearer than any likeness.
+    let likeness = |candidate: &str| match strsim::osa_distance(word, candidate) {
+        1 if candidate.len() > 2 => 1.0,
+        _ => strsim::jaro_winkler(word, candidate),
+    };
     known
         .into_iter()
-        .map(|candidate| (strsim::jaro_winkler(word, candidate), candidate))
+        .map(|candidate| (likeness(candidate), candidate))
         .filter(|(likeness, _)| *likeness > 0.75)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
@@ -47,6 +52,15 @@ pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_slip_is_nearer_than_a_likeness() {
+        let known = ["dem", "lammps", "mpm", "mpm:gap", "chain", "hertz-chain"];
+        for (slip, meant) in [("mmp", "mpm"), ("mpm:gpa", "mpm:gap"), ("chian", "chain"), ("lamps", "lammps")] {
+            assert_eq!(did_you_mean(slip, known), Some(format!("did you mean `{meant}`?")));
+        }
+        assert_eq!(did_you_mean("quux", known), None);
+    }
 
     /// What stood in the file stands in the message, but steers nothing.
     #[test]
