@@ -3,6 +3,7 @@
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{LEVELS, Numbers, Silo, WEAKNESS};
 use crate::silo::ensemble::Flow;
+use crate::silo::paper::PaperSize;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
@@ -33,10 +34,23 @@ fn silo() -> Silo {
     Silo { flow: Flow::Pushed, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
 }
 
+fn full_size() -> PaperSize {
+    PaperSize {
+        variant: "deep",
+        flow: Flow::Pushed,
+        label: "tall silo, pushed",
+        step: LEVELS[0],
+        bins: BINS,
+        drained: None,
+    }
+}
+
 fn claims() -> Vec<Claim> {
-    silo().of_every()
+    [silo().of_every(), full_size().claims()].concat()
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Pushed, BINS))
+    let mut all = crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Pushed, BINS);
+    all.extend(full_size().figures(runner));
+    Ok(all)
 }

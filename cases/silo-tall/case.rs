@@ -3,6 +3,7 @@
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{Drained, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
 use crate::silo::ensemble::Flow;
+use crate::silo::paper::{self, PaperSize};
 use crate::silo::{collapse, flows};
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
@@ -48,6 +49,18 @@ fn silo() -> Silo {
     Silo { flow: Flow::Drained, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
 }
 
+fn full_size() -> PaperSize {
+    let drained = paper::Drained { plateau: DRAINED.plateau, beside: &collapse::PAPER[0], others: &collapse::PAPER };
+    PaperSize {
+        variant: "paper",
+        flow: Flow::Drained,
+        label: "tall silo, drained",
+        step: LEVELS[0],
+        bins: DRAINED.bins,
+        drained: Some(drained),
+    }
+}
+
 fn claims() -> Vec<Claim> {
     let silo = silo();
     let mut all = vec![
@@ -56,11 +69,12 @@ fn claims() -> Vec<Claim> {
         silo.turn(prototype::TALL_TURN),
         silo.symmetry(),
         silo.beside_lammps(GONE, gone),
-        collapse::of_drains(silo.run.clone(), &collapse::TENTH[0]),
-        collapse::of_strained(silo.run.clone(), &collapse::TENTH),
+        collapse::of_drains(silo.run.clone(), &collapse::TENTH[0], ["the wide silo", ""]),
+        collapse::of_strained(silo.run.clone(), &collapse::TENTH, ""),
     ];
     all.extend(silo.of_every());
     all.extend(silo.of_drains(&DRAINED));
+    all.extend(full_size().claims());
     all
 }
 
@@ -68,5 +82,6 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done = runner.run(&silo().run)?;
     let mut all = crate::silo::figures::all(&done, Flow::Drained, DRAINED.bins);
     all.extend(flows::figures(&done, "tall silo, drained", &collapse::TENTH));
+    all.extend(full_size().figures(runner));
     Ok(all)
 }

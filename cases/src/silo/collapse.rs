@@ -21,6 +21,12 @@ pub(crate) const TENTH: [Other; 2] = [
     Other { case: "silo-push", variant: "pushed", label: "wide silo, pushed", strained: 3 },
 ];
 
+/// The other flows beside that of the size of the paper: the wide silo drains at a tenth of it only.
+pub(crate) const PAPER: [Other; 2] = [
+    Other { case: "silo-wide", variant: "drained", label: "wide silo of a tenth of the size, drained", strained: 5 },
+    Other { case: "silo-push", variant: "deep", label: "tall silo, pushed", strained: 3 },
+];
+
 impl Other {
     /// What is kept of its run.
     pub(super) fn done(&self) -> Result<Done, Missing> {
@@ -37,11 +43,11 @@ impl Other {
     }
 }
 
-/// A silo that drains lies on the curve of φ over |I₀| of another.
-pub(crate) fn of_drains(run: Run, other: &'static Other) -> Claim {
-    claim("packing fraction over |I₀| beside that of the wide silo, worst bin", "1")
+/// A silo that drains lies on the curve of φ over |I₀| of another; `which` and `size` say in words what lies beside what.
+pub(crate) fn of_drains(run: Run, other: &'static Other, [which, size]: [&str; 2]) -> Claim {
+    claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
         .of(run)
-        .agrees(Source::Ourselves("what is kept of the wide silo's run of the same size"), move |done| {
+        .agrees(Source::Ourselves("what is kept of that silo's run"), move |done| {
             let theirs = ensemble::over_inertia(&other.done()?)?;
             let theirs = theirs.into_iter().enumerate().filter_map(|(bin, packing)| Some((bin, packing?)));
             let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, theirs)?;
@@ -56,10 +62,10 @@ pub(crate) fn of_drains(run: Run, other: &'static Other) -> Claim {
 const FEW_STRAINS: usize = 3;
 
 /// Three flows lie on one curve of φ over |E|.
-pub(crate) fn of_strained(run: Run, others: &'static [Other]) -> Claim {
-    claim("packing fraction over |E| from .1 on beside that of the other flows, worst bin", "1")
+pub(crate) fn of_strained(run: Run, others: &'static [Other], size: &str) -> Claim {
+    claim(format!("packing fraction over |E| from .1 on beside that of the other flows, worst bin{size}"), "1")
         .of(run)
-        .agrees(Source::Ourselves("what is kept of the other silos' runs of the same size"), move |done| {
+        .agrees(Source::Ourselves("what is kept of the other silos' runs"), move |done| {
             let ours = ensemble::over_strain(&done[0], &STRAIN)?;
             let mut pairs = Vec::new();
             for other in others {

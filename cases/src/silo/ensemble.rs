@@ -297,6 +297,11 @@ pub(crate) fn friction_elsewhere(tables: &mut [Table]) {
     rotate(tables, "sine_of_friction");
 }
 
+/// The tangent of the angle of friction for its sine.
+pub(crate) fn tangent(tables: &mut [Table]) {
+    change(tables, "sine_of_friction", |table, row| at(table, "sine_of_friction", row).asin().tan());
+}
+
 /// Rates of other elements.
 pub(crate) fn rate_elsewhere(tables: &mut [Table]) {
     rotate(tables, "shear_rate_between");

@@ -10,6 +10,7 @@ pub(crate) mod ensemble;
 pub(crate) mod figures;
 pub(crate) mod flows;
 mod instant;
+pub(crate) mod paper;
 mod reader;
 
 pub(crate) use reader::ELEMENTS;

@@ -1,0 +1,144 @@
+//! What is claimed of silos at the size of the paper: its own numbers, and what the prototype finds at a tenth of that size
+//! where the paper prints none. There is one deposit of this size, so that no tolerance is made of what deposits differ by:
+//! each was asked for before there was any run of this size.
+
+use super::ELEMENTS;
+use super::collapse::{self, Other};
+use super::ensemble::{self, Flow, mean, share, steady};
+use super::flows;
+use crate::sources::literature::rycroft_2009 as paper;
+use grainbench_harness::claim::Quantity;
+use grainbench_harness::prelude::*;
+use grainbench_harness::source::Cited;
+
+/// A silo at the size of the paper.
+pub(crate) struct PaperSize {
+    /// Its variant of the scene.
+    pub(crate) variant: &'static str,
+    /// What makes it flow.
+    pub(crate) flow: Flow,
+    /// What it is called in a figure.
+    pub(crate) label: &'static str,
+    /// Its time step.
+    pub(crate) step: Level,
+    /// Packing fraction of the prototype in the first bins of |I₀|.
+    pub(crate) bins: &'static [Cited],
+    /// What is claimed of silos that drain: these strain enough elements for courses along tracers and for curves.
+    pub(crate) drained: Option<Drained>,
+}
+
+/// What is claimed of a silo of the size of the paper that drains.
+pub(crate) struct Drained {
+    /// Packing fraction of strained tracers, in the prototype.
+    pub(crate) plateau: Cited,
+    /// A silo that drains, beside whose curve over |I₀| it is laid.
+    pub(crate) beside: &'static Other,
+    /// Flows beside whose curve over |E| it is laid.
+    pub(crate) others: &'static [Other],
+}
+
+/// sin φ read as its tangent, which is what the words of the paper say of μ.
+fn tangent() -> Control {
+    Control::misread("tan φ for sin φ", ensemble::tangent)
+}
+
+fn larger() -> Control {
+    Control::misread("radii a hundredth too large", ensemble::larger_radii)
+}
+
+fn elsewhere() -> Control {
+    Control::misread("each block beside the stress of another", ensemble::stress_elsewhere)
+}
+
+/// Words that tell its rows from those of a tenth of the size.
+const SUFFIX: &str = ", size of the paper";
+/// Why a row may be off by what it may.
+const TENTH: &str = "what silos of a tenth of the size were allowed from two to four runs of the prototype";
+
+/// What was asked for.
+fn asked(allowed: f64, what: &str) -> Tolerance {
+    required(allowed, format!("asked for before: {what}"))
+}
+
+impl PaperSize {
+    /// Its run: some minutes of two cores.
+    pub(crate) fn run(&self) -> Run {
+        Run::new(self.variant, "dem", self.step.resolution).read_by(ELEMENTS).kept().paper_size()
+    }
+
+    fn claim(&self, quantity: &str, unit: &'static str) -> Quantity {
+        claim(format!("{quantity}{SUFFIX}"), unit).of(self.run())
+    }
+
+    /// Its rows.
+    pub(crate) fn claims(&self) -> Vec<Claim> {
+        let flow = self.flow;
+        let angle = |quantity: &str, cited: Cited, allowed: f64, averaged: bool| {
+            self.claim(quantity, "deg")
+                .equals_cited(cited, cited.value, move |done| {
+                    Ok(mean(&ensemble::angles(&done[0], flow, averaged, "largest")?))
+                })
+                .within(asked(allowed / cited.value, TENTH))
+                .refuses(elsewhere())
+        };
+        let mut all = vec![
+            self.claim(&format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
+                .at_least(0.95, paper::LOWEST_SINE.source(), move |done| {
+                    let range = [paper::LOWEST_SINE.value, paper::HIGHEST_SINE.value];
+                    Ok(share(&steady(&done[0], flow, "sine_of_friction")?, range))
+                })
+                .within(exactly("a bound"))
+                .refuses(tangent()),
+            angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
+            angle("the same angle of means over 20 frames", paper::WINDOW, 2.5, true),
+        ];
+        all.extend(self.drained.iter().flat_map(|of| self.of_drains(of)));
+        all
+    }
+
+    /// Rows of a silo that drains.
+    fn of_drains(&self, of: &Drained) -> Vec<Claim> {
+        let bins = self.bins;
+        let one = |quantity: &str| self.claim(quantity, "1");
+        vec![
+            one("packing fraction of the deposit")
+                .equals_cited(paper::DEPOSIT, 1.0, |done| ensemble::deposit(&done[0]))
+                .within(asked(0.005, "63.5 % ± .5; in units of φ"))
+                .refuses(larger()),
+            one("packing fraction over |I₀| in bins, worst")
+                .equals(bins[0].source(), move |done| {
+                    let cited = bins.iter().map(|cited| cited.value).enumerate();
+                    let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, cited)?;
+                    let [found, expected] = ensemble::worst(&pairs);
+                    Ok(Measured::new(found, expected, 1.0))
+                })
+                .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
+                .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one)),
+            one("packing fraction of tracers strained by more than .4")
+                .equals_cited(of.plateau, 1.0, |done| ensemble::plateau(&done[0]))
+                .within(asked(0.008, TENTH))
+                .refuses(larger()),
+            one("largest sin φ of tracers before they dilate, median")
+                .equals_cited(paper::ONSET, 1.0, |done| ensemble::onset(&done[0]))
+                .within(asked(0.04, TENTH))
+                .refuses(tangent()),
+            collapse::of_drains(self.run(), of.beside, ["the wide silo of a tenth of the size", SUFFIX]),
+            collapse::of_strained(self.run(), of.others, SUFFIX),
+        ]
+    }
+
+    /// Its figures, where its run is kept or done.
+    pub(crate) fn figures(&self, runner: &Runner) -> Vec<Figure> {
+        let Ok(done) = runner.run(&self.run()) else { return Vec::new() };
+        let mut all = super::figures::all(&done, self.flow, self.bins);
+        if let Some(of) = &self.drained {
+            all.extend(flows::figures(&done, self.label, of.others));
+        }
+        let named = |figure: Figure| Figure {
+            name: format!("{}-paper", figure.name),
+            title: format!("{}{SUFFIX}", figure.title),
+            ..figure
+        };
+        all.into_iter().map(named).collect()
+    }
+}
