@@ -1,0 +1,285 @@
+//! Janssen's silo: how much of the weight of a column comes down to its floor, and how much hangs on its side.
+
+#[path = "column.rs"]
+mod column;
+
+use crate::rows::programs::row;
+use column::{COLUMN, STEADY, side};
+use grainbench_harness::prelude::*;
+use grainbench_harness::statistics::spread;
+use std::f64::consts::PI;
+
+const LEVELS: &[Level] = &[
+    Level { name: "dt=6e-4 s", resolution: Resolution::TimeStep(6e-4) },
+    Level { name: "dt=3e-4 s", resolution: Resolution::TimeStep(3e-4) },
+];
+
+pub(crate) static CASE: Case = Case {
+    name: "janssen",
+    title: "Janssen's silo",
+    claim: "On the floor of a column of spheres that slides down its side stands what Janssen's law leaves of the weight, with the \
+            friction at work on the side and the ratio of stresses that are measured half-way up; without friction all of it; and LAMMPS \
+            finds the same from the same fall.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "Janssen's law is a model: that the ratio K of stresses is one number over the height is assumed in it, and holds \
+               to some hundredths here. One filling is one draw.",
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+const JANSSEN: Source =
+    Source::Derived("dσ/dx = w/A − (4/D) μ K σ, with μ K from the middle of the column (derivation)");
+
+/// What fillings of other seeds give: made by `examples/seeds.rs`.
+const PACKINGS: &str = include_str!("packings.csv");
+
+/// Variants, and the friction of the side.
+const SIDES: [(&str, &str); 2] = [(PLAIN, ".5"), ("half", ".25")];
+
+fn run(variant: &'static str, solver: &'static str) -> Run {
+    Run::new(variant, solver, LEVELS[0].resolution).read_by(COLUMN).long().kept()
+}
+
+/// Sets the friction of the side.
+fn side_friction(scene: &mut Scene, friction: f64) {
+    let count = scene.materials.len();
+    if let Some(place) = scene.materials.iter().position(|name| name == "side") {
+        let at_side = |at: &usize| at / count == place || at % count == place;
+        for at in (0..count * count).filter(at_side) {
+            if let Some(law) = &mut scene.laws[at] {
+                law.friction = friction;
+            }
+        }
+    }
+}
+
+/// The friction of the side.
+fn friction(scene: &Scene) -> f64 {
+    let place = |name: &str| scene.materials.iter().position(|known| known == name).map(|place| place as u16);
+    let law = place("side").zip(place("grain")).and_then(|(side, grain)| scene.law(side, grain));
+    law.map_or(f64::NAN, |law| law.friction)
+}
+
+fn weight(scene: &Scene) -> f64 {
+    scene.grains.iter().map(|grain| grain.mass).sum::<f64>() * scene.gravity.norm()
+}
+
+/// The mean of a column of the series over the steady descent.
+fn steady(done: &Done, name: &str) -> Result<f64, Missing> {
+    let values = done.series().time.iter().zip(done.column(name)?).filter(|(time, _)| **time >= STEADY);
+    let values: Vec<f64> = values.map(|(_, value)| *value).collect();
+    if values.is_empty() { Err(Missing(format!("samples of `{name}`"))) } else { Ok(mean(&values)) }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Part of the weight that stands on the floor.
+fn on_floor(done: &Done) -> Result<f64, Missing> {
+    Ok(-steady(done, "floor.force_z")? / weight(&done.scene))
+}
+
+/// The middle of the column: means of a quantity over its slices.
+struct Middle {
+    vertical: f64,
+    normal: f64,
+    shear: f64,
+    weight: f64,
+}
+
+impl Middle {
+    /// Of the slices between a quarter and three quarters of the height, which the weight over height of the filling tells.
+    fn of(done: &Done) -> Result<Self, Missing> {
+        let table = done.table("slices")?;
+        let column = |name: &str| table.column(name).ok_or_else(|| Missing(format!("column `{name}` of the slices")));
+        let (heights, weights) = (column("height")?, column("weight")?);
+        let slice = 2.0 * heights.first().copied().unwrap_or(f64::NAN);
+        let top = weights.iter().sum::<f64>() * slice / weights.iter().copied().fold(0.0, f64::max);
+        let inside = |height: &f64| (0.25 * top..0.75 * top).contains(height);
+        let over = |name: &str| -> Result<f64, Missing> {
+            let values = heights.iter().zip(column(name)?).filter(|(height, _)| inside(height));
+            let values: Vec<f64> = values.map(|(_, value)| *value).collect();
+            if values.is_empty() { Err(Missing("slices in the middle".to_owned())) } else { Ok(mean(&values)) }
+        };
+        Ok(Self {
+            vertical: over("vertical")?,
+            normal: over("normal")?,
+            shear: over("shear")?,
+            weight: over("weight")?,
+        })
+    }
+
+    /// Part of the weight that stands on the floor where the side bears `ratio` times the vertical stress: (λ/H)(1 − e^(−H/λ)) with
+    /// λ = D/(4 ratio).
+    fn left_over(&self, scene: &Scene, ratio: f64) -> f64 {
+        let (_, _, radius) = side(scene);
+        let (length, height) = (2.0 * radius / (4.0 * ratio), weight(scene) / self.weight);
+        length / height * (1.0 - (-height / length).exp())
+    }
+}
+
+fn claims() -> Vec<Claim> {
+    let mut all = vec![balance(), smooth(), mobilised()];
+    for (variant, friction) in SIDES {
+        all.push(law(variant, friction));
+        all.push(beside(variant, friction));
+    }
+    all.push(saturates());
+    all
+}
+
+/// Floor and side bear the weight.
+fn balance() -> Claim {
+    claim("weight that floor and side bear, over the weight", "1")
+        .of(run(PLAIN, "dem"))
+        .holds("momentum of the column, which descends at one speed", |done| {
+            let borne = -steady(&done[0], "floor.force_z")? - steady(&done[0], "side.force_z")?;
+            Ok(Measured::new(borne / weight(&done[0].scene), 1.0, 1.0))
+        })
+        .within(judged(
+            2e-3,
+            "its momentum changes by less than m v √N over the time of the mean, and 120 samples alias its swings",
+        ))
+        .refuses(Control::scene("gravity 1 % larger", |scene| scene.gravity *= 1.01))
+}
+
+/// Without friction the floor bears all.
+fn smooth() -> Claim {
+    claim("part of the weight on the floor, smooth side", "1")
+        .of(run("smooth", "dem"))
+        .equals(Source::Derived("a side without friction bears nothing"), |done| {
+            Ok(Measured::new(on_floor(&done[0])?, 1.0, 1.0))
+        })
+        .within(judged(2e-3, "as of floor and side together"))
+        .refuses(Control::scene("a friction of .02 at the side", |scene| side_friction(scene, 0.02)))
+}
+
+/// A side bears no more than Coulomb allows.
+fn mobilised() -> Claim {
+    claim("part of the friction of the side that is at work half-way up, friction .25", "1")
+        .of(run("half", "dem"))
+        .at_most(
+            1.0,
+            Source::Derived("Coulomb: grains that slide bear μ of the normal force, those that roll less"),
+            |done| {
+                let middle = Middle::of(&done[0])?;
+                Ok(middle.shear / (friction(&done[0].scene) * middle.normal))
+            },
+        )
+        .within(exactly("a bound"))
+        .refuses(Control::misread(TWICE, twice))
+}
+
+const TWICE: &str = "the friction of the side counted twice";
+
+fn twice(tables: &mut [Table]) {
+    for table in tables {
+        if let Some(place) = table.columns.iter().position(|column| column == "shear") {
+            table.values[place].iter_mut().for_each(|shear| *shear *= 2.0);
+        }
+    }
+}
+
+/// Janssen's law with the friction that is measured at work, for grains roll along a side as well as slide.
+fn law(variant: &'static str, about: &str) -> Claim {
+    claim(format!("part of the weight on the floor, friction {about} at the side"), "1")
+        .of(run(variant, "dem"))
+        .equals(JANSSEN, |done| {
+            let middle = Middle::of(&done[0])?;
+            let expected = middle.left_over(&done[0].scene, middle.shear / middle.vertical);
+            Ok(Measured::new(on_floor(&done[0])?, expected, expected))
+        })
+        .within(required(0.1, "asked for before: K is one number in the law, and the ends of the column have others"))
+        .refuses(Control::misread(TWICE, twice))
+}
+
+/// Deep down the stress no longer rises.
+fn saturates() -> Claim {
+    claim("vertical stress a quarter up over that half-way up", "1")
+        .of(run(PLAIN, "dem"))
+        .at_most(
+            1.35,
+            Source::Derived("(1 − e^(−3H/4λ))/(1 − e^(−H/2λ)) < 1.35 for H > λ; 1.5 where it rises as depth does"),
+            |done| {
+                let table = done[0].table("slices")?;
+                let missing = || Missing("slices".to_owned());
+                let (heights, stress) =
+                    (table.column("height").ok_or_else(missing)?, table.column("vertical").ok_or_else(missing)?);
+                let weights = table.column("weight").ok_or_else(missing)?;
+                let slice = 2.0 * heights.first().copied().unwrap_or(f64::NAN);
+                let top = weights.iter().sum::<f64>() * slice / weights.iter().copied().fold(0.0, f64::max);
+                let at = |part: f64| {
+                    let near = |(_, height): &(usize, &f64)| (*height - part * top).abs();
+                    let place =
+                        heights.iter().enumerate().min_by(|a, b| near(a).total_cmp(&near(b))).map(|(place, _)| place);
+                    place.map_or(f64::NAN, |place| stress[place])
+                };
+                Ok(at(0.25) / at(0.5))
+            },
+        )
+        .within(exactly("a bound"))
+        .refuses(Control::scene("a smooth side", |scene| side_friction(scene, 0.0)))
+}
+
+/// How far two fillings are apart in a quantity; nothing where the table does not have it, so that the row is red.
+fn apart(quantity: &str) -> f64 {
+    let mut table = csv::Reader::from_reader(PACKINGS.as_bytes());
+    let place = table.headers().ok().and_then(|names| names.iter().position(|name| name == quantity));
+    let value = |row: csv::StringRecord| row.get(place?)?.parse().ok();
+    let values: Vec<f64> = table.records().flatten().filter_map(value).collect();
+    spread(&values).unwrap_or(0.0)
+}
+
+/// Our solver in LAMMPS' convention and LAMMPS, from the same fall.
+fn beside(variant: &'static str, about: &str) -> Claim {
+    let quantity = format!("part of the weight on the floor, friction {about} at the side");
+    let because =
+        "a filling is one draw of many: the 99 % interval of the difference of two, from fillings of five seeds";
+    let allowed = computed(apart(&quantity), because);
+    let control = Control::ours("a smooth side in ours", |scene| side_friction(scene, 0.0));
+    let run = |solver| Run::new(variant, solver, LEVELS[0].resolution).long().kept();
+    row(&quantity, "1", allowed, [run("dem:lammps"), run("lammps")], control, |done| {
+        Ok(Measured::new(on_floor(&done[0])?, on_floor(&done[1])?, 1.0))
+    })
+}
+
+/// The stress over the height, with Janssen's.
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let done = runner.run(&run(PLAIN, "dem"))?;
+    Ok(profile(&done).into_iter().collect())
+}
+
+fn profile(done: &Done) -> Option<Figure> {
+    let (table, middle) = (done.table("slices").ok()?, Middle::of(done).ok()?);
+    let (heights, vertical) = (table.column("height")?, table.column("vertical")?);
+    let (_, _, radius) = side(&done.scene);
+    let (area, height) = (PI * radius * radius, weight(&done.scene) / middle.weight);
+    let length = 2.0 * radius / (4.0 * middle.shear / middle.vertical);
+    let law = |up: f64| middle.weight / area * length * (1.0 - (-(height - up) / length).exp());
+    let weighs = |up: f64| middle.weight / area * (height - up);
+    let measured = heights.iter().zip(vertical).filter(|(up, _)| **up < height).map(|(&up, &stress)| (up, stress));
+    let caption = "Vertical stress in the column while it descends, in the mean over its cross-section and over time, and Janssen's law \
+                   with the friction at work on the side and the ratio of stresses that are measured half-way up. The other line is what \
+                   stands above.";
+    Some(Figure::graph(
+        "profile",
+        "Vertical stress over the height",
+        caption,
+        [Axis::linear("height over the floor (d)"), Axis::linear("vertical stress (m g/d²)")],
+        vec![
+            Curve::new("dem", Stroke::Markers, measured.collect()),
+            Curve::new("Janssen", Stroke::Dashed, heights_of(height).map(|up| (up, law(up))).collect()),
+            Curve::new("weight above", Stroke::Line, heights_of(height).map(|up| (up, weighs(up))).collect()),
+        ],
+    ))
+}
+
+/// Heights from the floor to the top.
+fn heights_of(top: f64) -> impl Iterator<Item = f64> {
+    (0..=100).map(move |part| top * f64::from(part) / 100.0)
+}

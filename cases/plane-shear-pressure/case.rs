@@ -1,0 +1,295 @@
+//! Plane shear of discs under a lid that is pressed: friction and packing fraction over the inertial number.
+
+#[path = "bulk.rs"]
+mod bulk;
+
+use crate::rows::programs::row;
+use bulk::BULK;
+use grainbench_harness::prelude::*;
+use grainbench_harness::statistics::spread;
+use grainbench_scene::columns::{Chosen, Columns};
+use grainbench_scene::scene::{Duration, Piston, Sampling};
+
+const LEVELS: &[Level] = &[
+    Level { name: "dt=2e-3 s", resolution: Resolution::TimeStep(2e-3) },
+    Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
+];
+
+pub(crate) static CASE: Case = Case {
+    name: "plane-shear-pressure",
+    title: "Plane shear at a given pressure",
+    claim: "A layer that is sheared under a pressed lid carries the pressure of the lid and the shear stress of its walls \
+            everywhere; what friction and packing fraction it has depends on the inertial number alone, and is what LAMMPS finds \
+            from the same start.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "420 discs: walls are ten diameters from the middle, and the mean of one run is one draw of many, \
+               whose spread over packings is what tolerances are made of. No published curve stands beside it.",
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+/// Variants, and what the inertial number is about.
+const RATES: [(&str, &str); 5] =
+    [("i-.003", ".003"), ("i-.01", ".01"), ("i-.03", ".03"), ("i-.1", ".1"), ("i-.3", ".3")];
+
+/// What packings of other seeds give: made by `examples/seeds.rs`.
+const PACKINGS: &str = include_str!("packings.csv");
+
+/// Where tolerances come from.
+const BECAUSE: &str =
+    "a sheared packing is one draw of many: the 99 % interval of the difference of two, from packings of four seeds";
+
+/// Part of the run after which the flow is steady: the walls have then dragged the middle along (derivation).
+const STEADY: f64 = 0.25;
+
+/// How much more the lid presses in the partner runs, and the root of it, by which its walls are faster.
+const PRESSED: f64 = 4.0;
+
+fn run(variant: &'static str, solver: &'static str) -> Run {
+    Run::new(variant, solver, LEVELS[0].resolution).read_by(BULK).long().kept()
+}
+
+/// Ours, with the stress of grains in the mean over the time between snapshots.
+fn ours(variant: &'static str) -> Run {
+    run(variant, "dem").adjusted("mean stress", average)
+}
+
+fn average(scene: &mut Scene) {
+    scene.columns = Columns { chosen: vec![Chosen::Contacts, Chosen::MeanVirial], digits: None, mean_every: 10 };
+}
+
+/// The same at the same inertial number and four times the pressure.
+fn pressed(variant: &'static str) -> Run {
+    run(variant, "dem").adjusted("four times the pressure, twice the speed", |scene| {
+        average(scene);
+        press(scene, PRESSED);
+        hasten(scene, PRESSED.sqrt());
+        // What is read of it is read of its snapshots.
+        scene.probes.clear();
+        if let Duration::Seconds(time) = &mut scene.duration {
+            *time /= PRESSED.sqrt();
+        }
+        if let Sampling::Seconds(every) = &mut scene.sampling {
+            *every /= PRESSED.sqrt();
+        }
+    })
+}
+
+fn pistons(scene: &mut Scene) -> impl Iterator<Item = &mut Piston> {
+    scene.walls.iter_mut().filter_map(|wall| wall.piston.as_mut())
+}
+
+fn press(scene: &mut Scene, times: f64) {
+    pistons(scene).for_each(|piston| piston.force *= times);
+}
+
+fn hasten(scene: &mut Scene, times: f64) {
+    scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases).for_each(|phase| phase.velocity *= times);
+}
+
+/// The pressure of the lid (N/m).
+fn pressure(scene: &Scene) -> f64 {
+    let force: f64 = scene.walls.iter().filter_map(|wall| wall.piston).map(|piston| piston.force).sum();
+    force / width(scene)
+}
+
+fn width(scene: &Scene) -> f64 {
+    scene.domain.map_or(f64::NAN, |domain| domain.high.x - domain.low.x)
+}
+
+/// The mean of what is read of the bulk, over the steady flow.
+fn bulk(done: &Done, name: &str) -> Result<f64, Missing> {
+    let table = done.table("bulk")?;
+    let missing = || Missing(format!("column `{name}` of the bulk"));
+    let (times, values) = (table.column("time").ok_or_else(missing)?, table.column(name).ok_or_else(missing)?);
+    let from = STEADY * times.last().copied().unwrap_or(0.0);
+    mean(times, values, from).ok_or_else(missing)
+}
+
+/// The mean of a column of the series, over the steady flow.
+fn series(done: &Done, name: &str) -> Result<f64, Missing> {
+    let times = &done.series().time;
+    let from = STEADY * times.last().copied().unwrap_or(0.0);
+    mean(times, done.column(name)?, from).ok_or_else(|| Missing(format!("samples of `{name}`")))
+}
+
+fn mean(times: &[f64], values: &[f64], from: f64) -> Option<f64> {
+    let steady: Vec<f64> =
+        times.iter().zip(values).filter(|(time, _)| **time >= from).map(|(_, value)| *value).collect();
+    (!steady.is_empty()).then(|| steady.iter().sum::<f64>() / steady.len() as f64)
+}
+
+/// Shear over normal stress of the bulk.
+fn friction(done: &Done) -> Result<f64, Missing> {
+    Ok(bulk(done, "shear")? / bulk(done, "normal")?)
+}
+
+fn packing(done: &Done) -> Result<f64, Missing> {
+    bulk(done, "packing")
+}
+
+/// I = γ̇ √(m/P) of the bulk, with the mass of the disc of mean diameter, which is 1.
+fn inertia(done: &Done) -> Result<f64, Missing> {
+    Ok(bulk(done, "rate")? / pressure(&done.scene).sqrt())
+}
+
+/// Shear stress of both walls (N/m).
+fn of_walls(done: &Done) -> Result<f64, Missing> {
+    Ok(0.5 * (series(done, "on-bottom.force_x")? - series(done, "on-lid.force_x")?) / width(&done.scene))
+}
+
+/// How far two packings are apart in a quantity; nothing where the table does not have it, so that the row is red.
+fn apart(quantity: &str) -> f64 {
+    let mut table = csv::Reader::from_reader(PACKINGS.as_bytes());
+    let place = table.headers().ok().and_then(|names| names.iter().position(|name| name == quantity));
+    let value = |row: csv::StringRecord| row.get(place?)?.parse().ok();
+    let values: Vec<f64> = table.records().flatten().filter_map(value).collect();
+    spread(&values).unwrap_or(0.0)
+}
+
+/// A quantity that is read of a run, and its name.
+type Quantity = (&'static str, fn(&Done) -> Result<f64, Missing>);
+
+const FRICTION: Quantity = ("friction σ_xy/σ_yy", friction);
+const PACKING: Quantity = ("packing fraction", packing);
+const INERTIA: Quantity = ("inertial number", inertia);
+
+fn claims() -> Vec<Claim> {
+    let mut all = Vec::new();
+    for (variant, about) in RATES {
+        all.push(normal(variant, about));
+        all.push(shear(variant, about));
+        all.extend([FRICTION, PACKING, INERTIA].map(|quantity| scales(variant, about, quantity)));
+        all.extend([FRICTION, PACKING].map(|quantity| beside(variant, about, quantity)));
+    }
+    all
+}
+
+/// The lid is at rest in the mean, so that the layer carries its pressure.
+fn normal(variant: &'static str, about: &str) -> Claim {
+    let quantity = format!("normal stress of the bulk over the pressure of the lid, I ≈ {about}");
+    let allowed = apart(&quantity);
+    claim(quantity, "1")
+        .of(ours(variant))
+        .holds("momentum across the layer: the mean of σ_yy, with its momentum flux, is that of the lid", |done| {
+            Ok(Measured::new(bulk(&done[0], "normal")? / pressure(&done[0].scene), 1.0, 1.0))
+        })
+        .within(computed(allowed, BECAUSE))
+        .refuses(Control::scene("a lid that is pressed by an eighth less", |scene| press(scene, 0.875)))
+}
+
+/// Shear stress is one through the layer.
+fn shear(variant: &'static str, about: &str) -> Claim {
+    fn bare(tables: &mut [Table]) {
+        for table in tables {
+            let part = |name: &str| table.column(name).map(<[f64]>::to_vec);
+            let (Some(bare), Some(instant), Some(shear)) = (part("frictionless"), part("instant"), part("shear"))
+            else {
+                return;
+            };
+            let sum = |values: &[f64]| values.iter().filter(|value| value.is_finite()).sum::<f64>();
+            let share = sum(&bare) / sum(&instant);
+            if let Some(place) = table.columns.iter().position(|column| column == "shear") {
+                table.values[place] = shear.iter().map(|shear| shear * share).collect();
+            }
+        }
+    }
+    let quantity = format!("shear stress of the bulk over that of the walls, I ≈ {about}");
+    let allowed = apart(&quantity);
+    claim(quantity, "1")
+        .of(ours(variant))
+        .holds("momentum along the layer: the mean of σ_xy, with its momentum flux, is that of the walls", |done| {
+            Ok(Measured::new(bulk(&done[0], "shear")? / of_walls(&done[0])?, 1.0, 1.0))
+        })
+        .within(computed(allowed, BECAUSE))
+        .refuses(Control::misread("tangential forces left out of the stress", bare))
+}
+
+/// At four times the pressure and twice the speed nothing is another.
+fn scales(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
+    const LAW: &str =
+        "dimensions: grains as good as rigid have no time but 1/γ̇ and √(m/P), so that I alone counts (derivation)";
+    let quantity = format!("{name}, I ≈ {about}");
+    let allowed = apart(&quantity);
+    claim(quantity, "1")
+        .of_all([ours(variant).aside(), pressed(variant)])
+        .holds(LAW, move |done| Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0)))
+        .within(computed(allowed, BECAUSE))
+        .refuses(wrongly_pressed(about.starts_with(".0") && name != INERTIA.0))
+}
+
+/// Where the inertial number tells, four times the pressure at the same speed; where it hardly does, no friction.
+fn wrongly_pressed(is_flat: bool) -> Control {
+    let is_pressed = |scene: &mut Scene| pistons(scene).any(|piston| piston.force > 40.0);
+    if is_flat {
+        return Control::scene("friction 0 where the pressure is four times", move |scene| {
+            if is_pressed(scene) {
+                scene.change_laws(|law| law.friction = if law.friction > 1.0 { law.friction } else { 0.0 });
+            }
+        });
+    }
+    Control::scene("four times the pressure at the same speed", move |scene| {
+        if is_pressed(scene) {
+            hasten(scene, 1.0 / PRESSED.sqrt());
+        }
+    })
+}
+
+/// Our solver in LAMMPS' convention and LAMMPS, from the same start.
+fn beside(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
+    let quantity = format!("{name}, I ≈ {about}");
+    let allowed = computed(apart(&quantity), BECAUSE);
+    let control = Control::ours("friction 0 between grains in ours", |scene| {
+        scene.change_laws(|law| law.friction = if law.friction > 1.0 { law.friction } else { 0.0 });
+    });
+    row(&quantity, "1", allowed, [run(variant, "dem:lammps"), run(variant, "lammps")], control, move |done| {
+        Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0))
+    })
+}
+
+/// Friction and packing fraction over the inertial number, of ours and of LAMMPS.
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let mut curves: [Vec<Curve>; 2] = [Vec::new(), Vec::new()];
+    for (solver, stroke) in [("dem", Stroke::MarkedLine), ("lammps", Stroke::Markers)] {
+        let of = |variant| if solver == "dem" { ours(variant) } else { run(variant, solver) };
+        let mut points: [Vec<(f64, f64)>; 2] = [Vec::new(), Vec::new()];
+        for (variant, _) in RATES {
+            let done = match runner.run(&of(variant)) {
+                Ok(done) => done,
+                Err(RunError::NotAvailable { .. }) => continue,
+                Err(error) => return Err(error),
+            };
+            for (points, of) in points.iter_mut().zip([friction, packing]) {
+                if let (Ok(rate), Ok(value)) = (inertia(&done), of(&done)) {
+                    points.push((rate, value));
+                }
+            }
+        }
+        for (curves, points) in curves.iter_mut().zip(points) {
+            curves.push(Curve::new(solver, stroke, points));
+        }
+    }
+    let [of_friction, of_packing] = curves;
+    let x = || Axis::log("inertial number I (1)");
+    let caption = "Means over the last three quarters of a run under the pressed lid; the same start.";
+    Ok(vec![
+        Figure::graph(
+            "friction",
+            "Friction over the inertial number",
+            caption,
+            [x(), Axis::linear("σ_xy/σ_yy (1)")],
+            of_friction,
+        ),
+        Figure::graph(
+            "packing",
+            "Packing fraction over the inertial number",
+            caption,
+            [x(), Axis::linear("φ (1)")],
+            of_packing,
+        ),
+    ])
+}

@@ -1,0 +1,58 @@
+//! What draws differ by: the rows of a case's own runs for other seeds, as the table `packings.csv` of the case, which their
+//! tolerances are made from. A claim of several runs is asked for its quantity of the first.
+//!
+//! ```text
+//! cargo run --release --example seeds plane-shear-pressure grains.disc.packed.seed 11 12 13 14 15 16 \
+//!     > cases/plane-shear-pressure/packings.csv
+//! ```
+//!
+//! The seed of the case's own scene is none of them.
+
+use grainbench::cases::registry::{by_name, read_grains};
+use grainbench::cases::solvers::by_name as solver;
+use grainbench::harness::claim::Claim;
+use grainbench::harness::reading;
+use grainbench::harness::run::{Done, Run};
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::sync::Arc;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [name, key, seeds @ ..] = &arguments[..] else {
+        return Err("expected the name of a case, the key of its seed, and seeds".into());
+    };
+    let case = by_name(name).ok_or("there is no such case")?;
+    let own = |claim: &Claim| claim.runs[0].solver == "dem" && claim.runs[0].reading.is_some();
+    let claims: Vec<Claim> = (case.claims)().into_iter().filter(own).collect();
+    let mut table = csv::Writer::from_writer(std::io::stdout());
+    table.write_record(std::iter::once("seed").chain(claims.iter().map(|claim| claim.quantity.as_str())))?;
+    for seed in seeds {
+        let mut done: BTreeMap<String, Done> = BTreeMap::new();
+        let mut row = vec![seed.clone()];
+        for claim in &claims {
+            let run = &claim.runs[0];
+            if !done.contains_key(&run.key()) {
+                done.insert(run.key(), of_seed(case, run, key, seed)?);
+            }
+            let all: Vec<Done> = claim.runs.iter().filter_map(|_| done.get(&run.key())).cloned().collect();
+            let value = (claim.measure)(&all).map_err(|missing| missing.to_string())?.value;
+            row.push(format!("{value:.6}"));
+        }
+        table.write_record(row)?;
+        table.flush()?;
+    }
+    Ok(())
+}
+
+/// The run from another seed.
+fn of_seed(case: &grainbench::cases::Case, run: &Run, key: &str, seed: &str) -> Result<Done, Box<dyn Error>> {
+    let source = case.source().variant(run.variant).set(key, seed);
+    let mut scene = source.scene(&read_grains)?;
+    if let Some((_, change)) = &run.adjustment {
+        change(&mut scene);
+    }
+    let solver = solver(run.solver).ok_or("there is no such solver")?;
+    let (record, tables) = reading::run(&*solver, &scene, &run.resolution, 1, run.reading)?;
+    Ok(Done { tables: Arc::new(tables), ..Done::new(Arc::new(scene), Arc::new(record)) })
+}

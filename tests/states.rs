@@ -1,0 +1,103 @@
+//! The states that scenes of cases begin with say where they come from, and are those that are meant: each has a file beside it,
+//! `NAME.state.toml`, with the command that makes it again.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use grainbench::cases::registry::{CASES, read_grains};
+use grainbench::fields::overlap::sphere_in_box;
+use grainbench::reference::deck::Stepping;
+use grainbench::reference::stored::scene_hash;
+use grainbench::scene::end_state::EndState;
+use grainbench::scene::solver::Resolution;
+use grainbench::scene::source::SceneSource;
+use serde::Deserialize;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What stands beside a state.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Origin {
+    /// What made it, with its version.
+    program: String,
+    /// The commit that it was built from.
+    commit: String,
+    /// The day (YYYY-MM-DD).
+    date: String,
+    machine: String,
+    /// The scene whose end it is, beside it.
+    scene: String,
+    /// BLAKE3 hash of everything in that scene that a run depends on, and the time step (s) that is part of it.
+    scene_blake3: String,
+    time_step: f64,
+    /// What makes it again, from the root of the project.
+    command: String,
+    /// What became of the state afterwards, or what is known of making it again.
+    note: String,
+    grains: usize,
+    /// Packing fraction within a box, lower and upper corner (m): away from sides, floor and surface.
+    packing_fraction: f64,
+    within: [[f64; 3]; 2],
+    /// BLAKE3 hash of the file.
+    blake3: String,
+}
+
+/// Every state of every case.
+fn states() -> Vec<PathBuf> {
+    let folders = CASES.iter().map(|case| case.directory());
+    let files = folders.flat_map(|folder| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));
+    let mut states: Vec<PathBuf> =
+        files.filter(|path| path.extension().is_some_and(|ending| ending == "state")).collect();
+    states.sort();
+    states
+}
+
+fn origin(state: &Path) -> Origin {
+    let file = state.with_extension("state.toml");
+    let text = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
+}
+
+#[test]
+fn a_state_is_the_one_whose_origin_is_told() {
+    let states = states();
+    assert!(states.len() >= 3, "cases that begin with the end of another run");
+    for path in &states {
+        let (told, bytes) = (origin(path), fs::read(path).unwrap());
+        let found = blake3::hash(&bytes).to_hex().to_string();
+        assert_eq!(found, told.blake3, "{}", path.display());
+        assert!(bytes.len() <= 10_000_000, "{} is too large to be kept", path.display());
+        let state = EndState::from_bytes(&bytes).unwrap();
+        let scene = SceneSource::read(&path.with_file_name(&told.scene)).unwrap().scene(&read_grains).unwrap();
+        assert_eq!((state.of[0].as_str(), state.grains.len()), (&*scene.title, told.grains), "{}", path.display());
+        let stepping = Stepping::of(&scene, &Resolution::TimeStep(told.time_step)).unwrap();
+        assert_eq!(scene_hash(&scene, &stepping), told.scene_blake3, "{}: of another scene", path.display());
+        for word in [&*told.scene, path.file_name().unwrap().to_str().unwrap(), "grainbench simulate", "--time-step"] {
+            assert!(told.command.contains(word), "{}: `{word}` in the command", path.display());
+        }
+        for part in [&told.program, &told.commit, &told.date, &told.machine, &told.note] {
+            assert!(!part.trim().is_empty(), "{}: a part of its origin is empty", path.display());
+        }
+    }
+}
+
+/// Solid volume over the volume of the box, in a bed that has no end along y.
+#[test]
+fn the_packing_fraction_of_a_state_is_the_one_that_is_told() {
+    for path in &states() {
+        let (told, state) = (origin(path), EndState::from_bytes(&fs::read(path).unwrap()).unwrap());
+        let [low, high] = told.within;
+        let volume: f64 = (0..3).map(|axis| high[axis] - low[axis]).product();
+        let period = high[1] - low[1];
+        let overlap = |grain: &grainbench::scene::end_state::StateGrain, image: f64| {
+            let mut centre = grain.position;
+            centre.y += image * period;
+            let side = |corner: [f64; 3]| [0, 1, 2].map(|axis| corner[axis] - centre[axis]);
+            sphere_in_box(grain.size[0], side(low), side(high))
+        };
+        let solid: f64 =
+            state.grains.iter().flat_map(|grain| [-1.0, 0.0, 1.0].map(|image| overlap(grain, image))).sum();
+        let found = solid / volume;
+        assert!((found - told.packing_fraction).abs() <= 5.1e-5, "{}: {found:.6}", path.display());
+    }
+}
