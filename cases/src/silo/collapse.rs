@@ -43,14 +43,17 @@ impl Other {
     }
 }
 
-/// A silo that drains lies on the curve of φ over |I₀| of another; `which` and `size` say in words what lies beside what.
+/// A silo that drains lies on the curve of φ over |I₀| of another, for as long as that one flows; `which` and `size` say in words
+/// what lies beside what.
 pub(crate) fn of_drains(run: Run, other: &'static Other, [which, size]: [&str; 2]) -> Claim {
     claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
         .of(run)
         .agrees(Source::Ourselves("what is kept of that silo's run"), move |done| {
-            let theirs = ensemble::over_inertia(&other.done()?)?;
+            let other = other.done()?;
+            let theirs = ensemble::over_inertia(&other)?;
             let theirs = theirs.into_iter().enumerate().filter_map(|(bin, packing)| Some((bin, packing?)));
-            let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, theirs)?;
+            let until = other.scene.duration.seconds().unwrap_or(f64::INFINITY);
+            let pairs = ensemble::in_bins_of(&ensemble::over_inertia_until(&done[0], until)?, theirs)?;
             let [found, expected] = ensemble::worst(&pairs);
             Ok(Measured::new(found, expected, 1.0))
         })

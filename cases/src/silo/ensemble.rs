@@ -99,9 +99,15 @@ pub(crate) fn share(values: &[f64], [low, high]: [f64; 2]) -> f64 {
 
 /// A pair of quantities of all elements of the bulk that shear at so high a rate.
 fn pairs(done: &Done, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Missing> {
+    pairs_of(done.table("elements")?, f64::INFINITY, rate, names)
+}
+
+/// The same of a table, up to a time.
+fn pairs_of(table: &Table, until: f64, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Missing> {
     let [a, b] = names;
-    let rows = Rows::of(done.table("elements")?, ["time", "side", "surface", "shear_rate", a, b])?;
-    let flows = |row: &[f64; 6]| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0 && row[3] >= rate;
+    let rows = Rows::of(table, ["time", "side", "surface", "shear_rate", a, b])?;
+    let is_seen = |time: f64| (STEADY - 1e-9..until + 1e-9).contains(&time);
+    let flows = |row: &[f64; 6]| is_seen(row[0]) && row[1] + row[2] == 0.0 && row[3] >= rate;
     let found: Vec<[f64; 2]> = rows.whole().filter(flows).map(|row| [row[4], row[5]]).collect();
     if found.len() < FEWEST { Err(Missing(format!("{FEWEST} flowing elements"))) } else { Ok(found) }
 }
@@ -141,7 +147,14 @@ pub(crate) const INERTIA: [[f64; 2]; 10] = [
 /// Mean packing fraction of each bin of |I₀|, of the bulk without the elements at sides, whether they flow or creep; none of a
 /// bin with few.
 pub(crate) fn over_inertia(done: &Done) -> Result<[Option<f64>; INERTIA.len()], Missing> {
-    let pairs = pairs(done, 0.0, ["inertial_number", "packing_fraction"])?;
+    over_inertia_until(done, f64::INFINITY)
+}
+
+/// The same of the flow up to a time.
+pub(crate) fn over_inertia_until(done: &Done, time: f64) -> Result<[Option<f64>; INERTIA.len()], Missing> {
+    // Of a large silo some frames of elements are left out, and what this is made of is kept of all of them.
+    let table = done.table("rates").or_else(|_| done.table("elements"))?;
+    let pairs = pairs_of(table, time, 0.0, ["inertial_number", "packing_fraction"])?;
     Ok(INERTIA.map(|bin| in_bin(&pairs, bin)))
 }
 

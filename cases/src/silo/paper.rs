@@ -55,6 +55,26 @@ const SUFFIX: &str = ", size of the paper";
 /// Why a row may be off by what it may.
 const TENTH: &str = "what silos of a tenth of the size were allowed from two to four runs of the prototype";
 
+/// Time that the prototype's drains were run to (τ).
+const PROTOTYPE: f64 = 14.0;
+
+/// What is not as the paper or the prototype has it, and why.
+const STRAINED: &str = "after 14 τ, where the prototype ends, slow elements are .010 to .019 looser than it: they have been strained                         farther, and φ is a function of |I₀| for elements alone that have come to where they shear steadily";
+const ONSET: &str = "the paper prints no coefficient of friction; with .5 it is .55 at this size as at a tenth of it, in ours and in                      the prototype";
+const ALIGNED: &str = "the paper prints one mean over three flows; the deep bed that is pushed lies closer, at 4° of few blocks                        (5° in the prototype)";
+
+/// φ over |I₀| up to a time beside that of the prototype, in every bin that it has.
+fn over_inertia(of: Quantity, bins: &'static [Cited], until: f64) -> Claim {
+    of.equals(bins[0].source(), move |done| {
+        let cited = bins.iter().map(|cited| cited.value).enumerate();
+        let pairs = ensemble::in_bins_of(&ensemble::over_inertia_until(&done[0], until)?, cited)?;
+        let [found, expected] = ensemble::worst(&pairs);
+        Ok(Measured::new(found, expected, 1.0))
+    })
+    .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
+    .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one))
+}
+
 /// What was asked for.
 fn asked(allowed: f64, what: &str) -> Tolerance {
     required(allowed, format!("asked for before: {what}"))
@@ -70,16 +90,25 @@ impl PaperSize {
         claim(format!("{quantity}{SUFFIX}"), unit).of(self.run())
     }
 
+    /// A claim in which it is known to be off.
+    fn known(&self, quantity: &str, unit: &'static str, reason: &'static str) -> Quantity {
+        claim(format!("{quantity}{SUFFIX}"), unit).of(self.run().known(reason))
+    }
+
     /// Its rows.
     pub(crate) fn claims(&self) -> Vec<Claim> {
         let flow = self.flow;
-        let angle = |quantity: &str, cited: Cited, allowed: f64, averaged: bool| {
-            self.claim(quantity, "deg")
-                .equals_cited(cited, cited.value, move |done| {
-                    Ok(mean(&ensemble::angles(&done[0], flow, averaged, "largest")?))
-                })
-                .within(asked(allowed / cited.value, TENTH))
-                .refuses(elsewhere())
+        let window = "the same angle of means over 20 frames";
+        let window = match flow {
+            Flow::Drained => self.claim(window, "deg"),
+            Flow::Pushed => self.known(window, "deg", ALIGNED),
+        };
+        let angle = |of: Quantity, cited: Cited, allowed: f64, averaged: bool| {
+            of.equals_cited(cited, cited.value, move |done| {
+                Ok(mean(&ensemble::angles(&done[0], flow, averaged, "largest")?))
+            })
+            .within(asked(allowed / cited.value, TENTH))
+            .refuses(elsewhere())
         };
         let mut all = vec![
             self.claim(&format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
@@ -89,8 +118,13 @@ impl PaperSize {
                 })
                 .within(exactly("a bound"))
                 .refuses(tangent()),
-            angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
-            angle("the same angle of means over 20 frames", paper::WINDOW, 2.5, true),
+            angle(
+                self.claim("angle between the axes of largest T and D in blocks of 5 d", "deg"),
+                paper::LARGEST,
+                3.0,
+                false,
+            ),
+            angle(window, paper::WINDOW, 2.5, true),
         ];
         all.extend(self.drained.iter().flat_map(|of| self.of_drains(of)));
         all
@@ -105,20 +139,17 @@ impl PaperSize {
                 .equals_cited(paper::DEPOSIT, 1.0, |done| ensemble::deposit(&done[0]))
                 .within(asked(0.005, "63.5 % ± .5; in units of φ"))
                 .refuses(larger()),
-            one("packing fraction over |I₀| in bins, worst")
-                .equals(bins[0].source(), move |done| {
-                    let cited = bins.iter().map(|cited| cited.value).enumerate();
-                    let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, cited)?;
-                    let [found, expected] = ensemble::worst(&pairs);
-                    Ok(Measured::new(found, expected, 1.0))
-                })
-                .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
-                .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one)),
+            over_inertia(one("packing fraction over |I₀| in bins from 6 to 14 τ, worst"), bins, PROTOTYPE),
+            over_inertia(
+                self.known("packing fraction over |I₀| in bins from 6 to 25 τ, worst", "1", STRAINED),
+                bins,
+                f64::INFINITY,
+            ),
             one("packing fraction of tracers strained by more than .4")
                 .equals_cited(of.plateau, 1.0, |done| ensemble::plateau(&done[0]))
                 .within(asked(0.008, TENTH))
                 .refuses(larger()),
-            one("largest sin φ of tracers before they dilate, median")
+            self.known("largest sin φ of tracers before they dilate, median", "1", ONSET)
                 .equals_cited(paper::ONSET, 1.0, |done| ensemble::onset(&done[0]))
                 .within(asked(0.04, TENTH))
                 .refuses(tangent()),

@@ -1,6 +1,6 @@
 //! Reads the snapshots of a silo as granular elements of 2.5 d across, as blocks of 5 d, and along tracers.
 
-use super::ensemble::Flow;
+use super::ensemble::{Flow, INERTIA};
 use super::instant;
 use grainbench_fields::column::COLUMNS;
 use grainbench_fields::course::Course;
@@ -79,6 +79,8 @@ const QUANTITIES: [&str; 8] = [
     "velocity_x",
     "velocity_z",
 ];
+/// Columns of the table of all frames, none of whose elements is at a side or the surface.
+const RATES: [&str; 6] = ["time", "side", "surface", "shear_rate", "inertial_number", "packing_fraction"];
 /// Columns of the table of blocks of 5 d: how many frames they are means of, and how the axes of T and D lie; beside it those
 /// of the T of another block.
 const BLOCKS: [&str; 13] = [
@@ -135,7 +137,7 @@ impl Reader for Silo {
 
     fn end(self: Box<Self>) -> Vec<Table> {
         let forces = self.before.as_ref().map(|last| instant::forces(last, instant::part(self.flow)));
-        let all = [self.elements(), self.tracers()].into_iter();
+        let all = [self.elements(), self.tracers()].into_iter().chain(self.rates());
         all.chain(forces).chain([self.of_blocks, self.whole, self.axes]).collect()
     }
 }
@@ -192,9 +194,7 @@ impl Silo {
     fn elements(&self) -> Table {
         let columns = [&PLACED[..], &QUANTITIES, &["shear_rate_between"]].concat();
         let mut table = Table::new("elements", &columns);
-        let rows = self.course.grid.cells() * self.course.frames.len();
-        let every = rows.div_ceil(MOST_ROWS).max(1);
-        for (frame, between) in self.course.frames.iter().zip(&self.rates).step_by(every) {
+        for (frame, between) in self.course.frames.iter().zip(&self.rates).step_by(self.every()) {
             for (cell, masked) in frame.masked.iter().enumerate().filter(|(_, masked)| !masked.few) {
                 let middle = self.course.grid.middle(cell);
                 let side = is_side(&self.course.grid, cell);
@@ -210,6 +210,28 @@ impl Silo {
             }
         }
         table
+    }
+
+    /// Every how many frames elements are kept.
+    fn every(&self) -> usize {
+        (self.course.grid.cells() * self.course.frames.len()).div_ceil(MOST_ROWS).max(1)
+    }
+
+    /// Where some frames only are kept: what φ over |I₀| is made of, of every frame. Few elements are as fast as those at a slit.
+    fn rates(&self) -> Option<Table> {
+        let mut table = Table::new("rates", &RATES);
+        let columns = RATES[3..].iter().filter_map(|name| COLUMNS.iter().find(|column| column.name == *name));
+        let columns: Vec<_> = columns.collect();
+        for frame in &self.course.frames {
+            for (cell, _) in frame.masked.iter().enumerate().filter(|(_, masked)| !masked.few && !masked.surface) {
+                let values: Vec<_> = columns.iter().map(|column| self.course.value(column, frame, cell)).collect();
+                let is_moving = values[1].is_some_and(|rate| rate >= INERTIA[0][0]);
+                if is_moving && !is_side(&self.course.grid, cell) {
+                    table.push(&[&[Some(frame.time), Some(0.0), Some(0.0)][..], &values].concat());
+                }
+            }
+        }
+        (self.every() > 1).then_some(table)
     }
 
     /// Where tracers were, how far they were strained, and what was around them, for as long as they were in the bulk.
