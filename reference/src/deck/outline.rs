@@ -3,7 +3,7 @@
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::file::GrainShape;
 use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
+use grainbench_scene::scene::{Dimension, Driven, Scene, Wall, WallShape};
 use nalgebra::Vector3;
 
 /// Refuses physics that neither program has, or has in another form than the scene.
@@ -11,6 +11,12 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     let laws = || scene.laws.iter().flatten();
     if scene.grains.is_empty() {
         return Err("it has no grain".to_owned());
+    }
+    if scene.driven.iter().any(Driven::is_for_a_while) {
+        return Err(
+            "it has grains that are driven for a while: `fix move` would take their integration away from the group of all                     others between two runs, which decks do not write"
+                .to_owned(),
+        );
     }
     if let Some(what) = scene.gathered() {
         return Err(format!("it has {what}, which decks do not write"));

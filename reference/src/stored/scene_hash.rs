@@ -39,8 +39,12 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     if !scene.stays.is_always() {
         let _ = writeln!(text, "stays {:?}", scene.stays);
     }
-    for Driven { grains, velocity, .. } in &scene.driven {
+    for driven in &scene.driven {
+        let Driven { grains, velocity, span, .. } = driven;
         let _ = writeln!(text, "driven {grains:?} {velocity:?}");
+        if driven.is_for_a_while() {
+            let _ = writeln!(text, "from {span:?}");
+        }
     }
     for probe in &scene.probes {
         let _ = writeln!(text, "probe {} {:?}", probe.name, probe.target);

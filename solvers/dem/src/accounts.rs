@@ -7,7 +7,7 @@
 use grainbench_scene::budget::Budget;
 use grainbench_scene::effects::Effects;
 use grainbench_scene::record::GrainState;
-use grainbench_scene::scene::{Grain, Scene};
+use grainbench_scene::scene::{Driven, Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +31,8 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let turning = scene.walls.iter().any(|wall| wall.motion.phases.iter().any(|phase| phase.spin.norm() > 0.0));
     let what = if lossy {
         "damping and rolling resistance"
+    } else if scene.driven.iter().any(Driven::is_for_a_while) {
+        "grains that begin or end to be driven"
     } else if turning {
         "walls that turn"
     } else {

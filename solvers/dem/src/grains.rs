@@ -6,7 +6,7 @@
 
 use crate::geometry::Geometry;
 use grainbench_lanes::{Quad, take_off};
-use grainbench_scene::scene::{Grain, Scene};
+use grainbench_scene::scene::{Driven, Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
@@ -79,12 +79,20 @@ impl<S: Geometry> Grains<S> {
         for (id, grain) in scene.grains.iter().enumerate().filter(|&(id, _)| !later[id]) {
             grains.enter(id as u32, grain, rotate);
         }
-        // Nothing moves a driven grain: to what meets it, it is as heavy as a wall.
-        for &driven in scene.driven.iter().flat_map(|driven| &driven.grains) {
-            let slot = grains.slot[driven] as usize;
-            grains.movement[slot].0[3] = 0.0;
-        }
+        scene
+            .driven
+            .iter()
+            .filter(|driven| driven.is_moved_at(0.0))
+            .for_each(|driven| grains.weigh(scene, driven, true));
         grains
+    }
+
+    /// Nothing moves a grain that is driven: to what meets it, it is as heavy as a wall.
+    pub(crate) fn weigh(&mut self, scene: &Scene, driven: &Driven, is_moved: bool) {
+        for &grain in &driven.grains {
+            let slot = self.slot[grain] as usize;
+            self.movement[slot].0[3] = if is_moved { 0.0 } else { 1.0 / scene.grains[grain].mass };
+        }
     }
 
     /// Adds a grain as it is in the scene, with its place there, after all others.

@@ -20,6 +20,7 @@ mod accounts;
 mod cells;
 mod contact;
 pub mod convention;
+mod driving;
 mod edge;
 mod end_state;
 mod forces;

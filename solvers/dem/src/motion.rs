@@ -172,12 +172,12 @@ impl Motion {
         velocity * (1.0 + self.global_damping * half) - self.gravity * half
     }
 
-    /// Takes the velocities at the start to half a step before it, so that the first cycle ends at half a step after
-    /// it.
-    pub(crate) fn step_back_half<S: Geometry>(&self, grains: &mut Grains<S>) {
+    /// Takes the velocities of grains that begin to move by forces to half a step before, so that the first cycle ends at half a
+    /// step after it.
+    pub(crate) fn step_back_half<S: Geometry>(&self, grains: &mut Grains<S>, slots: impl Iterator<Item = usize>) {
         let half = 0.5 * self.time_step;
         let drag = 1.0 + self.global_damping * half;
-        for slot in 0..grains.len() {
+        for slot in slots {
             let acceleration = grains.force(slot) * grains.inverse_mass(slot) + self.gravity;
             let velocity = grains.velocity(slot) * drag - acceleration * half;
             S::put(velocity, &mut grains.movement[slot]);

@@ -45,7 +45,7 @@ pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> Vec<GrainS
     let is_there = |id: &usize| simulation.grains.slot[*id] != ABSENT;
     let mut grains: Vec<GrainState> =
         (0..scene.grains.len()).filter(is_there).map(|id| grain_state(simulation, id)).collect();
-    for driven in &scene.driven {
+    for driven in scene.driven.iter().filter(|driven| driven.is_moved_at(simulation.time())) {
         for &grain in &driven.grains {
             (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
         }

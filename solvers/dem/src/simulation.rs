@@ -124,7 +124,8 @@ impl<S: Geometry> Simulated<S> {
         }
         simulation.rebuild()?;
         simulation.evaluate_forces(true, 0.0, false);
-        simulation.motion.step_back_half(&mut simulation.grains);
+        let all = 0..simulation.grains.len();
+        simulation.motion.step_back_half(&mut simulation.grains, all);
         simulation.walls.iter_mut().for_each(|wall| wall.step_back_half(time_step));
         simulation.drive(0.0);
         if simulation.accounting {
@@ -210,6 +211,7 @@ impl<S: Geometry> Simulated<S> {
         self.drive(self.motion.time_step);
         self.step += 1;
         let time = self.step as f64 * self.motion.time_step;
+        self.begin_and_end_driving();
         let mut walls_moved = 0.0_f64;
         let mut changed = self.has_comers(time) || self.has_leavers();
         for wall in &mut self.walls {
@@ -224,6 +226,7 @@ impl<S: Geometry> Simulated<S> {
             self.rebuild()?;
         }
         self.evaluate_forces(record, self.motion.time_step, move_on);
+        self.let_go();
         if record {
             self.add_virials();
         }
@@ -297,33 +300,9 @@ impl<S: Geometry> Simulated<S> {
         self.travelled += fastest.sqrt().max(self.driven_speed) * self.motion.time_step;
     }
 
-    /// Sets the forces and torques on driven grains to zero: nothing that acts on them moves them.
-    fn shield_driven(&mut self) {
-        let grains = &mut self.grains;
-        for &grain in self.scene.driven.iter().flat_map(|driven| &driven.grains) {
-            grains.unload(grains.slot[grain] as usize);
-        }
-    }
-
-    /// Gives driven grains the velocity they are driven with and no spin, and takes back what gravity and global
-    /// damping have changed in their positions in the time `drifted` (s).
-    fn drive(&mut self, drifted: f64) {
-        let grains = &mut self.grains;
-        for driven in &self.scene.driven {
-            let velocity = S::embed(S::restrict(driven.velocity));
-            for &grain in &driven.grains {
-                let slot = grains.slot[grain] as usize;
-                let position = grains.position(slot) + (velocity - grains.velocity(slot)) * drifted;
-                S::put(position, &mut grains.place[slot]);
-                S::put(velocity, &mut grains.movement[slot]);
-                grains.set_spin(slot, Vector3::zeros());
-            }
-        }
-    }
-
-    /// Force of the other grains on each group of driven grains (N).
-    pub(crate) fn forces_on_driven(&self) -> Vec<Vector3<f64>> {
-        self.scene.driven.iter().map(|driven| self.grains.force_on(&driven.grains)).collect()
+    /// Time of the positions (s).
+    pub(crate) fn time(&self) -> f64 {
+        self.step as f64 * self.motion.time_step
     }
 
     /// Adds to the energy budget what the step did whose forces have just been found.

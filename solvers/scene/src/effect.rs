@@ -196,7 +196,9 @@ impl Effect {
                 scene.walls.iter_mut().for_each(|wall| wall.motion.phases.clear());
                 for driven in &mut scene.driven {
                     driven.velocity = Vector3::zeros();
-                    driven.grains.iter().for_each(|&grain| scene.grains[grain].velocity = Vector3::zeros());
+                    if driven.is_moved_at(0.0) {
+                        driven.grains.iter().for_each(|&grain| scene.grains[grain].velocity = Vector3::zeros());
+                    }
                 }
             }
             Self::Plasticity => {

@@ -177,6 +177,26 @@ pub struct Driven {
     pub grains: Vec<usize>,
     /// Velocity (m/s).
     pub velocity: Vector3<f64>,
+    /// From when on, and until when (s): before and after they are grains as all others are.
+    pub span: [f64; 2],
+}
+
+impl Driven {
+    /// All of the run.
+    pub const ALWAYS: [f64; 2] = [0.0, f64::INFINITY];
+
+    /// Whether they are moved over the step that begins at a time (s). A moment that is a whole number of steps is that step.
+    #[must_use]
+    pub fn is_moved_at(&self, time: f64) -> bool {
+        let [start, stop] = self.span.map(|moment| moment * (1.0 - 1e-9));
+        (start..stop).contains(&time)
+    }
+
+    /// Whether they are moved for a part of the run only.
+    #[must_use]
+    pub fn is_for_a_while(&self) -> bool {
+        self.span != Self::ALWAYS
+    }
 }
 
 /// How long the run lasts.
@@ -378,6 +398,9 @@ impl Scene {
         }
         if self.walls.iter().any(|wall| wall.piston.is_some()) {
             return Some("a wall that is pressed");
+        }
+        if self.driven.iter().any(Driven::is_for_a_while) {
+            return Some("grains that are driven for a while (`driven.….start`, `stop`)");
         }
         if self.springs.is_some() {
             return Some("contacts that remember at the start (`springs = false` beside the state leaves that out)");

@@ -5,7 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Grains that do not obey forces: they move at a constant velocity and do not turn, nor deform. Exactly one of
-/// `grains`, `face` and `region`.
+/// `grains`, `face` and `region`. Between `start` and `stop` only, where these are given: before and after they are grains
+/// as all others are.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrivenSpec {
@@ -21,6 +22,12 @@ pub struct DrivenSpec {
     /// Velocity (m/s); at rest when absent.
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
+    /// From when on (s); from the start when absent.
+    #[serde(default)]
+    pub start: Option<f64>,
+    /// Until when (s); to the end when absent.
+    #[serde(default)]
+    pub stop: Option<f64>,
 }
 
 /// A box whose sides are along the axes.

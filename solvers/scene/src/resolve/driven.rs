@@ -22,6 +22,7 @@ impl Resolver<'_> {
             if members.is_empty() {
                 return Err(self.check.error(&key, "one grain or more", "none"));
             }
+            let span = self.span(&key, spec)?;
             let velocity = self.check.vector_or_zero(&format!("{key}.velocity"), spec.velocity.as_ref())?;
             for &grain in &members {
                 if taken[grain] {
@@ -29,11 +30,28 @@ impl Resolver<'_> {
                     return Err(self.check.error(&key, "grains of one driven group", &found));
                 }
                 taken[grain] = true;
-                (grains[grain].velocity, grains[grain].spin) = (velocity, Vector3::zeros());
             }
-            all.push(Driven { name: name.clone(), grains: members, velocity });
+            let driven = Driven { name: name.clone(), grains: members, velocity, span };
+            if driven.is_moved_at(0.0) {
+                for &grain in &driven.grains {
+                    (grains[grain].velocity, grains[grain].spin) = (velocity, Vector3::zeros());
+                }
+            }
+            all.push(driven);
         }
         Ok(all)
+    }
+
+    /// From when to when they are driven.
+    fn span(&self, key: &str, spec: &DrivenSpec) -> Result<[f64; 2], SceneError> {
+        let start = self.check.not_negative(&format!("{key}.start"), spec.start.unwrap_or(0.0), "time (s)")?;
+        let Some(stop) = spec.stop else { return Ok([start, f64::INFINITY]) };
+        let key = format!("{key}.stop");
+        let stop = self.check.positive(&key, stop, "time (s)")?;
+        if stop <= start {
+            return Err(self.check.error(&key, &format!("a time after the start at {start} s"), &format!("{stop}")));
+        }
+        Ok([start, stop])
     }
 
     fn members(

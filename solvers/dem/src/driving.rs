@@ -1,0 +1,66 @@
+//! Grains that are moved as walls are, for the whole run or for a while.
+
+use crate::geometry::Geometry;
+use crate::simulation::Simulated;
+use grainbench_scene::scene::Driven;
+use nalgebra::Vector3;
+
+/// Whether grains are driven over the step before this one, and over this one.
+fn moved_before_and_at(driven: &Driven, step: u64, time_step: f64) -> [bool; 2] {
+    [step - 1, step].map(|step| driven.is_moved_at(step as f64 * time_step))
+}
+
+impl<S: Geometry> Simulated<S> {
+    /// Sets the forces and torques on driven grains to zero: nothing that acts on them moves them.
+    pub(crate) fn shield_driven(&mut self) {
+        let (time, grains) = (self.time(), &mut self.grains);
+        let moved = self.scene.driven.iter().filter(|driven| driven.is_moved_at(time));
+        for &grain in moved.flat_map(|driven| &driven.grains) {
+            grains.unload(grains.slot[grain] as usize);
+        }
+    }
+
+    /// Grains that are driven from this step on are as heavy as walls to the forces that are found next; those that no longer are
+    /// have their mass.
+    pub(crate) fn begin_and_end_driving(&mut self) {
+        let Self { scene, grains, motion, step, .. } = self;
+        for driven in &scene.driven {
+            let [before, now] = moved_before_and_at(driven, *step, motion.time_step);
+            if now != before {
+                grains.weigh(scene, driven, now);
+            }
+        }
+    }
+
+    /// Grains that are no longer driven from this step on have the velocity that they were driven with now, not half a step before.
+    pub(crate) fn let_go(&mut self) {
+        let Self { scene, grains, motion, step, .. } = self;
+        for driven in &scene.driven {
+            if let [true, false] = moved_before_and_at(driven, *step, motion.time_step) {
+                let slots: Vec<usize> = driven.grains.iter().map(|&grain| grains.slot[grain] as usize).collect();
+                motion.step_back_half(grains, slots.into_iter());
+            }
+        }
+    }
+
+    /// Gives driven grains the velocity they are driven with and no spin, and takes back what gravity and global
+    /// damping have changed in their positions in the time `drifted` (s).
+    pub(crate) fn drive(&mut self, drifted: f64) {
+        let (time, grains) = (self.time(), &mut self.grains);
+        for driven in self.scene.driven.iter().filter(|driven| driven.is_moved_at(time)) {
+            let velocity = S::embed(S::restrict(driven.velocity));
+            for &grain in &driven.grains {
+                let slot = grains.slot[grain] as usize;
+                let position = grains.position(slot) + (velocity - grains.velocity(slot)) * drifted;
+                S::put(position, &mut grains.place[slot]);
+                S::put(velocity, &mut grains.movement[slot]);
+                grains.set_spin(slot, Vector3::zeros());
+            }
+        }
+    }
+
+    /// Force of the other grains on each group of driven grains (N).
+    pub(crate) fn forces_on_driven(&self) -> Vec<Vector3<f64>> {
+        self.scene.driven.iter().map(|driven| self.grains.force_on(&driven.grains)).collect()
+    }
+}

@@ -1,0 +1,103 @@
+//! Grains that are driven for a part of the run: free before and after, as heavy as walls between.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_dem::convention::Convention;
+use grainbench_scene::record::Record;
+use grainbench_scene::solver::Resolution;
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+use support::{MATERIAL, column, last, run, run_at};
+
+/// Gravity (m/s²), the velocity upwards that the disc is driven with (m/s), and from when to when (s).
+const GRAVITY: f64 = 10.0;
+const SPEED: f64 = 0.5;
+const SPAN: [f64; 2] = [0.2, 0.5];
+
+fn thrown(driven: &str, time_step: f64) -> Record {
+    let text = format!(
+        "dimension = 2\nduration = 0.8\ngravity = [0.0, -{GRAVITY:?}]\n\
+         [grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.3]\nvelocity = [0.3, 0.0]\n{driven}\n\
+         [probes]\ng.grain = 'g'\n"
+    );
+    run_at(&text, Convention::CUNDALL_STRACK, &Resolution::TimeStep(time_step))
+}
+
+/// y = −g t²/2 until it is driven, then a straight line, then a throw with the velocity that it was driven with: to rounding,
+/// for central differences are exact where forces are constant. Sideways it has what it had, then nothing.
+#[test]
+fn a_disc_falls_is_lifted_and_falls_again() {
+    let driven =
+        format!("[driven.d]\ngrains = 'g'\nvelocity = [0.0, {SPEED}]\nstart = {}\nstop = {}", SPAN[0], SPAN[1]);
+    let record = thrown(&driven, 1e-3);
+    let [start, stop] = SPAN;
+    let fall = |time: f64| -0.5 * GRAVITY * time * time;
+    let exact = |time: f64| {
+        let lifted = SPEED * (time.min(stop) - start).max(0.0);
+        let after = (time - stop).max(0.0);
+        0.3 + fall(time.min(start)) + lifted + SPEED * after + fall(after)
+    };
+    let velocity = |time: f64| if time < start { -GRAVITY * time } else { SPEED - GRAVITY * (time - stop).max(0.0) };
+    for (at, time) in record.series.time.iter().enumerate() {
+        let (y, vy) = (column(&record, "g.y")[at], column(&record, "g.vy")[at]);
+        assert!((y - exact(*time)).abs() < 1e-12, "{time}: {y} for {}", exact(*time));
+        // Over the step at which it begins to be driven it has both velocities.
+        assert!((time - start).abs() < 1e-6 || (vy - velocity(*time)).abs() < 1e-11, "{time}: {vy}");
+        let x = 0.3 * time.min(start);
+        assert!((column(&record, "g.x")[at] - x).abs() < 1e-12);
+    }
+    // Nothing of this holds of a disc that is driven all the time, or never.
+    let always = thrown(&format!("[driven.d]\ngrains = 'g'\nvelocity = [0.0, {SPEED}]"), 1e-3);
+    assert!(
+        (last(&always, "g.y") - exact(0.8)).abs() > 0.1 && (last(&thrown("", 1e-3), "g.y") - exact(0.8)).abs() > 0.1
+    );
+}
+
+/// While it is driven a disc is as heavy as a wall to the dashpot of a contact; before and after it has its mass.
+#[test]
+fn a_disc_has_its_mass_before_and_after() {
+    let rebound = |span: &str| {
+        let text = format!(
+            "dimension = 2\nduration = 0.4\n\
+             materials.n.density = 1000.0\ncontacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e7, restitution = 0.5 }}\n\
+             [grains.free]\nmaterial = 'n'\nradius = 0.5\nposition = [-1.1, 0.0]\nvelocity = [1.0, 0.0]\n\
+             [grains.held]\nmaterial = 'n'\nradius = 0.5\nposition = [0.0, 0.0]\n\
+             [driven.held]\ngrains = 'held'\n{span}\n[probes]\nfree.grain = 'free'\nheld.grain = 'held'\n"
+        );
+        let record = run(&text);
+        [last(&record, "free.vx"), last(&record, "held.vx")]
+    };
+    // The contact lasts from .1 s to .13 s: against a wall −.5; between equals (1 ∓ .5)/2.
+    for held in ["start = 0.05", "stop = 0.3", "start = 0.05\nstop = 0.3", ""] {
+        let [free, other] = rebound(held);
+        assert!((free + 0.5).abs() < 5e-3 && other == 0.0, "{held}: {free}, {other}");
+    }
+    for loose in ["start = 0.39", "stop = 0.05", "start = 0.01\nstop = 0.05"] {
+        let [free, other] = rebound(loose);
+        let expected = if loose == "start = 0.39" { [0.25, 0.0] } else { [0.25, 0.75] };
+        assert!((free - expected[0]).abs() < 5e-3 && (other - expected[1]).abs() < 5e-3, "{loose}: {free}, {other}");
+    }
+}
+
+/// Wrong times are refused by name, with what was expected.
+#[test]
+fn times_that_make_no_span_are_refused() {
+    let refused = |span: &str, says: &str| {
+        let text = format!(
+            "{MATERIAL}dimension = 2\nduration = 0.4\n[grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\n\
+             [driven.d]\ngrains = 'g'\n{span}\n"
+        );
+        let source = SceneSource::from_text("test", Path::new(""), &text);
+        let error = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
+        assert!(error.contains(says), "{span}: {error}");
+    };
+    refused("start = -1.0", "driven.d.start: expected");
+    refused("start = nan", "driven.d.start: expected");
+    refused("stop = 0.0", "driven.d.stop: expected");
+    refused("stop = inf", "driven.d.stop: expected");
+    refused("start = 0.2\nstop = 0.2", "driven.d.stop: expected a time after the start at 0.2 s");
+    refused("start = 0.3\nstop = 0.2", "driven.d.stop: expected a time after the start at 0.3 s");
+    refused("start = 'soon'", "driven.d.start");
+}
