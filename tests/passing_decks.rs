@@ -165,6 +165,8 @@ fn what_a_program_lacks_is_said() {
         said(&gone(&ledge), Program::LIGGGHTS),
         said(&format!("{HEAD}{FLOOR}until = 1.0\n[probes]\nfloor = {{ wall = 'floor' }}\n"), Program::LIGGGHTS),
         said(&gone(round), Program::LIGGGHTS),
+        said(&gone("[driven.d]\ngrains = 'ball'\nstart = 0.5\n"), Program::LAMMPS),
+        said(&gone("[driven.d]\ngrains = 'ball'\nstop = 0.5\n"), Program::LIGGGHTS),
     ];
     insta::assert_snapshot!(text.join("\n"));
 }

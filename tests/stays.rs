@@ -180,6 +180,71 @@ fn threads_and_checkpoints_leave_no_trace() {
     assert!(last("grains.left") > 20.0 && last("grains.present") + last("grains.left") == 90.0);
 }
 
+/// Grains on a floor, the left ones of which are held and then lifted for a while.
+const LIFTED: &str = r#"title = "Lifted for a while"
+dimension = 3
+duration = 1.0
+gravity = [0.0, 0.0, -1.0]
+[materials.m]
+density = 2.0
+young_modulus = 1e4
+poisson_ratio = 0.3
+[contacts.all]
+between = ["m", "m"]
+normal_stiffness = 2e3
+tangential_stiffness = 1e3
+friction = 0.4
+normal_damping = 10.0
+[grains.heap]
+material = "m"
+radius = 0.5
+lattice = { origin = [0.0, 0.0, 0.49], spacing = [0.99, 0.99, 0.98], count = [5, 4, 3] }
+[walls.floor]
+material = "m"
+plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }
+[driven.lifted]
+region = { low = [-0.5, -1.0, 0.0], high = [1.2, 9.0, 9.0] }
+velocity = [0.0, 0.0, 0.8]
+start = 0.3
+stop = 0.7
+[output]
+every = 0.1
+snapshots = 3
+[probes]
+lifted = { driven = "lifted" }
+all = { system = true }
+"#;
+
+/// The same bits for threads and checkpoints, one of which is left while the grains are held; `dem` alone does it.
+#[test]
+fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), LIFTED).unwrap();
+    let with = |further: &[&str]| {
+        let all = ["simulate", "scene.toml", "--solver", "dem", "--time-step", "1e-3", "--write", "dump"];
+        let answer = grainbench(path, &[&all[..], further].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+    };
+    let of = |folder: &str, file: &str| std::fs::read_to_string(path.join(folder).join(file)).unwrap();
+    with(&["--out", "whole", "--threads", "2"]);
+    // Before, at the start, while, at the stop, after.
+    for every in ["200", "300", "400", "600", "700", "900"] {
+        with(&["--out", "one", "--checkpoint", "half", "--checkpoint-every", every]);
+        with(&["--out", "two", "--restart", "half"]);
+        for file in ["series.csv", "snapshots.dump"] {
+            assert!(of("whole", file) == of("one", file) && of("one", file) == of("two", file), "{file}, {every}");
+        }
+    }
+    with(&["--out", "always", "--set", "driven.lifted.start=0.0", "--set", "driven.lifted.stop=1.0"]);
+    assert!(of("whole", "series.csv") != of("always", "series.csv"));
+    for solver in ["mpm", "rigid"] {
+        let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver, "--out", "none"]);
+        let says = "grains that are driven for a while";
+        assert!(answer.code == Some(2) && answer.err.contains(says), "{solver}: {}", answer.err);
+    }
+}
+
 #[test]
 fn what_cannot_come_or_go_is_refused() {
     let directory = tempfile::tempdir().unwrap();
