@@ -50,7 +50,12 @@ fn silo() -> Silo {
 }
 
 fn full_size() -> PaperSize {
-    let drained = paper::Drained { plateau: DRAINED.plateau, beside: &collapse::PAPER[0], others: &collapse::PAPER };
+    let drained = paper::Drained {
+        plateau: DRAINED.plateau,
+        onset: DRAINED.onset,
+        beside: &collapse::PAPER[0],
+        others: &collapse::PAPER,
+    };
     PaperSize {
         variant: "paper",
         flow: Flow::Drained,

@@ -351,6 +351,13 @@ pub(crate) fn density_of_one(tables: &mut [Table]) {
     });
 }
 
+/// Elements of the time after that of the prototype's runs left out of φ over |I₀|.
+pub(crate) fn without_the_end(tables: &mut [Table]) {
+    change(tables, "inertial_number", |table, row| {
+        if at(table, "time", row) > 14.0 + 1e-9 { f64::NAN } else { at(table, "inertial_number", row) }
+    });
+}
+
 /// Grains whose radii are taken a hundredth too large.
 pub(crate) fn larger_radii(tables: &mut [Table]) {
     change(tables, "packing_fraction", |table, row| at(table, "packing_fraction", row) * 1.01_f64.powi(3));
