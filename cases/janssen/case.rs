@@ -17,9 +17,9 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "janssen",
     title: "Janssen's silo",
-    claim: "On the floor of a column of spheres that slides down its side stands what Janssen's law leaves of the weight, with the \
-            friction at work on the side and the ratio of stresses that are measured half-way up; without friction all of it; and LAMMPS \
-            finds the same from the same fall.",
+    claim: "On the floor of a column of spheres that slides down its side stands what Janssen's law leaves of the weight, with \
+            the friction at work on the side and the ratio of stresses that are measured half-way up; without friction all of \
+            it; and LAMMPS finds the same from the same fall.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Janssen's law is a model: that the ratio K of stresses is one number over the height is assumed in it, and holds \
@@ -114,7 +114,8 @@ impl Middle {
         })
     }
 
-    /// Part of the weight that stands on the floor where the side bears `ratio` times the vertical stress: (λ/H)(1 − e^(−H/λ)) with
+    /// Part of the weight that stands on the floor where the side bears `ratio` times the vertical stress: (λ/H)(1 −
+    /// e^(−H/λ)) with
     /// λ = D/(4 ratio).
     fn left_over(&self, scene: &Scene, ratio: f64) -> f64 {
         let (_, _, radius) = side(scene);
@@ -263,9 +264,9 @@ fn profile(done: &Done) -> Option<Figure> {
     let law = |up: f64| middle.weight / area * length * (1.0 - (-(height - up) / length).exp());
     let weighs = |up: f64| middle.weight / area * (height - up);
     let measured = heights.iter().zip(vertical).filter(|(up, _)| **up < height).map(|(&up, &stress)| (up, stress));
-    let caption = "Vertical stress in the column while it descends, in the mean over its cross-section and over time, and Janssen's law \
-                   with the friction at work on the side and the ratio of stresses that are measured half-way up. The other line is what \
-                   stands above.";
+    let caption = "Vertical stress in the column while it descends, in the mean over its cross-section and over time, and \
+                   Janssen's law with the friction at work on the side and the ratio of stresses that are measured half-way up. \
+                   The other line is what stands above.";
     Some(Figure::graph(
         "profile",
         "Vertical stress over the height",

@@ -17,7 +17,8 @@ const SLICES: usize = 20;
 /// From when on the column descends steadily (τ): the floor has gone down by a sixth of a diameter.
 pub(super) const STEADY: f64 = 45.0;
 
-/// Height of the middle of a slice over the floor; vertical stress of the grains, normal stress and vertical shear stress on the side,
+/// Height of the middle of a slice over the floor; vertical stress of the grains, normal stress and vertical shear stress on
+/// the side,
 /// compression and a side that bears being positive; weight over height.
 const COLUMNS: [&str; 5] = ["height", "vertical", "normal", "shear", "weight"];
 

@@ -11,7 +11,8 @@ use nalgebra::Vector3;
 /// The reading.
 pub(super) const BULK: Reading = Reading { name: "bulk of a sheared layer", begin };
 
-/// Columns: packing fraction, rate of shear, normal stress across the layer and shear stress with their momentum flux, and the shear
+/// Columns: packing fraction, rate of shear, normal stress across the layer and shear stress with their momentum flux, and
+/// the shear
 /// stress of the instant, whole and of normal forces alone.
 const COLUMNS: [&str; 7] = ["time", "packing", "rate", "normal", "shear", "instant", "frictionless"];
 

@@ -49,9 +49,10 @@ pub(crate) const LEVELS: &[Level] = &[
 ];
 
 /// Where these cases are weak.
-pub(crate) const WEAKNESS: &str = "A tenth of the size of the paper's silo, and one deposit of ten, whose spread is \
-                   what tolerances are made of; at its size one deposit of the tall silo, and none of the wide one. The friction of the paper is not printed; .5 is assumed. The main \
-                   job judges what is kept of runs; the tests do them anew.";
+pub(crate) const WEAKNESS: &str = "A tenth of the size of the paper's silo, and one deposit of ten, whose spread is what \
+                   tolerances are made of; at its size one deposit of the tall silo, and none of the wide one. The friction \
+                   of the paper is not printed; .5 is assumed. The main job judges what is kept of runs; the tests do them \
+                   anew.";
 
 /// Names and units of the quantities of silos.
 pub(crate) const GONE: [&str; 2] = ["grains out after 14 τ", "1"];

@@ -4,7 +4,7 @@ use super::ensemble::{self, STRAIN};
 use crate::kept;
 use crate::registry::by_name;
 use grainbench_harness::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A flow of this size: its case, the variant that is read as elements, and what it is called in a figure.
 pub(crate) struct Other {
@@ -28,16 +28,25 @@ pub(crate) const PAPER: [Other; 2] = [
 ];
 
 impl Other {
-    /// What is kept of its run.
+    /// What is kept of its run: read once, for several rows and figures lie beside it.
     pub(super) fn done(&self) -> Result<Done, Missing> {
-        let lacking = |reason: String| Missing(format!("kept run of {}/{}: {reason}", self.case, self.variant));
-        let case = by_name(self.case).ok_or_else(|| lacking("there is no such case".to_owned()))?;
+        static READ: Mutex<Vec<([&str; 2], Result<Done, String>)>> = Mutex::new(Vec::new());
+        let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+        let name = [self.case, self.variant];
+        if let Some((_, left)) = read.iter().find(|(known, _)| *known == name) {
+            return left.clone().map_err(Missing);
+        }
+        let left = self.read().map_err(|reason| format!("kept run of {}/{}: {reason}", self.case, self.variant));
+        read.push((name, left.clone()));
+        left.map_err(Missing)
+    }
+
+    fn read(&self) -> Result<Done, String> {
+        let case = by_name(self.case).ok_or("there is no such case")?;
         let mut runs = (case.claims)().into_iter().flat_map(|claim| claim.runs);
-        let run = runs.find(|run| run.kept && run.variant == self.variant);
-        let run = run.ok_or_else(|| lacking("none is read".to_owned()))?;
-        let scene = case.variant(run.variant).map_err(|error| lacking(error.to_string()))?;
-        let left = kept::load(case, &run, &scene, None).ok_or_else(|| lacking("nothing is kept".to_owned()))?;
-        let left = left.map_err(|error| lacking(error.to_string()))?;
+        let run = runs.find(|run| run.kept && run.variant == self.variant).ok_or("none is read")?;
+        let scene = case.variant(run.variant).map_err(|error| error.to_string())?;
+        let left = kept::load(case, &run, &scene, None).ok_or("nothing is kept")?.map_err(|error| error.to_string())?;
         let (scene, record, tables) = (Arc::new(scene), Arc::new(left.record), Arc::new(left.tables));
         Ok(Done { scene, record, tables, kept: Some(left.made) })
     }

@@ -14,7 +14,8 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     }
     if scene.driven.iter().any(Driven::is_for_a_while) {
         return Err(
-            "it has grains that are driven for a while: `fix move` would take their integration away from the group of all                     others between two runs, which decks do not write"
+            "it has grains that are driven for a while: `fix move` would take their integration away from the group of \
+                    all others between two runs, which decks do not write"
                 .to_owned(),
         );
     }

@@ -32,7 +32,8 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
-    /// Grains that are no longer driven from this step on have the velocity that they were driven with now, not half a step before.
+    /// Grains that are no longer driven from this step on have the velocity that they were driven with now, and not half a step
+    /// before.
     pub(crate) fn let_go(&mut self) {
         let Self { scene, grains, motion, step, .. } = self;
         for driven in &scene.driven {
