@@ -27,10 +27,13 @@ pub(crate) const PAPER: [Other; 2] = [
     Other { case: "silo-push", variant: "deep", label: "tall silo, pushed", strained: 3 },
 ];
 
+/// What was read of a flow, with its case and its variant.
+type Read = ([&'static str; 2], Result<Done, String>);
+
 impl Other {
     /// What is kept of its run: read once, for several rows and figures lie beside it.
     pub(super) fn done(&self) -> Result<Done, Missing> {
-        static READ: Mutex<Vec<([&str; 2], Result<Done, String>)>> = Mutex::new(Vec::new());
+        static READ: Mutex<Vec<Read>> = Mutex::new(Vec::new());
         let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
         let name = [self.case, self.variant];
         if let Some((_, left)) = read.iter().find(|(known, _)| *known == name) {
