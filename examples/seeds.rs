@@ -14,6 +14,7 @@ use grainbench::harness::claim::Claim;
 use grainbench::harness::reading;
 use grainbench::harness::run::{Done, Run};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::error::Error;
 use std::sync::Arc;
 
@@ -32,8 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut row = vec![seed.clone()];
         for claim in &claims {
             let run = &claim.runs[0];
-            if !done.contains_key(&run.key()) {
-                done.insert(run.key(), of_seed(case, run, key, seed)?);
+            if let Entry::Vacant(place) = done.entry(run.key()) {
+                place.insert(of_seed(case, run, key, seed)?);
             }
             let all: Vec<Done> = claim.runs.iter().filter_map(|_| done.get(&run.key())).cloned().collect();
             let value = (claim.measure)(&all).map_err(|missing| missing.to_string())?.value;
