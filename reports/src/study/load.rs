@@ -100,15 +100,11 @@ mod tests {
         };
         let loads = [load("dem", vec![lap], None), load("lammps", Vec::new(), Some("not installed".to_owned()))];
         let page = render(&loads).unwrap().into_string();
-        for cell in [
-            "<td class=\"n\">2 ms</td>",
-            "<td class=\"n\">4 µs</td>",
-            "<td class=\"n\">40 ns</td>",
-            "<td class=\"n\">500 ms</td>",
-            "not installed",
-        ] {
-            assert!(page.contains(cell), "{cell} is not in {page}");
+        for time in [2e-3, 4e-6, 4e-8, 0.5] {
+            let cell = format!("<td class=\"n\">{}</td>", number::seconds(time));
+            assert!(page.contains(&cell), "{cell} is not in {page}");
         }
+        assert!(page.contains("not installed"), "{page}");
         assert!(figure(&loads[1..]).is_none());
     }
 }

@@ -158,7 +158,8 @@ fn what_cannot_be_run_is_refused() {
 fn a_ring_expands_and_turns_back() {
     let ring = |more: &str, duration: f64| {
         let text = format!(
-            "dimension = 2\nduration = {duration:e}\nmaterials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.0 }}\n\
+            "dimension = 2\nduration = {duration:e}\n\
+             materials.m = {{ density = 1.0, young_modulus = 100.0, poisson_ratio = 0.0 }}\n\
              [bodies.ring]\nmaterial = 'm'\nannulus = {{ centre = [1.0, 2.0], inner = 0.95, outer = 1.05 }}\n{more}\n\
              [output]\nevery = {duration:e}\n[probes]\nall.system = true\n"
         );

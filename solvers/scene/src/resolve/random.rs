@@ -36,7 +36,8 @@ impl Resolver<'_> {
             if !(range[0]..=range[1]).contains(&median) {
                 return Err(check.error(&key("median"), "a radius within `range`", &median.to_string()));
             }
-            let share = |radius: f64| 0.5 * libm::erf((radius / median).ln() / (deviation * std::f64::consts::SQRT_2));
+            let share =
+                |radius: f64| 0.5 * libm::erf(libm::log(radius / median) / (deviation * std::f64::consts::SQRT_2));
             if deviation > 0.0 && share(range[1]) - share(range[0]) < LEAST {
                 let found = format!("{} to {} m", range[0], range[1]);
                 let expected = format!("a range that holds {LEAST} of the distribution or more");
