@@ -8,7 +8,7 @@ use common::{files, grainbench};
 use grainbench::cases::registry::CASES;
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 /// Two discs that collide, with two snapshots between first and last.
 const SCENE: &str = r#"title = "Two discs collide"

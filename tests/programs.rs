@@ -6,7 +6,6 @@ mod common;
 
 use common::grainbench_alone;
 use serde_json::Value;
-use std::process::Command;
 
 #[test]
 fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {

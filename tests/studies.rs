@@ -18,7 +18,7 @@ use grainbench::studies::stability::limit::of_assembly;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
 
