@@ -10,6 +10,8 @@ pub(crate) const PAGE: usize = 2_490_000;
 pub(crate) enum Rank {
     Costs,
     Controls,
+    /// What is put aside of a figure is still seen, loaded from its file; of a film one frame stays.
+    HeavyFigures,
     Films,
     Figures,
     Derivations,

@@ -10,6 +10,8 @@ use super::{slug, unique};
 use crate::plot::{self, DrawError};
 use crate::report::Section;
 
+/// A figure of more than this (B) makes room for films.
+const HEAVY: usize = 30_000;
 /// So many stand open.
 const SEEN: usize = 2;
 
@@ -78,7 +80,11 @@ pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawEr
         };
         framed(figure, name, id, &image)
     };
-    let rank = if reel.is_some() { Rank::Films } else { Rank::Figures };
+    let rank = match reel {
+        Some(_) => Rank::Films,
+        None if whole.len() > HEAVY => Rank::HeavyFigures,
+        None => Rank::Figures,
+    };
     Ok(Part { rank, whole, link: link.into_string(), file: None })
 }
 
