@@ -84,6 +84,13 @@ fn on_floor(done: &Done) -> Result<f64, Missing> {
     Ok(-steady(done, "floor.force_z")? / weight(&done.scene))
 }
 
+/// Height of the filling (d), from the heights of the slices' middles and the weight over height in each: as high as all of it
+/// would be in slices as heavy as the heaviest.
+fn top(heights: &[f64], weights: &[f64]) -> f64 {
+    let slice = 2.0 * heights.first().copied().unwrap_or(f64::NAN);
+    weights.iter().sum::<f64>() * slice / weights.iter().copied().fold(0.0, f64::max)
+}
+
 /// The middle of the column: means of a quantity over its slices.
 struct Middle {
     vertical: f64,
@@ -98,8 +105,7 @@ impl Middle {
         let table = done.table("slices")?;
         let column = |name: &str| table.column(name).ok_or_else(|| Missing(format!("column `{name}` of the slices")));
         let (heights, weights) = (column("height")?, column("weight")?);
-        let slice = 2.0 * heights.first().copied().unwrap_or(f64::NAN);
-        let top = weights.iter().sum::<f64>() * slice / weights.iter().copied().fold(0.0, f64::max);
+        let top = top(heights, weights);
         let inside = |height: &f64| (0.25 * top..0.75 * top).contains(height);
         let over = |name: &str| -> Result<f64, Missing> {
             let values = heights.iter().zip(column(name)?).filter(|(height, _)| inside(height));
@@ -115,8 +121,7 @@ impl Middle {
     }
 
     /// Part of the weight that stands on the floor where the side bears `ratio` times the vertical stress: (λ/H)(1 −
-    /// e^(−H/λ)) with
-    /// λ = D/(4 ratio).
+    /// e^(−H/λ)) with λ = D/(4 ratio).
     fn left_over(&self, scene: &Scene, ratio: f64) -> f64 {
         let (_, _, radius) = side(scene);
         let (length, height) = (2.0 * radius / (4.0 * ratio), weight(scene) / self.weight);
@@ -212,8 +217,7 @@ fn saturates() -> Claim {
                 let (heights, stress) =
                     (table.column("height").ok_or_else(missing)?, table.column("vertical").ok_or_else(missing)?);
                 let weights = table.column("weight").ok_or_else(missing)?;
-                let slice = 2.0 * heights.first().copied().unwrap_or(f64::NAN);
-                let top = weights.iter().sum::<f64>() * slice / weights.iter().copied().fold(0.0, f64::max);
+                let top = top(heights, weights);
                 let at = |part: f64| {
                     let near = |(_, height): &(usize, &f64)| (*height - part * top).abs();
                     let place =

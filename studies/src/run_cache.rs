@@ -42,7 +42,6 @@ pub struct RunCache {
     fresh: bool,
     edition: Edition,
     taken: AtomicU64,
-    kept: AtomicU64,
 }
 
 impl RunCache {
@@ -54,19 +53,13 @@ impl RunCache {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
         // Of a program that was killed while it wrote.
         sweep(folder).map_err(|source| WriteError::new(folder, source))?;
-        Ok(Self { folder: folder.to_owned(), most, fresh, edition, taken: AtomicU64::new(0), kept: AtomicU64::new(0) })
+        Ok(Self { folder: folder.to_owned(), most, fresh, edition, taken: AtomicU64::new(0) })
     }
 
     /// How many runs came from here.
     #[must_use]
     pub fn taken(&self) -> u64 {
         self.taken.load(Ordering::Relaxed)
-    }
-
-    /// How many were put here.
-    #[must_use]
-    pub fn kept(&self) -> u64 {
-        self.kept.load(Ordering::Relaxed)
     }
 
     /// What a run is; none where it is not kept.
@@ -98,8 +91,8 @@ impl RunCache {
             return;
         }
         let Ok(bytes) = kept_record::to_bytes(name, record) else { return };
-        if bytes.len() <= LARGEST && write_file(self.path(name), bytes).is_ok() {
-            self.kept.fetch_add(1, Ordering::Relaxed);
+        if bytes.len() <= LARGEST {
+            let _ = write_file(self.path(name), bytes);
         }
     }
 
