@@ -3,10 +3,10 @@
 #[path = "column.rs"]
 mod column;
 
+use crate::rows::draws::apart;
 use crate::rows::programs::row;
 use column::{COLUMN, STEADY, side};
 use grainbench_harness::prelude::*;
-use grainbench_harness::statistics::spread;
 use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[
@@ -231,21 +231,12 @@ fn saturates() -> Claim {
         .refuses(Control::scene("a smooth side", |scene| side_friction(scene, 0.0)))
 }
 
-/// How far two fillings are apart in a quantity; nothing where the table does not have it, so that the row is red.
-fn apart(quantity: &str) -> f64 {
-    let mut table = csv::Reader::from_reader(PACKINGS.as_bytes());
-    let place = table.headers().ok().and_then(|names| names.iter().position(|name| name == quantity));
-    let value = |row: csv::StringRecord| row.get(place?)?.parse().ok();
-    let values: Vec<f64> = table.records().flatten().filter_map(value).collect();
-    spread(&values).unwrap_or(0.0)
-}
-
 /// Our solver in LAMMPS' convention and LAMMPS, from the same fall.
 fn beside(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("part of the weight on the floor, friction {about} at the side");
     let because =
         "a filling is one draw of many: the 99 % interval of the difference of two, from fillings of five seeds";
-    let allowed = computed(apart(&quantity), because);
+    let allowed = computed(apart(PACKINGS, &quantity), because);
     let control = Control::ours("a smooth side in ours", |scene| side_friction(scene, 0.0));
     let run = |solver| Run::new(variant, solver, LEVELS[0].resolution).long().kept();
     row(&quantity, "1", allowed, [run("dem:lammps"), run("lammps")], control, |done| {

@@ -3,10 +3,10 @@
 #[path = "bulk.rs"]
 mod bulk;
 
+use crate::rows::draws::apart;
 use crate::rows::programs::row;
 use bulk::BULK;
 use grainbench_harness::prelude::*;
-use grainbench_harness::statistics::spread;
 use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::scene::{Duration, Piston, Sampling};
 
@@ -145,15 +145,6 @@ fn of_walls(done: &Done) -> Result<f64, Missing> {
     Ok(0.5 * (series(done, "on-bottom.force_x")? - series(done, "on-lid.force_x")?) / width(&done.scene))
 }
 
-/// How far two packings are apart in a quantity; nothing where the table does not have it, so that the row is red.
-fn apart(quantity: &str) -> f64 {
-    let mut table = csv::Reader::from_reader(PACKINGS.as_bytes());
-    let place = table.headers().ok().and_then(|names| names.iter().position(|name| name == quantity));
-    let value = |row: csv::StringRecord| row.get(place?)?.parse().ok();
-    let values: Vec<f64> = table.records().flatten().filter_map(value).collect();
-    spread(&values).unwrap_or(0.0)
-}
-
 /// A quantity that is read of a run, and its name.
 type Quantity = (&'static str, fn(&Done) -> Result<f64, Missing>);
 
@@ -175,7 +166,7 @@ fn claims() -> Vec<Claim> {
 /// The lid is at rest in the mean, so that the layer carries its pressure.
 fn normal(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("normal stress of the bulk over the pressure of the lid, I ≈ {about}");
-    let allowed = apart(&quantity);
+    let allowed = apart(PACKINGS, &quantity);
     claim(quantity, "1")
         .of(ours(variant))
         .holds("momentum across the layer: the mean of σ_yy, with its momentum flux, is that of the lid", |done| {
@@ -202,7 +193,7 @@ fn shear(variant: &'static str, about: &str) -> Claim {
         }
     }
     let quantity = format!("shear stress of the bulk over that of the walls, I ≈ {about}");
-    let allowed = apart(&quantity);
+    let allowed = apart(PACKINGS, &quantity);
     claim(quantity, "1")
         .of(ours(variant))
         .holds("momentum along the layer: the mean of σ_xy, with its momentum flux, is that of the walls", |done| {
@@ -217,7 +208,7 @@ fn scales(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
     const LAW: &str =
         "dimensions: grains as good as rigid have no time but 1/γ̇ and √(m/P), so that I alone counts (derivation)";
     let quantity = format!("{name}, I ≈ {about}");
-    let allowed = apart(&quantity);
+    let allowed = apart(PACKINGS, &quantity);
     claim(quantity, "1")
         .of_all([ours(variant).aside(), pressed(variant)])
         .holds(LAW, move |done| Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0)))
@@ -253,7 +244,7 @@ fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
 /// Our solver in LAMMPS' convention and LAMMPS, from the same start.
 fn beside(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
-    let allowed = computed(apart(&quantity), BECAUSE);
+    let allowed = computed(apart(PACKINGS, &quantity), BECAUSE);
     let control = Control::ours("friction 0 between grains in ours", |scene| {
         scene.change_laws(|law| law.friction = if law.friction > 1.0 { law.friction } else { 0.0 });
     });

@@ -1,12 +1,12 @@
 //! What is claimed of every silo, from its elements, blocks and tracers.
 
 use super::ensemble::{self, Flow, mean, share, steady};
+use crate::rows::draws::apart;
 use crate::rows::programs::row;
 use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_harness::run::Set;
 use grainbench_harness::source::Cited;
-use grainbench_harness::statistics::spread;
 
 /// A quantity of a silo.
 pub(crate) type Quantity = fn(&Done, Flow) -> Result<f64, Missing>;
@@ -157,11 +157,7 @@ impl Silo {
 
     /// How far two packings are apart in a quantity, with 99 %; nothing where the table does not have it, so that the row is red.
     fn spread(&self, quantity: &str) -> f64 {
-        let mut table = csv::Reader::from_reader(self.packings.as_bytes());
-        let place = table.headers().ok().and_then(|names| names.iter().position(|name| name == quantity));
-        let value = |row: csv::StringRecord| row.get(place?)?.parse().ok();
-        let values: Vec<f64> = table.records().flatten().filter_map(value).collect();
-        spread(&values).unwrap_or(0.0)
+        apart(self.packings, quantity)
     }
 
     /// A quantity that is what the prototype gives, within what packings differ by.
