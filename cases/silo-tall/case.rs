@@ -53,7 +53,7 @@ fn full_size() -> PaperSize {
     let drained = paper::Drained {
         plateau: DRAINED.plateau,
         onset: DRAINED.onset,
-        beside: &collapse::PAPER[0],
+        beside: Some(&collapse::PAPER[0]),
         others: &collapse::PAPER,
     };
     PaperSize {

@@ -2,7 +2,9 @@
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{Drained, LEVELS, Numbers, Silo, WEAKNESS};
+use crate::silo::collapse;
 use crate::silo::ensemble::Flow;
+use crate::silo::paper::{self, PaperSize};
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
@@ -47,14 +49,34 @@ fn silo() -> Silo {
     Silo { flow: Flow::Drained, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
 }
 
+fn full_size() -> PaperSize {
+    PaperSize {
+        variant: "paper",
+        flow: Flow::Drained,
+        label: "wide silo, drained",
+        step: LEVELS[0],
+        bins: DRAINED.bins,
+        drained: Some(paper::Drained {
+            plateau: DRAINED.plateau,
+            onset: DRAINED.onset,
+            // Its curves lie beside those of the other flows in the case of the tall silo.
+            beside: None,
+            others: &collapse::BESIDE_WIDE,
+        }),
+    }
+}
+
 fn claims() -> Vec<Claim> {
     let silo = silo();
     let mut all = vec![silo.turn(prototype::WIDE_TURN), silo.symmetry()];
     all.extend(silo.of_every());
     all.extend(silo.of_drains(&DRAINED));
+    all.extend(full_size().claims());
     all
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Drained, DRAINED.bins))
+    let mut all = crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Drained, DRAINED.bins);
+    all.extend(full_size().figures(runner));
+    Ok(all)
 }

@@ -21,11 +21,16 @@ pub(crate) const TENTH: [Other; 2] = [
     Other { case: "silo-push", variant: "pushed", label: "wide silo, pushed", strained: 3 },
 ];
 
-/// The other flows beside that of the size of the paper: the wide silo drains at a tenth of it only.
-pub(crate) const PAPER: [Other; 2] = [
-    Other { case: "silo-wide", variant: "drained", label: "wide silo of a tenth of the size, drained", strained: 5 },
-    Other { case: "silo-push", variant: "deep", label: "tall silo, pushed", strained: 3 },
-];
+/// What is pushed at the size of the paper.
+const DEEP: Other = Other { case: "silo-push", variant: "deep", label: "tall silo, pushed", strained: 3 };
+
+/// The other flows of the size of the paper beside the tall silo.
+pub(crate) const PAPER: [Other; 2] =
+    [Other { case: "silo-wide", variant: "paper", label: "wide silo, drained", strained: 5 }, DEEP];
+
+/// And beside the wide one.
+pub(crate) const BESIDE_WIDE: [Other; 2] =
+    [Other { case: "silo-tall", variant: "paper", label: "tall silo, drained", strained: 5 }, DEEP];
 
 /// What was read of a flow, with its case and its variant.
 type Read = ([&'static str; 2], Result<Done, String>);

@@ -34,9 +34,9 @@ pub(crate) struct Drained {
     pub(crate) plateau: Cited,
     /// Largest sin φ before tracers dilate, in the prototype: the .6 that the paper prints is not met (derivation).
     pub(crate) onset: Cited,
-    /// A silo that drains, beside whose curve over |I₀| it is laid.
-    pub(crate) beside: &'static Other,
-    /// Flows beside whose curve over |E| it is laid.
+    /// A silo that drains, beside whose curve over |I₀| it is laid, and beside that of all others over |E|.
+    pub(crate) beside: Option<&'static Other>,
+    /// Flows that figures show beside it.
     pub(crate) others: &'static [Other],
 }
 
@@ -130,7 +130,7 @@ impl PaperSize {
         let bins = self.bins;
         let one = |quantity: &str| self.claim(quantity, "1");
         let density = Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one);
-        vec![
+        let mut all = vec![
             one("packing fraction of the deposit")
                 .equals_cited(paper::DEPOSIT, 1.0, |done| ensemble::deposit(&done[0]))
                 .within(asked(0.005, "63.5 % ± .5; in units of φ"))
@@ -150,9 +150,12 @@ impl PaperSize {
                 .equals_cited(of.onset, 1.0, |done| ensemble::onset(&done[0]))
                 .within(asked(0.04, TENTH))
                 .refuses(tangent()),
-            collapse::of_drains(self.run(), of.beside, ["the wide silo of a tenth of the size", SUFFIX]),
-            collapse::of_strained(self.run(), of.others, SUFFIX),
-        ]
+        ];
+        if let Some(other) = of.beside {
+            all.push(collapse::of_drains(self.run(), other, ["the wide silo", SUFFIX]));
+            all.push(collapse::of_strained(self.run(), of.others, SUFFIX));
+        }
+        all
     }
 
     /// Its figures, where its run is kept or done.
