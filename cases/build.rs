@@ -11,7 +11,8 @@ fn main() -> Result<(), Failure> {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
     fs::write(out.join("registry.rs"), registry(&root)?)?;
-    let references = root.join("../reference");
+    // The crate `reference` says where it is: beside this one in a checkout, and somewhere else as a package.
+    let references = PathBuf::from(env::var("DEP_GRAINBENCH_REFERENCE_FOLDER")?);
     fs::write(out.join("sources.rs"), sources(&references)?)?;
     println!("cargo::rerun-if-changed={}", root.display());
     for kind in KINDS {

@@ -2,20 +2,10 @@
 
 use grainbench_reports::measured::{Costs, Measurements, Stability};
 use grainbench_reports::study::Study;
-use std::path::{Path, PathBuf};
+use grainbench_studies::kept::{COST, STABILITY};
 
-/// What `cost --keep` left.
-const COST: &str = include_str!("../studies/kept/cost.json");
-/// What `stability --keep` left.
-const STABILITY: &str = include_str!("../studies/kept/stability.json");
 /// Other people's solvers beside ours in some scenes.
 const PEERS: &str = include_str!("../peers/cost.json");
-
-/// Where a study is kept.
-#[must_use]
-pub fn place(study: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/kept").join(format!("{study}.json"))
-}
 
 /// Hash of the sources of a solver as this program has them; of a program, of what we hand it.
 #[must_use]

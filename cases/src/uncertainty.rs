@@ -26,7 +26,7 @@ pub struct Stored {
 /// Where the estimates of a case are.
 #[must_use]
 pub fn file(case: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference/uncertainty").join(format!("{case}.toml"))
+    Path::new(grainbench_reference::FOLDER).join("uncertainty").join(format!("{case}.toml"))
 }
 
 /// What is stored of a case; nothing where there is no file, or none that can be read.

@@ -3,6 +3,9 @@
 //! Everything a file can hold is either read or refused with an error that names the file, the place, what was
 //! expected there and what was found. Nothing here panics on an input, however damaged.
 
+/// The folder of this crate: literature, prototypes, stored runs and estimated uncertainties lie in it.
+pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
+
 pub mod comparison;
 mod deadline;
 pub mod deck;

@@ -35,7 +35,7 @@ pub(crate) fn read(program: &Outside) -> Result<Judged, Fault> {
 /// Keeps a study in the tree, for the first screen of a page.
 pub(crate) fn keep_study(name: &str, study: &Study) -> Result<(), Fault> {
     let text = kept_text(study).map_err(Fault::input)?;
-    write_file(grainbench::kept::place(name), text.as_bytes()).map_err(Fault::writing)
+    write_file(grainbench::studies::kept::place(name), text.as_bytes()).map_err(Fault::writing)
 }
 
 /// Keeps the rows of a program beside its manifest.

@@ -9,6 +9,7 @@ pub mod clock;
 pub mod cost;
 pub mod effects;
 pub mod identity;
+pub mod kept;
 pub mod race;
 pub mod result_cache;
 pub mod run_cache;

@@ -41,7 +41,7 @@ pub struct StoredRun {
 /// The folder of the run `id` of a program among the sources of this crate.
 #[must_use]
 pub fn folder(program: Program, id: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(program.name()).join(id)
+    Path::new(crate::FOLDER).join(program.name()).join(id)
 }
 
 impl StoredRun {
