@@ -10,8 +10,10 @@ use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Most grains.
 pub const MOST: u32 = 20_000;
@@ -38,7 +40,41 @@ pub fn pack_cut(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension)
     packed(radii, seed, domain, dimension, true)
 }
 
+/// What a packing is made from, to the bit.
+type Recipe = (Vec<u64>, u64, [u64; 6], [bool; 3], usize, bool);
+/// A packing, made by whoever comes first.
+type Place = Arc<OnceLock<Option<Vec<Vector3<f64>>>>>;
+/// Packings that are remembered; one of the largest has half a megabyte.
+const REMEMBERED: usize = 32;
+
+/// Variants of a scene and its wrong copies begin with one packing: it is made once.
 fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<Vec<Vector3<f64>>> {
+    static MADE: Mutex<VecDeque<(Recipe, Place)>> = Mutex::new(VecDeque::new());
+    let bits = |at: usize| if at < 3 { domain.low[at] } else { domain.high[at - 3] }.to_bits();
+    let recipe: Recipe = (
+        radii.iter().map(|radius| radius.to_bits()).collect(),
+        seed,
+        std::array::from_fn(bits),
+        domain.periodic,
+        dimension.count(),
+        cut,
+    );
+    let place = {
+        let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = made.iter().find(|(of, _)| *of == recipe).map(|(_, place)| Arc::clone(place));
+        known.unwrap_or_else(|| {
+            let place = Place::default();
+            made.push_back((recipe, Arc::clone(&place)));
+            if made.len() > REMEMBERED {
+                made.pop_front();
+            }
+            place
+        })
+    };
+    place.get_or_init(|| made(radii, seed, domain, dimension, cut)).clone()
+}
+
+fn made(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<Vec<Vector3<f64>>> {
     let axes = dimension.count();
     // More than fills the box need not be tried, and would list every pair.
     let ball = |radius: f64| if axes == 2 { PI * radius * radius } else { 4.0 / 3.0 * PI * radius.powi(3) };
