@@ -70,6 +70,8 @@ pub(crate) struct RunFile {
     pub(crate) path: PathBuf,
     kind: Kind,
     moment: Option<Moment>,
+    /// The first step of a dump, where it can be read.
+    begins: Option<u64>,
 }
 
 /// A moment.
@@ -92,16 +94,18 @@ impl RunFile {
     }
 }
 
-/// The files that were named: collections as what they list, files of one moment each in the order of their steps.
+/// The files that were named: collections as what they list, and all in the order of their steps, which is seldom that of
+/// their names.
 pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     let mut files = Vec::new();
     for path in named.iter().filter(|path| !is_box(path)) {
         match kind(path)? {
             kind @ (Kind::Dump | Kind::Table | Kind::Npz) => {
-                files.push(RunFile { path: path.clone(), kind, moment: None });
+                let begins = if kind == Kind::Dump { first_step(path) } else { None };
+                files.push(RunFile { path: path.clone(), kind, moment: None, begins });
             }
             Kind::VtkHdf if vtk::has_steps(path)? => {
-                files.push(RunFile { path: path.clone(), kind: Kind::VtkHdf, moment: None });
+                files.push(RunFile { path: path.clone(), kind: Kind::VtkHdf, moment: None, begins: None });
             }
             Kind::VtkHdf | Kind::Vtk(vtk::Kind::Points) => files.push(of_moment(path, None)?),
             Kind::Vtk(vtk::Kind::Collection) => {
@@ -111,8 +115,24 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
             }
         }
     }
-    files.sort_by_key(|file| file.moment.map(|moment| moment.step));
+    files.sort_by_key(|file| file.moment.map(|moment| moment.step).or(file.begins));
     Ok(files)
+}
+
+/// The first step of a dump; none of one that is damaged, which whoever reads it is told.
+fn first_step(path: &Path) -> Option<u64> {
+    /// Lines of units and time may stand in front of it.
+    const MOST_LINES: usize = 8;
+    let mut lines = LineReader::new(BufReader::new(File::open(path).ok()?), &shown(path)).ok()?;
+    let mut is_next = false;
+    for _ in 0..MOST_LINES {
+        let line = lines.next_line().ok()??;
+        if is_next {
+            return line.text.trim().parse().ok();
+        }
+        is_next = line.text.trim() == "ITEM: TIMESTEP";
+    }
+    None
 }
 
 /// LIGGGHTS leaves the box beside each file of grains, under a name that a pattern of theirs catches too.
@@ -129,7 +149,7 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     let step = step.map_err(|_| {
         ReadError::at(&shown(path), 1, "the step in the file's name, as in `dump_5000.vtk`", quoted(&stem))
     })?;
-    Ok(RunFile { path: path.to_owned(), kind: kind(path)?, moment: Some(Moment { step, time }) })
+    Ok(RunFile { path: path.to_owned(), kind: kind(path)?, moment: Some(Moment { step, time }), begins: None })
 }
 
 /// Snapshot after snapshot of a file.

@@ -186,6 +186,18 @@ fn one_line(text: &str) -> String {
     tamed(text, |_| false)
 }
 
+/// What was expected and what stood there.
+fn reason(error: &serde_json::Error, text: &str) -> String {
+    // The parser repeats the line and column at the end.
+    let words = error.to_string();
+    let words = words.split(" at line ").next().unwrap_or_default();
+    match words.strip_prefix("EOF while parsing ") {
+        Some(_) if text.trim().is_empty() => "expected JSON, found an empty file".to_owned(),
+        Some(what) => format!("expected the rest of {what}, found the end of the file"),
+        None => words.to_owned(),
+    }
+}
+
 /// Reads a file of ours; an error names the place.
 pub(crate) fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, LoadError> {
     let mut json = serde_json::Deserializer::from_str(text);
@@ -202,8 +214,7 @@ pub(crate) fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> 
         line: error.line(),
         column: error.column(),
         place: one_line(&place),
-        // The parser repeats the line and column at the end.
-        reason: one_line(error.to_string().split(" at line ").next().unwrap_or_default()),
+        reason: one_line(&reason(&error, text)),
     })
 }
 
@@ -260,6 +271,6 @@ mod tests {
 
         fs::write(&path, &text[..text.len() / 2]).unwrap();
         let message = Report::load(dir.path()).unwrap_err().to_string();
-        assert!(message.contains("EOF"), "{message}");
+        assert!(message.contains("the end of the file"), "{message}");
     }
 }

@@ -63,6 +63,13 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         refuse_mixed(dir).map_err(Fault::input)?;
     }
     let holds = |file: &str| arguments.dir.join(file).is_file();
+    if ![RECORD_FILE, BROKEN_FILE, REPORT_FILE, STUDY_FILE].into_iter().any(holds) {
+        let found = if arguments.dir.is_dir() { "another" } else { "none" };
+        let there = arguments.dir.display();
+        return Err(Fault::input(format!(
+            "{there}: expected a directory that `run`, `cost`, `stability`, `effects` or `simulate` left, found {found}"
+        )));
+    }
     if (holds(RECORD_FILE) || holds(BROKEN_FILE)) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
         pictures(arguments)?;
         print(&page)?;
