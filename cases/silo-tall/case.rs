@@ -53,6 +53,7 @@ fn full_size() -> PaperSize {
     let drained = paper::Drained {
         plateau: DRAINED.plateau,
         onset: DRAINED.onset,
+        bins: DRAINED.bins.len(),
         beside: Some(&collapse::PAPER[0]),
         others: &collapse::PAPER,
     };

@@ -34,6 +34,9 @@ pub(crate) struct Drained {
     pub(crate) plateau: Cited,
     /// Largest sin φ before tracers dilate, in the prototype: the .6 that the paper prints is not met (derivation).
     pub(crate) onset: Cited,
+    /// Bins of |I₀| that are compared frame by frame: the last, of few elements over the slit, by its mean over the whole flow where
+    /// it is not among them.
+    pub(crate) bins: usize,
     /// A silo that drains, beside whose curve over |I₀| it is laid, and beside that of all others over |E|.
     pub(crate) beside: Option<&'static Other>,
     /// Flows that figures show beside it.
@@ -127,7 +130,8 @@ impl PaperSize {
 
     /// Rows of a silo that drains.
     fn of_drains(&self, of: &Drained) -> Vec<Claim> {
-        let bins = self.bins;
+        let (bins, over_the_slit) = self.bins.split_at(of.bins);
+        let bulk = if over_the_slit.is_empty() { "" } else { "the first nine " };
         let one = |quantity: &str| self.claim(quantity, "1");
         let density = Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one);
         let mut all = vec![
@@ -135,9 +139,14 @@ impl PaperSize {
                 .equals_cited(paper::DEPOSIT, 1.0, |done| ensemble::deposit(&done[0]))
                 .within(asked(0.005, "63.5 % ± .5; in units of φ"))
                 .refuses(larger()),
-            over_inertia(one("packing fraction over |I₀| in bins from 6 to 14 τ, worst"), bins, PROTOTYPE, density),
             over_inertia(
-                self.known("packing fraction over |I₀| in bins from 6 to 25 τ, worst", "1", STRAINED),
+                one(&format!("packing fraction over |I₀| in {bulk}bins from 6 to 14 τ, worst")),
+                bins,
+                PROTOTYPE,
+                density.clone(),
+            ),
+            over_inertia(
+                self.known(&format!("packing fraction over |I₀| in {bulk}bins from 6 to 25 τ, worst"), "1", STRAINED),
                 bins,
                 f64::INFINITY,
                 Control::misread("what comes after 14 τ left out", ensemble::without_the_end),
@@ -151,6 +160,19 @@ impl PaperSize {
                 .within(asked(0.04, TENTH))
                 .refuses(tangent()),
         ];
+        if let [last] = over_the_slit {
+            all.push(
+                one("packing fraction of elements with |I₀| of .4 to .6, 6 to 25 τ")
+                    .equals(last.source(), move |done| {
+                        let all = ensemble::over_inertia(&done[0])?;
+                        let found =
+                            all.last().copied().flatten().ok_or_else(|| Missing("elements so fast".to_owned()))?;
+                        Ok(Measured::new(found, last.value, 1.0))
+                    })
+                    .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
+                    .refuses(density),
+            );
+        }
         if let Some(other) = of.beside {
             all.push(collapse::of_drains(self.run(), other, ["the wide silo", SUFFIX]));
             all.push(collapse::of_strained(self.run(), of.others, SUFFIX));
