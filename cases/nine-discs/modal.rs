@@ -4,6 +4,9 @@ use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 use std::f64::consts::SQRT_2;
 
+/// Duration of the walls' ramp, in units of √(m/k_n): 40 steps of a tenth of the critical one.
+pub(crate) const RAMP_TIME: f64 = 40.0 * 0.1 * 2.0;
+
 /// Closed forms for one scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Modal {
