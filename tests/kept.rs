@@ -2,8 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench::kept::{measured, place, sources};
+use grainbench::kept::{measured, sources};
 use grainbench::reports::study::Study;
+use grainbench::studies::kept::place;
 
 fn study(name: &str) -> Study {
     serde_json::from_str(&std::fs::read_to_string(place(name)).unwrap()).unwrap()

@@ -3,8 +3,8 @@
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
 use super::run::{exit_code, is_judged};
-use super::simulate::{path_and_value, positive};
 use super::subject::{self, Variant};
+use super::value::{path_and_value, positive};
 use grainbench::check::{Subject, check as judge};
 use grainbench::harness::verdict;
 use grainbench::reference::observer::Names;

@@ -4,7 +4,7 @@ use super::check::rows;
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
 use super::run::{exit_code, is_judged};
-use super::simulate::{path_and_value, positive};
+use super::value::{path_and_value, positive};
 use grainbench::harness::evidence::Evidence;
 use grainbench::harness::expect::{Bound, Expected, Measured};
 use grainbench::harness::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};

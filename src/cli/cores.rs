@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Most threads that can be asked for.
-pub(crate) const MOST_THREADS: i64 = 1024;
+pub(crate) const MOST_THREADS: u16 = 1024;
 
 /// How many threads this machine runs at once.
 pub(crate) fn cores() -> usize {

@@ -1,8 +1,8 @@
 //! `grainbench deck`: the input of another program for a scene of ours.
 
 use super::exit::{Fault, Outcome, check_writable, print};
-use super::simulate::{path_and_value, positive};
 use super::subject;
+use super::value::{path_and_value, positive};
 use grainbench::reference::deck::{DeckError, Program, write_deck};
 use grainbench::reports::StagedDir;
 use grainbench::scene::solver::Resolution;

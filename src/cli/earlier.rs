@@ -32,6 +32,9 @@ impl Earlier {
             Fault::input(format!("{place}: {}: expected {expected}, found {found}", file.display()))
         };
         let text = std::fs::read_to_string(&file).map_err(|error| fault(error.to_string()))?;
+        if text.trim().is_empty() {
+            return Err(fault("an empty file".to_owned()));
+        }
         serde_json::from_str(&text).map_err(|error| fault(format!("other text: {error}")))
     }
 

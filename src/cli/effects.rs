@@ -3,10 +3,10 @@
 use super::cost::Follower;
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
-use super::simulate::positive;
 use super::solver;
 use super::step::Step;
 use super::subject::{self, Variant};
+use super::value::positive;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::study::ledger::Worth;
@@ -45,16 +45,26 @@ pub(crate) struct Arguments {
 #[derive(clap::Args)]
 struct Yours {
     /// Who runs a scene of yours.
-    #[arg(long, value_name = "NAME|SOLVER.toml", default_value = "dem")]
+    #[arg(long, value_name = "NAME|SOLVER.toml", default_value = SOLVER)]
     solver: String,
     #[command(flatten)]
     step: Step,
     /// The least change of what a probe of your scene tells that matters to you, in units of its largest value.
-    #[arg(long, value_name = "FRACTION", default_value_t = 0.01, value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FRACTION", default_value_t = MATTERS, value_parser = positive, allow_hyphen_values = true)]
     matters: f64,
 }
 
+/// Who runs it where nobody is named.
+const SOLVER: &str = "dem";
+/// What matters where nobody says it.
+const MATTERS: f64 = 0.01;
+
 impl Yours {
+    /// Whether nothing was said that cases would not heed: they say themselves who runs them, in which steps, and what matters.
+    fn is_usual(&self) -> bool {
+        self.solver == SOLVER && self.step.is_usual() && self.matters.total_cmp(&MATTERS).is_eq()
+    }
+
     fn resolution(&self) -> Resolution {
         match Method::of(&self.solver) {
             Some(Method::Rigid) => Resolution::substeps(Resolution::SUBSTEPS),
@@ -71,6 +81,12 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
             return Err(Fault::input(format!("{scene}: expected a scene of yours alone, found others beside it")));
         }
         return of_scene(scene, arguments);
+    }
+    if !arguments.yours.is_usual() {
+        let found = "found none: cases say themselves who runs them, in which steps, and what matters";
+        return Err(Fault::input(format!(
+            "--solver, --time-step, --time-step-fraction, --matters: expected a SCENE.toml of yours beside them, {found}"
+        )));
     }
     let mut ledgers = ledgers(&arguments.cases)?;
     check_writable(&arguments.out)?;

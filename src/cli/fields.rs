@@ -1,7 +1,7 @@
 //! `grainbench fields`: grains or material points read as a continuum, cell by cell.
 
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
-use super::simulate::{path_and_value, positive};
+use super::value::{path_and_value, positive, whole};
 use grainbench::fields::column::COLUMNS;
 use grainbench::fields::contact_stress::Stress;
 use grainbench::fields::course::Course;
@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     time_step: Option<f64>,
     /// 2 for discs in the plane z = 0, 3 for spheres; by default a plane where a directory holds one.
-    #[arg(long, value_name = "2|3", value_parser = clap::value_parser!(u8).range(2..=3))]
+    #[arg(long, value_name = "2|3", value_parser = whole::<u8>(2, 3))]
     dimension: Option<u8>,
     /// Lower corner of the cells (m); that of the box by default.
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true)]
@@ -84,7 +84,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "RATE", value_parser = positive)]
     flowing: Option<f64>,
     /// Blocks of frames that intervals are found from.
-    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = whole(2, u16::MAX))]
     blocks: u16,
     /// Directory for tables, image data and pictures.
     #[arg(long, value_name = "DIR", default_value = "grainbench-fields")]

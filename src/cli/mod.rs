@@ -34,6 +34,7 @@ mod stability;
 mod step;
 mod strangers;
 mod subject;
+mod value;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use exit::Fault;

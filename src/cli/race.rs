@@ -3,6 +3,7 @@
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::progress::Progress;
 use super::provenance::provenance;
+use super::value::whole;
 use super::{solver, subject};
 use grainbench::cases::registry::read_grains;
 use grainbench::cases::solvers;
@@ -43,7 +44,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     tracks: Vec<String>,
     /// Laps of each racer on each scene.
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..1000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole::<u32>(1, 999))]
     rounds: u32,
     /// Steps of the short and of the long run.
     #[arg(long, value_name = "SHORT,LONG", value_parser = steps)]

@@ -6,6 +6,7 @@ use super::exit::{Fault, Outcome, check_writable, print, say};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::run::exit_code;
+use super::value::whole;
 use grainbench::cases::kept::{self, Wanted};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored::{self, Reference};
@@ -52,7 +53,7 @@ pub(crate) struct Keep {
     #[arg(long)]
     paper_size: bool,
     /// Threads of a run.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
     threads: u16,
 }
 

@@ -2,7 +2,7 @@
 
 use super::exit::{Fault, Outcome, print};
 use super::run;
-use super::simulate::positive;
+use super::value::{positive, whole};
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
 use grainbench::reports::record_figures::{self, Named, Shown};
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FROM..TO", value_parser = window, allow_hyphen_values = true)]
     window: Option<(f64, f64)>,
     /// The most frames of a film.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=500))]
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(2, 500))]
     frames: Option<u16>,
 }
 

@@ -12,6 +12,7 @@ use super::keep::{self, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::select::{self, Selected};
+use super::value::whole;
 use grainbench::cases::solvers;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
@@ -93,10 +94,10 @@ pub(crate) struct Options {
     #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "keep"])]
     as_kept: bool,
     /// Threads of each run; as many runs at once as the machine has cores for. The bits do not depend on it.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
     threads: u16,
     /// Runs at once; as many as the machine has cores for where none are named.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS))]
     jobs: Option<u16>,
     /// Print the counts and what failed, and no table.
     #[arg(short, long, conflicts_with = "verbose")]

@@ -1,9 +1,9 @@
 //! `grainbench scene`: a scene as programs are given it.
 
 use super::exit::{Fault, Outcome, print};
-use super::simulate::{path_and_value, positive};
 use super::step::Step;
 use super::subject;
+use super::value::{path_and_value, positive};
 use grainbench::reference::outside::{Given, Resolved, SceneFormat};
 use grainbench::scene::solver::Resolution;
 use std::process::ExitCode;

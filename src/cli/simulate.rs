@@ -7,6 +7,7 @@ use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::solver;
 use super::step::Step;
+use super::value::{path_and_value, positive, whole};
 use grainbench::cases::registry::read_grains;
 use grainbench::reports::export::{self, Format};
 use grainbench::reports::{End, SnapshotStore, StagedDir, number, write_file};
@@ -47,7 +48,7 @@ pub(crate) struct Arguments {
         long,
         value_name = "NUMBER",
         default_value_t = Resolution::POINTS,
-        value_parser = clap::value_parser!(u32).range(1..=64)
+        value_parser = whole::<u32>(1, 64)
     )]
     points: u32,
     /// Courant number c Δt/h, of solvers with a grid.
@@ -58,7 +59,7 @@ pub(crate) struct Arguments {
         long,
         value_name = "NUMBER",
         default_value_t = Resolution::SUBSTEPS,
-        value_parser = clap::value_parser!(u32).range(1..)
+        value_parser = whole(1, u32::MAX)
     )]
     substeps: u32,
     /// Iterations of the constraint solver in each time step, of solvers for rigid bodies.
@@ -66,7 +67,7 @@ pub(crate) struct Arguments {
         long,
         value_name = "NUMBER",
         default_value_t = Resolution::RIGID_ITERATIONS,
-        value_parser = clap::value_parser!(u32).range(1..)
+        value_parser = whole(1, u32::MAX)
     )]
     iterations: u32,
     /// Take a time step of the critical one or above.
@@ -74,7 +75,7 @@ pub(crate) struct Arguments {
     allow_unstable: bool,
     /// Threads of `dem` and `mpm`; all that the machine has where none are named. The record does not depend on it in any
     /// bit.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    #[arg(long, value_name = "N", value_parser = whole(1, MOST_THREADS))]
     threads: Option<u16>,
     /// Leave a checkpoint here every so many steps, each in the place of the one before.
     #[arg(long, value_name = "FILE")]
@@ -84,7 +85,7 @@ pub(crate) struct Arguments {
         long,
         value_name = "STEPS",
         default_value_t = 100_000,
-        value_parser = clap::value_parser!(u64).range(1..),
+        value_parser = whole(1, u64::MAX),
         requires = "checkpoint"
     )]
     checkpoint_every: u64,
@@ -138,20 +139,6 @@ impl Written {
 
 /// Most keys that are overridden on a command line.
 const MOST_OVERRIDES: usize = 1000;
-
-/// A key and its value.
-pub(crate) fn path_and_value(text: &str) -> Result<(String, String), String> {
-    let (path, value) = text.split_once('=').ok_or("expected path=value, found no `=`")?;
-    Ok((path.trim().to_owned(), value.trim().to_owned()))
-}
-
-/// A number above zero.
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("expected a positive number".to_owned()),
-    }
-}
 
 /// Simulates a scene and writes its record.
 pub(crate) fn simulate(arguments: &Arguments) -> Outcome {

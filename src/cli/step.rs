@@ -1,6 +1,6 @@
 //! The time step of a command line.
 
-use super::simulate::positive;
+use super::value::positive;
 use grainbench::scene::solver::Resolution;
 
 /// A time step, as a fraction of the critical one or in seconds.
@@ -22,6 +22,11 @@ pub(crate) struct Step {
 }
 
 impl Step {
+    /// Whether it is the one that is taken where none is given.
+    pub(crate) fn is_usual(&self) -> bool {
+        self.resolution() == Resolution::CriticalFraction(Resolution::FRACTION)
+    }
+
     /// As solvers take it.
     pub(crate) fn resolution(&self) -> Resolution {
         self.time_step.map_or(Resolution::CriticalFraction(self.time_step_fraction), Resolution::TimeStep)

@@ -137,12 +137,11 @@ impl SceneSource {
                 None => {
                     let names = variant_names(text);
                     let help = did_you_mean(variant, names.iter().map(String::as_str));
-                    return Err(self.error(
-                        "variants",
-                        &format!("one of the variants {}", names.join(", ")),
-                        &format!("`{variant}`"),
-                        help,
-                    ));
+                    let known = match &names[..] {
+                        [] => "no variant, for this scene has none".to_owned(),
+                        names => format!("one of the variants {}", names.join(", ")),
+                    };
+                    return Err(self.error("variants", &known, &format!("`{variant}`"), help));
                 }
             }
         }
