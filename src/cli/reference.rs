@@ -120,6 +120,7 @@ fn named(ids: &[String]) -> Result<Vec<Reference>, Fault> {
 
 fn build(arguments: &Build) -> Outcome {
     let wanted = named(&arguments.ids)?;
+    arguments.out.as_deref().map(check_writable).transpose()?;
     let date = jiff::Timestamp::now().strftime("%Y-%m-%d").to_string();
     let progress = Progress::new(wanted.len() as u64, "runs");
     let mut lines = String::new();
