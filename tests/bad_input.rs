@@ -146,6 +146,67 @@ refused_edits! {
     packed_into_too_little_room:
         "[materials.rock]" => "[domain]\nlow = [-1.0, 0.0]\nhigh = [1.0, 2.0]\n\n[grains.more]\nmaterial = \"rock\"\n\
                                packed = { seed = 1, radii = [[0.1, 500]] }\n\n[materials.rock]";
+    packed_a_little_too_densely:
+        "[materials.rock]" => "[domain]\nlow = [-1.0, 0.0]\nhigh = [1.0, 2.0]\n\n[grains.more]\nmaterial = \"rock\"\n\
+                               packed = { seed = 1, radii = [[0.1, 112]] }\n\n[materials.rock]";
+}
+
+/// Values of another shape than they should have, in place of the floor, of a grain's place or of a probe: all messages.
+#[test]
+fn a_value_of_another_shape_is_shown_the_shape() {
+    const PLANE: &str = "plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }";
+    const PLACE: &str = "radius = 0.1\nposition = [0.0, 0.1]";
+    const PROBE: &str = "upper = { grain = \"upper\" }";
+    const TABLE: &str = "[grains.lower]";
+    let edits = [
+        (PLANE, "segment = [-1.0, 0.0, 1.0, 0.0]"),
+        (PLANE, "segment = [[-1.0, 0.0], [1.0, 0.0], [1.0, 1.0]]"),
+        (PLANE, "segment = { from = [-1.0, 0.0], to = [1.0, 0.0] }"),
+        (PLANE, "segment = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]"),
+        (PLANE, "plane = [0.0, 1.0]"),
+        (PLANE, "plane = { point = 0.0, normal = [0.0, 1.0] }"),
+        (PLANE, "plane = { point = [0.0, 0.0] }"),
+        (PLANE, "plane = { point = [0.0, 0.0], normal = \"up\" }"),
+        (PLANE, &format!("{PLANE}\nmotion = {{ velocity = [1.0, 0.0] }}")),
+        (PLANE, &format!("{PLANE}\nmotion = [1.0, 0.0]")),
+        (PLANE, &format!("{PLANE}\nmotion = [{{ velocity = 1.0 }}]")),
+        (PLANE, &format!("{PLANE}\npiston = 100.0")),
+        (PLANE, "cylinder = { axis = [0.0, 0.0, 1.0], radius = 0.1 }"),
+        (PLANE, "rectangle = [[0.0, 0.0], [1.0, 1.0]]"),
+        (PLANE, "cone = { axis = [[0.0, 0.0], [0.0, 1.0]], radii = 0.1 }"),
+        (PLACE, "position = 0.1"),
+        (PLACE, "radius = 0.1\nlattice = [10, 10]"),
+        (PLACE, "radius = 0.1\nlattice = { origin = [0.0, 0.1], spacing = [0.2, 0.2], count = 4 }"),
+        (PLACE, "radius = 0.1\nrandom = 100"),
+        (PLACE, "random = { count = 10, seed = 1, radius_range = 0.1 }"),
+        (PLACE, "random = { count = 10, seed = 1, radii = [0.1, 0.2] }"),
+        (PLACE, "random = { count = 10, seed = 1, radii = { by_mass = { 0-1 = 0.5 } } }"),
+        (PLACE, "packed = { seed = 1, radii = [0.1, 5] }"),
+        (PLACE, "radius = 0.1\npoured = 10"),
+        (PLACE, "file = \"grains.data\""),
+        (PROBE, "upper = \"upper\""),
+        (PROBE, "upper = { contact = \"upper\" }"),
+        (PROBE, "upper = { point = [0.0, 0.35] }"),
+        (TABLE, "[bodies.block]\nmaterial = \"rock\"\nbox = [0.0, 0.0, 1.0, 1.0]\n[grains.lower]"),
+        (TABLE, "[bodies.block]\nmaterial = \"rock\"\nannulus = [0.1, 0.2]\n[grains.lower]"),
+        (TABLE, "[bodies.block]\nmaterial = \"rock\"\nfixed = \"x-low\"\n[grains.lower]"),
+        (TABLE, "[driven]\nface = \"y-low\"\n[grains.lower]"),
+        (TABLE, "[driven.some]\nregion = [0.0, 0.0, 1.0, 1.0]\n[grains.lower]"),
+        (TABLE, "[driven.some]\ngrains = \"lower\"\nvelocity = 1.0\n[grains.lower]"),
+        (TABLE, "[[walls]]\nmaterial = \"rock\"\n[grains.lower]"),
+        (TABLE, "[domain]\nlow = 0.0\nhigh = [1.0, 1.0]\n[grains.lower]"),
+        (TABLE, "[output]\nsnapshot_times = 0.5\n[grains.lower]"),
+        (TABLE, "[removal]\nlow = [0.0, 0.0]\n[grains.lower]"),
+    ];
+    let told: String = edits.iter().map(|(from, to)| format!("{to}\n  {}", refused(from, to))).collect();
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn random_grains_beyond_their_room() {
+    let scene = edited("[materials.rock]", "[domain]\nlow = [-1.0, 0.0]\nhigh = [1.0, 2.0]\n\n[materials.rock]");
+    let random = scene.replacen("position = [0.0, 0.1]", "random = { count = 90, seed = 1 }", 1);
+    insta::assert_snapshot!(refused_with(random.as_bytes(), &[]));
 }
 
 #[test]

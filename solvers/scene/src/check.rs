@@ -3,6 +3,7 @@
 use crate::error::{SceneError, did_you_mean};
 use crate::file::SpinSpec;
 use crate::scene::Dimension;
+use crate::shape;
 use crate::source::SceneSource;
 use nalgebra::Vector3;
 
@@ -45,7 +46,7 @@ impl Checker<'_> {
     pub(crate) fn vector(&self, key: &str, values: &[f64]) -> Result<Vector3<f64>, SceneError> {
         let count = self.dimension.count();
         if values.len() != count {
-            return Err(self.error(key, &format!("{count} components"), &format!("{} in {values:?}", values.len())));
+            return Err(self.error(key, shape::vector(self.dimension), &format!("{values:?}")));
         }
         if values.iter().any(|value| !value.is_finite()) {
             return Err(self.error(key, "finite components", &format!("{values:?}")));

@@ -1,5 +1,6 @@
 //! Generated grains: lattices, and random placement from a seed.
 
+use crate::packing::filled;
 use crate::radii::Radii;
 use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
@@ -59,8 +60,8 @@ pub struct Placed {
     pub velocity: Vector3<f64>,
 }
 
-/// Places `count` grains without overlap in `domain`, large ones first; `None` when no room is found for one in
-/// 10,000 tries. Grains keep off the faces of the domain along axes that are not periodic. The same seed gives the
+/// Places `count` grains without overlap in `domain`, large ones first; when no room is found for one in 10,000 tries, the share
+/// of the domain that they would fill. Grains keep off the faces of the domain along axes that are not periodic. The same seed gives the
 /// same grains on every machine.
 #[must_use]
 pub fn random(
@@ -70,7 +71,7 @@ pub fn random(
     speed: f64,
     domain: &Domain,
     dimension: Dimension,
-) -> Option<Vec<Placed>> {
+) -> Result<Vec<Placed>, f64> {
     const TRIES: u32 = 10_000;
     let mut generator = Pcg64::seed_from_u64(seed);
     let mut sizes: Vec<f64> = (0..count).map(|_| radii.draw(&mut generator)).collect();
@@ -78,17 +79,18 @@ pub fn random(
     let cell = 2.0 * radii.largest();
     let mut taken: HashMap<[i64; 3], Vec<(Vector3<f64>, f64)>> = HashMap::new();
     let mut placed = Vec::with_capacity(sizes.len());
-    for radius in sizes {
+    for &radius in &sizes {
         let position = (0..TRIES).find_map(|_| {
             let centre = somewhere(&mut generator, radius, domain, dimension);
             let free = images(centre, domain, cell).into_iter().all(|image| is_free(image, radius, cell, &taken));
             free.then_some(centre)
-        })?;
+        });
+        let position = position.ok_or_else(|| filled(sizes.iter().copied(), domain, dimension))?;
         taken.entry(cell_of(position, cell)).or_default().push((position, radius));
         let velocity = direction(&mut generator, dimension) * speed;
         placed.push(Placed { position, radius, velocity });
     }
-    Some(placed)
+    Ok(placed)
 }
 
 fn somewhere(generator: &mut impl Rng, radius: f64, domain: &Domain, dimension: Dimension) -> Vector3<f64> {

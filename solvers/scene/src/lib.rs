@@ -36,6 +36,7 @@ pub mod resolve;
 mod rounded_state;
 pub mod scene;
 mod sealed;
+mod shape;
 pub mod solver;
 pub mod source;
 pub mod space;

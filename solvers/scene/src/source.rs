@@ -2,6 +2,8 @@
 
 use crate::error::{SceneError, did_you_mean};
 use crate::file::SceneFile;
+use crate::scene::Dimension;
+use crate::shape;
 use std::path::{Path, PathBuf};
 
 /// The text of a scene file and where it came from.
@@ -251,6 +253,11 @@ impl SceneSource {
         let message = message.trim();
         let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
         let path = if path == "." { "" } else { path };
+        let dimension = match table.get("dimension").and_then(toml::Value::as_integer) {
+            Some(3) => Dimension::Three,
+            _ => Dimension::Two,
+        };
+        let shape = shape::expected(path, dimension);
         if message.starts_with("unknown field") || message.starts_with("unknown variant") {
             let word = quoted.first().copied().unwrap_or_default();
             let known = quoted.get(1..).unwrap_or_default();
@@ -267,7 +274,12 @@ impl SceneSource {
         if message.starts_with("missing field") {
             let word = quoted.first().copied().unwrap_or_default();
             let key = if path.is_empty() { word.to_owned() } else { format!("{path}.{word}") };
-            return self.error(&key, &format!("the key `{word}`"), "none", None);
+            let help = shape.filter(|(_, shape)| shape.starts_with('{')).map(|(_, shape)| format!("as in {shape}"));
+            return self.error(&key, &format!("the key `{word}`"), "none", help);
+        }
+        if let Some((key, shape)) = shape {
+            let found = value_at(table, key).map_or_else(|| message.to_owned(), describe);
+            return self.error(key, &shape, &found, None);
         }
         if let Some((found, expected)) = message.split_once(", expected ") {
             let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
@@ -299,9 +311,12 @@ fn with_zeros(value: &str) -> String {
 
 /// The value at a dotted path, where there is one.
 fn value_at<'a>(table: &'a toml::Table, path: &str) -> Option<&'a toml::Value> {
-    let mut parts = path.split('.');
+    let mut parts = path.split(['.', '[']);
     let first = table.get(parts.next()?)?;
-    parts.try_fold(first, |value, part| value.as_table()?.get(part))
+    parts.try_fold(first, |value, part| match part.strip_suffix(']') {
+        Some(number) => value.get(number.parse::<usize>().ok()?),
+        None => value.get(part),
+    })
 }
 
 fn describe(value: &toml::Value) -> String {

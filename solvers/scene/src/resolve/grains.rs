@@ -135,8 +135,12 @@ impl Resolver<'_> {
             let speed = check.not_negative(&key("speed"), random.speed, "speed (m/s)")?;
             let density = density()?;
             let placed = generate::random(random.count, random.seed, &radii, speed, &part, check.dimension)
-                .ok_or_else(|| {
-                    check.error(&key("count"), "room for all grains in the domain", &random.count.to_string())
+                .map_err(|share| {
+                    let place = if random.region.is_some() { "region" } else { "domain" };
+                    let found = format!("{} that would fill {share:.2} of it", random.count);
+                    let help = "one after the other at random, equal discs fill .55 and spheres .38 at most; `packed` is denser";
+                    let expected = format!("grains that find room in the {place}");
+                    check.source.error(&key("count"), &expected, &found, Some(help.to_owned()))
                 })?;
             grains.extend(
                 placed.into_iter().map(|place| grain(place.position, place.radius, density, velocity + place.velocity)),
@@ -187,7 +191,14 @@ impl Resolver<'_> {
         }
         let pack = if packed.cut { packing::pack_cut } else { packing::pack };
         let centres = pack(&radii, packed.seed, domain, check.dimension).ok_or_else(|| {
-            check.error(&key, "room for all grains in the domain without overlap", &format!("{total} grains"))
+            let asked = packing::filled(radii.iter().copied(), domain, check.dimension);
+            let expected = match packing::reachable(&radii, packed.seed, domain, check.dimension, packed.cut) {
+                Some(share) => {
+                    format!("grains that fill {share:.2} of the domain or less, which is as dense as these come")
+                }
+                None => "grains that fill half of the domain at most: these find no room denser".to_owned(),
+            };
+            check.error(&key, &expected, &format!("{total} grains that would fill {asked:.2} of it"))
         })?;
         Ok(centres.into_iter().zip(radii).collect())
     }

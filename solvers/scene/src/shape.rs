@@ -1,0 +1,122 @@
+//! What a value of the file looks like that has more than one number: shown where another one stood. Walls that are in space
+//! alone are shown there.
+
+use crate::scene::Dimension;
+
+/// Keys with their shapes, where `@` stands for a vector; `table.key` where keys of one name differ.
+const SHAPES: &[(&str, &str)] = &[
+    ("plane", "{ point = @, normal = @ }"),
+    ("segment", "[@, @]"),
+    ("rectangle", "{ corner = [x, y, z], edges = [[x, y, z], [x, y, z]] }"),
+    ("edges", "[[x, y, z], [x, y, z]]"),
+    ("cylinder", "{ axis = [[x, y, z], [x, y, z]], radius = r }"),
+    ("cone", "{ axis = [[x, y, z], [x, y, z]], radii = [r, r] }"),
+    ("cone.radii", "[r, r]"),
+    ("axis", "[[x, y, z], [x, y, z]]"),
+    ("piston", "{ force = F, mass = m }"),
+    ("motion", "[{ velocity = @ }]"),
+    ("box", "{ low = @, high = @ }"),
+    ("annulus", "{ centre = @, inner = r, outer = r }"),
+    ("wave", "{ amplitude = v }"),
+    ("fixed", "[\"x-low\", …]"),
+    ("sliding", "[\"x-low\", …]"),
+    ("region", "{ low = @, high = @ }"),
+    ("removal", "{ low = @, high = @ }"),
+    ("domain", "{ low = @, high = @ }"),
+    ("lattice", "{ origin = @, spacing = @, count = [how many along each axis] }"),
+    ("lattice.count", "[how many along each axis]"),
+    ("random", "{ count = n, seed = n }"),
+    (
+        "random.radii",
+        "{ log_normal = { median = r, deviation = s, range = [least, most] } } or { by_mass = [[r, share], …] }",
+    ),
+    ("log_normal", "{ median = r, deviation = s, range = [least, most] }"),
+    ("by_mass", "[[r, share], …]"),
+    ("range", "[least, most]"),
+    ("radius_range", "[least, most]"),
+    ("packed", "{ radii = [[r, how many], …], seed = n }"),
+    ("packed.radii", "[[r, how many], …]"),
+    ("poured", "{ count = n, rate = n, seed = n, low = @, high = @ }"),
+    ("state", "{ path = \"FILE\" }"),
+    ("file", "{ path = \"FILE\" }"),
+    ("types", "[\"MATERIAL\", …]"),
+    ("between", "[\"MATERIAL\", \"MATERIAL\"]"),
+    ("contact", "[\"GRAIN\", \"GRAIN or WALL\"]"),
+    ("point", "{ grain = \"NAME\", at = @ }"),
+    ("plane.point", "@"),
+    ("snapshot_times", "[t, …]"),
+    ("columns", "[\"spin\", …]"),
+    ("settle", "{ duration = t, damping = α }"),
+    ("position", "@"),
+    ("velocity", "@"),
+    ("stretch", "@"),
+    ("normal", "@"),
+    ("corner", "@"),
+    ("centre", "@"),
+    ("low", "@"),
+    ("high", "@"),
+    ("origin", "@"),
+    ("at", "@"),
+    ("materials", "tables [materials.NAME] such as { density = ρ }"),
+    ("contacts", "tables [contacts.NAME] such as { between = [\"MATERIAL\", \"MATERIAL\"], normal_stiffness = k }"),
+    ("grains", "tables [grains.NAME] such as { material = \"MATERIAL\", radius = r, position = @ }"),
+    ("bodies", "tables [bodies.NAME] such as { material = \"MATERIAL\", box = { low = @, high = @ } }"),
+    ("walls", "tables [walls.NAME] such as { material = \"MATERIAL\", plane = { point = @, normal = @ } }"),
+    ("driven", "tables [driven.NAME] such as { grains = \"GROUP\", velocity = @ }"),
+    ("probes", "a table for each NAME such as { grain = \"GRAIN\" }"),
+    ("output", "{ every = t }"),
+];
+
+/// Tables whose keys are names of the user's.
+const OF_NAMES: [&str; 7] = ["materials", "contacts", "grains", "bodies", "walls", "driven", "probes"];
+
+/// A vector of a dimension, in words.
+pub(crate) const fn vector(dimension: Dimension) -> &'static str {
+    match dimension {
+        Dimension::Two => "[x, y]",
+        Dimension::Three => "[x, y, z]",
+    }
+}
+
+/// The key of a dotted path at which a value of another shape stands, and the shape that it should have. Numbers in
+/// brackets, which tell the parts of a value, belong to the value.
+pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String)> {
+    let mut end = path.trim_end_matches(|letter| letter != '.').len();
+    end += path[end..].find('[').unwrap_or(path.len() - end);
+    let key = &path[..end];
+    let mut names = key.rsplit('.').map(|part| part.split('[').next().unwrap_or(part));
+    let last = names.next()?;
+    let above = names.next();
+    // A group that is called as a key is a table like all the others of its kind.
+    let kind = above.filter(|above| names.next().is_none() && OF_NAMES.contains(above));
+    let of = |key: &str| SHAPES.iter().find(|(name, _)| *name == key).map(|(_, shape)| *shape);
+    let shape = match (kind, above) {
+        (Some(kind), _) => of(kind),
+        (None, Some(above)) => of(&format!("{above}.{last}")).or_else(|| of(last)),
+        (None, None) => of(last),
+    }?;
+    Some((key, shape.replace('@', vector(dimension))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_value_shows_the_shape_of_the_whole() {
+        let shown = |path| expected(path, Dimension::Two).map(|(key, shape)| format!("{key}: {shape}"));
+        for (path, shape) in [
+            ("walls.floor.segment[0][1]", Some("walls.floor.segment: [[x, y], [x, y]]")),
+            ("walls.floor.motion[1].velocity", Some("walls.floor.motion[1].velocity: [x, y]")),
+            ("walls.floor.plane.point", Some("walls.floor.plane.point: [x, y]")),
+            ("probes.p.point", Some("probes.p.point: { grain = \"NAME\", at = [x, y] }")),
+            ("grains.a.packed.radii[0]", Some("grains.a.packed.radii: [[r, how many], …]")),
+            ("walls.segment.until", None),
+            ("duration", None),
+        ] {
+            assert_eq!(shown(path).as_deref(), shape, "{path}");
+        }
+        let group = expected("walls.segment", Dimension::Three).map(|(_, shape)| shape).unwrap_or_default();
+        assert!(group.starts_with("tables [walls.NAME]") && group.contains("[x, y, z]"), "{group}");
+    }
+}
