@@ -1,0 +1,149 @@
+//! Every option of every command, given wrongly: refused before anything is done, with a message that is looked at as a whole.
+//! The options are those that the command's own help lists, so that none can be left out.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{files, grainbench_alone};
+use grainbench::cases::registry::CASES;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Commands with what they cannot do without, which is right.
+const COMMANDS: [&[&str]; 21] = [
+    &["list"],
+    &["run", "squash"],
+    &["simulate", "scene.toml", "--solver", "dem"],
+    &["deck", "nine-discs/kappa-0", "--for", "lammps"],
+    &["check", "nine-discs/kappa-0", "--dump", "table.csv"],
+    &["fields", "table.csv", "--cell", "1"],
+    &["compare", "table.csv", "table.csv"],
+    &["cost", "collision"],
+    &["stability", "two-discs"],
+    &["effects", "collision"],
+    &["race", "nine-discs/kappa-1"],
+    &["reference", "build"],
+    &["reference", "verify"],
+    &["reference", "keep", "squash"],
+    &["reference", "uncertainty", "squash"],
+    &["conform", "dem"],
+    &["scene", "collision"],
+    &["schema"],
+    &["report", "a-directory"],
+    &["completions", "bash"],
+    &["man"],
+];
+
+/// An option as the help shows it: its long name, and what its value is called.
+struct Shown {
+    name: String,
+    value: Option<String>,
+}
+
+/// The options that a help lists.
+fn options(help: &str) -> Vec<Shown> {
+    let read = |line: &str| {
+        let line = line.trim_start();
+        let long = line
+            .starts_with("--")
+            .then_some(line)
+            .or_else(|| line.split_once(", ").filter(|(short, _)| short.len() == 2)?.1.into());
+        let long = long.filter(|long| long.starts_with("--"))?;
+        let mut words = long.split_whitespace();
+        let name = words.next()?.to_owned();
+        let value = words
+            .next()
+            .and_then(|word| word.strip_prefix('<'))
+            .map(|word| word.trim_end_matches(['.', '>']).to_owned());
+        Some(Shown { name, value })
+    };
+    help.lines().filter_map(read).filter(|shown| !["--help", "--version"].contains(&shown.name.as_str())).collect()
+}
+
+/// Values that no option whose value is called so can take.
+fn wrong(option: &Shown) -> Vec<&'static str> {
+    match (option.name.as_str(), option.value.as_deref()) {
+        (_, None) => vec!["yes"],
+        ("--low" | "--high", _) => vec!["1,2", "wrong"],
+        ("--to", _) => vec!["wrong", "nan"],
+        (_, Some("DIR")) => vec!["table.csv"],
+        ("--checkpoint" | "--state", _) => vec!["no-directory/file"],
+        (_, Some("FILE" | "DIR|results.json" | "OLD.json")) => vec!["missing", "empty"],
+        (_, Some("N")) => vec!["-1", "1.5", "many"],
+        _ => vec!["wrong", "-1"],
+    }
+}
+
+/// What stands in the directory: a scene, a table, an empty file, a directory.
+fn prepare(directory: &Path) {
+    let scene = "title = \"One\"\ndimension = 2\nduration = 1.0\n[materials.rock]\ndensity = 1.0\n[grains.one]\nmaterial = \"rock\"\nradius = 1.0\nposition = [0.0, 0.0]\n";
+    for (name, text) in [("scene.toml", scene), ("table.csv", "step,id,x\n0,1,0\n"), ("empty", "")] {
+        std::fs::write(directory.join(name), text).unwrap();
+    }
+    std::fs::create_dir(directory.join("a-directory")).unwrap();
+}
+
+/// Names of all cases are not this test's business.
+fn without_cases(message: &str) -> String {
+    let cases: String = CASES.iter().map(|case| format!("  {}\n", case.name)).collect();
+    message.replace(&cases, "  [cases]\n")
+}
+
+/// A command without an option that it has, and its value.
+fn without<'a>(command: &[&'a str], option: &str) -> Vec<&'a str> {
+    let place = command.iter().position(|word| *word == option).unwrap_or(command.len());
+    command.iter().enumerate().filter(|(at, _)| *at != place && *at != place + 1).map(|(_, word)| *word).collect()
+}
+
+/// What a command answers to each of its options given wrongly.
+fn answers(command: &[&str]) -> String {
+    let directory = tempfile::tempdir().unwrap();
+    let directory = directory.path();
+    prepare(directory);
+    let before = files(directory);
+    let help =
+        grainbench_alone(directory, &[&command[..if command[0] == "reference" { 2 } else { 1 }], &["--help"]].concat());
+    let mut told = String::new();
+    let mut ask = |words: &[&str]| {
+        let option = words[0].split('=').next().unwrap_or_default();
+        let given = [without(command, option), words.to_vec()].concat();
+        let answer = grainbench_alone(directory, &given);
+        writeln!(told, "$ grainbench {}\n{}", given.join(" "), without_cases(answer.err.trim_end())).unwrap();
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{told}");
+        assert_eq!(files(directory), before, "{told}");
+    };
+    for option in options(&help.out) {
+        for value in wrong(&option) {
+            ask(&[&format!("{}={value}", option.name)]);
+        }
+        if option.value.is_some() {
+            ask(&[&option.name]);
+        }
+    }
+    ask(&["--no-such-option"]);
+    told
+}
+
+#[test]
+fn each_option_given_wrongly_is_refused_by_a_message_that_helps() {
+    for command in COMMANDS {
+        let name =
+            command.iter().take(if command[0] == "reference" { 2 } else { 1 }).copied().collect::<Vec<_>>().join("_");
+        insta::assert_snapshot!(name, answers(command));
+    }
+}
+
+/// The commands are those that the program lists.
+#[test]
+fn no_command_is_left_out() {
+    let directory = tempfile::tempdir().unwrap();
+    for (words, skip) in [(&["--help"][..], "help"), (&["reference", "--help"], "help")] {
+        let help = grainbench_alone(directory.path(), words).out;
+        let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+        for name in listed.filter_map(|line| line.split_whitespace().next()).filter(|name| *name != skip) {
+            let place = words.len() - 1;
+            assert!(COMMANDS.iter().any(|command| command.get(place) == Some(&name)), "{name}");
+        }
+    }
+}
