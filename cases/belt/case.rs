@@ -1,0 +1,392 @@
+//! A grain laid on a moving belt slides until it rolls.
+
+use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
+use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
+use crate::rows::programs;
+use grainbench_harness::prelude::*;
+use grainbench_rigid::settings::Settings;
+use grainbench_scene::motion::Moment;
+use grainbench_scene::scene::{Duration, Sampling};
+use std::f64::consts::TAU;
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const VARIANTS: [&str; 2] = ["disc", "sphere"];
+/// The belt that stops.
+const STOPS: &str = "stops";
+/// The resolution of `rigid`.
+const SUBSTEPS: u32 = 8;
+
+const SOURCE: Source = Source::Derived("a rigid grain slides on the belt, then rolls (derivation)");
+const STOPPED: Source = Source::Derived("no angular momentum about the belt: at rest after the way f V T (derivation)");
+
+pub(crate) static CASE: Case = Case {
+    name: "belt",
+    title: "A grain on a belt",
+    claim: "A grain laid on a belt of speed V slides at μ g, and rolls on at f V, with f = 1/3 for a disc and 2/7 for a sphere; \
+            where the belt stops, it comes to rest.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "The final velocity does not depend on μ, on stiffness or on damping; velocity and displacement while it slides do. \
+               One contact, constant load, a belt that moves along itself alone.",
+    levels: LEVELS,
+    default_level: LEVELS[2],
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+/// The grain and the belt.
+struct Belt {
+    grain: OneGrain,
+    /// V (m/s).
+    speed: f64,
+    /// When it stops (s).
+    stop: f64,
+}
+
+impl Belt {
+    fn of(scene: &Scene) -> Self {
+        let phase = scene.walls[0].motion.phases.first();
+        Self {
+            grain: OneGrain::of(scene),
+            speed: phase.map_or(f64::NAN, |phase| phase.velocity.x),
+            stop: phase.map_or(f64::NAN, |phase| match phase.stop {
+                Moment::Seconds(time) => time,
+                Moment::Cycle(_) | Moment::Never => f64::INFINITY,
+            }),
+        }
+    }
+
+    /// μ g (m/s²).
+    fn push(&self) -> f64 {
+        self.grain.friction * self.grain.onto
+    }
+
+    /// Velocity of rolling f V (m/s).
+    fn rolling(&self) -> f64 {
+        self.grain.share() * self.speed
+    }
+
+    /// Time of sliding t_s (s).
+    fn sliding(&self) -> f64 {
+        self.rolling() / self.push()
+    }
+
+    /// A rigid grain, on a belt that stops after it has come to roll, or never.
+    fn rigid(&self, t: f64) -> State {
+        let Self { grain, stop, .. } = self;
+        let turn = grain.inertia_factor * grain.radius;
+        let sped_up = |t: f64| {
+            let slid = t.min(self.sliding());
+            let v = self.push() * slid;
+            State { x: 0.5 * v * slid + v * (t - slid), v, omega: -v / turn }
+        };
+        let (now, since) = (sped_up(t), sped_up((t - stop).max(0.0)));
+        // From when it stops on, a belt that runs backwards beside the one that runs on.
+        State { x: now.x - since.x, v: now.v - since.v, omega: now.omega - since.omega }
+    }
+
+    /// Velocity of rolling when friction acts at an arm (m/s).
+    fn rolling_at(&self, arm: f64) -> f64 {
+        let moment = self.grain.inertia_factor * self.grain.radius.powi(2);
+        self.speed * moment / (moment + arm * arm)
+    }
+
+    /// By how much sliding lags at the most, with steps (s): the spring's stretch over V, and a step.
+    fn lag(&self, step: f64) -> f64 {
+        self.grain.stretch(self.push()) / self.speed + step
+    }
+
+    /// How far the displacement at t may be off, as a fraction.
+    fn displaced(&self, t: f64, step: f64) -> f64 {
+        (self.rolling() * self.lag(step) + self.grain.stretch(self.push())) / self.rigid(t).x
+    }
+
+    /// How far the way of the second slide may be off because the spring rings when it begins (m): a velocity μ g/ω lasts f V/(μ g).
+    fn rung(&self) -> f64 {
+        self.rolling() * self.grain.ringing(self.push()) / self.push()
+    }
+
+    /// Velocity after the first step where Coulomb's limit does not hold for the dashpot (m/s): where the belt is seen to run from step 1
+    /// on, and from step 0 on.
+    fn kicked(&self, scene: &Scene, step: f64) -> [f64; 2] {
+        let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
+        let spring = self.grain.tangential_stiffness / self.grain.mass * step;
+        let pushed = |slip: f64| 0.5 * step * (law.tangential_damping + spring) * slip;
+        let half = 0.5 * law.tangential_damping * self.speed * step;
+        let slip = self.speed - (1.0 + 1.0 / self.grain.inertia_factor) * half;
+        [pushed(self.speed), half + pushed(slip)]
+    }
+}
+
+fn claims() -> Vec<Claim> {
+    let of_both = |variant| [near_rigid(variant), final_motion(variant), by_impulses(variant)].concat();
+    let mut claims: Vec<Claim> = VARIANTS.into_iter().flat_map(of_both).collect();
+    claims.extend(stopped());
+    claims.push(kick());
+    // LIGGGHTS' dashpot at step 0 feels a belt that runs; ours feels one that has not yet moved: see `kick`.
+    claims.extend(programs::one_grain(&VARIANTS).into_iter().filter(|claim| !is_kicked(claim)));
+    claims
+}
+
+fn friction() -> Control {
+    Control::scene("friction ×1.05", more_friction)
+}
+
+fn inertia() -> Control {
+    Control::scene("the inertia of the other shape", wrong_inertia)
+}
+
+/// The last state against the rigid answer.
+fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
+    let (t, state) = last(done)?;
+    let exact = pick(Belt::of(&done.scene).rigid(t));
+    Ok(Measured::new(pick(state), exact, exact))
+}
+
+/// The velocity nearest to half the time of sliding.
+fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
+    let belt = Belt::of(&done.scene);
+    let course = course(done)?;
+    let halfway = 0.5 * belt.sliding();
+    let near = course.iter().min_by(|a, b| (a.0 - halfway).abs().total_cmp(&(b.0 - halfway).abs()));
+    let (t, state) = near.copied().ok_or_else(|| Missing("samples".to_owned()))?;
+    let exact = belt.rigid(t).v;
+    Ok(Measured::new(state.v, exact, exact))
+}
+
+/// The belt of a variant with springs as stiff as a run has them, and the step of it (s).
+fn stiff(variant: &'static str) -> (Belt, f64) {
+    let Ok(mut scene) = CASE.variant(variant) else {
+        return (Belt { grain: NO_GRAIN, speed: f64::NAN, stop: f64::NAN }, f64::NAN);
+    };
+    rest_at_overlap(&mut scene, NEARLY_RIGID, DAMPING);
+    let belt = Belt::of(&scene);
+    let Resolution::CriticalFraction(fraction) = STEP else { return (belt, f64::NAN) };
+    let step = fraction * 2.0 * (belt.grain.mass / belt.grain.normal_stiffness).sqrt();
+    (belt, step)
+}
+
+const NO_GRAIN: OneGrain = OneGrain {
+    radius: f64::NAN,
+    mass: f64::NAN,
+    inertia_factor: f64::NAN,
+    along: f64::NAN,
+    onto: f64::NAN,
+    friction: f64::NAN,
+    tangential_stiffness: f64::NAN,
+    spin: f64::NAN,
+    overlap_ratio: f64::NAN,
+    normal_stiffness: f64::NAN,
+};
+
+/// Against the rigid answer where the contact is so stiff that conventions hardly differ: fair to any solver.
+fn near_rigid(variant: &'static str) -> Vec<Claim> {
+    type Pick = fn(&Done) -> Result<Measured, Missing>;
+    let (belt, step) = stiff(variant);
+    let of = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
+        claim(format!("{quantity}, nearly rigid contact"), unit)
+            .of(nearly_rigid(variant, tangential_dashpot))
+            .equals(SOURCE, move |done| pick(&done[0]))
+            .within(tolerance)
+            .refuses(control)
+            .fair_to_any()
+    };
+    let arm = |times: f64| {
+        computed(
+            times * NEARLY_RIGID,
+            "a torque arm between R and R − overlap: at most 2/(1+i) < 2 times overlap/R = 1e-5, of the spin a half of that",
+        )
+    };
+    let displaced = computed(
+        belt.displaced(1.0, step),
+        "(f V (s/V + Δt) + s)/x: the spring's stretch s = μ m g/k_t before it slides and after it, and a step without friction",
+    );
+    let halfway = computed(
+        2.0 * belt.lag(step) / belt.sliding(),
+        "2 (s/V + Δt)/t_s: the spring must be stretched by s = μ m g/k_t, and the first step may lack friction",
+    );
+    vec![
+        of("displacement at 1 s", "m", displaced, false, friction(), |done| end(done, |state| state.x)),
+        of("velocity halfway through the slide", "m/s", halfway, false, friction(), velocity_halfway),
+        of("velocity at 1 s", "m/s", arm(2.0), true, inertia(), |done| end(done, |state| state.v)),
+        of("spin at 1 s", "rad/s", arm(1.0), true, inertia(), |done| end(done, |state| state.omega)),
+    ]
+}
+
+/// Rounding of a sum of as many steps as runs at overlap/R = 1e-3 take, in units of the velocity.
+fn rounding() -> Tolerance {
+    let steps = 1.0 / (0.01 * 2.0 * (1e-3_f64 * 0.5 / 9.8).sqrt());
+    computed(
+        steps * f64::EPSILON,
+        "rounding, 2⁻⁵² in each of 7000 steps: angular momentum fixes it once the spring has come to rest",
+    )
+}
+
+/// Rolling in the end, to rounding, with the torque arm that each convention has.
+fn final_motion(variant: &'static str) -> Vec<Claim> {
+    let of = |solver: &'static str, quantity: &str, other| {
+        let at_contact = solver == "dem:liggghts";
+        claim(quantity, "m/s")
+            .of(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
+            .equals(Source::Derived("v = V iR²/(iR² + a²) with arm a (derivation)"), move |done| {
+                let (_, state) = last(&done[0])?;
+                let belt = Belt::of(&done[0].scene);
+                let grain = belt.grain;
+                let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
+                let exact = belt.rolling_at(arm);
+                Ok(Measured::new(state.v, exact, exact))
+            })
+            .within(rounding())
+            .refuses(other)
+    };
+    vec![
+        of("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
+        of("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
+    ]
+}
+
+/// Rapier, whose contacts have no compliance: what it is off by is its step and its overlap at rest (see `backspin`).
+fn by_impulses(variant: &'static str) -> Vec<Claim> {
+    let (belt, _) = stiff(variant);
+    let step = Resolution::RIGID_STEP / f64::from(SUBSTEPS);
+    let sunk = belt.grain.onto / (TAU * Settings::default().frequency).powi(2) / belt.grain.radius;
+    let of = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
+        let run = Run::new(variant, "rigid", Resolution::substeps(SUBSTEPS)).adjusted("touching", |scene| {
+            let axis = scene.dimension.count() - 1;
+            let grain = &mut scene.grains[0];
+            grain.position[axis] = grain.radius;
+        });
+        claim(format!("{quantity} at 1 s"), unit)
+            .of(run)
+            .equals(SOURCE, move |done| end(&done[0], pick))
+            .within(tolerance)
+            .refuses(control)
+    };
+    let arm = "a torque arm between R and R − δ with its overlap at rest δ = g/(2πf)²: at most 2/(1+i) < 2 times δ/R, of the spin \
+               a half of that";
+    let late = "f V Δt/x: friction that begins or ends a step Δt too late";
+    vec![
+        of("displacement", "m", computed(belt.rolling() * step / belt.rigid(1.0).x, late), friction(), |state| state.x),
+        of("velocity", "m/s", computed(2.0 * sunk, arm), inertia(), |state| state.v),
+        of("spin", "rad/s", computed(sunk, arm), inertia(), |state| state.omega),
+    ]
+}
+
+/// The belt stops: the disc comes to rest, with its spin, where the speed of rolling would have brought it until then.
+fn stopped() -> Vec<Claim> {
+    let (belt, step) = stiff(STOPS);
+    let turning = || {
+        Control::scene("a disc that turns at first, at a thousandth of the belt's speed", |scene| {
+            scene.grains[0].spin.z = -0.01;
+        })
+    };
+    let of = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: fn(State, &Belt) -> [f64; 3]| {
+        claim(format!("{quantity} after the belt has stopped, nearly rigid contact"), unit)
+            .of(nearly_rigid(STOPS, tangential_dashpot))
+            .equals(STOPPED, move |done| {
+                let (_, state) = last(&done[0])?;
+                let [value, exact, scale] = pick(state, &Belt::of(&done[0].scene));
+                Ok(Measured::new(value, exact, scale))
+            })
+            .within(tolerance)
+            .refuses(control)
+            .fair_to_any()
+    };
+    let way = belt.rolling() * belt.stop;
+    let displaced = computed(
+        (2.0 * (belt.rolling() * belt.lag(step) + belt.grain.stretch(belt.push())) + belt.rung()) / way,
+        "(2 f V (s/V + Δt) + 2 s + f V/ω)/(f V T): twice the spring's stretch s = μ m g/k_t before it slides and after it, twice a \
+         step without friction, and the ring of the spring, with ω, at whose phase the belt stops",
+    );
+    let rest = || {
+        computed(
+            2.0 * NEARLY_RIGID,
+            "overlap/R = 1e-5 for torque arms that need not be the same in both slides; in units of the belt's speed",
+        )
+    };
+    vec![
+        of("displacement", "m", displaced, false, inertia(), |state, belt| {
+            let way = belt.rolling() * belt.stop;
+            [state.x, way, way]
+        }),
+        of("velocity", "m/s", rest(), true, turning(), |state, belt| [state.v, 0.0, belt.speed]),
+        of("spin", "rad/s", rest(), true, turning(), |state, belt| [state.omega, 0.0, belt.speed / belt.grain.radius]),
+    ]
+}
+
+/// Whether a row compares a run of LIGGGHTS with a dashpot along the belt.
+fn is_kicked(claim: &Claim) -> bool {
+    claim.runs.iter().any(|run| run.solver == "liggghts") && claim.quantity.contains(", damped,")
+}
+
+/// What LIGGGHTS' dashpot does at step 0, when the belt of ours has not moved yet: by how much its grain is the faster one.
+fn kick() -> Claim {
+    let runs = ["dem:liggghts", "liggghts"].map(|solver| {
+        Run::new("disc", solver, Resolution::TimeStep(1e-4)).adjusted("one step, overlap/R = 1e-3", |scene| {
+            rest_at_overlap(scene, 1e-3, DAMPING);
+            scene.duration = Duration::Cycles(1);
+            scene.sampling = Sampling::Cycles(1);
+        })
+    });
+    claim("velocity after the first step, LIGGGHTS' less ours", "m/s")
+        .of_all(runs)
+        .equals(Source::Derived("a dashpot that friction does not limit, from step 0 or 1 on (derivation)"), |done| {
+            let [ours, program] = [last(&done[0])?.1.v, last(&done[1])?.1.v];
+            let kicked = Belt::of(&done[0].scene).kicked(&done[0].scene, done[0].record.provenance.time_step);
+            Ok(Measured::new(program - ours, kicked[1] - kicked[0], kicked[1]))
+        })
+        .within(computed(1e-3, "overlap/R, for a torque arm between R and R − overlap; in units of LIGGGHTS' velocity"))
+        .refuses(Control::ours("a dashpot along the belt × 1.05 in ours", |scene| {
+            scene.change_laws(|law| law.tangential_damping *= 1.05);
+        }))
+}
+
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let mut curves = Vec::new();
+    for (variant, shown) in [("disc", "disc"), ("sphere", "sphere"), (STOPS, "disc, belt stops")] {
+        let done = runner.run(&at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
+        let belt = Belt::of(&done.scene);
+        let states = course(&done).unwrap_or_default();
+        let thin = states.iter().step_by(4).map(|(t, state)| (*t, state.v)).collect();
+        curves.push(Curve::new(format!("{shown}: v"), Stroke::Markers, thin));
+        let exact = (0..=200).map(|k| f64::from(k) / 200.0).map(|t| (t, belt.rigid(t).v)).collect();
+        curves.push(Curve::new(format!("{shown}: v, rigid"), Stroke::Dashed, exact));
+    }
+    Ok(vec![Figure::graph(
+        "velocity",
+        "From sliding to rolling on a belt",
+        "The belt runs at 3 m/s. Velocity rises at μ g until the grain rolls, at a third of that or two sevenths; when the belt \
+         stops the disc is brought to rest. dem:lammps at overlap/R = 1e-3 (markers), rigid answer (dashes).",
+        [Axis::linear("time t (s)"), Axis::linear("velocity v (m/s)")],
+        curves,
+    )])
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    /// Seen from the belt it is set down with spin and velocity: the end of `backspin` with R Ω₀ = V.
+    #[test]
+    fn is_backspin_seen_from_the_belt() {
+        let belt = Belt::of(&CASE.variant("disc").unwrap());
+        let grain = OneGrain { spin: belt.speed / belt.grain.radius, ..belt.grain };
+        for t in [0.1, 0.3, 0.4, 1.0] {
+            let (here, there) = (belt.rigid(t), grain.rigid_backspin(t));
+            assert!((here.x - there.x).abs() < 1e-12 && (here.v - there.v).abs() < 1e-12, "{t}");
+        }
+    }
+
+    /// At rest, after f V T, and it slides on the belt that has stopped for as long as on the one that ran.
+    #[test]
+    fn a_belt_that_stops_brings_it_to_rest() {
+        let belt = Belt::of(&CASE.variant(STOPS).unwrap());
+        let end = belt.rigid(1.0);
+        assert!(end.v.abs() < 1e-14 && end.omega.abs() < 1e-13);
+        assert!((end.x - 0.5).abs() < 1e-14, "{}", end.x);
+        assert!(belt.sliding() < belt.stop && belt.stop + belt.sliding() < 1.0);
+    }
+}
