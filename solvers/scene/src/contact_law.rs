@@ -309,7 +309,9 @@ impl ContactSpec {
     fn linear(&self, name: &str, check: &Checker<'_>, has_friction: bool) -> Result<Springs, SceneError> {
         let key = |part: &str| format!("contacts.{name}.{part}");
         let Some(stiffness) = self.normal_stiffness else {
-            return Err(check.error(&format!("contacts.{name}"), "the key `normal_stiffness`", "none"));
+            let help = "or `law = \"hertz\"`, whose stiffness comes from the moduli of the materials";
+            let key = format!("contacts.{name}");
+            return Err(check.source.error(&key, "the key `normal_stiffness`", "none", Some(help.to_owned())));
         };
         let normal = check.positive(&key("normal_stiffness"), stiffness, "stiffness (N/m)")?;
         let tangential = if has_friction {

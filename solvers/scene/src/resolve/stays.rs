@@ -48,7 +48,12 @@ impl Resolver<'_> {
                 Unpourable::NoRoom => "room in the box for each grain when it comes",
                 Unpourable::Crowd => "a box that grains fall out of: with a velocity, gravity or a lower rate",
             };
-            check.error(&key("rate"), expected, &format!("{} 1/s", spec.rate))
+            // A half, a quarter, …: what is slow enough for grains to fall away in time.
+            let slower = (1..=10).map(|halvings| pour.rate / f64::from(1 << halvings));
+            let fits = |rate: &f64| poured(&Pour { rate: *rate, ..pour }, domain, check.dimension).is_ok();
+            let help = slower.into_iter().find(fits).map(|rate| format!("at {rate} 1/s there is"));
+            let help = help.filter(|_| reason == Unpourable::NoRoom);
+            check.source.error(&key("rate"), expected, &format!("{} 1/s", spec.rate), help)
         })
     }
 
