@@ -202,6 +202,44 @@ fn a_value_of_another_shape_is_shown_the_shape() {
     insta::assert_snapshot!(told);
 }
 
+/// Parts of a motion that are no motion, and what driven grains are not driven by: all messages.
+#[test]
+fn motions_that_are_none() {
+    const PLANE: &str = "plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }";
+    let motions = [
+        "table = [[0.0, 0.0], [1.0, 1.0]]",
+        "table = [[0.0, 0.0, 0.0]]",
+        "table = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.5, 0.0, 0.0]]",
+        "table = [[0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]",
+        "table = [0.0, 1.0]",
+        "table = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]], start = 1.0",
+        "table = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]], velocity = [1.0, 0.0]",
+        "sine = { amplitude = 0.1, frequency = 1.0 }",
+        "sine = { amplitude = [0.1, 0.0], frequency = 0.0 }",
+        "sine = [0.1, 1.0]",
+        "sine = { amplitude = [0.1, 0.0], frequency = 1.0 }, start_cycle = 3",
+        "sine = { amplitude = [0.1, 0.0], frequency = 1.0 }, spin = 1.0, centre = [0.0, 0.0]",
+        "ramp = 1.0",
+        "ramp = -1.0, velocity = [1.0, 0.0]",
+    ];
+    let walls = motions.map(|part| {
+        let motion = format!("{PLANE}\nmotion = [{{ {part} }}]");
+        format!("{part}\n  {}", refused(PLANE, &motion))
+    });
+    let driven = [
+        "material = \"rok\"",
+        "material = \"rock\"\ngrains = \"lower\"",
+        "grains = \"lower\"\nspin = [0.0, 0.0, 1.0]",
+        "grains = \"lower\"\nmotion = [{ spin = 1.0, centre = [0.0, 0.0] }]",
+        "grains = \"lower\"\nmotion = [{ velocity = [1.0, 0.0], stop_cycle = 3 }]",
+    ];
+    let driven = driven.map(|keys| {
+        let told = refused("[grains.lower]", &format!("[driven.some]\n{keys}\n[grains.lower]"));
+        format!("{keys}\n  {told}")
+    });
+    insta::assert_snapshot!(walls.concat() + &driven.concat());
+}
+
 #[test]
 fn random_grains_beyond_their_room() {
     let scene = edited("[materials.rock]", "[domain]\nlow = [-1.0, 0.0]\nhigh = [1.0, 2.0]\n\n[materials.rock]");

@@ -26,8 +26,8 @@ pub(crate) static CASE: Case = Case {
             where the belt stops, it comes to rest.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The final velocity does not depend on μ, on stiffness or on damping; velocity and displacement while it slides do. \
-               One contact, constant load, a belt that moves along itself alone.",
+    weakness: "The final velocity does not depend on μ, on stiffness or on damping; velocity and displacement while it slides \
+               do. One contact, constant load, a belt that moves along itself alone.",
     levels: LEVELS,
     default_level: LEVELS[2],
     claims: &claims,
@@ -102,13 +102,14 @@ impl Belt {
         (self.rolling() * self.lag(step) + self.grain.stretch(self.push())) / self.rigid(t).x
     }
 
-    /// How far the way of the second slide may be off because the spring rings when it begins (m): a velocity μ g/ω lasts f V/(μ g).
+    /// How far the way of the second slide may be off because the spring rings when it begins (m): a velocity μ g/ω lasts
+    /// f V/(μ g).
     fn rung(&self) -> f64 {
         self.rolling() * self.grain.ringing(self.push()) / self.push()
     }
 
-    /// Velocity after the first step where Coulomb's limit does not hold for the dashpot (m/s): where the belt is seen to run from step 1
-    /// on, and from step 0 on.
+    /// Velocity after the first step where Coulomb's limit does not hold for the dashpot (m/s): where the belt is seen to run
+    /// from step 1 on, and from step 0 on.
     fn kicked(&self, scene: &Scene, step: f64) -> [f64; 2] {
         let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
         let spring = self.grain.tangential_stiffness / self.grain.mass * step;
@@ -263,8 +264,8 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
             .within(tolerance)
             .refuses(control)
     };
-    let arm = "a torque arm between R and R − δ with its overlap at rest δ = g/(2πf)²: at most 2/(1+i) < 2 times δ/R, of the spin \
-               a half of that";
+    let arm = "a torque arm between R and R − δ with its overlap at rest δ = g/(2πf)²: at most 2/(1+i) < 2 times δ/R, of the \
+               spin a half of that";
     let late = "f V Δt/x: friction that begins or ends a step Δt too late";
     vec![
         of("displacement", "m", computed(belt.rolling() * step / belt.rigid(1.0).x, late), friction(), |state| state.x),
@@ -296,8 +297,8 @@ fn stopped() -> Vec<Claim> {
     let way = belt.rolling() * belt.stop;
     let displaced = computed(
         (2.0 * (belt.rolling() * belt.lag(step) + belt.grain.stretch(belt.push())) + belt.rung()) / way,
-        "(2 f V (s/V + Δt) + 2 s + f V/ω)/(f V T): twice the spring's stretch s = μ m g/k_t before it slides and after it, twice a \
-         step without friction, and the ring of the spring, with ω, at whose phase the belt stops",
+        "(2 f V (s/V + Δt) + 2 s + f V/ω)/(f V T): twice the spring's stretch s = μ m g/k_t before it slides and after it, twice \
+         a step without friction, and the ring of the spring, with ω, at whose phase the belt stops",
     );
     let rest = || {
         computed(

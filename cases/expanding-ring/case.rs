@@ -24,11 +24,12 @@ const RADIAL: Plate = Plate {
 pub(crate) static CASE: Case = Case {
     name: "expanding-ring",
     title: "An expanding ring",
-    claim: "A ring of elastic material that is set moving outwards swings with the frequency of its breathing mode, thin or thick, \
-            and keeps its amplitude and energy.",
+    claim: "A ring of elastic material that is set moving outwards swings with the frequency of its breathing mode, thin or \
+            thick, and keeps its amplitude and energy.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Small strain and one mode: of shear little is felt, of large rotation nothing. Two places of the ring stand for all of it.",
+    weakness: "Small strain and one mode: of shear little is felt, of large rotation nothing. Two places of the ring stand \
+               for all of it.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -206,8 +207,8 @@ fn claims() -> Vec<Claim> {
             )
             .within(estimated(
                 7e-2,
-                "the phase that .5 % of the period are after two of them, 4π × .005, and the other modes through the thickness; in \
-                 units of the amplitude",
+                "the phase that .5 % of the period are after two of them, 4π × .005, and the other modes through the thickness; \
+                 in units of the amplitude",
             ))
             .refuses(softer())
             .fair_to_any_continuum()
@@ -222,7 +223,8 @@ fn claims() -> Vec<Claim> {
             })
             .within(estimated(
                 3e-2,
-                "waves through the thickness, of a few cells, whose energy edges that cut cells make more or less of: .67 % is theirs",
+                "waves through the thickness, of a few cells, whose energy edges that cut cells make more or less of: .67 % is \
+                 theirs",
             ))
             .refuses(Control::scene("damping of two per second", |scene| scene.global_damping = 2.0)),
     );
@@ -235,8 +237,8 @@ mod tests {
 
     use super::*;
 
-    /// σ_rr at the outer radius over that of a ring of the same stretch, by Runge and Kutta from the inner one, where there is none:
-    /// u' = (σ − λ u/r)/M, σ' = −ρω² u − (σ − λ u' − M u/r)/r.
+    /// σ_rr at the outer radius over that of a ring of the same stretch, by Runge and Kutta from the inner one, where there is
+    /// none: u' = (σ − λ u/r)/M, σ' = −ρω² u − (σ − λ u' − M u/r)/r.
     fn left_over(mode: &Mode, frequency: f64) -> f64 {
         const STEPS: u32 = 4000;
         let [long, shear] = mode.moduli;

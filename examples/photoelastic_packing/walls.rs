@@ -39,7 +39,7 @@ pub(crate) fn drive(scene: &mut Scene, courses: &[Course]) {
             start: Moment::Seconds(course.from),
             stop: Moment::Seconds(course.to),
         };
-        wall.motion = Motion { centre: Vector3::zeros(), phases: courses.iter().map(phase).collect() };
+        wall.motion = Motion { phases: courses.iter().map(phase).collect(), ..Motion::default() };
     }
 }
 

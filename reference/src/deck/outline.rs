@@ -19,6 +19,12 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
                 .to_owned(),
         );
     }
+    if let Some(driven) = scene.driven.iter().find(|driven| !driven.motion.is_empty() || driven.spin.norm() > 0.0) {
+        return Err(format!(
+            "driven grains `{}` have a spin or a motion beside their velocity, and decks write `fix move linear` alone",
+            driven.name
+        ));
+    }
     if let Some(what) = scene.gathered() {
         return Err(format!("it has {what}, which decks do not write"));
     }
@@ -103,7 +109,7 @@ impl AxisPlane {
         let axis = (0..3).find(|&axis| normal[axis].abs() == 1.0)?;
         let mut plane = Self { axis, at: point[axis], is_low: normal[axis] > 0.0, shear: None };
         if wall.motion.is_moving() {
-            let [phase] = &wall.motion.phases[..] else { return None };
+            let ([phase], []) = (&wall.motion.phases[..], &wall.motion.functions[..]) else { return None };
             let always = matches!(phase.start, Moment::Seconds(0.0) | Moment::Cycle(0)) && phase.stop == Moment::Never;
             let mut along = (0..3).filter(|&axis| phase.velocity[axis] != 0.0);
             let (first, second) = (along.next()?, along.next());

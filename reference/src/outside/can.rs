@@ -80,6 +80,13 @@ fn lacks_effect(can: &Can, scene: &Scene, deforms: bool) -> Option<String> {
     if !scene.driven.is_empty() && !can.driven {
         return Some("it does not declare driven grains (`can.driven`)".to_owned());
     }
+    if let Some(wall) = scene.walls.iter().find(|wall| !wall.motion.functions.is_empty()) {
+        return Some(format!("wall `{}` moves by a sine or a ramp, which resolved scenes do not hold", wall.name));
+    }
+    if let Some(driven) = scene.driven.iter().find(|driven| !driven.motion.is_empty() || driven.spin.norm() > 0.0) {
+        let name = &driven.name;
+        return Some(format!("driven grains `{name}` have a spin or a motion, which resolved scenes do not hold"));
+    }
     let is_asked = |effect: &Effect| match effect {
         // Whoever moves grains at all lets them fall, and Hertz' law is declared as a law.
         Effect::Gravity | Effect::Hertz => false,

@@ -40,10 +40,13 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
         let _ = writeln!(text, "stays {:?}", scene.stays);
     }
     for driven in &scene.driven {
-        let Driven { grains, velocity, span, .. } = driven;
+        let Driven { grains, velocity, span, spin, motion, .. } = driven;
         let _ = writeln!(text, "driven {grains:?} {velocity:?}");
         if driven.is_for_a_while() {
             let _ = writeln!(text, "from {span:?}");
+        }
+        if !(motion.is_empty() && *spin == nalgebra::Vector3::zeros()) {
+            let _ = writeln!(text, "along {spin:?} {motion:?}");
         }
     }
     for probe in &scene.probes {

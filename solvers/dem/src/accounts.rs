@@ -33,6 +33,8 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
         "damping and rolling resistance"
     } else if scene.driven.iter().any(Driven::is_for_a_while) {
         "grains that begin or end to be driven"
+    } else if scene.driven.iter().any(|driven| !driven.motion.is_empty() || driven.spin != Vector3::zeros()) {
+        "grains that are driven with a spin or along a motion"
     } else if turning {
         "walls that turn"
     } else {

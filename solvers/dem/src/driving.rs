@@ -44,18 +44,18 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
-    /// Gives driven grains the velocity they are driven with and no spin, and takes back what gravity and global
+    /// Gives driven grains the velocity and spin they are driven with over this step, and takes back what gravity and global
     /// damping have changed in their positions in the time `drifted` (s).
     pub(crate) fn drive(&mut self, drifted: f64) {
-        let (time, grains) = (self.time(), &mut self.grains);
+        let (time, time_step, grains) = (self.time(), self.motion.time_step, &mut self.grains);
         for driven in self.scene.driven.iter().filter(|driven| driven.is_moved_at(time)) {
-            let velocity = S::embed(S::restrict(driven.velocity));
+            let velocity = S::embed(S::restrict(driven.velocity_over(time, time_step)));
             for &grain in &driven.grains {
                 let slot = grains.slot[grain] as usize;
                 let position = grains.position(slot) + (velocity - grains.velocity(slot)) * drifted;
                 S::put(position, &mut grains.place[slot]);
                 S::put(velocity, &mut grains.movement[slot]);
-                grains.set_spin(slot, Vector3::zeros());
+                grains.set_spin(slot, driven.spin);
             }
         }
     }

@@ -47,7 +47,8 @@ pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> Vec<GrainS
         (0..scene.grains.len()).filter(is_there).map(|id| grain_state(simulation, id)).collect();
     for driven in scene.driven.iter().filter(|driven| driven.is_moved_at(simulation.time())) {
         for &grain in &driven.grains {
-            (grains[grain].velocity, grains[grain].spin) = (driven.velocity, Vector3::zeros());
+            let velocity = driven.velocity_at(simulation.time(), simulation.motion.time_step);
+            (grains[grain].velocity, grains[grain].spin) = (velocity, driven.spin);
         }
     }
     grains

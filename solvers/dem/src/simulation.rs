@@ -19,7 +19,7 @@ use crate::walls::{MovingWall, NearWall};
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::record::{ContactState, Counts};
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Driven, Scene};
 use grainbench_scene::solver::{Broken, Cause, Subject};
 use nalgebra::Vector3;
 
@@ -102,7 +102,7 @@ impl<S: Geometry> Simulated<S> {
             critical: scene.critical_time_step(),
             step: 0,
             travelled: 0.0,
-            driven_speed: scene.driven.iter().map(|driven| driven.velocity.norm()).fold(0.0, f64::max),
+            driven_speed: scene.driven.iter().map(Driven::fastest).fold(0.0, f64::max),
             extent: 0.0,
             cost: Counts::default(),
             accounting: scene.asks_for_budget(),

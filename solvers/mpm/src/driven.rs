@@ -8,7 +8,7 @@ use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Stencil};
 use crate::options::Basis;
 use crate::points::Points;
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Driven as DrivenGrains, Scene};
 use grainbench_scene::space::Space;
 
 /// A group of driven bodies.
@@ -16,7 +16,7 @@ use grainbench_scene::space::Space;
 pub(crate) struct Group<S: Space> {
     /// Velocity now (m/s): at rest while bodies settle.
     pub(crate) velocity: S::Vector,
-    wanted: S::Vector,
+    wanted: DrivenGrains,
     /// Force of the others on it in the last step (N).
     pub(crate) force: S::Vector,
 }
@@ -31,18 +31,16 @@ pub(crate) struct Driven<S: Space> {
 
 impl<S: Space> Driven<S> {
     pub(crate) fn new(scene: &Scene) -> Self {
-        let groups = scene.driven.iter().map(|driven| Group {
-            velocity: S::ORIGIN,
-            wanted: S::restrict(driven.velocity),
-            force: S::ORIGIN,
-        });
+        let groups =
+            scene.driven.iter().map(|driven| Group { velocity: S::ORIGIN, wanted: driven.clone(), force: S::ORIGIN });
         Self { groups: groups.collect(), held: Vec::new() }
     }
 
-    /// Begins a step, in which groups move unless bodies settle.
-    pub(crate) fn begin(&mut self, settling: bool) {
+    /// Begins a step at a time (s), in which groups move unless bodies settle.
+    pub(crate) fn begin(&mut self, settling: bool, time: f64, time_step: f64) {
         for group in &mut self.groups {
-            group.velocity = if settling { S::ORIGIN } else { group.wanted };
+            let wanted = || S::restrict(group.wanted.velocity_over(time, time_step));
+            group.velocity = if settling { S::ORIGIN } else { wanted() };
             group.force = S::ORIGIN;
         }
     }

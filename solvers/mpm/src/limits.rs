@@ -47,6 +47,11 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if let Some(reason) = crate::accounts::reason(scene).filter(|_| scene.asks_for_budget()) {
         return Some(reason);
     }
+    if scene.driven.iter().any(|driven| driven.spin != nalgebra::Vector3::zeros()) {
+        return Some(
+            "it has driven grains that turn, and all nodes of a driven body have one velocity here".to_owned(),
+        );
+    }
     if matches!(scene.duration, Duration::Cycles(_)) {
         return Some("its duration is a number of calculation cycles of another method; seconds can be run".to_owned());
     }

@@ -161,11 +161,11 @@ impl<S: Space> Simulation<S> {
 
     /// Begins the step for driven bodies and contacts.
     fn begin_meeting(&mut self) {
-        let Self { scheme, state, grid, boundary, contacts, accounts, settling, cost, .. } = self;
+        let Self { scheme, state, grid, boundary, contacts, accounts, settling, cost, step, .. } = self;
         if let Some(accounts) = accounts {
             accounts.tally = Tally::default();
         }
-        boundary.driven.begin(*settling);
+        boundary.driven.begin(*settling, *step as f64 * scheme.time_step, scheme.time_step);
         if !boundary.driven.groups.is_empty() {
             let State { bodies, points, .. } = state;
             boundary.driven.find_held(&grid.lattice, bodies, points, scheme.setting.basis, scheme.has_one_field());

@@ -97,3 +97,19 @@ fn the_budget_closes_as_the_step_goes_to_zero() {
         }
     }
 }
+
+/// Places are those of the function, to the rounding of the steps; a spin is refused.
+#[test]
+fn a_driven_grain_follows_a_sine() {
+    let of = |driven: &str| format!("{}[driven.ram]\ngrains = 'a'\n{driven}\n", collision(0.1, 0.0, 0.5));
+    let driven = of("motion = [{ sine = { amplitude = [0.0, 0.05], frequency = 0.02 } }]");
+    let record = run("mpm", &driven, 8.0, 2);
+    let (y, time) = (column(&record, "a.y"), &record.series.time);
+    for (y_now, t) in y.iter().zip(time) {
+        let exact = 0.05 * (std::f64::consts::TAU * 0.02 * t).sin();
+        assert!((y_now - y[0] - exact).abs() < 1e-12, "{t}: {}", y_now - y[0]);
+    }
+    assert!((last(&record, "a.y") - y[0]).abs() > 1e-3);
+    let refusal = try_run("mpm", |_| (), &of("spin = 1.0"), Resolution::grid(8.0, 2)).unwrap_err().to_string();
+    assert!(refusal.contains("driven grains that turn"), "{refusal}");
+}

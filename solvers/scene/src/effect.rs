@@ -137,7 +137,7 @@ impl Effect {
             Self::PeriodicAxes => scene.is_periodic().then(|| "domain.periodic".to_owned()),
             Self::MovingWalls => {
                 let wall = scene.walls.iter().find(|wall| wall.motion.is_moving());
-                let driven = || scene.driven.iter().find(|driven| driven.velocity.norm() > 0.0);
+                let driven = || scene.driven.iter().find(|driven| driven.fastest() > 0.0);
                 let of_wall = wall.map(|wall| format!("walls.{}.motion", wall.name));
                 of_wall.or_else(|| Some(format!("driven.{}.velocity", driven()?.name)))
             }
@@ -193,9 +193,10 @@ impl Effect {
                 }
             }
             Self::MovingWalls => {
-                scene.walls.iter_mut().for_each(|wall| wall.motion.phases.clear());
+                scene.walls.iter_mut().for_each(|wall| wall.motion.clear());
                 for driven in &mut scene.driven {
                     driven.velocity = Vector3::zeros();
+                    driven.motion.clear();
                     if driven.is_moved_at(0.0) {
                         driven.grains.iter().for_each(|&grain| scene.grains[grain].velocity = Vector3::zeros());
                     }

@@ -60,10 +60,11 @@ pub struct Placed {
     pub velocity: Vector3<f64>,
 }
 
-/// Places `count` grains without overlap in `domain`, large ones first; when no room is found for one in 10,000 tries, the share
-/// of the domain that they would fill. Grains keep off the faces of the domain along axes that are not periodic. The same seed gives the
-/// same grains on every machine.
-#[must_use]
+/// Places `count` grains without overlap in `domain`, large ones first. Grains keep off the faces of the domain along axes that
+/// are not periodic. The same seed gives the same grains on every machine.
+///
+/// # Errors
+/// When no room is found for one in 10,000 tries: the share of the domain that they would fill.
 pub fn random(
     count: u32,
     seed: u64,

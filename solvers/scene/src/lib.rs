@@ -15,6 +15,7 @@ pub mod effects;
 pub mod end_state;
 pub mod error;
 pub mod file;
+pub mod function;
 pub mod generate;
 pub mod grains;
 pub mod kept_record;

@@ -1,5 +1,6 @@
 //! Prescribed motion of walls: exact positions at any time, so that a ramp ends where it should whatever the step.
 
+use crate::function::Function;
 use nalgebra::{Rotation3, Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -39,13 +40,27 @@ pub struct Phase {
     pub stop: Moment,
 }
 
-/// The motion of a wall: phases that add up. All rotations of a wall share one axis.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// The motion of a wall, or of driven grains: phases and functions that add up. All rotations of a wall share one axis.
+#[derive(Clone, Default, PartialEq)]
 pub struct Motion {
     /// Centre of rotation at the start (m); it moves with the wall.
     pub centre: Vector3<f64>,
     /// The phases.
     pub phases: Vec<Phase>,
+    /// The functions of time beside them.
+    pub functions: Vec<Function>,
+}
+
+/// Functions are shown where there are any: what scenes are known by does not change where a key is not used.
+impl std::fmt::Debug for Motion {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut shown = formatter.debug_struct("Motion");
+        shown.field("centre", &self.centre).field("phases", &self.phases);
+        if !self.functions.is_empty() {
+            shown.field("functions", &self.functions);
+        }
+        shown.finish()
+    }
 }
 
 /// Where a wall is, relative to its start.
@@ -62,6 +77,26 @@ impl Motion {
     #[must_use]
     pub fn is_moving(&self) -> bool {
         self.phases.iter().any(|phase| phase.velocity.norm() > 0.0 || phase.spin.norm() > 0.0)
+            || self.functions.iter().any(|function| function.fastest() > 0.0)
+    }
+
+    /// Whether there is none, not even one that stands still.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.phases.is_empty() && self.functions.is_empty()
+    }
+
+    /// A bound of the speed that it ever has (m/s), but for what turns.
+    #[must_use]
+    pub fn fastest(&self) -> f64 {
+        let phases = self.phases.iter().map(|phase| phase.velocity.norm());
+        phases.chain(self.functions.iter().map(Function::fastest)).sum()
+    }
+
+    /// Takes all motion away.
+    pub fn clear(&mut self) {
+        self.phases.clear();
+        self.functions.clear();
     }
 
     /// Displacement since the start at `time` (s), with cycles of `time_step` (s).
@@ -73,6 +108,9 @@ impl Motion {
             let elapsed = (time.min(stop) - start).max(0.0);
             result.translation += phase.velocity * elapsed;
             result.rotation += phase.spin * elapsed;
+        }
+        for function in &self.functions {
+            result.translation += function.way(time);
         }
         result
     }
@@ -105,7 +143,7 @@ mod tests {
             start: Moment::Cycle(0),
             stop: Moment::Cycle(40),
         };
-        let motion = Motion { centre: Vector3::zeros(), phases: vec![phase] };
+        let motion = Motion { phases: vec![phase], ..Motion::default() };
         let time_step = 0.015;
         let at = |cycle: u32| motion.displacement(f64::from(cycle) * time_step, time_step).translation.x;
         assert_eq!(at(40), 0.12 * (40.0 * time_step));
@@ -121,7 +159,7 @@ mod tests {
             start: Moment::Seconds(1.0),
             stop: Moment::Never,
         };
-        let motion = Motion { centre: Vector3::new(1.0, 0.0, 0.0), phases: vec![phase] };
+        let motion = Motion { centre: Vector3::new(1.0, 0.0, 0.0), phases: vec![phase], ..Motion::default() };
         let displacement = motion.displacement(2.0, 0.1);
         let point = motion.moved(Vector3::new(2.0, 0.0, 0.0), &displacement);
         assert!((point - Vector3::new(2.0, 1.0, 0.0)).norm() < 1e-15);

@@ -168,8 +168,8 @@ pub struct Piston {
     pub damping: f64,
 }
 
-/// Grains that are moved as a wall is: at a constant velocity, whatever the forces on them; they do not turn.
-#[derive(Clone, Debug, PartialEq)]
+/// Grains that are moved as a wall is, whatever the forces on them: at a constant velocity and spin, and by a motion beside it.
+#[derive(Clone, PartialEq)]
 pub struct Driven {
     /// Name in the file.
     pub name: String,
@@ -179,6 +179,26 @@ pub struct Driven {
     pub velocity: Vector3<f64>,
     /// From when on, and until when (s): before and after they are grains as all others are.
     pub span: [f64; 2],
+    /// Angular velocity of each about its own centre (rad/s).
+    pub spin: Vector3<f64>,
+    /// Motion beside the velocity, in which nothing turns.
+    pub motion: Motion,
+}
+
+/// Spin and motion are shown where there are any, as [`Motion`] shows its functions.
+impl std::fmt::Debug for Driven {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut shown = formatter.debug_struct("Driven");
+        shown.field("name", &self.name).field("grains", &self.grains).field("velocity", &self.velocity);
+        shown.field("span", &self.span);
+        if self.spin != Vector3::zeros() {
+            shown.field("spin", &self.spin);
+        }
+        if !self.motion.is_empty() {
+            shown.field("motion", &self.motion);
+        }
+        shown.finish()
+    }
 }
 
 impl Driven {
@@ -190,6 +210,32 @@ impl Driven {
     pub fn is_moved_at(&self, time: f64) -> bool {
         let [start, stop] = self.span.map(|moment| moment * (1.0 - 1e-9));
         (start..stop).contains(&time)
+    }
+
+    /// Velocity over the step that begins at a time (m/s; s): what they go in it over its length.
+    #[must_use]
+    pub fn velocity_over(&self, time: f64, time_step: f64) -> Vector3<f64> {
+        if self.motion.is_empty() {
+            return self.velocity;
+        }
+        let at = |time: f64| self.motion.displacement(time, time_step).translation;
+        self.velocity + (at(time + time_step) - at(time)) / time_step
+    }
+
+    /// Velocity at a time (m/s; s): the mean of those of the steps that end and begin then.
+    #[must_use]
+    pub fn velocity_at(&self, time: f64, time_step: f64) -> Vector3<f64> {
+        if self.motion.is_empty() {
+            return self.velocity;
+        }
+        let before = if time > 0.0 { time - time_step } else { time };
+        (self.velocity_over(before, time_step) + self.velocity_over(time, time_step)) * 0.5
+    }
+
+    /// A bound of the speed that they ever have (m/s).
+    #[must_use]
+    pub fn fastest(&self) -> f64 {
+        self.velocity.norm() + self.motion.fastest()
     }
 
     /// Whether they are moved for a part of the run only.

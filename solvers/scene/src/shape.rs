@@ -3,7 +3,7 @@
 
 use crate::scene::Dimension;
 
-/// Keys with their shapes, where `@` stands for a vector; `table.key` where keys of one name differ.
+/// Keys with their shapes, where `@` stands for a vector and `%` for its components; `table.key` where keys of one name differ.
 const SHAPES: &[(&str, &str)] = &[
     ("plane", "{ point = @, normal = @ }"),
     ("segment", "[@, @]"),
@@ -15,6 +15,9 @@ const SHAPES: &[(&str, &str)] = &[
     ("axis", "[[x, y, z], [x, y, z]]"),
     ("piston", "{ force = F, mass = m }"),
     ("motion", "[{ velocity = @ }]"),
+    ("table", "[[t, %], …], a row for each time"),
+    ("sine", "{ amplitude = @, frequency = f }"),
+    ("sine.amplitude", "@"),
     ("box", "{ low = @, high = @ }"),
     ("annulus", "{ centre = @, inner = r, outer = r }"),
     ("wave", "{ amplitude = v }"),
@@ -95,7 +98,8 @@ pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String
         (None, Some(above)) => of(&format!("{above}.{last}")).or_else(|| of(last)),
         (None, None) => of(last),
     }?;
-    Some((key, shape.replace('@', vector(dimension))))
+    let vector = vector(dimension);
+    Some((key, shape.replace('@', vector).replace('%', vector.trim_matches(['[', ']']))))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 use std::fmt::Write as _;
 
+use grainbench_scene::function::{Function, FunctionKind};
 use grainbench_scene::motion::{Moment, Motion, Phase};
 use grainbench_scene::scene::{Wall, WallShape};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
@@ -24,11 +25,13 @@ pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping, ways: &[Stri
     let motion = &wall.motion;
     let Placed { shape, centre, rotation } = placed(wall)?;
     let (mut lines, mut moves) = (String::new(), String::new());
-    if motion.phases.iter().any(|phase| phase.velocity != Vector3::zeros()) || ways.iter().any(|way| !way.is_empty()) {
+    let moves_along = motion.phases.iter().any(|phase| phase.velocity != Vector3::zeros());
+    if moves_along || !motion.functions.is_empty() || ways.iter().any(|way| !way.is_empty()) {
         moves.push_str(" move");
         for (axis, name) in AXES.into_iter().enumerate() {
             let prescribed = course(motion, |phase| phase.velocity[axis], stepping);
-            let all = [prescribed.as_str(), &ways[axis]];
+            let by_functions = functions(motion, axis);
+            let all = [prescribed.as_str(), &by_functions, &ways[axis]];
             let path = all.into_iter().filter(|way| !way.is_empty()).collect::<Vec<_>>().join("+");
             if path.is_empty() {
                 moves.push_str(" NULL");
@@ -123,6 +126,33 @@ fn block(a: Vector3<f64>, b: Vector3<f64>) -> String {
     let (low, high) = (a.inf(&b), a.sup(&b));
     let sides: Vec<String> = (0..3).map(|axis| format!("{:?} {:?}", low[axis], high[axis])).collect();
     format!("block {} side out", sides.join(" "))
+}
+
+/// The ways of functions along an axis, as a formula of step and time step; empty where there is none.
+fn functions(motion: &Motion, axis: usize) -> String {
+    let mut terms = Vec::new();
+    for Function { kind, start, stop } in &motion.functions {
+        let now = if stop.is_finite() {
+            format!("((step*dt<{stop:?})*(step*dt)+(step*dt>={stop:?})*{stop:?})")
+        } else {
+            "(step*dt)".to_owned()
+        };
+        let since = if *start > 0.0 { format!("((step*dt>{start:?})*({now}-{start:?}))") } else { now };
+        match *kind {
+            FunctionKind::Sine { amplitude, frequency, phase } if amplitude[axis] != 0.0 => {
+                let rate = std::f64::consts::TAU * frequency;
+                let a = amplitude[axis];
+                terms.push(format!("({a:?})*(sin({rate:?}*{since}+({phase:?}))-sin({phase:?}))"));
+            }
+            FunctionKind::Ramp { velocity, over } if velocity[axis] != 0.0 => {
+                let v = velocity[axis];
+                let (rising, even) = (format!("0.5*{since}*{since}/{over:?}"), format!("({since}-{:?})", 0.5 * over));
+                terms.push(format!("({v:?})*(({since}<{over:?})*{rising}+({since}>={over:?})*{even})"));
+            }
+            FunctionKind::Sine { .. } | FunctionKind::Ramp { .. } => {}
+        }
+    }
+    terms.join("+")
 }
 
 /// What a rate of the phases has summed up to, as a formula of step and time step; empty where there is none.

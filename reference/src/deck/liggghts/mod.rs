@@ -62,6 +62,10 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     if let Some(what) = scene.round_wall() {
         return Err(format!("{what}: LIGGGHTS has cylinders without ends, and of a mesh flat triangles"));
     }
+    if let Some(wall) = scene.walls.iter().find(|wall| !wall.motion.functions.is_empty()) {
+        let reason = "which `move/mesh` has along a path of its own only, from the first step on";
+        return Err(format!("wall `{}` moves by a sine or a ramp, {reason}", wall.name));
+    }
     let mut meshes = Vec::new();
     let (mut low, mut high) = box_of(scene);
     let (centre, reach) = (0.5 * (low + high), (high - low).norm() + way(scene, stepping));

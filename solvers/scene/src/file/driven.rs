@@ -1,11 +1,11 @@
 //! The keys of `driven`: grains with a prescribed motion.
 
-use super::SideSpec;
+use super::{MotionSpec, SideSpec, SpinSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Grains that do not obey forces: they move at a constant velocity and do not turn, nor deform. Exactly one of
-/// `grains`, `face` and `region`. Between `start` and `stop` only, where these are given: before and after they are grains
+/// Grains that do not obey forces: they move at a given velocity and spin, and do not deform. Exactly one of `grains`,
+/// `material`, `face` and `region`. Between `start` and `stop` only, where these are given: before and after they are grains
 /// as all others are.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -13,6 +13,9 @@ pub struct DrivenSpec {
     /// All grains of a group.
     #[serde(default)]
     pub grains: Option<String>,
+    /// All grains of a material, by its name.
+    #[serde(default)]
+    pub material: Option<String>,
     /// The grains that a face of the domain cuts at the start.
     #[serde(default)]
     pub face: Option<SideSpec>,
@@ -22,6 +25,13 @@ pub struct DrivenSpec {
     /// Velocity (m/s); at rest when absent.
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
+    /// Angular velocity of each about its own centre (rad/s): one number about z in two dimensions, a vector in three. They do
+    /// not turn when absent.
+    #[serde(default)]
+    pub spin: Option<SpinSpec>,
+    /// Motion beside the velocity, as of a wall, but without a spin: parts that add up.
+    #[serde(default)]
+    pub motion: Vec<MotionSpec>,
     /// From when on (s); from the start when absent.
     #[serde(default)]
     pub start: Option<f64>,

@@ -33,7 +33,7 @@ pub struct WallSpec {
     /// When it is taken away (s), as the plug of an orifice is; never when absent.
     #[serde(default)]
     pub until: Option<f64>,
-    /// Prescribed motion: phases that add up.
+    /// Prescribed motion: parts that add up.
     #[serde(default)]
     pub motion: Vec<MotionSpec>,
 }
@@ -93,7 +93,7 @@ pub struct ConeSpec {
     pub radii: [f64; 2],
 }
 
-/// One phase of a wall's motion.
+/// One part of a motion: a `velocity` or `spin` from `start` to `stop`, reached at once or by a `ramp`; a `table`; or a `sine`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionSpec {
@@ -118,4 +118,27 @@ pub struct MotionSpec {
     /// Stop in calculation cycles.
     #[serde(default)]
     pub stop_cycle: Option<u64>,
+    /// Time over which the velocity is reached, evenly, from the start on (s).
+    #[serde(default)]
+    pub ramp: Option<f64>,
+    /// Where it is beside its place at the start, by time: rows of time (s), x, y, (z) (m), with rising times and straight lines
+    /// between them; before the first row and after the last it stands still.
+    #[serde(default)]
+    pub table: Option<Vec<Vec<f64>>>,
+    /// An oscillation.
+    #[serde(default)]
+    pub sine: Option<SineSpec>,
+}
+
+/// A (sin(2πft + φ) − sin φ) from its start on.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SineSpec {
+    /// Amplitude A (m).
+    pub amplitude: Vec<f64>,
+    /// Frequency f (Hz).
+    pub frequency: f64,
+    /// Phase φ (degrees).
+    #[serde(default)]
+    pub phase_deg: f64,
 }

@@ -3,8 +3,8 @@
 use super::{Groups, Resolver};
 use crate::error::SceneError;
 use crate::file::{DrivenSpec, SideSpec};
+use crate::motion::Moment;
 use crate::scene::{Domain, Driven, Grain};
-use nalgebra::Vector3;
 
 impl Resolver<'_> {
     /// The groups of driven grains, whose velocity and spin from the start are those that they keep.
@@ -31,10 +31,20 @@ impl Resolver<'_> {
                 }
                 taken[grain] = true;
             }
-            let driven = Driven { name: name.clone(), grains: members, velocity, span };
+            let spin = self.check.spin(&format!("{key}.spin"), spec.spin.as_ref())?;
+            let motion = self.motion(&format!("{key}.motion"), &spec.motion)?;
+            if motion.phases.iter().any(|phase| phase.spin.norm() > 0.0) {
+                let expected = "a motion without spin (a `spin` beside it turns each about its own centre)";
+                return Err(self.check.error(&format!("{key}.motion"), expected, "one that turns"));
+            }
+            let in_cycles = |moment: Moment| matches!(moment, Moment::Cycle(_));
+            if motion.phases.iter().any(|phase| in_cycles(phase.start) || in_cycles(phase.stop)) {
+                return Err(self.check.error(&format!("{key}.motion"), "moments in seconds", "one in cycles"));
+            }
+            let driven = Driven { name: name.clone(), grains: members, velocity, span, spin, motion };
             if driven.is_moved_at(0.0) {
                 for &grain in &driven.grains {
-                    (grains[grain].velocity, grains[grain].spin) = (velocity, Vector3::zeros());
+                    (grains[grain].velocity, grains[grain].spin) = (velocity, spin);
                 }
             }
             all.push(driven);
@@ -63,12 +73,20 @@ impl Resolver<'_> {
         domain: Option<&Domain>,
     ) -> Result<Vec<usize>, SceneError> {
         let check = &self.check;
-        let kinds =
-            [("grains", spec.grains.is_some()), ("face", spec.face.is_some()), ("region", spec.region.is_some())];
+        let kinds = [
+            ("grains", spec.grains.is_some()),
+            ("material", spec.material.is_some()),
+            ("face", spec.face.is_some()),
+            ("region", spec.region.is_some()),
+        ];
         check.exactly_one(key, &kinds)?;
         if let Some(group) = &spec.grains {
             let place = check.place_of(&format!("{key}.grains"), group, "a group of grains", groups.keys())?;
             return Ok(groups[place].clone().collect());
+        }
+        if let Some(name) = &spec.material {
+            let material = self.material(&format!("{key}.material"), name)?;
+            return Ok((0..grains.len()).filter(|&at| grains[at].material == material).collect());
         }
         if let Some(spec) = &spec.region {
             let [low, high] = self.corners(&format!("{key}.region"), &spec.low, &spec.high)?;

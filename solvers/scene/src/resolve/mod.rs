@@ -21,6 +21,7 @@ mod driven;
 mod grains;
 mod laws;
 mod materials;
+mod motion;
 mod probes;
 mod random;
 mod state;

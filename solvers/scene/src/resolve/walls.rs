@@ -2,10 +2,9 @@
 
 use super::Resolver;
 use crate::error::SceneError;
-use crate::file::{MotionSpec, PistonSpec, WallSpec};
-use crate::motion::{Moment, Motion, Phase};
+use crate::file::{PistonSpec, WallSpec};
+use crate::motion::Motion;
 use crate::scene::{Dimension, Piston, Wall, WallShape};
-use nalgebra::Vector3;
 
 impl Resolver<'_> {
     pub(super) fn wall(&self, name: &str, spec: &WallSpec) -> Result<Wall, SceneError> {
@@ -70,7 +69,7 @@ impl Resolver<'_> {
         };
         let material = self.material(&key("material"), &spec.material)?;
         let until = spec.until.map(|time| check.positive(&key("until"), time, "time (s)")).transpose()?;
-        let motion = self.motion(name, &spec.motion)?;
+        let motion = self.motion(&key("motion"), &spec.motion)?;
         let piston = spec.piston.as_ref().map(|piston| self.piston(name, piston, &shape, &motion)).transpose()?;
         Ok(Wall { name: name.to_owned(), material, shape, motion, piston, until })
     }
@@ -103,49 +102,5 @@ impl Resolver<'_> {
             return Err(check.error(&of_axis, "two different points", &format!("{length} m between them")));
         }
         Ok(WallShape::Round { axis, radii })
-    }
-
-    fn motion(&self, wall: &str, specs: &[MotionSpec]) -> Result<Motion, SceneError> {
-        let check = &self.check;
-        let mut motion = Motion::default();
-        let mut centre_of: Option<Vector3<f64>> = None;
-        for (number, spec) in specs.iter().enumerate() {
-            let key = |part: &str| format!("walls.{wall}.motion[{number}].{part}");
-            let spin = check.spin(&key("spin"), spec.spin.as_ref())?;
-            if spec.spin.is_some() {
-                let Some(centre) = &spec.centre else {
-                    return Err(check.error(&key("centre"), "a centre to rotate about", "none"));
-                };
-                let centre = check.vector(&key("centre"), centre)?;
-                if centre_of.is_some_and(|other| other != centre) {
-                    return Err(check.error(&key("centre"), "one centre for all phases of a wall", "another one"));
-                }
-                if motion.phases.iter().any(|phase: &Phase| phase.spin.cross(&spin).norm() > 0.0) {
-                    return Err(check.error(&key("spin"), "one axis for all phases of a wall", "another one"));
-                }
-                centre_of = Some(centre);
-            }
-            let start = self.moment(&key("start"), spec.start, spec.start_cycle, Moment::Seconds(0.0))?;
-            let stop = self.moment(&key("stop"), spec.stop, spec.stop_cycle, Moment::Never)?;
-            let velocity = check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?;
-            motion.phases.push(Phase { velocity, spin, start, stop });
-        }
-        motion.centre = centre_of.unwrap_or_default();
-        Ok(motion)
-    }
-
-    fn moment(
-        &self,
-        key: &str,
-        seconds: Option<f64>,
-        cycle: Option<u64>,
-        otherwise: Moment,
-    ) -> Result<Moment, SceneError> {
-        match (seconds, cycle) {
-            (Some(_), Some(_)) => Err(self.check.error(key, "a time or a cycle", "both")),
-            (Some(seconds), None) => Ok(Moment::Seconds(self.check.not_negative(key, seconds, "time (s)")?)),
-            (None, Some(cycle)) => Ok(Moment::Cycle(cycle)),
-            (None, None) => Ok(otherwise),
-        }
     }
 }

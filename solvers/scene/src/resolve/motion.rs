@@ -1,0 +1,148 @@
+//! Motions of walls and of driven grains.
+
+use super::Resolver;
+use crate::error::SceneError;
+use crate::file::MotionSpec;
+use crate::function::{Function, FunctionKind};
+use crate::motion::{Moment, Motion, Phase};
+use nalgebra::Vector3;
+
+impl Resolver<'_> {
+    pub(super) fn motion(&self, key: &str, specs: &[MotionSpec]) -> Result<Motion, SceneError> {
+        let check = &self.check;
+        let mut motion = Motion::default();
+        let mut centre_of: Option<Vector3<f64>> = None;
+        for (number, spec) in specs.iter().enumerate() {
+            let part = format!("{key}[{number}]");
+            let key = |of: &str| format!("{part}.{of}");
+            if self.in_other_form(&part, spec, &mut motion)? {
+                continue;
+            }
+            let spin = check.spin(&key("spin"), spec.spin.as_ref())?;
+            if spec.spin.is_some() {
+                let Some(centre) = &spec.centre else {
+                    return Err(check.error(&key("centre"), "a centre to rotate about", "none"));
+                };
+                let centre = check.vector(&key("centre"), centre)?;
+                if centre_of.is_some_and(|other| other != centre) {
+                    return Err(check.error(&key("centre"), "one centre for all phases of a wall", "another one"));
+                }
+                if motion.phases.iter().any(|phase: &Phase| phase.spin.cross(&spin).norm() > 0.0) {
+                    return Err(check.error(&key("spin"), "one axis for all phases of a wall", "another one"));
+                }
+                centre_of = Some(centre);
+            }
+            let start = self.moment(&key("start"), spec.start, spec.start_cycle, Moment::Seconds(0.0))?;
+            let stop = self.moment(&key("stop"), spec.stop, spec.stop_cycle, Moment::Never)?;
+            let velocity = check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?;
+            motion.phases.push(Phase { velocity, spin, start, stop });
+        }
+        motion.centre = centre_of.unwrap_or_default();
+        Ok(motion)
+    }
+
+    /// Adds a part of a motion that is a table or a function; whether it is one.
+    fn in_other_form(&self, key: &str, spec: &MotionSpec, motion: &mut Motion) -> Result<bool, SceneError> {
+        let forms = [
+            ("table", spec.table.is_some()),
+            ("sine", spec.sine.is_some()),
+            ("a `ramp` to a `velocity`", spec.ramp.is_some()),
+            ("spin", spec.spin.is_some()),
+        ];
+        if forms[..3].iter().all(|(_, is)| !is) {
+            return Ok(false);
+        }
+        let check = &self.check;
+        check.exactly_one(key, &forms)?;
+        if spec.velocity.is_some() != spec.ramp.is_some() {
+            let expected =
+                if spec.ramp.is_some() { "the `velocity` that it rises to" } else { "no `velocity` beside it" };
+            let found = if spec.ramp.is_some() { "none" } else { "one" };
+            return Err(check.error(&format!("{key}.velocity"), expected, found));
+        }
+        if spec.start_cycle.is_some() || spec.stop_cycle.is_some() || spec.centre.is_some() {
+            let found = "`start_cycle`, `stop_cycle` or `centre`";
+            return Err(check.error(key, "a `start` and a `stop` in seconds", found));
+        }
+        if let Some(rows) = &spec.table {
+            if spec.start.is_some() || spec.stop.is_some() {
+                return Err(check.error(key, "the times of a table alone", "`start` or `stop`"));
+            }
+            motion.phases.extend(self.table(&format!("{key}.table"), rows)?);
+            return Ok(true);
+        }
+        let seconds = |of: &str, time: Option<f64>, otherwise: f64| match time {
+            Some(time) => check.not_negative(&format!("{key}.{of}"), time, "time (s)"),
+            None => Ok(otherwise),
+        };
+        let (start, stop) = (seconds("start", spec.start, 0.0)?, seconds("stop", spec.stop, f64::INFINITY)?);
+        let kind = if let Some(sine) = &spec.sine {
+            let key = |of: &str| format!("{key}.sine.{of}");
+            FunctionKind::Sine {
+                amplitude: check.vector(&key("amplitude"), &sine.amplitude)?,
+                frequency: check.positive(&key("frequency"), sine.frequency, "frequency (Hz)")?,
+                phase: check.finite(&key("phase_deg"), sine.phase_deg, "angle (degrees)")?.to_radians(),
+            }
+        } else {
+            FunctionKind::Ramp {
+                velocity: check.vector_or_zero(&format!("{key}.velocity"), spec.velocity.as_ref())?,
+                over: check.positive(&format!("{key}.ramp"), spec.ramp.unwrap_or_default(), "time (s)")?,
+            }
+        };
+        motion.functions.push(Function { kind, start, stop });
+        Ok(true)
+    }
+
+    /// A table as phases of constant velocity, one for each straight line that its rows lie on.
+    fn table(&self, key: &str, rows: &[Vec<f64>]) -> Result<Vec<Phase>, SceneError> {
+        let check = &self.check;
+        let shape = if check.dimension.count() == 2 { "[t, x, y]" } else { "[t, x, y, z]" };
+        let mut places = Vec::new();
+        for row in rows {
+            let wrong = row.len() != check.dimension.count() + 1 || row.iter().any(|value| !value.is_finite());
+            let rises = |(before, _): &(f64, Vector3<f64>)| row[0] > *before;
+            if wrong || row[0] < 0.0 || !places.last().is_none_or(rises) {
+                let expected = format!("two rows or more {shape}, with times from 0 on that rise");
+                return Err(check.error(key, &expected, &format!("{row:?}")));
+            }
+            places.push((row[0], check.vector(key, &row[1..])?));
+        }
+        let Some(first) = places.first().filter(|_| places.len() > 1) else {
+            return Err(check.error(key, &format!("two rows or more {shape}"), &format!("{}", places.len())));
+        };
+        if first.1 != Vector3::zeros() {
+            let expected = "a first row at the place at the start, zeros behind its time";
+            return Err(check.error(key, expected, &format!("{:?}", rows[0])));
+        }
+        let mut phases: Vec<Phase> = Vec::new();
+        for pair in places.windows(2) {
+            let [(from, before), (to, after)] = [pair[0], pair[1]];
+            let velocity = (after - before) / (to - from);
+            match phases.last_mut() {
+                Some(last) if last.velocity == velocity => last.stop = Moment::Seconds(to),
+                _ => phases.push(Phase {
+                    velocity,
+                    spin: Vector3::zeros(),
+                    start: Moment::Seconds(from),
+                    stop: Moment::Seconds(to),
+                }),
+            }
+        }
+        Ok(phases)
+    }
+
+    fn moment(
+        &self,
+        key: &str,
+        seconds: Option<f64>,
+        cycle: Option<u64>,
+        otherwise: Moment,
+    ) -> Result<Moment, SceneError> {
+        match (seconds, cycle) {
+            (Some(_), Some(_)) => Err(self.check.error(key, "a time or a cycle", "both")),
+            (Some(seconds), None) => Ok(Moment::Seconds(self.check.not_negative(key, seconds, "time (s)")?)),
+            (None, Some(cycle)) => Ok(Moment::Cycle(cycle)),
+            (None, None) => Ok(otherwise),
+        }
+    }
+}
