@@ -8,8 +8,10 @@ use common::{files, grainbench};
 use grainbench::cases::registry::{CASES, by_name};
 use grainbench::reference::deck::{DeckError, Program, write_deck};
 use grainbench::scene::file::GrainShape;
+use grainbench::scene::function::{Function, FunctionKind};
 use grainbench::scene::motion::{Moment, Motion, Phase};
 use grainbench::scene::scene::{Scene, WallShape};
+use grainbench::scene::solver::Resolution;
 use nalgebra::Vector3;
 
 /// The deck's files one below the other.
@@ -90,13 +92,34 @@ fn walls_of_finite_extent_are_flat_blocks() {
     };
     let segment = lines("squash", "plain", &|scene| {
         scene.walls[0].shape = WallShape::Segment { ends: [-x - y, -x + y * 2.0 - x] };
-        scene.walls[0].motion = Motion { centre: -x, phases: vec![phase(Vector3::zeros(), z * 0.5)] };
+        scene.walls[0].motion =
+            Motion { centre: -x, phases: vec![phase(Vector3::zeros(), z * 0.5)], ..Motion::default() };
     });
     let rectangle = lines("chung-ooi", "2-aluminium-alloy", &|scene| {
         scene.walls[0].shape = WallShape::Rectangle { corner: -x - y - z * 0.5, edges: [x * 2.0 + z, y * 2.0] };
-        scene.walls[0].motion = Motion { centre: Vector3::zeros(), phases: vec![phase(z * 0.1, Vector3::zeros())] };
+        scene.walls[0].motion = Motion { phases: vec![phase(z * 0.1, Vector3::zeros())], ..Motion::default() };
     });
     insta::assert_snapshot!(format!("{segment}\n{rectangle}"));
+}
+
+/// A sine and a ramp as formulas of LAMMPS, which dem:lammps agrees with to rounding; LIGGGHTS has stretches of one velocity.
+#[test]
+fn a_wall_that_moves_by_functions() {
+    let (x, y) = (Vector3::x(), Vector3::y());
+    let sine = FunctionKind::Sine { amplitude: x * 0.5, frequency: 2.0, phase: 0.25 };
+    let ramp = FunctionKind::Ramp { velocity: y * 0.1, over: 3.0 };
+    let change = |scene: &mut Scene| {
+        scene.walls[0].motion.functions = vec![
+            Function { kind: sine, start: 0.0, stop: f64::INFINITY },
+            Function { kind: ramp, start: 1.0, stop: 5.0 },
+        ];
+    };
+    let deck = shown_of("squash", "plain", Program::LAMMPS, &change);
+    let lines = deck.lines().filter(|line| line.contains("wall1")).collect::<Vec<_>>().join("\n");
+    let mut scene = by_name("squash").unwrap().variant("plain").unwrap();
+    change(&mut scene);
+    let refusal = write_deck(&scene, &Resolution::CriticalFraction(0.1), Program::LIGGGHTS).unwrap_err();
+    insta::assert_snapshot!(format!("{lines}\n{refusal}"));
 }
 
 #[test]
