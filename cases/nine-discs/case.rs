@@ -234,8 +234,8 @@ fn modal_error(done: &Done) -> Result<Measured, Missing> {
     worst(&done.series().time, &inward(done)?, &exact)
 }
 
-/// What the phase of central differences, fast by ω³Δt²/24 in a unit of time, makes of the displacement at the end of ramp and ten
-/// periods, of each level, as a fraction of the wall travel: at κ = 0, where it is largest, rounded up.
+/// What the phase of central differences, fast by ω³Δt²/24 in a unit of time, makes of the displacement at the end of ramp
+/// and ten periods, of each level, as a fraction of the wall travel: at κ = 0, where it is largest, rounded up.
 const PHASE_ERRORS: [f64; 3] = [1.2e-2, 3e-3, 8e-4];
 
 fn continuous() -> Vec<Claim> {

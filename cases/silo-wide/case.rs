@@ -59,7 +59,7 @@ fn full_size() -> PaperSize {
         drained: Some(paper::Drained {
             plateau: DRAINED.plateau,
             onset: DRAINED.onset,
-            // By 14 τ 33 elements have been in the last: their mean is uncertain by .003, and by more where they are not independent.
+            // By 14 τ 33 elements have been in the last: their mean is uncertain by .003 and more.
             bins: 9,
             // Its curves lie beside those of the other flows in the case of the tall silo.
             beside: None,

@@ -34,8 +34,8 @@ pub(crate) struct Drained {
     pub(crate) plateau: Cited,
     /// Largest sin φ before tracers dilate, in the prototype: the .6 that the paper prints is not met (derivation).
     pub(crate) onset: Cited,
-    /// Bins of |I₀| that are compared frame by frame: the last, of few elements over the slit, by its mean over the whole flow where
-    /// it is not among them.
+    /// Bins of |I₀| that are compared until 14 τ too: the last, of few elements over the slit, by its mean over the whole
+    /// flow where it is not among them.
     pub(crate) bins: usize,
     /// A silo that drains, beside whose curve over |I₀| it is laid, and beside that of all others over |E|.
     pub(crate) beside: Option<&'static Other>,
@@ -143,7 +143,7 @@ impl PaperSize {
                 one(&format!("packing fraction over |I₀| in {bulk}bins from 6 to 14 τ, worst")),
                 bins,
                 PROTOTYPE,
-                density.clone(),
+                density,
             ),
             over_inertia(
                 self.known(&format!("packing fraction over |I₀| in {bulk}bins from 6 to 25 τ, worst"), "1", STRAINED),
@@ -170,7 +170,7 @@ impl PaperSize {
                         Ok(Measured::new(found, last.value, 1.0))
                     })
                     .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
-                    .refuses(density),
+                    .refuses(larger()),
             );
         }
         if let Some(other) = of.beside {
