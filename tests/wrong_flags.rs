@@ -77,7 +77,16 @@ fn wrong(option: &Shown) -> Vec<&'static str> {
 
 /// What stands in the directory: a scene, a table, an empty file, a directory.
 fn prepare(directory: &Path) {
-    let scene = "title = \"One\"\ndimension = 2\nduration = 1.0\n[materials.rock]\ndensity = 1.0\n[grains.one]\nmaterial = \"rock\"\nradius = 1.0\nposition = [0.0, 0.0]\n";
+    let scene = "title = \"One\"
+dimension = 2
+duration = 1.0
+[materials.rock]
+density = 1.0
+[grains.one]
+material = \"rock\"
+radius = 1.0
+position = [0.0, 0.0]
+";
     for (name, text) in [("scene.toml", scene), ("table.csv", "step,id,x\n0,1,0\n"), ("empty", "")] {
         std::fs::write(directory.join(name), text).unwrap();
     }
