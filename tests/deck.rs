@@ -114,7 +114,7 @@ fn a_wall_that_moves_by_functions() {
             Function { kind: ramp, start: 1.0, stop: 5.0 },
         ];
     };
-    let deck = shown_of("squash", "plain", Program::LAMMPS, &change);
+    let deck = shown_of("squash", "plain", Program::LAMMPS, change);
     let lines = deck.lines().filter(|line| line.contains("wall1")).collect::<Vec<_>>().join("\n");
     let mut scene = by_name("squash").unwrap().variant("plain").unwrap();
     change(&mut scene);
