@@ -3,8 +3,10 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::exact::one_grain::{OneGrain, State, course, last};
-use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
+use crate::exact::one_grain::{OneGrain, State, course, last, nearest};
+use crate::rows::incline::{
+    self, DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction,
+};
 use crate::rows::programs;
 use crate::rows::rigid::{self, Row};
 use grainbench_harness::prelude::*;
@@ -41,19 +43,9 @@ fn claims() -> Vec<Claim> {
     dem.chain(rigid::backspins(RIGID)).chain(programs::one_grain(&VARIANTS)).chain(elastic::claims()).collect()
 }
 
-fn friction() -> Control {
-    Control::scene("friction ×1.05", more_friction)
-}
-
-fn inertia() -> Control {
-    Control::scene("the inertia of the other shape", wrong_inertia)
-}
-
-/// The last state against the rigid answer, in units of it.
+/// The last state against the rigid answer.
 fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
-    let (t, state) = last(done)?;
-    let exact = pick(OneGrain::of(&done.scene).rigid_backspin(t));
-    Ok(Measured::new(pick(state), exact, exact))
+    incline::end(done, OneGrain::rigid_backspin, pick)
 }
 
 fn rigid(variant: &'static str) -> Vec<Claim> {
@@ -65,18 +57,18 @@ fn rigid(variant: &'static str) -> Vec<Claim> {
                 3e-3,
                 "the spring must be stretched before it slides and relaxes when it rolls: ∝ √(overlap/R), here 1e-3",
             ))
-            .refuses(friction()),
+            .refuses(stronger_friction()),
         of("spin at 1 s", "rad/s")
             .equals(SOURCE, |done| end(&done[0], |state| state.omega))
             .within(judged(1e-9, "momentum about the contact fixes it once the spring has come to rest"))
-            .refuses(inertia()),
+            .refuses(other_inertia()),
         of("velocity halfway through the slide", "m/s")
             .equals(Source::Derived("v = μ g t up to t_s"), |done| velocity_halfway(&done[0]))
             .within(judged(
                 1e-3,
                 "in LAMMPS' convention it slides from the start, but without friction for the first half step",
             ))
-            .refuses(friction()),
+            .refuses(stronger_friction()),
     ]
 }
 
@@ -102,20 +94,14 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
         )
     };
     vec![
-        of("displacement at 1 s", "m", slides(5e-5), false, friction(), |done| end(done, |state| state.x))
+        of("displacement at 1 s", "m", slides(5e-5), false, stronger_friction(), |done| end(done, |state| state.x))
             .at_other_numbers("displacement at the end", ELSEWHERE, displaced),
-        of("velocity halfway through the slide", "m/s", slides(2e-4), false, friction(), velocity_halfway)
+        of("velocity halfway through the slide", "m/s", slides(2e-4), false, stronger_friction(), velocity_halfway)
             .at_other_numbers("velocity halfway through the slide", ELSEWHERE, halfway),
-        of("velocity at 1 s", "m/s", arm(1.0), true, inertia(), |done| end(done, |state| state.v)).at_other_numbers(
-            "velocity at the end",
-            ELSEWHERE,
-            rolling,
-        ),
-        of("spin at 1 s", "rad/s", arm(1.5), true, inertia(), |done| end(done, |state| state.omega)).at_other_numbers(
-            "spin at the end",
-            ELSEWHERE,
-            rolling,
-        ),
+        of("velocity at 1 s", "m/s", arm(1.0), true, other_inertia(), |done| end(done, |state| state.v))
+            .at_other_numbers("velocity at the end", ELSEWHERE, rolling),
+        of("spin at 1 s", "rad/s", arm(1.5), true, other_inertia(), |done| end(done, |state| state.omega))
+            .at_other_numbers("spin at the end", ELSEWHERE, rolling),
     ]
 }
 
@@ -150,9 +136,7 @@ fn displaced(scene: &Scene) -> f64 {
 fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
     let grain = OneGrain::of(&done.scene);
     let halfway = 0.5 * sliding(&grain);
-    let course = course(done)?;
-    let near = course.iter().min_by(|a, b| (a.0 - halfway).abs().total_cmp(&(b.0 - halfway).abs()));
-    let (t, state) = near.copied().ok_or_else(|| Missing("samples".to_owned()))?;
+    let (t, state) = nearest(done, halfway)?;
     let exact = grain.rigid_backspin(t).v;
     Ok(Measured::new(state.v, exact, exact))
 }

@@ -1,7 +1,7 @@
 //! A grain laid on a moving belt slides until it rolls.
 
-use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
-use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, wrong_inertia};
+use crate::exact::one_grain::{OneGrain, State, course, last, nearest, rest_at_overlap};
+use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction};
 use crate::rows::programs;
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
@@ -130,14 +130,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-fn friction() -> Control {
-    Control::scene("friction ×1.05", more_friction)
-}
-
-fn inertia() -> Control {
-    Control::scene("the inertia of the other shape", wrong_inertia)
-}
-
 /// The last state against the rigid answer.
 fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
     let (t, state) = last(done)?;
@@ -148,10 +140,7 @@ fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
 /// The velocity nearest to half the time of sliding.
 fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
     let belt = Belt::of(&done.scene);
-    let course = course(done)?;
-    let halfway = 0.5 * belt.sliding();
-    let near = course.iter().min_by(|a, b| (a.0 - halfway).abs().total_cmp(&(b.0 - halfway).abs()));
-    let (t, state) = near.copied().ok_or_else(|| Missing("samples".to_owned()))?;
+    let (t, state) = nearest(done, 0.5 * belt.sliding())?;
     let exact = belt.rigid(t).v;
     Ok(Measured::new(state.v, exact, exact))
 }
@@ -208,10 +197,10 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
         "2 (s/V + Δt)/t_s: the spring must be stretched by s = μ m g/k_t, and the first step may lack friction",
     );
     vec![
-        of("displacement at 1 s", "m", displaced, false, friction(), |done| end(done, |state| state.x)),
-        of("velocity halfway through the slide", "m/s", halfway, false, friction(), velocity_halfway),
-        of("velocity at 1 s", "m/s", arm(2.0), true, inertia(), |done| end(done, |state| state.v)),
-        of("spin at 1 s", "rad/s", arm(1.0), true, inertia(), |done| end(done, |state| state.omega)),
+        of("displacement at 1 s", "m", displaced, false, stronger_friction(), |done| end(done, |state| state.x)),
+        of("velocity halfway through the slide", "m/s", halfway, false, stronger_friction(), velocity_halfway),
+        of("velocity at 1 s", "m/s", arm(2.0), true, other_inertia(), |done| end(done, |state| state.v)),
+        of("spin at 1 s", "rad/s", arm(1.0), true, other_inertia(), |done| end(done, |state| state.omega)),
     ]
 }
 
@@ -268,9 +257,15 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
                spin a half of that";
     let late = "f V Δt/x: friction that begins or ends a step Δt too late";
     vec![
-        of("displacement", "m", computed(belt.rolling() * step / belt.rigid(1.0).x, late), friction(), |state| state.x),
-        of("velocity", "m/s", computed(2.0 * sunk, arm), inertia(), |state| state.v),
-        of("spin", "rad/s", computed(sunk, arm), inertia(), |state| state.omega),
+        of(
+            "displacement",
+            "m",
+            computed(belt.rolling() * step / belt.rigid(1.0).x, late),
+            stronger_friction(),
+            |state| state.x,
+        ),
+        of("velocity", "m/s", computed(2.0 * sunk, arm), other_inertia(), |state| state.v),
+        of("spin", "rad/s", computed(sunk, arm), other_inertia(), |state| state.omega),
     ]
 }
 
@@ -307,7 +302,7 @@ fn stopped() -> Vec<Claim> {
         )
     };
     vec![
-        of("displacement", "m", displaced, false, inertia(), |state, belt| {
+        of("displacement", "m", displaced, false, other_inertia(), |state, belt| {
             let way = belt.rolling() * belt.stop;
             [state.x, way, way]
         }),

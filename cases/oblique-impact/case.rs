@@ -1,6 +1,6 @@
 //! A disc meets a frictional wall at an angle and slips throughout: exact velocities after it.
 
-use crate::rows::incline::more_friction;
+use crate::rows::incline::stronger_friction;
 use crate::rows::programs;
 use grainbench_harness::prelude::*;
 
@@ -75,13 +75,12 @@ fn claims() -> Vec<Claim> {
             scene.change_laws(|law| law.stiffness_damping = beta);
         })
     };
-    let friction = || Control::scene("friction ×1.05", more_friction);
     let quantities: [(&str, &'static str, Tolerance, Control, Read, Of); 3] = [
         (
             "velocity along the wall after the impact",
             "m/s",
             judged(2e-4, "the phase of the first touch within a step; relative to the velocity"),
-            friction(),
+            stronger_friction(),
             |done| done.last("grain.vx"),
             |exit| exit.along,
         ),
@@ -97,7 +96,7 @@ fn claims() -> Vec<Claim> {
             "spin after the impact",
             "rad/s",
             judged(1e-3, "half the overlap in the arm of the torque, 5e-4, and the first touch; relative to the spin"),
-            friction(),
+            stronger_friction(),
             |done| done.last("grain.omega"),
             |exit| exit.spin,
         ),

@@ -248,3 +248,13 @@ pub fn course(done: &Done) -> Result<Vec<(f64, State)>, Missing> {
 pub fn last(done: &Done) -> Result<(f64, State), Missing> {
     course(done)?.last().copied().ok_or_else(|| Missing("samples".to_owned()))
 }
+
+/// The sample nearest to a moment (s).
+///
+/// # Errors
+/// There are no samples.
+pub fn nearest(done: &Done, moment: f64) -> Result<(f64, State), Missing> {
+    let course = course(done)?;
+    let near = course.iter().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
+    near.copied().ok_or_else(|| Missing("samples".to_owned()))
+}

@@ -119,6 +119,18 @@ pub fn more_friction(scene: &mut Scene) {
     scene.change_laws(|law| law.friction *= 1.05);
 }
 
+/// Friction too large by a twentieth, which whatever slides feels.
+#[must_use]
+pub fn stronger_friction() -> Control {
+    Control::scene("friction ×1.05", more_friction)
+}
+
+/// The inertia of the other shape, which whatever rolls feels.
+#[must_use]
+pub fn other_inertia() -> Control {
+    Control::scene("the inertia of the other shape", wrong_inertia)
+}
+
 /// A run at a static overlap of `ratio`·R.
 #[must_use]
 pub fn at_overlap(variant: &'static str, solver: &'static str, ratio: f64, damping: f64, step: Resolution) -> Run {
@@ -158,7 +170,10 @@ fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
 }
 
 /// The last state against an exact one, in units of what is expected.
-fn end(done: &Done, exact: impl Fn(&OneGrain, f64) -> State, pick: fn(State) -> f64) -> Result<Measured, Missing> {
+///
+/// # Errors
+/// The run tells nothing of the grain.
+pub fn end(done: &Done, exact: impl Fn(&OneGrain, f64) -> State, pick: fn(State) -> f64) -> Result<Measured, Missing> {
     let (t, state) = last(done)?;
     let expected = pick(exact(&OneGrain::of(&done.scene), t));
     Ok(Measured::new(pick(state), expected, expected))
@@ -176,13 +191,13 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
             .of(run(FINE))
             .equals(SOURCE, move |done| error(&done[0]))
             .within(judged(1e-7, "discretisation, of second order in Δt; relative to the displacement"))
-            .refuses(Control::scene("friction ×1.05", more_friction)),
+            .refuses(stronger_friction()),
         claim("order in Δt of that displacement", "1")
             .of_all(STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))))
             .sweep(move |done| Ok((done.record.provenance.time_step, error(done)?.error())))
             .converges(2.0, Source::Derived("central differences are of second order"))
             .within(judged(2e-3, "fitted over three halvings; the next power of Δt is seen at the coarsest"))
-            .refuses(Control::scene("friction ×1.05", more_friction)),
+            .refuses(stronger_friction()),
     ]
 }
 
@@ -231,11 +246,7 @@ fn exponent(slope: Slope) -> Claim {
 
 /// Wrong physics that is felt: inertia where the grain rolls, friction where it slips.
 fn telling(slope: Slope) -> Control {
-    if slope.sticks {
-        Control::scene("the inertia of the other shape", wrong_inertia)
-    } else {
-        Control::scene("friction ×1.05", more_friction)
-    }
+    if slope.sticks { other_inertia() } else { stronger_friction() }
 }
 
 /// Against the rigid answer where the contact is so stiff that conventions hardly differ: fair to any solver.

@@ -16,7 +16,7 @@
 //! 2ζ/ω + 1/(hω²), which is longer the finer the step.
 
 use crate::exact::one_grain::{OneGrain, State, last};
-use crate::rows::incline::{more_friction, wrong_inertia};
+use crate::rows::incline::{other_inertia, stronger_friction};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
 use grainbench_scene::scene::Duration;
@@ -68,11 +68,7 @@ fn rest_overlap(grain: &OneGrain) -> f64 {
 }
 
 fn wrong(row: Row) -> Control {
-    if row.rolls {
-        Control::scene("the inertia of the other shape", wrong_inertia)
-    } else {
-        Control::scene("friction ×1.05", more_friction)
-    }
+    if row.rolls { other_inertia() } else { stronger_friction() }
 }
 
 /// Displacement, velocity and spin at 1 s against the rigid answer.
@@ -165,8 +161,7 @@ fn backspin(row: Row) -> Vec<Claim> {
     const X: &str = "while RΩ² exceeds g the contact point lifts off faster than the grain can fall: friction starts a \
                      part of a step late, and then acts in bursts";
     const V: &str = "arm R − δ/2 and rounding";
-    let friction = Control::scene("friction ×1.05", more_friction);
-    against(row, OneGrain::rigid_backspin, friction, [X, V, V])
+    against(row, OneGrain::rigid_backspin, stronger_friction(), [X, V, V])
 }
 
 /// The error against the rigid answer over the number of substeps.
