@@ -211,6 +211,17 @@ fn the_command_leaves_a_whole_deck() {
     );
 }
 
+/// The first row that is fair to any solver has a grid's cells there, which are no time step.
+#[test]
+fn an_exact_scene_is_stepped_in_time() {
+    let directory = tempfile::tempdir().unwrap();
+    let exact = ["deck", "incline-disc/30deg-mu.5", "--for", "lammps", "--exact", "--out", "d"];
+    let answer = grainbench(directory.path(), &exact);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let script = std::fs::read_to_string(directory.path().join("d/in.lammps")).unwrap();
+    assert!(script.contains("timestep"), "{script}");
+}
+
 #[test]
 fn the_command_refuses_and_leaves_nothing() {
     let directory = tempfile::tempdir().unwrap();

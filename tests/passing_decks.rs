@@ -92,6 +92,25 @@ fn grains_leave_lammps_as_they_leave_ours() {
     assert_eq!(all[1].snapshots.last().unwrap().grains.len(), 30);
 }
 
+/// A floor that is shaken, drawn off and lifted: a sine, a ramp and a table that add up.
+#[test]
+fn a_floor_moves_along_a_path_in_lammps_as_in_ours() {
+    let text = |ramp: f64| {
+        let parts = [
+            "{ sine = { amplitude = [0.02, 0.0, 0.01], frequency = 1.5, phase_deg = 30.0 }, start = 0.1 }",
+            &format!("{{ velocity = [0.1, 0.05, 0.0], ramp = {ramp:?}, start = 0.2, stop = 0.9 }}"),
+            "{ table = [[0.3, 0.0, 0.0, 0.0], [0.6, 0.0, 0.02, 0.01], [1.0, 0.0, 0.0, 0.0]] }",
+        ];
+        format!("{HEAD}{FLOOR}motion = [{}]\n", parts.join(", "))
+    };
+    let Some(records) = both(&text(0.5), "lammps") else { return };
+    let found = apart(&records, 1.5);
+    assert!(found < 1e-9, "{found}");
+    // A ramp that is a tenth shorter is seen.
+    let [ours, _] = both(&text(0.45), "lammps").unwrap();
+    assert!(apart(&[ours, records[1].clone()], 1.5) > 1e-4);
+}
+
 /// A floor that is taken away lets go of all at the same step.
 #[test]
 fn a_wall_is_taken_away_in_lammps_as_in_ours() {

@@ -233,3 +233,25 @@ fn check_grains(name: &str, grains: usize, most_rows: u64) -> Result<(), ReadErr
 pub(crate) fn shown(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    /// Names in the order of letters are those of a pattern: `dump.end` stands in front of `dump.grains`.
+    #[test]
+    fn dumps_are_in_the_order_of_their_steps() {
+        let folder = tempfile::tempdir().unwrap();
+        let paths = ["dump.end", "dump.grains", "dump.later"].map(|name| folder.path().join(name));
+        for (path, head) in paths.iter().zip([
+            "ITEM: UNITS\nsi\nITEM: TIMESTEP\n900\n",
+            "ITEM: TIMESTEP\n0\n",
+            "ITEM: TIMESTEP\n1000\n",
+        ]) {
+            std::fs::write(path, head).unwrap();
+        }
+        let found: Vec<PathBuf> = in_order(&paths).unwrap().into_iter().map(|file| file.path).collect();
+        assert_eq!(found, [&paths[1], &paths[0], &paths[2]].map(PathBuf::clone));
+    }
+}

@@ -310,4 +310,24 @@ mod tests {
             assert!(pack(&shrunk, 1, &domain, Dimension::Two).is_some());
         }
     }
+
+    /// Packings are remembered by all that they are made from.
+    #[test]
+    fn another_recipe_is_another_packing() {
+        let all = radii(60);
+        let wide = domain(edge(&all, 0.6), true);
+        let first = pack(&all, 1, &wide, Dimension::Two);
+        assert!(first.is_some() && first == pack(&all, 1, &wide, Dimension::Two));
+        let shorter = Domain { high: wide.high - Vector3::new(1e-9, 0.0, 0.0), ..wide };
+        let walled = domain(edge(&all, 0.6), false);
+        for other in [
+            pack(&all, 2, &wide, Dimension::Two),
+            pack(&all, 1, &shorter, Dimension::Two),
+            pack(&all, 1, &walled, Dimension::Two),
+            pack_cut(&all, 1, &walled, Dimension::Two),
+        ] {
+            assert!(other.is_some() && other != first);
+        }
+        assert_ne!(pack(&all, 1, &walled, Dimension::Two), pack_cut(&all, 1, &walled, Dimension::Two));
+    }
 }
