@@ -186,3 +186,14 @@ fn a_wrong_file_is_refused() {
     let answer = grainbench(folder.path(), &["run", "empty"]);
     assert!(answer.code == Some(2) && answer.err.contains("empty/claims.toml: expected a file"), "{}", answer.err);
 }
+
+/// A folder that has the name of a case of the registry is meant by `./`, and whoever leaves that out is told.
+#[test]
+fn a_folder_named_as_a_case_is_told_of() {
+    let whole = case("", &[]);
+    fs::rename(whole.path().join("slope"), whole.path().join("squash")).unwrap();
+    let of_registry = grainbench(whole.path(), &["run", "squash", "--solver", "rigid", "-q"]);
+    assert!(of_registry.err.contains("the folder of this name is ./squash"), "{}", of_registry.err);
+    let own = grainbench(whole.path(), &["run", "./squash", "-q"]);
+    assert_eq!((own.code, own.err.as_str()), (Some(0), ""), "{}", own.out);
+}

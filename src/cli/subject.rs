@@ -1,6 +1,6 @@
 //! The scene that a command is about: of a case, or of a file.
 
-use super::exit::Fault;
+use super::exit::{self, Fault};
 use super::select;
 use grainbench::cases::folder;
 use grainbench::cases::registry::{CASES, read_grains};
@@ -24,6 +24,12 @@ impl<'a> Variant<'a> {
     pub(crate) fn read_with_folders(text: &'a str) -> Result<Self, Fault> {
         let is_named = CASES.iter().any(|case| text.split('/').next() == Some(case.name));
         if is_named || !Path::new(text).is_dir() {
+            if is_named && Path::new(text).join(folder::CLAIMS).is_file() {
+                exit::say(
+                    "warning",
+                    &format!("{text}: taken as the case of the registry; the folder of this name is ./{text}"),
+                );
+            }
             return Self::read(text);
         }
         Ok(Self { case: folder::read(Path::new(text)).map_err(Fault::input)?, variant: None })

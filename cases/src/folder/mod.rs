@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 /// The scene.
 const SCENE: &str = "scene.toml";
 /// What is claimed of it.
-const CLAIMS: &str = "claims.toml";
+pub const CLAIMS: &str = "claims.toml";
 /// Where expected values come from, at more length; it may be absent.
 const DERIVATION: &str = "derivation.md";
 
