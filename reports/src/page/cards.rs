@@ -187,9 +187,12 @@ fn stable(of: &Stability, hold: &Hold) -> Markup {
                 }
             }
         }
-        @if class.is_some() { div.old { dt { "measured" } dd { (of.stamp.day()) ", sources changed since" } } }
+        @if class.is_some() { div.old { dt { "measured" } dd { (of.stamp.day()) (OLD) } } }
     }
 }
+
+/// What is said of measurements that are not known to be of the sources of this program.
+const OLD: &str = ", of sources that have changed or are not known";
 
 fn price(of: &Costs, line: &Line) -> Markup {
     let is_old = of.stamp.is_old(&line.solver);
@@ -202,7 +205,7 @@ fn price(of: &Costs, line: &Line) -> Markup {
                     (number::seconds(factor.seconds[0])) " … " (number::seconds(factor.seconds[1])) "), reached in "
                     (factor.reached) " of " (line.asked)
                 } @else { "not reached in any of " (line.asked) }
-                @if is_old { "; measured " (of.stamp.day()) ", sources changed since" }
+                @if is_old { "; measured " (of.stamp.day()) (OLD) }
             }
         }
     }

@@ -140,7 +140,9 @@ fn draw_sheet(sheet: &Sheet, view: &View, [across, up]: &[String; 2], missing: &
                 text x=(px(view.left - 8.0)) y=(px(y + 4.5)) text-anchor="end" { (tick.label.unwrap_or_default()) }
             }
             text x=(px(middle[0])) y=(px(foot + 39.0)) text-anchor="middle" font-size="14" { (across) }
-            @let x = px(view.left - 40.0);
+            // A digit of this size is 7.5 wide; the label is centred on a line left of the widest number.
+            @let widest = ticks(1).into_iter().filter_map(|tick| tick.label).map(|label| label.chars().count()).max();
+            @let x = px(view.left - (16.0 + 7.5 * widest.unwrap_or(0) as f64).max(40.0));
             text x=(x) y=(px(middle[1])) text-anchor="middle" font-size="14"
                 transform=(format!("rotate(-90 {x} {})", px(middle[1]))) { (up) }
         }
