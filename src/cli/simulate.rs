@@ -16,7 +16,7 @@ use grainbench::scene::effects::Effects;
 use grainbench::scene::end_state::EndState;
 use grainbench::scene::record::{Cost, Provenance, Record, Remains, Series, Snapshot};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Method, NotStored, Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Ahead, Method, NotStored, Resolution, RunError, Solver, Watch};
 use grainbench::scene::source::SceneSource;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -183,12 +183,10 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     if let (Some(path), Some(checkpoint)) = (&arguments.restart, &from) {
         snapshots = snapshots.resume(path, checkpoint.output()).map_err(Fault::writing)?;
     }
-    let grains = scene.grains.len();
     let interrupt = Interrupt::listen();
     let threads = arguments.threads.map_or_else(cores, usize::from);
     let mut watcher = Watcher {
         threads,
-        grains,
         method,
         critical,
         header,
@@ -335,7 +333,6 @@ fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>
 /// Tells people what runs, once the solver has taken it up, and how far it is.
 struct Watcher {
     threads: usize,
-    grains: usize,
     method: Option<Method>,
     critical: f64,
     header: Option<String>,
@@ -351,26 +348,50 @@ struct Watcher {
 }
 
 impl Watcher {
-    /// How long so many steps may take, where that is long: grains on springs go through about ten million
-    /// particle-steps a second. Of methods with a grid the progress tells it.
-    fn estimate(&self, steps: u64) -> String {
-        const A_SECOND: f64 = 1e7;
-        let seconds = steps as f64 * self.grains as f64 / A_SECOND;
-        if self.method == Some(Method::Grid) || seconds < 10.0 {
-            return String::new();
-        }
-        let (size, unit) = match seconds {
-            ..600.0 => (seconds, "s"),
-            ..36e3 => (seconds / 60.0, "min"),
-            ..1e6 => (seconds / 3600.0, "h"),
-            _ => (seconds / 86400.0, "days"),
+    /// How long a run may take, where that is long.
+    fn estimate(&self, ahead: Ahead) -> Option<f64> {
+        let seconds = ahead.steps as f64 * ahead.particles as f64 / A_SECOND;
+        (seconds >= 10.0).then_some(seconds)
+    }
+
+    /// What makes a run last for hours, and what would make it shorter.
+    fn warning(&self, ahead: Ahead, seconds: f64) -> String {
+        let shorter = match self.method {
+            Some(Method::Grid) => {
+                "A step is what a wave takes through part of a cell: softer moduli or larger cells (--cells)"
+            }
+            _ => "A step is part of √(m/k): softer springs",
         };
-        format!(", about {} {unit} at ten million particle-steps a second", number::significant(size, 2))
+        format!(
+            "warning: this takes about {}, {} steps of {:.3e} s for {} particles. {shorter} make it shorter; --checkpoint FILE \
+             keeps what is done",
+            rough(seconds),
+            number::count(ahead.steps),
+            ahead.time_step,
+            number::count(ahead.particles)
+        )
     }
 }
 
+/// Particle-steps a second that our solvers take about on one thread.
+const A_SECOND: f64 = 1e7;
+/// From here on a person is warned (s).
+const LONG: f64 = 3600.0;
+
+/// A time in round numbers.
+fn rough(seconds: f64) -> String {
+    let (size, unit) = match seconds {
+        ..600.0 => (seconds, "s"),
+        ..7200.0 => (seconds / 60.0, "min"),
+        ..1e6 => (seconds / 3600.0, "h"),
+        _ => (seconds / 86400.0, "days"),
+    };
+    format!("{} {unit}", number::significant(size, 2))
+}
+
 impl Watch for Watcher {
-    fn begin(&mut self, time_step: f64, steps: u64) {
+    fn begin(&mut self, ahead: Ahead) {
+        let Ahead { time_step, steps, .. } = ahead;
         let of_critical = if self.method == Some(Method::Grid) {
             "within the Courant number of the grid".to_owned()
         } else if self.critical.is_finite() {
@@ -380,11 +401,16 @@ impl Watch for Watcher {
             "no contact can occur, hence no critical step".to_owned()
         };
         if let Some(header) = self.header.take() {
-            let estimate = self.estimate(steps);
+            let estimate = self.estimate(ahead).map_or_else(String::new, |seconds| {
+                format!(", about {} at ten million particle-steps a second", rough(seconds))
+            });
             let steps = number::count(steps);
             // A header that nobody reads any more is no reason to give up the run.
             let _ =
                 print(&format!("{header}time step  {time_step:.6e} s, {of_critical}\nsteps      {steps}{estimate}\n"));
+        }
+        if let Some(seconds) = self.estimate(ahead).filter(|&seconds| seconds >= LONG) {
+            eprintln!("{}", self.warning(ahead, seconds));
         }
         self.progress = Some(Progress::new(steps, "steps"));
     }

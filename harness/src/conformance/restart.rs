@@ -7,7 +7,7 @@ use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
-use grainbench_scene::solver::{RunError, Solver, Watch};
+use grainbench_scene::solver::{Ahead, RunError, Solver, Watch};
 
 pub(super) const PROPERTY: Property = Property {
     name: "restart",
@@ -55,8 +55,8 @@ impl Halfway {
 }
 
 impl Watch for Halfway {
-    fn begin(&mut self, _time_step: f64, steps: u64) {
-        self.steps = steps;
+    fn begin(&mut self, ahead: Ahead) {
+        self.steps = ahead.steps;
     }
 
     fn progress(&mut self, _done: u64, _total: u64) {}

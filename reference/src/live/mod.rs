@@ -8,7 +8,7 @@ use std::time::Duration;
 use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Ahead, Failure, Resolution, RunError, Solver, Watch};
 
 use crate::deadline::Deadline;
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
@@ -100,7 +100,8 @@ impl Solver for Live {
         let deck = self.deck(scene, resolution)?;
         let executable = self.executable()?;
         let stepping = deck.stepping;
-        watch.begin(stepping.time_step, stepping.steps);
+        let particles = scene.grains.len() as u64;
+        watch.begin(Ahead { time_step: stepping.time_step, steps: stepping.steps, particles });
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let files = deck.files.iter().map(|(name, text)| (name.as_str(), text.as_str()));
         let folder = process::scratch(files).map_err(|error| fail(Failure::NotRun(error.to_string()), Vec::new()))?;

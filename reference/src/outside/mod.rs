@@ -25,7 +25,7 @@ use crate::read::read_error::one_line;
 use crate::read::table::read_table;
 use grainbench_scene::record::{Cost, Provenance, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Ahead, Failure, Resolution, RunError, Solver, Watch};
 use grainbench_scene::terms::Terms;
 use report::{OwnReport, Seconds};
 use std::collections::BTreeMap;
@@ -406,7 +406,8 @@ impl Solver for Outside {
             Given::of(scene, resolution).map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
         let stepping = given.stepping;
         self.prepare()?;
-        watch.begin(stepping.time_step, stepping.steps);
+        let particles = scene.grains.len() as u64;
+        watch.begin(Ahead { time_step: stepping.time_step, steps: stepping.steps, particles });
         let Finished { folder, said, last_lines, seconds } = self.start(&given)?;
         let fail = |failure| RunError::Program { solver: self.name(), failure, last_lines: last_lines.clone() };
         let told = match said {

@@ -6,7 +6,7 @@ use crate::end_state::EndState;
 use crate::record::{Cost, Counts, Look, Remains, Series, Snapshot};
 use crate::recorder::Recorder;
 use crate::scene::Scene;
-use crate::solver::{RunError, Watch};
+use crate::solver::{Ahead, RunError, Watch};
 use std::time::Instant;
 
 /// A state that takes steps.
@@ -17,6 +17,11 @@ pub trait Stepper {
     /// When the simulation breaks.
     fn begin(&mut self) -> Result<(), RunError> {
         Ok(())
+    }
+
+    /// Particles that take every step: grains, unless a solver says otherwise.
+    fn particles(&self, scene: &Scene) -> u64 {
+        scene.grains.len() as u64
     }
 
     /// Steps taken.
@@ -80,7 +85,8 @@ impl Course<'_> {
     /// When the simulation breaks, or a snapshot or a checkpoint cannot be left. Who watches hears of what there is of a
     /// simulation that broke.
     pub fn drive(mut self, stepper: &mut dyn Stepper, watch: &mut dyn Watch) -> Result<Driven, RunError> {
-        watch.begin(self.time_step, self.steps);
+        let particles = stepper.particles(self.scene);
+        watch.begin(Ahead { time_step: self.time_step, steps: self.steps, particles });
         let clock = Instant::now();
         let resumed = self.resumed.take();
         let begins = resumed.is_none();

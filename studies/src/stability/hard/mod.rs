@@ -17,7 +17,7 @@ use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Ahead, Resolution, RunError, Solver, Watch};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
@@ -203,8 +203,8 @@ struct Halfway {
 }
 
 impl Watch for Halfway {
-    fn begin(&mut self, _time_step: f64, steps: u64) {
-        self.steps = steps;
+    fn begin(&mut self, ahead: Ahead) {
+        self.steps = ahead.steps;
     }
 
     fn progress(&mut self, _done: u64, _total: u64) {}
