@@ -1,6 +1,6 @@
 //! Two elastic bars meet end to end.
 
-use crate::rows::elastic::stiffen;
+use crate::rows::elastic::{AHEAD, front, stiffen};
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
 
@@ -60,16 +60,12 @@ impl Impact {
     }
 }
 
-/// Width δ of a front after the way 2L, in units of that way: δ³ = 3 (25/96) h² 2L, for a grid on which a wave's frequency is
-/// lower by (25/96)(kh)² (derivation of `vibrating-bar`).
-fn front(resolution: Resolution) -> f64 {
+/// Width of a front after the way 2L, in units of that way.
+fn width(resolution: Resolution) -> f64 {
     let Resolution::Grid { cells, .. } = resolution else { return f64::NAN };
-    let cell = 0.5 / cells;
-    (3.0 * 25.0 / 96.0 * cell * cell).cbrt()
+    front(0.5 / cells, 1.0)
 }
 
-/// −Ai'(0): what of a front of width 1 has come before it is due.
-const AHEAD: f64 = 0.258_819_403_792_806_8;
 /// What a contact still owes when half of a front of width 1 has come.
 const LEFT_BEHIND: f64 = 0.446_522_992_649_999_3;
 
@@ -96,7 +92,7 @@ fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
     for level in LEVELS {
         let run = || Run::new(PLAIN, "mpm", level.resolution);
-        let width = front(level.resolution);
+        let width = width(level.resolution);
         claims.push(
             claim(format!("velocity of the right bar, worst, {} cells", level.name), "m/s")
                 .of(run())

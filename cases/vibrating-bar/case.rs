@@ -1,13 +1,18 @@
 //! A bar vibrates along its length.
 
-use crate::rows::elastic::stiffen;
+use crate::rows::elastic::{AHEAD, front, stiffen};
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::Hold;
+use grainbench_scene::material::Constitutive;
 use std::f64::consts::PI;
 
 pub(crate) const LEVELS: &[Level] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
 /// The bar between smooth sides.
 pub(crate) const HELD: &str = "held-sideways";
+/// The bar of viscous material.
+const VISCOUS: &str = "viscous";
+/// The bar that starts under a stress.
+const STRETCHED: &str = "stretched";
 const REST: &str = "beside what dispersion of quadratic B-splines with two points a cell and the time step make of it, (1/4 + \
                     1/96)(kh)² − (ωΔt)²/24: (kh)⁴, and at most ε² of the strain ε = v₀√(ρ/E), of which .013 was found";
 const SOURCE: Source = Source::Derived("u_tt = (E/ρ) u_xx, fixed-free (derivation)");
@@ -20,10 +25,25 @@ const VELOCITY: Plate = Plate {
     logarithmic: false,
 };
 
+const VISCOUS_VELOCITY: Plate = Plate {
+    name: "viscous",
+    title: "Mean velocity of a bar of viscous material",
+    caption: "Two periods, in which it loses six tenths of its amplitude.",
+    ..VELOCITY
+};
+
+const STRETCHED_VELOCITY: Plate = Plate {
+    name: "stretched",
+    title: "Mean velocity of a stretched bar that is let go at one end",
+    caption: "A period: a front runs to the held end and back, twice. Cells along the length in the legend.",
+    ..VELOCITY
+};
+
 pub(crate) static CASE: Case = Case {
     name: "vibrating-bar",
     title: "A bar vibrates along its length",
-    claim: "A bar in its first mode keeps its period, its amplitude and its energy.",
+    claim: "A bar in its first mode keeps its period, its amplitude and its energy; of viscous material it loses what it must; \
+            stretched and let go it swings as a front runs through it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Small strain, one direction, no contact.",
@@ -80,6 +100,110 @@ pub(crate) fn period(done: &Done) -> Result<f64, Missing> {
         (Some(first), Some(last)) if crossings.len() > 2 => Ok(2.0 * (last - first) / (crossings.len() - 1) as f64),
         _ => Err(Missing("crossings of zero".to_owned())),
     }
+}
+
+/// A mode of a bar of viscous material: its frequency without viscosity ω (rad/s), its decay δ (1/s), and its mean velocity at the start
+/// (m/s).
+struct Damped {
+    frequency: f64,
+    decay: f64,
+    amplitude: f64,
+}
+
+impl Damped {
+    fn of(scene: &Scene) -> Self {
+        let (frequency, amplitude) = mode(scene);
+        let bar = &scene.bodies[0];
+        let wave_number = bar.wave.map_or(f64::NAN, |wave| wave.wave_number);
+        let viscosity = scene.deformable[0].map_or(f64::NAN, |material| material.longitudinal_viscosity());
+        Self { frequency, decay: 0.5 * viscosity * wave_number * wave_number / bar.density, amplitude }
+    }
+
+    fn velocity(&self, time: f64) -> f64 {
+        let &Self { frequency, decay, amplitude } = self;
+        let damped = (frequency * frequency - decay * decay).sqrt();
+        amplitude * (-decay * time).exp() * ((damped * time).cos() - decay / damped * (damped * time).sin())
+    }
+}
+
+/// By how much it is off at most over `time` (s), in units of the amplitude at the start (derivation).
+fn damped_off(resolution: Resolution, scene: &Scene, time: f64) -> f64 {
+    let ((squared, strain), Damped { frequency, decay, .. }) = (small(resolution), Damped::of(scene));
+    let step = resolution.steps_on_grid(scene).map_or(f64::NAN, |(step, _)| step);
+    let (phase, lost, lag) = (frequency * time, decay * time, decay * step);
+    25.0 / 96.0 * squared * (phase + 2.0 * lost) + (0.5 * phase + lost) * lag + 0.355 * strain
+}
+
+/// Stress that the bar starts under (Pa), ρL (kg/m²) and L/c (s).
+fn stretched(scene: &Scene) -> (f64, f64, f64) {
+    let bar = &scene.bodies[0];
+    let (low, high) = bar.shape.corners();
+    let (length, modulus) = (high.x - low.x, scene.deformable[0].map_or(f64::NAN, |of| of.longitudinal_modulus()));
+    let stress = bar.stress.map_or(f64::NAN, |stress| stress.centre.m11);
+    (stress, bar.density * length, length / (modulus / bar.density).sqrt())
+}
+
+/// Mean velocity of the bar that is let go (m/s): a triangle.
+fn triangle(scene: &Scene, time: f64) -> f64 {
+    let (stress, mass, transit) = stretched(scene);
+    let phase = (time / transit + 1.0).rem_euclid(4.0);
+    let wave = if phase < 2.0 { 1.0 - phase } else { phase - 3.0 };
+    stress / mass * transit * wave
+}
+
+/// What is asked of the viscous bar and of the stretched one.
+fn of_others() -> Vec<Claim> {
+    let at = LEVELS[1];
+    let time = 20.0;
+    let off = CASE.variant(VISCOUS).map_or(f64::NAN, |scene| damped_off(at.resolution, &scene, time));
+    let mut claims = vec![
+        claim(format!("mean velocity of a viscous bar over two periods, worst, {} cells", at.name), "m/s")
+            .of(Run::new(VISCOUS, "mpm", at.resolution))
+            .series(|done| samples(done, "bar.vx"))
+            .follows(
+                Source::Derived("ρ u_tt = M u_xx + (4η/3 + ζ) u_txx, fixed-free (derivation)"),
+                |done, time| Damped::of(&done.scene).velocity(time),
+                |done| Damped::of(&done.scene).amplitude,
+            )
+            .within(computed(
+                off,
+                "k² of the grid is lower by (25/48)(kh)², a viscous stress a step late, and .355 ε of the law (derivation); in \
+                 units of the amplitude at the start",
+            ))
+            .refuses(Control::scene("half the shear viscosity", |scene| {
+                for material in scene.deformable.iter_mut().flatten() {
+                    if let Constitutive::KelvinVoigt { viscosity, .. } = &mut material.constitutive {
+                        *viscosity *= 0.5;
+                    }
+                }
+            }))
+            .drawn(&VISCOUS_VELOCITY, at.name),
+    ];
+    for level in LEVELS {
+        let Resolution::Grid { cells, .. } = level.resolution else { continue };
+        claims.push(
+            claim(format!("mean velocity of a stretched bar let go, a period, worst, {} cells", level.name), "m/s")
+                .of(Run::new(STRETCHED, "mpm", level.resolution))
+                .series(|done| samples(done, "bar.vx"))
+                .follows(
+                    Source::Derived("d'Alembert's waves of a stressed bar, fixed-free (derivation)"),
+                    |done, time| triangle(&done.scene, time),
+                    |done| triangle(&done.scene, 3.0 * stretched(&done.scene).2),
+                )
+                .within(computed(
+                    2.0 * AHEAD * front(1.0 / cells, 3.0),
+                    "what comes ahead of a front that the grid's dispersion has drawn out over 3L, when it is due: \
+                     2 (−Ai'(0)) δ/L (derivation); in units of σ/ρc",
+                ))
+                .refuses(Control::scene("half the stress", |scene| {
+                    if let Some(stress) = &mut scene.bodies[0].stress {
+                        stress.centre *= 0.5;
+                    }
+                }))
+                .drawn(&STRETCHED_VELOCITY, level.name),
+        );
+    }
+    claims
 }
 
 fn claims() -> Vec<Claim> {
@@ -151,5 +275,6 @@ fn claims() -> Vec<Claim> {
             ))
             .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01)),
     );
+    claims.extend(of_others());
     claims
 }

@@ -91,7 +91,7 @@ fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Res
     let steps = STEPS as f64;
     match method {
         Some(Method::Grid) if brief => {
-            let step = Resolution::COURANT * scene.reference_length / CELLS / scene.fastest_wave();
+            let step = Resolution::COURANT * scene.crossing_time(scene.reference_length / CELLS);
             scene.duration = Duration::Seconds(steps * step);
         }
         // It leaves no checkpoints, so that nothing can end it sooner.
@@ -116,7 +116,7 @@ fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Res
 /// Bodies settle for a few steps only, unless for so many that the solver itself is to refuse them.
 fn shorten_settling(scene: &mut Scene) {
     const REFUSED: f64 = 4e15;
-    let courant = Resolution::COURANT * scene.reference_length / CELLS / scene.fastest_wave();
+    let courant = Resolution::COURANT * scene.crossing_time(scene.reference_length / CELLS);
     let Duration::Seconds(time) = scene.duration else { return };
     let step = courant.min(time);
     if let Some(settle) = scene.start.settle.as_mut().filter(|settle| settle.duration / step < REFUSED) {

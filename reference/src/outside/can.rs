@@ -53,6 +53,9 @@ fn lacks_material(can: &Can, scene: &Scene) -> Option<String> {
     if scene.start.manufactured.is_some() || scene.start.initial_pressure.is_some() {
         return scene.start.needs_deformable().map(|what| format!("{what} cannot be declared"));
     }
+    if let Some(body) = scene.bodies.iter().find(|body| body.stress.is_some()) {
+        return Some(format!("body `{}` starts with a stress, which cannot be declared", body.name));
+    }
     let used = scene.grains.iter().map(|grain| grain.material).chain(scene.bodies.iter().map(|body| body.material));
     used.into_iter().find_map(|place| {
         let name = &scene.materials[usize::from(place)];
@@ -90,8 +93,8 @@ fn lacks_effect(can: &Can, scene: &Scene, deforms: bool) -> Option<String> {
     let is_asked = |effect: &Effect| match effect {
         // Whoever moves grains at all lets them fall, and Hertz' law is declared as a law.
         Effect::Gravity | Effect::Hertz => false,
-        // Bodies that deform have no dashpots, and yielding is declared with the law of the material.
-        Effect::ContactDamping | Effect::Restitution | Effect::Plasticity => !deforms,
+        // Bodies that deform have no dashpots; yielding and viscosity are declared with the law of the material.
+        Effect::ContactDamping | Effect::Restitution | Effect::Plasticity | Effect::Viscosity => !deforms,
         _ => true,
     };
     let called_for = Effect::ALL.into_iter().filter(|effect| is_asked(effect) && effect.is_on(scene));

@@ -62,6 +62,7 @@ pub(crate) struct Sums {
     /// Of it, what damping takes from motion that nodes do not show.
     unseen: f64,
     plastic: f64,
+    viscous: f64,
     friction: f64,
     work: f64,
     impulse: Vector3<f64>,
@@ -225,6 +226,7 @@ impl<S: Space> Accounts<S> {
     pub(crate) fn add_flow(&mut self, flow: Flow) {
         self.sums.stressed = flow.taken;
         self.sums.plastic += flow.plastic;
+        self.sums.viscous += flow.viscous;
     }
 
     /// The budget, with the elastic energy of the material (J), under gravity (m/s²).
@@ -249,7 +251,7 @@ impl<S: Space> Accounts<S> {
             work: sums.work,
             plastic: sums.plastic,
             friction: sums.friction,
-            damping: sums.damping + sums.unseen,
+            damping: sums.damping + sums.unseen + sums.viscous,
             transfer: sums.stepped + sums.carried
                 - (kinetic - sums.kinetic_at_start)
                 - sums.unseen

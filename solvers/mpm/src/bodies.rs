@@ -1,7 +1,7 @@
 //! From a scene to bodies: seeded, covered with tracers, pressed where the scene says so.
 
 use crate::grid::Lattice;
-use crate::material::{Law, Material, with_law};
+use crate::material::Material;
 use crate::options::Setting;
 use crate::points::Points;
 use crate::seed::{self, Patch, Seed};
@@ -13,7 +13,7 @@ use grainbench_scene::material::Deformable;
 use grainbench_scene::record::Owner;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use std::ops::Range;
 
 /// A deformable body.
@@ -60,13 +60,14 @@ struct Blank {
     held: Option<(Sides, [Vector3<f64>; 2])>,
 }
 
-/// Seeds all bodies of a scene with `per_cell` points per cell and axis. Materials without moduli are left out: the
-/// scene was checked before.
+/// Seeds all bodies of a scene with `per_cell` points per cell and axis, whose laws follow in steps of `time_step` (s). Materials
+/// without moduli are left out: the scene was checked before.
 pub(crate) fn seed<S: Space>(
     scene: &Scene,
     setting: &Setting,
     lattice: &Lattice,
     per_cell: u32,
+    time_step: f64,
 ) -> (Vec<Body>, Points<S>, Tracers<S>) {
     let cell = lattice.shortest(S::DIMENSION);
     let spacing = cell / f64::from(per_cell);
@@ -129,7 +130,7 @@ pub(crate) fn seed<S: Space>(
                 tracers: first.1..tracers.len(),
                 chunks: tracers.cut(first.1..tracers.len()),
                 material: blank.material,
-                law: Material::of(&blank.deformable),
+                law: Material::of(&blank.deformable, time_step),
                 density: blank.density,
                 deformable: blank.deformable,
                 bounds: [Vector3::zeros(); 2],
@@ -164,23 +165,6 @@ fn block_seeds<S: Space>(
         BlockShape::Annulus { centre, inner, outer } => {
             let surfaces = vec![seed::circle(centre, outer, between, 1.0), seed::circle(centre, inner, between, -1.0)];
             (seed::rings(centre, inner, outer, spacing), surfaces)
-        }
-    }
-}
-
-/// The pressure of a fluid at rest under `gravity` (m/s²), zero at the highest point of each body.
-pub(crate) fn press<S: Space>(bodies: &[Body], points: &mut Points<S>, tracers: &Tracers<S>, gravity: Vector3<f64>) {
-    for body in bodies {
-        let depth = |position: S::Vector| S::embed(position).dot(&gravity);
-        let surface = tracers.position[body.tracers.clone()].iter().map(|&at| depth(at));
-        let top = surface.fold(f64::INFINITY, f64::min);
-        for at in body.part.points.clone() {
-            let pressure = body.density * (depth(points.position[at]) - top);
-            let (stretch, stress) = with_law!(&body.law, law => law.under_pressure(pressure, S::DIMENSION));
-            let deformation = S::restrict_gradient(Matrix3::from_diagonal_element(stretch));
-            points.deformation[at] = deformation;
-            points.reference_volume[at] = points.volume[at] / stretch.powi(S::DIMENSION as i32);
-            points.stress[at] = S::restrict_symmetric(stress);
         }
     }
 }

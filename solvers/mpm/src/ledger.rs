@@ -44,4 +44,6 @@ pub(crate) struct Flow {
     pub(crate) taken: f64,
     /// Work of plastic flow (J).
     pub(crate) plastic: f64,
+    /// Work against viscosity: of the mean of the viscous stresses before and after the step (J).
+    pub(crate) viscous: f64,
 }

@@ -53,6 +53,7 @@ pub mod solver;
 mod start;
 mod state;
 mod stress;
+mod stress_at_start;
 mod surface;
 mod terms;
 mod transfer;

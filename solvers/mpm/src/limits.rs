@@ -25,6 +25,9 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
             scene.materials[usize::from(material)]
         ));
     }
+    if let Some(refusal) = crate::stress_at_start::refusal(scene) {
+        return Some(refusal);
+    }
     if let Some((name, axis)) = longer_than_period(scene) {
         return Some(format!("body `{name}` is longer along {axis} than the period there: it would overlap itself"));
     }

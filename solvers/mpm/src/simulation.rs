@@ -58,7 +58,7 @@ impl<S: Space> Simulation<S> {
         [time_step, critical]: [f64; 2],
         threads: usize,
     ) -> Self {
-        let (bodies, points, tracers) = seed::<S>(scene, &setting, &lattice, per_cell);
+        let (bodies, points, tracers) = seed::<S>(scene, &setting, &lattice, per_cell, time_step);
         let team = Team::new(threads.min(points.len() / FEWEST));
         Self {
             scheme: Scheme { setting, time_step, processor: Processor::new() },

@@ -112,8 +112,7 @@ impl Mpm {
                 )));
             }
         }
-        let speed = scene.fastest_wave();
-        let critical = lattice.shortest(scene.dimension.count()) / speed;
+        let critical = scene.crossing_time(lattice.shortest(scene.dimension.count()));
         let Duration::Seconds(time) = scene.duration else {
             return Err(self.resolution_error("expected a duration in seconds".to_owned()));
         };
@@ -222,6 +221,10 @@ struct Running<'a, S: Space> {
 impl<S: Space> Stepper for Running<'_, S> {
     fn begin(&mut self) -> Result<(), RunError> {
         Ok(self.simulation.begin()?)
+    }
+
+    fn particles(&self, _: &Scene) -> u64 {
+        self.simulation.state.points.len() as u64
     }
 
     fn step(&self) -> u64 {

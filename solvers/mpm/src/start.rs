@@ -1,9 +1,9 @@
 //! How a run starts: pressed, settled, set moving.
 
-use crate::bodies::press;
 use crate::scheme::Surroundings;
 use crate::simulation::Simulation;
 use crate::state::State;
+use crate::stress_at_start;
 use grainbench_scene::record::Owner;
 use grainbench_scene::solver::Broken;
 use grainbench_scene::space::Space;
@@ -14,9 +14,7 @@ impl<S: Space> Simulation<S> {
     pub(crate) fn settle(&mut self) -> Result<(), Box<Broken>> {
         let start = self.scene.start;
         let gravity = start.settle.map_or(self.scene.gravity, |settle| settle.gravity);
-        if start.initial_pressure.is_some() {
-            press(&self.state.bodies, &mut self.state.points, &self.contacts.tracers, gravity);
-        }
+        stress_at_start::give(&self.scene, gravity, &mut self.state, &self.contacts.tracers);
         self.cover();
         if let Some(settle) = start.settle {
             self.surroundings = Surroundings { gravity: S::restrict(gravity), damping: settle.damping };

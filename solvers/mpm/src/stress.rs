@@ -68,6 +68,7 @@ pub(crate) fn follow<S: Space>(
     for part in shares.iter().flat_map(|share| &share.flows) {
         flow.taken += part.taken;
         flow.plastic += part.plastic;
+        flow.viscous += part.viscous;
     }
     Ok((flow, way))
 }
@@ -134,8 +135,9 @@ fn follow_piece<S: Space>(
 }
 
 /// F ← (1 + Δt ∇v) F, volume and stress of every point of a range, of which `gradients` are the velocity gradients
-/// (1/s). With `COUNT` adds to `flow` what the stresses after the step take on the strain of it, and the work of
-/// plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume.
+/// (1/s). With `COUNT` adds to `flow` what the stresses after the step take on the strain of it, the work of
+/// plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume; and that against
+/// viscosity: half of what the viscous stresses before and after the step do on the strain of it.
 ///
 /// Where points carry `spins` of their own, one that flows takes on that of the velocities around it: what it shared
 /// its spin with has moved on, and spins that nothing answers to grow until a grain of a few cells flies apart.
@@ -167,6 +169,11 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
             range.zip(gradients).zip(states).enumerate()
         {
             let increment = *gradient * time_step;
+            if COUNT {
+                let strain = S::symmetric_part(increment);
+                flow.viscous +=
+                    0.5 * *volume * law.viscous_work::<S>(strain, *volume / reference, *deformation, *stress);
+            }
             *deformation = *deformation + increment * *deformation;
             let volume_ratio = S::determinant(*deformation);
             if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
@@ -183,7 +190,9 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
                 affines[at] = S::restrict_gradient(S::embed_gradient(*gradient) - strain_rate);
             }
             if COUNT {
-                flow.taken += *volume * S::double_dot(*stress, S::symmetric_part(increment));
+                let strain = S::symmetric_part(increment);
+                flow.taken += *volume * S::double_dot(*stress, strain);
+                flow.viscous += 0.5 * *volume * law.viscous_work::<S>(strain, volume_ratio, *deformation, *stress);
                 if flown > 0.0 {
                     flow.plastic += 0.5 * (before.0 + *volume) * law.flow_stress(plastic_strain) * flown;
                 }

@@ -1,7 +1,7 @@
 //! Constitutive laws at a point.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench_mpm::material::{Hypoelastic, Law, NeoHookean, State, VonMises};
+use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, State, VonMises};
 use grainbench_mpm::off::Off;
 use grainbench_scene::space::{Plane, Solid, Space};
 use nalgebra::Matrix3;
@@ -129,8 +129,58 @@ fn neo_hookean_energy_gives_its_stress() {
             / 2e-6;
         assert!((work - volume_ratio * state.stress[(i, j)]).abs() < 1e-8);
     }
-    for dimensions in [2, 3] {
-        let (stretch, stress) = law.under_pressure(0.2, dimensions);
-        assert!(stretch < 1.0 && (stress.m11 + 0.2).abs() < 1e-13 && (stress.m22 + 0.2).abs() < 1e-13);
+}
+
+/// The state under a stress is one from which the law gives that stress, and without rotation: of a pressure, of shear, and of a
+/// third of the moduli.
+#[test]
+fn a_law_starts_under_any_stress() {
+    let rubber = NeoHookean { lame: 3.0, shear_modulus: 2.0 };
+    let wanted = [
+        Matrix3::from_diagonal_element(-0.2),
+        Matrix3::new(0.0, 0.7, 0.0, 0.7, 0.0, 0.0, 0.0, 0.0, 0.0),
+        Matrix3::new(-0.9, 0.3, 0.0, 0.3, 0.6, 0.0, 0.0, 0.0, 0.0),
+        Matrix3::new(0.4, 0.3, -0.2, 0.3, -0.5, 0.1, -0.2, 0.1, 0.2),
+        Matrix3::zeros(),
+    ];
+    for stress in wanted {
+        for dimensions in [2, 3] {
+            let mut state = rubber.under_stress(&stress, dimensions).unwrap();
+            let deformation = state.deformation;
+            assert!((deformation - deformation.transpose()).norm() < 1e-13, "{deformation}");
+            rubber.update(&Matrix3::zeros(), deformation.determinant(), &mut state);
+            let off = (state.stress - stress).fixed_view::<3, 3>(0, 0).into_owned();
+            for (row, column) in (0..dimensions).flat_map(|row| (0..dimensions).map(move |column| (row, column))) {
+                assert!(off[(row, column)].abs() < 1e-13, "{stress}, {dimensions}: {off}");
+            }
+        }
     }
+    // Moduli bound the pull, not the push: at fifty times the moduli there is no such state.
+    assert!(rubber.under_stress(&Matrix3::from_diagonal_element(100.0), 3).is_none());
+    // A law with a history starts under it as it is, where it does not yield at once.
+    let steel = Matrix3::new(0.17e9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    assert_eq!(METAL.under_stress(&steel, 2).unwrap().stress, steel);
+    assert!(METAL.under_stress(&(steel * 2.0), 2).is_none());
+}
+
+/// σ − σ_elastic = 2η dev D + ζ tr D 1, and its work on the strain of the step is (2η dev D : D + ζ tr² D) Δt.
+#[test]
+fn kelvin_and_voigt_add_the_stress_of_a_fluid() {
+    let rubber = NeoHookean { lame: 3.0, shear_modulus: 2.0 };
+    let (viscosity, bulk, step) = (0.7, 0.4, 1e-3);
+    let law = KelvinVoigt { elastic: rubber, shear_viscosity: viscosity / step, bulk_viscosity: bulk / step };
+    let gradient = Matrix3::new(0.3, 0.8, 0.0, -0.2, -0.1, 0.0, 0.0, 0.0, 0.0);
+    let deformation = Matrix3::new(1.1, 0.2, 0.0, -0.1, 0.95, 0.0, 0.0, 0.0, 1.0);
+    let ratio = deformation.determinant();
+    let [mut viscous, mut elastic] = [State { deformation, ..State::default() }; 2];
+    law.update(&(gradient * step), ratio, &mut viscous);
+    rubber.update(&(gradient * step), ratio, &mut elastic);
+    let rate = (gradient + gradient.transpose()) * 0.5;
+    let deviator = rate - Matrix3::from_diagonal_element(rate.trace() / 3.0);
+    let exact = deviator * (2.0 * viscosity) + Matrix3::from_diagonal_element(bulk * rate.trace());
+    assert!((viscous.stress - elastic.stress - exact).norm() < 1e-12, "{}", viscous.stress - elastic.stress);
+    let [strain, stress] = [rate * step, viscous.stress].map(Plane::restrict_symmetric);
+    let work = law.viscous_work::<Plane>(strain, ratio, Plane::restrict_gradient(deformation), stress);
+    let exact = (2.0 * viscosity * deviator.norm_squared() + bulk * rate.trace().powi(2)) * step;
+    assert!((work / exact - 1.0).abs() < 1e-9, "{work} and {exact}");
 }

@@ -91,6 +91,23 @@ pub struct Wave {
     pub wave_number: f64,
 }
 
+/// A Cauchy stress that a body starts with, linear in the place (Pa, tension positive).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InitialStress {
+    /// At the middle of its shape (Pa). In the plane the stress out of it is that of plane strain, ν (σ_xx + σ_yy).
+    pub centre: Matrix3<f64>,
+    /// What it gains along each axis (Pa/m).
+    pub gradient: [Matrix3<f64>; 3],
+}
+
+impl InitialStress {
+    /// The stress at a place, given by its way from the middle of the shape (m).
+    #[must_use]
+    pub fn at(&self, arm: Vector3<f64>) -> Matrix3<f64> {
+        self.gradient.iter().zip(arm.iter()).fold(self.centre, |sum, (gradient, way)| sum + gradient * *way)
+    }
+}
+
 /// A deformable body that is no grain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
@@ -108,6 +125,8 @@ pub struct Block {
     pub spin: Vector3<f64>,
     /// Rates of stretch a along the axes (1/s), on top of both: aᵢ (xᵢ − cᵢ).
     pub stretch: Vector3<f64>,
+    /// Stress that it starts with, beside none.
+    pub stress: Option<InitialStress>,
     /// Sides that are held.
     pub sides: Sides,
     /// A velocity on top of it that varies along x.

@@ -24,7 +24,7 @@ pub struct Budget {
     pub plastic: f64,
     /// Work of friction where surfaces slip.
     pub friction: f64,
-    /// Work against dashpots and global damping.
+    /// Work against dashpots, viscosity and global damping.
     pub damping: f64,
     /// Lost by the method between material points and nodes: what nodes gain in kinetic energy and points do not, and
     /// what stresses take from nodes and do not do on points.

@@ -5,7 +5,7 @@ use crate::file::SpinSpec;
 use crate::scene::Dimension;
 use crate::shape;
 use crate::source::SceneSource;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Checks values of one scene.
 pub(crate) struct Checker<'a> {
@@ -56,6 +56,26 @@ impl Checker<'_> {
 
     pub(crate) fn vector_or_zero(&self, key: &str, values: Option<&Vec<f64>>) -> Result<Vector3<f64>, SceneError> {
         values.map_or(Ok(Vector3::zeros()), |values| self.vector(key, values))
+    }
+
+    /// A symmetric tensor, row by row, with as many rows as the scene has dimensions.
+    pub(crate) fn symmetric(&self, key: &str, rows: &[Vec<f64>]) -> Result<Matrix3<f64>, SceneError> {
+        let count = self.dimension.count();
+        let found = || format!("{rows:?}");
+        if rows.len() != count || rows.iter().any(|row| row.len() != count) {
+            return Err(self.error(key, shape::symmetric(self.dimension), &found()));
+        }
+        let part = |row: usize, column: usize| rows[row][column];
+        let inside = |at: usize| at < count;
+        let tensor =
+            Matrix3::from_fn(|row, column| if inside(row) && inside(column) { part(row, column) } else { 0.0 });
+        if !tensor.iter().all(|value| value.is_finite()) {
+            return Err(self.error(key, "finite components", &found()));
+        }
+        if tensor != tensor.transpose() {
+            return Err(self.error(key, "a symmetric tensor, the same above and below its diagonal", &found()));
+        }
+        Ok(tensor)
     }
 
     pub(crate) fn spin(&self, key: &str, spin: Option<&SpinSpec>) -> Result<Vector3<f64>, SceneError> {

@@ -33,11 +33,13 @@ pub enum Effect {
     MovingWalls,
     /// Material that yields; of deformable grains alone.
     Plasticity,
+    /// Material with a viscosity; of deformable grains alone.
+    Viscosity,
 }
 
 impl Effect {
     /// Every one.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Friction,
         Self::Cohesion,
         Self::Hertz,
@@ -49,6 +51,7 @@ impl Effect {
         Self::PeriodicAxes,
         Self::MovingWalls,
         Self::Plasticity,
+        Self::Viscosity,
     ];
 
     /// Those that can be switched off by themselves.
@@ -71,6 +74,7 @@ impl Effect {
             Self::PeriodicAxes => "periodic axes",
             Self::MovingWalls => "moving walls",
             Self::Plasticity => "plasticity",
+            Self::Viscosity => "viscosity",
         }
     }
 
@@ -89,6 +93,7 @@ impl Effect {
             Self::PeriodicAxes => "periodic-axes",
             Self::MovingWalls => "moving-walls",
             Self::Plasticity => "plasticity",
+            Self::Viscosity => "viscosity",
         }
     }
 
@@ -107,6 +112,7 @@ impl Effect {
             Self::PeriodicAxes => "without periodic axes",
             Self::MovingWalls => "with walls that stand still",
             Self::Plasticity => "without plasticity",
+            Self::Viscosity => "without viscosity",
         }
     }
 
@@ -145,20 +151,25 @@ impl Effect {
                 let yield_stress = material.as_ref()?.constitutive.yield_stress()?;
                 Some(format!("materials.{name}.yield_stress = {yield_stress}"))
             }),
+            Self::Viscosity => scene.deformable.iter().zip(&scene.materials).find_map(|(material, name)| {
+                let [shear, bulk] = material.as_ref()?.constitutive.viscosities()?;
+                let (key, value) = if shear > 0.0 { ("viscosity", shear) } else { ("bulk_viscosity", bulk) };
+                Some(format!("materials.{name}.{key} = {value}"))
+            }),
         }
     }
 
-    /// Whether a solver of this kind knows it: only deformable grains yield.
+    /// Whether a solver of this kind knows it: only deformable grains yield and have a viscosity.
     #[must_use]
     pub fn concerns(self, method: Method) -> bool {
-        self != Self::Plasticity || method == Method::Grid
+        !matches!(self, Self::Plasticity | Self::Viscosity) || method == Method::Grid
     }
 
     /// The kinds of solver that leave it out of their loops where it is absent, and are tried with it there.
     #[must_use]
     pub const fn left_out_by(self) -> &'static [Method] {
         match self {
-            Self::Plasticity => &[Method::Grid],
+            Self::Plasticity | Self::Viscosity => &[Method::Grid],
             Self::Friction | Self::GlobalDamping | Self::Gravity | Self::MovingWalls => &[Method::Dem, Method::Grid],
             _ => &[Method::Dem],
         }
@@ -207,6 +218,11 @@ impl Effect {
                     material.constitutive = material.constitutive.elastic();
                 }
             }
+            Self::Viscosity => {
+                for material in scene.deformable.iter_mut().flatten() {
+                    material.constitutive = material.constitutive.inviscid();
+                }
+            }
         }
     }
 
@@ -252,6 +268,12 @@ impl Effect {
             Self::Plasticity => {
                 let idle = |material: &mut Deformable| {
                     material.constitutive.never_yielding().map(|never| material.constitutive = never)
+                };
+                scene.deformable.iter_mut().flatten().filter_map(idle).count() > 0
+            }
+            Self::Viscosity => {
+                let idle = |material: &mut Deformable| {
+                    material.constitutive.hardly_viscous().map(|hardly| material.constitutive = hardly)
                 };
                 scene.deformable.iter_mut().flatten().filter_map(idle).count() > 0
             }

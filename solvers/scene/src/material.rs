@@ -31,7 +31,7 @@ pub struct MaterialSpec {
     /// Shear modulus G (Pa).
     #[serde(default)]
     pub shear_modulus: Option<f64>,
-    /// Law of a deformable material: `neo-hookean` (the default), `hypoelastic` or `von-mises`.
+    /// Law of a deformable material: `neo-hookean` (the default), `kelvin-voigt`, `hypoelastic` or `von-mises`.
     #[serde(default)]
     pub constitutive: Option<ConstitutiveKind>,
     /// Yield stress Y (Pa); needed for `von-mises`.
@@ -40,6 +40,12 @@ pub struct MaterialSpec {
     /// Hardening modulus H (Pa) of `von-mises`. Default 0.
     #[serde(default)]
     pub hardening_modulus: Option<f64>,
+    /// Shear viscosity η (Pa s) of `kelvin-voigt`, which needs it.
+    #[serde(default)]
+    pub viscosity: Option<f64>,
+    /// Bulk viscosity ζ (Pa s) of `kelvin-voigt`. Default 0.
+    #[serde(default)]
+    pub bulk_viscosity: Option<f64>,
 }
 
 impl MaterialSpec {
@@ -76,8 +82,20 @@ impl MaterialSpec {
                 }
                 _ => return Ok(None),
             };
-        let constitutive = match self.constitutive.unwrap_or(ConstitutiveKind::NeoHookean) {
+        let kind = self.constitutive.unwrap_or(ConstitutiveKind::NeoHookean);
+        self.refuse_keys_of_other_laws(kind, name, check)?;
+        let constitutive = match kind {
             ConstitutiveKind::NeoHookean => Constitutive::NeoHookean,
+            ConstitutiveKind::KelvinVoigt => {
+                let Some(viscosity) = self.viscosity else {
+                    return Err(check.error(&format!("materials.{name}"), "the key `viscosity`", "none"));
+                };
+                let bulk = self.bulk_viscosity.unwrap_or(0.0);
+                Constitutive::KelvinVoigt {
+                    viscosity: check.not_negative(&key("viscosity"), viscosity, "viscosity (Pa s)")?,
+                    bulk_viscosity: check.not_negative(&key("bulk_viscosity"), bulk, "viscosity (Pa s)")?,
+                }
+            }
             ConstitutiveKind::Hypoelastic => Constitutive::Hypoelastic,
             ConstitutiveKind::VonMises => {
                 let Some(yield_stress) = self.yield_stress else {
@@ -92,6 +110,28 @@ impl MaterialSpec {
         };
         Ok(Some(Deformable { bulk_modulus, shear_modulus, constitutive }))
     }
+
+    /// A key that the law does not read is a mistake, and never dropped.
+    fn refuse_keys_of_other_laws(
+        &self,
+        kind: ConstitutiveKind,
+        name: &str,
+        check: &Checker<'_>,
+    ) -> Result<(), SceneError> {
+        let of = [
+            ("viscosity", self.viscosity, ConstitutiveKind::KelvinVoigt),
+            ("bulk_viscosity", self.bulk_viscosity, ConstitutiveKind::KelvinVoigt),
+            ("yield_stress", self.yield_stress, ConstitutiveKind::VonMises),
+            ("hardening_modulus", self.hardening_modulus, ConstitutiveKind::VonMises),
+        ];
+        match of.into_iter().find(|(_, value, law)| value.is_some() && *law != kind) {
+            Some((part, _, law)) => {
+                let (expected, found) = (format!("`constitutive = \"{law}\"` beside it"), format!("`{kind}`"));
+                Err(check.error(&format!("materials.{name}.{part}"), &expected, &found))
+            }
+            None => Ok(()),
+        }
+    }
 }
 
 /// Law of a deformable material.
@@ -102,6 +142,8 @@ pub enum ConstitutiveKind {
     Hypoelastic,
     /// Compressible: τ = λ ln J + G (b − 1).
     NeoHookean,
+    /// Neo-Hookean with a viscous stress beside it, σ + 2η dev D + ζ tr D.
+    KelvinVoigt,
     /// Hypoelastic up to a yield stress, with linear isotropic hardening.
     VonMises,
 }
@@ -112,6 +154,7 @@ impl std::fmt::Display for ConstitutiveKind {
         text.write_str(match self {
             Self::Hypoelastic => "hypoelastic",
             Self::NeoHookean => "neo-hookean",
+            Self::KelvinVoigt => "kelvin-voigt",
             Self::VonMises => "von-mises",
         })
     }
@@ -125,6 +168,13 @@ pub enum Constitutive {
     Hypoelastic,
     /// Compressible neo-Hookean: τ = λ ln J + G (b − 1), λ = K − 2G/3.
     NeoHookean,
+    /// Neo-Hookean with a viscous stress beside it, 2η dev D + ζ tr D 1, D the rate of deformation (1/s).
+    KelvinVoigt {
+        /// Shear viscosity η (Pa s).
+        viscosity: f64,
+        /// Bulk viscosity ζ (Pa s).
+        bulk_viscosity: f64,
+    },
     /// Hypoelastic up to the yield stress of von Mises, with linear isotropic hardening.
     VonMises {
         /// Yield stress Y (Pa).
@@ -141,6 +191,7 @@ impl Constitutive {
         match self {
             Self::Hypoelastic => ConstitutiveKind::Hypoelastic,
             Self::NeoHookean => ConstitutiveKind::NeoHookean,
+            Self::KelvinVoigt { .. } => ConstitutiveKind::KelvinVoigt,
             Self::VonMises { .. } => ConstitutiveKind::VonMises,
         }
     }
@@ -150,7 +201,7 @@ impl Constitutive {
     pub const fn yield_stress(&self) -> Option<f64> {
         match *self {
             Self::VonMises { yield_stress, .. } => Some(yield_stress),
-            Self::Hypoelastic | Self::NeoHookean => None,
+            Self::Hypoelastic | Self::NeoHookean | Self::KelvinVoigt { .. } => None,
         }
     }
 
@@ -168,7 +219,36 @@ impl Constitutive {
     pub const fn never_yielding(&self) -> Option<Self> {
         match self {
             Self::Hypoelastic => Some(Self::VonMises { yield_stress: f64::MAX, hardening_modulus: 0.0 }),
-            Self::NeoHookean | Self::VonMises { .. } => None,
+            Self::NeoHookean | Self::KelvinVoigt { .. } | Self::VonMises { .. } => None,
+        }
+    }
+
+    /// Shear and bulk viscosity η and ζ (Pa s); none of a law without viscosity, and none where both are zero.
+    #[must_use]
+    pub fn viscosities(&self) -> Option<[f64; 2]> {
+        match *self {
+            Self::KelvinVoigt { viscosity, bulk_viscosity } if viscosity + bulk_viscosity > 0.0 => {
+                Some([viscosity, bulk_viscosity])
+            }
+            _ => None,
+        }
+    }
+
+    /// The same without viscosity.
+    #[must_use]
+    pub const fn inviscid(self) -> Self {
+        match self {
+            Self::KelvinVoigt { .. } => Self::NeoHookean,
+            inviscid => inviscid,
+        }
+    }
+
+    /// The law with a viscosity whose stress is lost beside any other, and which is this one but for that, where there is one.
+    #[must_use]
+    pub const fn hardly_viscous(&self) -> Option<Self> {
+        match self {
+            Self::NeoHookean => Some(Self::KelvinVoigt { viscosity: f64::from_bits(1), bulk_viscosity: 0.0 }),
+            Self::Hypoelastic | Self::KelvinVoigt { .. } | Self::VonMises { .. } => None,
         }
     }
 }
@@ -195,6 +275,19 @@ impl Deformable {
     #[must_use]
     pub fn longitudinal_modulus(&self) -> f64 {
         self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus
+    }
+
+    /// Viscosity of longitudinal waves 4η/3 + ζ (Pa s), beside the modulus M.
+    #[must_use]
+    pub fn longitudinal_viscosity(&self) -> f64 {
+        self.constitutive.viscosities().map_or(0.0, |[shear, bulk]| 4.0 / 3.0 * shear + bulk)
+    }
+
+    /// Poisson's ratio ν = (3K − 2G)/(6K + 2G).
+    #[must_use]
+    pub fn poisson_ratio(&self) -> f64 {
+        let Self { bulk_modulus, shear_modulus, .. } = self;
+        (3.0 * bulk_modulus - 2.0 * shear_modulus) / (6.0 * bulk_modulus + 2.0 * shear_modulus)
     }
 
     /// Young's modulus of plane strain E' = E/(1 − ν²) = 4G (K + G/3)/(K + 4G/3) (Pa).

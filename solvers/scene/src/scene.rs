@@ -396,18 +396,27 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Speed of longitudinal waves in the stiffest deformable material in use, √((K + 4G/3)/ρ) (m/s); zero where there
-    /// is none.
+    /// The step on a grid of cells h (m) at which the shortest wave just stays bounded, of the deformable material for which it
+    /// is the least (s); infinite where nothing deforms.
+    ///
+    /// It is what a longitudinal wave takes through a cell, h/c with c = √(M/ρ) and M = K + 4G/3. A viscosity η_L = 4η/3 + ζ
+    /// that acts on the velocities of the step before shortens it: central differences of ẍ + 2ξωẋ + ω²x = 0 whose second term
+    /// lags stay bounded up to (2/ω)(√(1 + ξ²) − ξ) (Belytschko, Liu & Moran, *Nonlinear Finite Elements*, 2000, section 6.2),
+    /// and for the shortest wave of a grid ω = 2c/h and ξ = η_L/(ρ c h).
     #[must_use]
-    pub fn fastest_wave(&self) -> f64 {
+    pub fn crossing_time(&self, cell: f64) -> f64 {
         let of = |material: u16, density: f64| {
             let deformable = self.deformable.get(usize::from(material)).copied().flatten();
-            deformable.map_or(0.0, |deformable| (deformable.longitudinal_modulus() / density).sqrt())
+            deformable.map_or(f64::INFINITY, |deformable| {
+                let speed = (deformable.longitudinal_modulus() / density).sqrt();
+                let damping = deformable.longitudinal_viscosity() / (density * speed * cell);
+                cell / speed * ((1.0 + damping * damping).sqrt() - damping)
+            })
         };
         let volume = |radius: f64| self.grain_shape.mass(radius, 1.0);
         let grains = self.grains.iter().map(|grain| of(grain.material, grain.mass / volume(grain.radius)));
         let bodies = self.bodies.iter().map(|body| of(body.material, body.density));
-        grains.chain(bodies).fold(0.0, f64::max)
+        grains.chain(bodies).fold(f64::INFINITY, f64::min)
     }
 
     /// The group of driven grains that each grain is in, by place in [`Scene::driven`]; none for those that move

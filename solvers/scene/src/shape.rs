@@ -3,7 +3,7 @@
 
 use crate::scene::Dimension;
 
-/// Keys with their shapes, where `@` stands for a vector and `%` for its components; `table.key` where keys of one name differ.
+/// Keys with their shapes, where `@` stands for a vector, `%` for its components and `#` for a symmetric tensor; `table.key` where keys of one name differ.
 const SHAPES: &[(&str, &str)] = &[
     ("plane", "{ point = @, normal = @ }"),
     ("segment", "[@, @]"),
@@ -53,6 +53,11 @@ const SHAPES: &[(&str, &str)] = &[
     ("position", "@"),
     ("velocity", "@"),
     ("stretch", "@"),
+    ("stress", "#"),
+    ("stress_gradient", "{ y = # }, what it gains a metre along an axis"),
+    ("stress_gradient.x", "#"),
+    ("stress_gradient.y", "#"),
+    ("stress_gradient.z", "#"),
     ("normal", "@"),
     ("corner", "@"),
     ("centre", "@"),
@@ -81,6 +86,14 @@ pub(crate) const fn vector(dimension: Dimension) -> &'static str {
     }
 }
 
+/// A symmetric tensor of a dimension, row by row, in words.
+pub(crate) const fn symmetric(dimension: Dimension) -> &'static str {
+    match dimension {
+        Dimension::Two => "[[xx, xy], [xy, yy]]",
+        Dimension::Three => "[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]",
+    }
+}
+
 /// The key of a dotted path at which a value of another shape stands, and the shape that it should have. Numbers in
 /// brackets, which tell the parts of a value, belong to the value.
 pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String)> {
@@ -99,7 +112,10 @@ pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String
         (None, None) => of(last),
     }?;
     let vector = vector(dimension);
-    Some((key, shape.replace('@', vector).replace('%', vector.trim_matches(['[', ']']))))
+    Some((
+        key,
+        shape.replace('@', vector).replace('#', symmetric(dimension)).replace('%', vector.trim_matches(['[', ']'])),
+    ))
 }
 
 #[cfg(test)]

@@ -119,8 +119,8 @@ impl Resolution {
         })
     }
 
-    /// Time step (s) and number of steps of a scene on a grid: the Courant number times what the fastest wave takes through a
-    /// cell, shortened so that a whole number of steps fits.
+    /// Time step (s) and number of steps of a scene on a grid: the Courant number times [`Scene::crossing_time`], shortened so
+    /// that a whole number of steps fits.
     ///
     /// # Errors
     /// Says what is wrong: the resolution is no grid, nothing in the scene deforms, or it lasts a number of cycles.
@@ -131,7 +131,7 @@ impl Resolution {
         let Duration::Seconds(time) = scene.duration else {
             return Err("expected a duration in seconds, found cycles".to_owned());
         };
-        let wanted = courant * scene.reference_length / cells / scene.fastest_wave();
+        let wanted = courant * scene.crossing_time(scene.reference_length / cells);
         if !(wanted.is_finite() && wanted > 0.0) {
             return Err(format!("expected a material that deforms and positive numbers, found none at {self}"));
         }
@@ -445,10 +445,21 @@ fn last_words(lines: &[String]) -> String {
     if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) }
 }
 
+/// What lies ahead of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ahead {
+    /// Time step (s).
+    pub time_step: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// Grains, or material points, that take each of them.
+    pub particles: u64,
+}
+
 /// Someone who wants to know how far a run is.
 pub trait Watch {
-    /// Called once, before the first step, with the time step (s) and the number of steps.
-    fn begin(&mut self, _time_step: f64, _steps: u64) {}
+    /// Called once, before the first step.
+    fn begin(&mut self, _ahead: Ahead) {}
     /// Threads that the run may take, of solvers that share their work among threads; asked for once. The record does not
     /// depend on it in any bit.
     fn threads(&self) -> usize {

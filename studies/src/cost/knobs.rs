@@ -156,6 +156,6 @@ fn grid_seconds(scene: &Scene, cells: f64, points: u32, courant: f64, seconds: f
     let bodies: f64 = scene.bodies.iter().map(|body| body.shape.volume(dimensions)).sum();
     let count = (grains + bodies) / cell.powi(dimensions as i32) * f64::from(points).powi(dimensions as i32);
     let settling = scene.start.settle.map_or(0.0, |settle| settle.duration);
-    let steps = (seconds + settling) * scene.fastest_wave() / (courant * cell);
+    let steps = (seconds + settling) / (courant * scene.crossing_time(cell));
     steps * count * if dimensions == 2 { 250e-9 } else { 900e-9 }
 }

@@ -1,7 +1,7 @@
 //! The laws between deformation and stress, and which of them a material has. A new one is a variant of [`Material`], a line of
 //! [`with_law`], and its stress.
 
-use super::{Law, State};
+use super::{Law, State, symmetric_root};
 use crate::off::Off;
 use grainbench_lanes::logarithm::ln;
 use grainbench_scene::material::{Constitutive, Deformable};
@@ -12,6 +12,7 @@ use nalgebra::Matrix3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Material {
     NeoHookean(NeoHookean),
+    KelvinVoigt(KelvinVoigt),
     Hypoelastic(Hypoelastic),
     VonMises(VonMises),
 }
@@ -21,6 +22,7 @@ macro_rules! with_law {
     ($material:expr, $law:ident => $call:expr) => {
         match $material {
             $crate::material::Material::NeoHookean($law) => $call,
+            $crate::material::Material::KelvinVoigt($law) => $call,
             $crate::material::Material::Hypoelastic($law) => $call,
             $crate::material::Material::VonMises($law) => $call,
         }
@@ -30,11 +32,18 @@ macro_rules! with_law {
 pub(crate) use with_law;
 
 impl Material {
-    pub(crate) fn of(deformable: &Deformable) -> Self {
+    /// The law of a material in steps of `time_step` (s).
+    pub(crate) fn of(deformable: &Deformable, time_step: f64) -> Self {
         let &Deformable { bulk_modulus, shear_modulus, constitutive } = deformable;
         let elastic = Hypoelastic { bulk_modulus, shear_modulus };
+        let rubber = NeoHookean { lame: deformable.lame(), shear_modulus };
         match constitutive {
-            Constitutive::NeoHookean => Self::NeoHookean(NeoHookean { lame: deformable.lame(), shear_modulus }),
+            Constitutive::NeoHookean => Self::NeoHookean(rubber),
+            Constitutive::KelvinVoigt { viscosity, bulk_viscosity } => Self::KelvinVoigt(KelvinVoigt {
+                elastic: rubber,
+                shear_viscosity: viscosity / time_step,
+                bulk_viscosity: bulk_viscosity / time_step,
+            }),
             Constitutive::Hypoelastic => Self::Hypoelastic(elastic),
             Constitutive::VonMises { yield_stress, hardening_modulus } => {
                 Self::VonMises(VonMises { elastic, yield_stress, hardening_modulus })
@@ -83,22 +92,84 @@ impl Law for NeoHookean {
         0.5 * (self.lame * log * log + self.shear_modulus * stretch)
     }
 
-    fn under_pressure(&self, pressure: f64, dimensions: usize) -> (f64, Matrix3<f64>) {
-        let deformed = |stretch: f64| {
-            let mut deformation = Matrix3::identity();
-            (0..dimensions).for_each(|axis| deformation[(axis, axis)] = stretch);
-            Solid::embed_symmetric(self.stress::<Solid>(deformation, stretch.powi(dimensions as i32)))
+    /// b = 1 + (Jσ − λ ln J 1)/G along the axes that deform, with J from det b = J² by secant steps.
+    fn under_stress(&self, stress: &Matrix3<f64>, dimensions: usize) -> Option<State> {
+        let finger = |volume_ratio: f64| {
+            let part = 1.0 - self.lame * ln(volume_ratio) / self.shear_modulus;
+            Matrix3::from_fn(|row, column| match (row == column, row.max(column) < dimensions) {
+                (true, true) => part + volume_ratio * stress[(row, column)] / self.shear_modulus,
+                (false, true) => volume_ratio * stress[(row, column)] / self.shear_modulus,
+                (same, false) => f64::from(u8::from(same)),
+            })
         };
-        // Secant steps: the stress is nearly linear in the stretch at pressures far below the moduli.
-        let (mut before, mut now) = (1.0, 1.0 - pressure / (dimensions as f64 * self.lame + 2.0 * self.shear_modulus));
+        let excess = |volume_ratio: f64| finger(volume_ratio).determinant() - volume_ratio * volume_ratio;
+        let sum: f64 = (0..dimensions).map(|axis| stress[(axis, axis)]).sum();
+        let linear = sum / (dimensions as f64 * self.lame + 2.0 * self.shear_modulus);
+        // What the linear law says, and a place beside it, from which the slope is known.
+        let (mut before, mut now) = (1.0001 * (1.0 + linear), 1.0 + linear);
+        let mut old = excess(before);
         for _ in 0..50 {
-            let (old, new) = (deformed(before).m11 + pressure, deformed(now).m11 + pressure);
-            if (new - old).abs() <= 1e-15 * pressure.abs() {
+            let new = excess(now);
+            if new.abs() <= f64::EPSILON * now * now || new == old {
                 break;
             }
-            (before, now) = (now, now - new * (now - before) / (new - old));
+            (before, now, old) = (now, now - new * (now - before) / (new - old), new);
         }
-        (now, deformed(now))
+        let is_found = now > 0.0 && excess(now).abs() <= 1e-12 * now * now;
+        let deformation = symmetric_root(&finger(now)).filter(|_| is_found)?;
+        let stress = Solid::embed_symmetric(self.stress::<Solid>(deformation, now));
+        Some(State { deformation, stress, plastic_strain: 0.0 })
+    }
+}
+
+/// Neo-Hookean, with a viscous stress beside it: σ + 2η dev D + ζ tr D 1, D the symmetric part of ∇v (1/s). In small strain it is
+/// the solid of Kelvin and Voigt, whose wave of wave number k loses its amplitude at η_L k²/2ρ, η_L = 4η/3 + ζ along and η across.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KelvinVoigt {
+    /// The elastic part.
+    pub elastic: NeoHookean,
+    /// Shear viscosity over the time step η/Δt (Pa).
+    pub shear_viscosity: f64,
+    /// Bulk viscosity over the time step ζ/Δt (Pa).
+    pub bulk_viscosity: f64,
+}
+
+impl Law for KelvinVoigt {
+    type PlasticStrain = Off;
+
+    #[inline(always)]
+    fn follow<S: Space>(
+        &self,
+        increment: S::Matrix,
+        volume_ratio: f64,
+        deformation: S::Matrix,
+        _stress: S::Symmetric,
+        _plastic_strain: &mut Off,
+    ) -> S::Symmetric {
+        let strain = S::symmetric_part(increment);
+        let mean = (self.bulk_viscosity - 2.0 / 3.0 * self.shear_viscosity) * S::trace(strain);
+        let elastic = self.elastic.stress::<S>(deformation, volume_ratio);
+        S::scaled_sum(strain, 2.0 * self.shear_viscosity, S::scaled_sum(S::isotropic(mean), 1.0, elastic))
+    }
+
+    #[inline(always)]
+    fn viscous_work<S: Space>(
+        &self,
+        strain: S::Symmetric,
+        volume_ratio: f64,
+        deformation: S::Matrix,
+        stress: S::Symmetric,
+    ) -> f64 {
+        let elastic = self.elastic.stress::<S>(deformation, volume_ratio);
+        S::double_dot(S::scaled_sum(elastic, -1.0, stress), strain)
+    }
+
+    fn energy(&self, state: &State) -> f64 {
+        self.elastic.energy(state)
+    }
+
+    fn under_stress(&self, stress: &Matrix3<f64>, dimensions: usize) -> Option<State> {
+        self.elastic.under_stress(stress, dimensions)
     }
 }
 
@@ -139,8 +210,9 @@ impl Law for Hypoelastic {
         density * state.deformation.determinant()
     }
 
-    fn under_pressure(&self, pressure: f64, _dimensions: usize) -> (f64, Matrix3<f64>) {
-        (1.0, Matrix3::from_diagonal_element(-pressure))
+    /// It knows a stress and no deformation from which that came: it starts as it is.
+    fn under_stress(&self, stress: &Matrix3<f64>, _dimensions: usize) -> Option<State> {
+        Some(State { stress: *stress, ..State::default() })
     }
 }
 
@@ -194,7 +266,9 @@ impl Law for VonMises {
         self.elastic.energy(state)
     }
 
-    fn under_pressure(&self, pressure: f64, dimensions: usize) -> (f64, Matrix3<f64>) {
-        self.elastic.under_pressure(pressure, dimensions)
+    fn under_stress(&self, stress: &Matrix3<f64>, dimensions: usize) -> Option<State> {
+        let deviator = stress - Matrix3::from_diagonal_element(stress.trace() / 3.0);
+        let equivalent = (1.5 * deviator.norm_squared()).sqrt();
+        self.elastic.under_stress(stress, dimensions).filter(|_| equivalent <= self.yield_stress)
     }
 }

@@ -3,7 +3,7 @@
 mod laws;
 mod plastic_strain;
 
-pub use laws::{Hypoelastic, NeoHookean, VonMises};
+pub use laws::{Hypoelastic, KelvinVoigt, NeoHookean, VonMises};
 pub(crate) use laws::{Material, with_law};
 pub use plastic_strain::PlasticStrain;
 
@@ -55,9 +55,38 @@ pub trait Law: Copy + Send + Sync + 'static {
     fn flow_stress(&self, _plastic_strain: Self::PlasticStrain) -> f64 {
         0.0
     }
+    /// What the viscous part of the stress in a state does on a strain, per volume (J/m³); zero for laws without viscosity.
+    #[inline(always)]
+    fn viscous_work<S: Space>(
+        &self,
+        _strain: S::Symmetric,
+        _volume_ratio: f64,
+        _deformation: S::Matrix,
+        _stress: S::Symmetric,
+    ) -> f64 {
+        0.0
+    }
     /// Elastic energy per volume at the start (J/m³).
     fn energy(&self, state: &State) -> f64;
-    /// The deformation, equal along the axes that can deform, at which a pressure (Pa) acts along them, as a stretch;
-    /// and the stress then.
-    fn under_pressure(&self, pressure: f64, dimensions: usize) -> (f64, Matrix3<f64>);
+    /// The state without rotation and plastic strain in which a stress (Pa) acts along the axes that can deform: the first
+    /// `dimensions`. Laws that know the stress by its history take the rest of it too. None where there is no such state.
+    fn under_stress(&self, stress: &Matrix3<f64>, dimensions: usize) -> Option<State>;
+}
+
+/// The symmetric root of a positive definite matrix near the unit one, by the coupled iteration of Denman and Beavers (1976),
+/// which needs sums and inverses alone; none where it does not converge.
+fn symmetric_root(of: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    let (mut root, mut inverse) = (*of, Matrix3::identity());
+    for _ in 0..50 {
+        let next = (root + inverse.try_inverse()?) * 0.5;
+        inverse = (inverse + root.try_inverse()?) * 0.5;
+        let way = (next - root).norm();
+        root = next;
+        // What it gains with each step is squared: the next would change nothing but the last digits.
+        if way <= 1e-13 * root.norm() {
+            let is_root = (root * root - of).norm() <= 1e-12 * of.norm() && root.determinant() > 0.0;
+            return is_root.then_some(root);
+        }
+    }
+    None
 }

@@ -27,6 +27,12 @@ pub struct BodySpec {
     /// its shape. The same rate along all axes lets a ring expand.
     #[serde(default)]
     pub stretch: Option<Vec<f64>>,
+    /// Stress at the start in the middle of its shape (Pa, tension positive), `[[xx, xy], [xy, yy]]` in two dimensions.
+    #[serde(default)]
+    pub stress: Option<Vec<Vec<f64>>>,
+    /// What that stress gains a metre along the axes.
+    #[serde(default)]
+    pub stress_gradient: Option<StressGradientSpec>,
     /// An initial velocity along x that grows from the lower end of a box as the sine of a mode of a held bar.
     #[serde(default)]
     pub wave: Option<WaveSpec>,
@@ -36,6 +42,22 @@ pub struct BodySpec {
     /// Sides of a box that do not move along their normal.
     #[serde(default)]
     pub sliding: Vec<SideSpec>,
+}
+
+/// What a stress gains a metre along each axis (Pa/m): for soil under its weight with a lateral stress of K₀ times the vertical
+/// one, `y = [[K₀ρg, 0.0], [0.0, ρg]]`.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StressGradientSpec {
+    /// Along x.
+    #[serde(default)]
+    pub x: Option<Vec<Vec<f64>>>,
+    /// Along y.
+    #[serde(default)]
+    pub y: Option<Vec<Vec<f64>>>,
+    /// Along z.
+    #[serde(default)]
+    pub z: Option<Vec<Vec<f64>>>,
 }
 
 /// A box along the axes.

@@ -1,10 +1,11 @@
 //! Deformable bodies that are no grains.
 
 use super::Resolver;
-use crate::body::{Block, BlockShape, Hold, Sides, Wave};
+use crate::body::{Block, BlockShape, Hold, InitialStress, Sides, Wave};
 use crate::error::SceneError;
 use crate::file::{BodySpec, SideSpec};
 use crate::scene::{Dimension, Grain};
+use nalgebra::Matrix3;
 use std::f64::consts::PI;
 
 impl Resolver<'_> {
@@ -40,9 +41,45 @@ impl Resolver<'_> {
             velocity: check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?,
             spin: check.spin(&key("spin"), spec.spin.as_ref())?,
             stretch: check.vector_or_zero(&key("stretch"), spec.stretch.as_ref())?,
+            stress: self.initial_stress(name, spec, material)?,
             sides: self.sides(name, spec)?,
             wave,
         })
+    }
+
+    fn initial_stress(&self, name: &str, spec: &BodySpec, material: u16) -> Result<Option<InitialStress>, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("bodies.{name}.{part}");
+        let gradient = match (&spec.stress, &spec.stress_gradient) {
+            (None, None) => return Ok(None),
+            (_, gradient) => gradient.clone().unwrap_or_default(),
+        };
+        if self.file.initial_pressure.is_some() {
+            return Err(check.error(&key("stress"), "one of it and `initial_pressure`", "both"));
+        }
+        let of_material = &self.file.materials[usize::from(material)];
+        let Some(moduli) = of_material.deformable(&spec.material, check)? else {
+            return Err(check.error(&key("stress"), "a material with elastic moduli", &format!("`{}`", spec.material)));
+        };
+        // In the plane nothing stretches out of it, and the stress there is that of plane strain.
+        let tensor = |part: &str, rows: Option<&Vec<Vec<f64>>>| -> Result<Matrix3<f64>, SceneError> {
+            let mut stress = rows.map_or(Ok(Matrix3::zeros()), |rows| check.symmetric(&key(part), rows))?;
+            if check.dimension == Dimension::Two {
+                stress.m33 = moduli.poisson_ratio() * (stress.m11 + stress.m22);
+            }
+            Ok(stress)
+        };
+        if gradient.z.is_some() && check.dimension == Dimension::Two {
+            return Err(check.error(&key("stress_gradient.z"), "axes that the scene has, `x` and `y`", "`z`"));
+        }
+        Ok(Some(InitialStress {
+            centre: tensor("stress", spec.stress.as_ref())?,
+            gradient: [
+                tensor("stress_gradient.x", gradient.x.as_ref())?,
+                tensor("stress_gradient.y", gradient.y.as_ref())?,
+                tensor("stress_gradient.z", gradient.z.as_ref())?,
+            ],
+        }))
     }
 
     fn block_shape(&self, name: &str, spec: &BodySpec) -> Result<BlockShape, SceneError> {

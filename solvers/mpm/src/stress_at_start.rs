@@ -1,0 +1,85 @@
+//! The stress that bodies start with: that of a fluid at rest, or what the scene gives.
+
+use crate::bodies::Body;
+use crate::material::{Law, Material, State as Material3, with_law};
+use crate::points::Points;
+use crate::state::State;
+use crate::surface::Tracers;
+use grainbench_scene::body::BlockShape;
+use grainbench_scene::record::Owner;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::space::Space;
+use nalgebra::{Matrix3, Vector3};
+
+/// Why a body cannot start with the stress that the scene gives it, if one cannot. A stress that is linear in the place is
+/// largest at a corner of the box around the body.
+pub(crate) fn refusal(scene: &Scene) -> Option<String> {
+    let dimensions = scene.dimension.count();
+    scene.bodies.iter().find_map(|body| {
+        let stress = body.stress.as_ref()?;
+        let material = scene.deformable.get(usize::from(body.material)).copied().flatten()?;
+        // The step plays no part: what is at rest has no viscous stress.
+        let law = Material::of(&material, 1.0);
+        let (low, high) = body.shape.corners();
+        let centre = body.shape.centre();
+        let corner = |number: usize| {
+            let part = |axis: usize| if number >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            Vector3::new(part(0), part(1), part(2))
+        };
+        let bears = |place: Vector3<f64>| state_under(&law, &stress.at(place - centre), dimensions).is_some();
+        let place = (0..1 << dimensions).map(corner).find(|&place| !bears(place))?;
+        let kind = material.constitutive.kind();
+        let there = match body.shape {
+            BlockShape::Box { .. } => "at its corner",
+            BlockShape::Annulus { .. } => "at the corner of the square around it",
+        };
+        let place: Vec<String> = place.iter().take(dimensions).map(f64::to_string).collect();
+        Some(format!(
+            "body `{}` starts with a stress that its material `{}` ({kind}) cannot bear, {there} [{}]: expected one below its \
+             moduli, and below its yield stress where it has one",
+            body.name,
+            scene.materials[usize::from(body.material)],
+            place.join(", ")
+        ))
+    })
+}
+
+fn state_under(law: &Material, stress: &Matrix3<f64>, dimensions: usize) -> Option<Material3> {
+    with_law!(law, law => law.under_stress(stress, dimensions))
+}
+
+/// Gives the points of bodies the stress that the scene says they start with, `gravity` (m/s²) being what a fluid rests under.
+pub(crate) fn give<S: Space>(scene: &Scene, gravity: Vector3<f64>, state: &mut State<S>, tracers: &Tracers<S>) {
+    let State { bodies, points, .. } = state;
+    for body in bodies.iter() {
+        if scene.start.initial_pressure.is_some() {
+            let depth = |position: S::Vector| S::embed(position).dot(&gravity);
+            let surface = tracers.position[body.tracers.clone()].iter().map(|&at| depth(at));
+            // Zero at its highest point.
+            let top = surface.fold(f64::INFINITY, f64::min);
+            let pressure = |position| body.density * (depth(position) - top);
+            press(body, points, |position| Matrix3::from_diagonal_element(-pressure(position)));
+        }
+        if let Owner::Body(place) = body.owner
+            && let block = &scene.bodies[place as usize]
+            && let Some(stress) = &block.stress
+        {
+            let centre = block.shape.centre();
+            press(body, points, |position| stress.at(S::embed(position) - centre));
+        }
+    }
+}
+
+/// Puts every point of a body under the stress at its place (Pa).
+fn press<S: Space>(body: &Body, points: &mut Points<S>, stress: impl Fn(S::Vector) -> Matrix3<f64>) {
+    for at in body.part.points.clone() {
+        // What no material bears was refused; a state that is no number breaks at the first step, and is told.
+        let broken = || Material3 { deformation: Matrix3::from_element(f64::NAN), ..Material3::default() };
+        let wanted = stress(points.position[at]);
+        let Material3 { deformation, stress, .. } =
+            state_under(&body.law, &wanted, S::DIMENSION).unwrap_or_else(broken);
+        points.reference_volume[at] = points.volume[at] / deformation.determinant();
+        points.deformation[at] = S::restrict_gradient(deformation);
+        points.stress[at] = S::restrict_symmetric(stress);
+    }
+}
