@@ -1,6 +1,6 @@
 //! The registry of cases: one for each folder with a `scene.toml`.
 
-use grainbench_harness::case::{Case, Home};
+use grainbench_harness::case::{Case, Home, Made};
 use grainbench_harness::runner::Runner;
 use grainbench_harness::subject::{Subject, from_claims};
 use grainbench_scene::resolve::FileGrain;
@@ -14,7 +14,8 @@ type Own = (&'static str, fn() -> Vec<Subject>);
 include!(concat!(env!("OUT_DIR"), "/registry.rs"));
 
 /// Where the folders of the cases are.
-pub static HOME: Home = Home { folder: env!("CARGO_MANIFEST_DIR"), read_grains };
+pub static HOME: Home = Home { folder: env!("CARGO_MANIFEST_DIR"), read_grains, made: Some(&MADE) };
+static MADE: Made = Made::new(Vec::new());
 
 /// The case of a name.
 #[must_use]

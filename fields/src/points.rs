@@ -18,6 +18,8 @@ pub struct PointCloud<'a> {
     snapshot: &'a Snapshot,
     /// Places within the domain (m).
     places: Vec<[f64; 2]>,
+    /// Widths √V of their squares (m).
+    widths: Vec<f64>,
     low: [f64; 2],
     bin: [f64; 2],
     count: [usize; 2],
@@ -34,8 +36,9 @@ impl<'a> PointCloud<'a> {
             [place.x, place.y]
         };
         let places: Vec<[f64; 2]> = snapshot.points.iter().map(place).collect();
-        let widest = snapshot.points.iter().map(|point| point.volume).filter(|volume| volume.is_finite());
-        let width = BLUR * widest.fold(f64::MIN_POSITIVE, f64::max).sqrt();
+        let widths: Vec<f64> = snapshot.points.iter().map(|point| point.volume.sqrt()).collect();
+        let widest = widths.iter().copied().filter(|width| width.is_finite()).fold(f64::MIN_POSITIVE.sqrt(), f64::max);
+        let width = BLUR * widest;
         let (mut low, mut count, mut bin) = ([0.0; 2], [1; 2], [1.0; 2]);
         for axis in 0..2 {
             let (mut from, mut to) = (snapshot.bounds.0[axis], snapshot.bounds.1[axis]);
@@ -46,7 +49,7 @@ impl<'a> PointCloud<'a> {
             count[axis] = ((to - from) / width).floor().clamp(1.0, MOST_BINS) as usize;
             (low[axis], bin[axis]) = (from, (to - from) / count[axis] as f64);
         }
-        let mut cloud = Self { snapshot, places, low, bin, count, bins: vec![Vec::new(); count[0] * count[1]] };
+        let mut cloud = Self { snapshot, places, widths, low, bin, count, bins: vec![Vec::new(); count[0] * count[1]] };
         for at in 0..cloud.places.len() {
             if let [Some(i), Some(j)] = [0, 1].map(|axis| cloud.bin_of(axis, cloud.places[at][axis], 0)) {
                 cloud.bins[i + count[0] * j].push(at as u32);
@@ -90,9 +93,11 @@ impl<'a> PointCloud<'a> {
             for &i in columns.iter().flatten() {
                 for &at in &self.bins[i + self.count[0] * j] {
                     let there = self.places[at as usize];
-                    let away = [0, 1].map(|axis| self.apart(axis, place[axis], there[axis]));
-                    let width = self.snapshot.points[at as usize].volume.sqrt();
-                    near.push((away[0].hypot(away[1]) / width, at));
+                    let [across, up] = [0, 1].map(|axis| self.apart(axis, place[axis], there[axis]));
+                    let distance = (across * across + up * up).sqrt() / self.widths[at as usize];
+                    if distance < BLUR {
+                        near.push((distance, at));
+                    }
                 }
             }
         }
@@ -113,7 +118,7 @@ impl<'a> PointCloud<'a> {
         let mut total = 0.0;
         for (distance, at) in near {
             let point = &self.snapshot.points[at as usize];
-            if distance >= BLUR || point.owner != owner {
+            if point.owner != owner {
                 continue;
             }
             let weight = (1.0 - distance / BLUR).powi(2);

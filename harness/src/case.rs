@@ -9,6 +9,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError};
 use grainbench_scene::source::SceneSource;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// One resolution level.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +64,15 @@ pub struct Home {
     pub folder: &'static str,
     /// Reads grains for a scene from a data file.
     pub read_grains: fn(&Path) -> Result<Vec<FileGrain>, String>,
+    /// Scenes of many grains, made once for all who ask; none where files may change meanwhile.
+    pub made: Option<&'static Made>,
 }
+
+/// Scenes of many grains by case and variant: cases look at each other's, and to read one from its files takes a while.
+pub type Made = Mutex<Vec<(&'static str, String, Scene)>>;
+
+/// So many grains are worth it.
+const MANY: usize = 1000;
 
 impl Case {
     /// Folder of the case's files.
@@ -83,9 +92,18 @@ impl Case {
     /// # Errors
     /// When the scene file is wrong or there is no such variant.
     pub fn variant(&self, variant: &str) -> Result<Scene, SceneError> {
+        let made = || self.home.made.map(|made| made.lock().unwrap_or_else(PoisonError::into_inner));
+        let is_it = |(case, of, _): &&(&str, String, Scene)| *case == self.name && of == variant;
+        if let Some((.., scene)) = made().and_then(|made| made.iter().find(is_it).cloned()) {
+            return Ok(scene);
+        }
         let source = self.source();
         let source = if variant == PLAIN { source } else { source.variant(variant) };
-        source.scene(&self.home.read_grains)
+        let scene = source.scene(&self.home.read_grains)?;
+        if let Some(mut made) = made().filter(|_| scene.grains.len() >= MANY) {
+            made.push((self.name, variant.to_owned(), scene.clone()));
+        }
+        Ok(scene)
     }
 
     /// Names of the variants; [`PLAIN`] alone where the scene has none.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use grainbench_harness::figure::{Drawing, Figure, Graph};
 use grainbench_scene::text::tamed;
+use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::badge::badge;
@@ -118,15 +119,18 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
     let junit = junit_xml(report).map_err(|error| encode("junit.xml")(error.to_string()))?;
     out.write("junit.xml", junit)?;
     out.write("badge.svg", badge(report))?;
-    let page = page::render(report)?;
+    let names = page::figure_names(report);
+    let figures: Vec<(&Figure, &String)> =
+        report.sections.iter().zip(&names).flat_map(|(section, names)| section.figures.iter().zip(names)).collect();
+    let drawn = || figures.par_iter().map(|(figure, name)| figure_files(figure, name)).collect::<Result<Vec<_>, _>>();
+    let (page, drawn) = rayon::join(|| page::render(report), drawn);
+    let page = page?;
     out.write("index.html", page.html)?;
     for (path, text) in page.beside {
         out.write(path, text)?;
     }
-    for (section, names) in report.sections.iter().zip(page::figure_names(report)) {
-        for (figure, name) in section.figures.iter().zip(names) {
-            add_figure(out, figure, &name)?;
-        }
+    for (path, bytes) in drawn?.into_iter().flatten() {
+        out.write(path, bytes)?;
     }
     Ok(())
 }
@@ -136,16 +140,24 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
 /// # Errors
 /// When the disk refuses or it cannot be drawn.
 pub(crate) fn add_figure(out: &mut StagedDir, figure: &Figure, name: &str) -> Result<(), SaveError> {
-    out.write(format!("figures/{name}.svg"), plot::draw(figure)?)?;
+    for (path, bytes) in figure_files(figure, name)? {
+        out.write(path, bytes)?;
+    }
+    Ok(())
+}
+
+/// The files of a figure, by their paths.
+fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, SaveError> {
+    let mut files = vec![(format!("figures/{name}.svg"), plot::draw(figure)?.into_bytes())];
     if let Drawing::Graph(graph) = &figure.drawing {
         let data = graph_csv(graph)
             .map_err(|error| SaveError::Encode { file: "the data of a figure", reason: error.to_string() })?;
-        out.write(format!("figures/{name}.csv"), data)?;
+        files.push((format!("figures/{name}.csv"), data));
     }
     if let Some(film) = plot::film(figure)? {
-        out.write(format!("figures/{name}.png"), film)?;
+        files.push((format!("figures/{name}.png"), film));
     }
-    Ok(())
+    Ok(files)
 }
 
 /// The data of a graph: a line a point. What is not finite is left empty.

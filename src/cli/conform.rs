@@ -1,5 +1,6 @@
 //! `grainbench conform`: what every solver owes, whatever its method.
 
+use super::cache;
 use super::cores::{at_once, share};
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
@@ -12,6 +13,7 @@ use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, summary_table, write_report};
 use grainbench::scene::solver::Solver;
 use grainbench::scene::terms::Terms;
+use grainbench::studies::run_cache::RunCache;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
@@ -38,7 +40,7 @@ pub(crate) struct Arguments {
 pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     check_writable(&arguments.out)?;
-    let section = section(&arguments.solver)?;
+    let section = section(&arguments.solver, None)?;
     let section = section.ok_or_else(|| {
         let names: Vec<String> = solvers::with_terms().iter().map(|(solver, _)| solver.name()).collect();
         let expected = "the path of a manifest (`SOLVER.toml`) or a solver of ours";
@@ -61,24 +63,30 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     if says_nothing(&report) { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, arguments.strict)) }
 }
 
-/// What every solver owes, of the solvers and manifests named; of all of ours when none is.
-pub(crate) fn section(named: &[String]) -> Result<Option<Section>, Fault> {
+/// What every solver owes, of the solvers and manifests named; of all of ours when none is. Finished runs of ours are taken from a
+/// cache where there is one.
+pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result<Option<Section>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
     let mut solvers: Vec<(Arc<dyn Solver>, Terms)> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
+    let ours = solvers.len();
     for path in named.iter().filter(|name| solver::is_manifest(name)) {
         let outside = solver::outside(path)?;
         let terms = outside.terms();
         solvers.push((outside, terms));
     }
     let judged: Vec<_> = solvers.iter().map(|_| OnceLock::new()).collect();
+    let kept = cache::solvers(cache);
     share(
         solvers.len(),
         at_once(1),
         || true,
         |number| {
             let (solver, terms) = &solvers[number];
-            judged[number].get_or_init(|| conformance::judge(&**solver, terms));
+            // A program of another's may bear the name of a solver of ours.
+            let of_cache = if number < ours { kept.find(&solver.name()) } else { None };
+            let of_cache = of_cache.as_ref().unwrap_or(solver);
+            judged[number].get_or_init(|| conformance::judge_kept(&**solver, &**of_cache, terms));
         },
     );
     let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().filter_map(OnceLock::into_inner).unzip();

@@ -127,7 +127,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     // What every solver owes belongs to the whole registry, and not to a case.
     let is_whole = cases.is_empty() && options.filter.is_empty() && !options.rerun_failed;
     if is_whole && (options.levels.is_empty() || thorough) && left == 0 {
-        sections.extend(conform::section(&options.solver)?);
+        sections.extend(conform::section(&options.solver, cache.as_ref())?);
     }
     let mut words = words(cases, options);
     if left > 0 {

@@ -89,7 +89,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
     };
     let derivation = folder.join(DERIVATION);
     let derivation = if derivation.exists() { text_of(&derivation)? } else { String::new() };
-    let home = Home { folder: kept(parent.to_string_lossy().into_owned()), read_grains: HOME.read_grains };
+    let home = Home { folder: kept(parent.to_string_lossy().into_owned()), read_grains: HOME.read_grains, made: None };
     Ok(Box::leak(Box::new(Case {
         name: kept(name.to_string_lossy().into_owned()),
         title: kept(claims.title),

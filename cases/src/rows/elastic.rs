@@ -102,8 +102,8 @@ impl Pressed {
 /// −Ai'(0): what of a front of width 1 has come before it is due.
 pub(crate) const AHEAD: f64 = 0.258_819_403_792_806_8;
 
-/// Width δ of a front after a way, in units of that of `cell` and `way`: δ³ = 3 (25/96) h² s, for a grid on which a wave's frequency
-/// is lower by (25/96)(kh)² (derivations of `vibrating-bar` and `bar-impact`).
+/// Width δ of a front after a way, in units of that of `cell` and `way`: δ³ = 3 (25/96) h² s, for a grid on which a wave's
+/// frequency is lower by (25/96)(kh)² (derivations of `vibrating-bar` and `bar-impact`).
 pub(crate) fn front(cell: f64, way: f64) -> f64 {
     (3.0 * 25.0 / 96.0 * cell * cell * way).cbrt()
 }

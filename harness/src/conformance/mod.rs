@@ -80,12 +80,18 @@ pub const ALL: [Property; 9] = [
 /// a method owes less is no pass, and has no control.
 #[must_use]
 pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
+    judge_kept(solver, solver, terms)
+}
+
+/// The same, with runs of the solver taken from `kept`, which may hold finished ones; what is to be done again, or watched, is
+/// done by the solver `itself`.
+#[must_use]
+pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
-    let once = Once::new(solver);
+    let once = Once::new(kept);
     for property in ALL {
-        // What is to be done again, or watched, is done by the solver itself.
-        let itself = [rerun::PROPERTY.name, restart::PROPERTY.name].contains(&property.name);
-        let found = property.check(if itself { solver } else { &once }, terms);
+        let is_watched = [rerun::PROPERTY.name, restart::PROPERTY.name].contains(&property.name);
+        let found = property.check(if is_watched { itself } else { &once }, terms);
         let passed = |row: &Verdict| {
             let same = |other: &&Verdict| other.variant == row.variant && other.quantity == row.quantity;
             found.iter().find(same).is_some_and(|other| other.outcome == Outcome::Pass)
@@ -94,7 +100,8 @@ pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>)
             let start = Instant::now();
             let flaw = property.flaw(terms);
             // What a method owes less excuses no flaw.
-            let flawed = property.check(&Flawed::new(solver, flaw), &terms.owing_less(&[]));
+            let of = if is_watched { itself } else { kept };
+            let flawed = property.check(&Flawed::new(of, flaw), &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
             let tried = flawed.into_iter().filter(passed);
             controls.extend(tried.map(|row| Control::of(row, flaw.words(), Red::Value, seconds)));

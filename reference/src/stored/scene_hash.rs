@@ -1,7 +1,9 @@
 //! The fingerprint of a scene: two scenes of one fingerprint are one run of a program.
 
 use std::fmt::Write as _;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use grainbench_scene::grains::Grains;
 use grainbench_scene::scene::{Driven, Grain, Scene, Wall};
 
 use crate::deck::Stepping;
@@ -21,9 +23,7 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     for law in &scene.laws {
         let _ = writeln!(text, "law {} {}", law.is_some(), law.unwrap_or_default().identity());
     }
-    for Grain { material, radius, mass, inertia, position, velocity, spin } in &scene.grains {
-        let _ = writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");
-    }
+    text.push_str(&lines_of(&scene.grains));
     for Wall { material, shape, motion, piston, until, .. } in &scene.walls {
         let _ = writeln!(text, "wall {material} {shape:?} {motion:?}");
         if let Some(piston) = piston {
@@ -54,6 +54,31 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     }
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
+
+/// The lines of all grains. Those of a large list are remembered: the same one is asked for by every variant and every control that
+/// begins with it.
+fn lines_of(grains: &Grains) -> Arc<str> {
+    static KNOWN: Mutex<Vec<(Grains, Arc<str>)>> = Mutex::new(Vec::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, lines)) = known.iter().find(|(of, _)| of.are_shared_with(grains)) {
+        return Arc::clone(lines);
+    }
+    let mut text = String::new();
+    for Grain { material, radius, mass, inertia, position, velocity, spin } in grains {
+        let _ = writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");
+    }
+    let lines: Arc<str> = text.into();
+    if grains.len() >= LARGE {
+        known.truncate(FEW - 1);
+        known.insert(0, (grains.clone(), Arc::clone(&lines)));
+    }
+    lines
+}
+
+/// Grains of a large list.
+const LARGE: usize = 1000;
+/// So many lists are remembered.
+const FEW: usize = 4;
 
 #[cfg(test)]
 mod tests {

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use grainbench_harness::figure::{Drawing, Figure};
 use maud::{Markup, PreEscaped, html};
+use rayon::prelude::*;
 
 use super::budget::{Part, Piece, Rank};
 use super::{slug, unique};
@@ -30,10 +31,14 @@ pub(crate) fn pieces(
     names: &[String],
     taken: &mut BTreeSet<String>,
 ) -> Result<Vec<Piece>, DrawError> {
+    let ids: Vec<String> =
+        section.figures.iter().map(|figure| unique(&format!("{anchor}-{}", slug(&figure.name)), taken)).collect();
+    let named = section.figures.par_iter().zip(names).zip(&ids);
+    let parts: Vec<Part> = named.map(|((figure, name), id)| part(figure, name, id)).collect::<Result<_, _>>()?;
     let mut pieces = Vec::new();
     let count = section.figures.len();
     let fixed = |text: &str| Piece::Fixed(text.to_owned());
-    for (at, (figure, name)) in section.figures.iter().zip(names).enumerate() {
+    for (at, part) in parts.into_iter().enumerate() {
         if at == 0 {
             pieces.push(fixed("<div class=\"figures aside\">"));
         }
@@ -45,8 +50,7 @@ pub(crate) fn pieces(
             );
             pieces.push(Piece::Fixed(head));
         }
-        let id = unique(&format!("{anchor}-{}", slug(&figure.name)), taken);
-        pieces.push(Piece::Part(part(figure, name, &id)?));
+        pieces.push(Piece::Part(part));
         if at + 1 == count {
             pieces.push(fixed(if count > SEEN { "</div></details>" } else { "</div>" }));
         }

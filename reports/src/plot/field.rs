@@ -203,7 +203,7 @@ fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::R
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::High);
+    encoder.set_compression(png::Compression::Balanced);
     // Neighbouring levels are no neighbours as bytes of a palette.
     encoder.set_filter(png::Filter::NoFilter);
     encoder.set_palette(palette(shades));

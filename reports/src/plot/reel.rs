@@ -44,7 +44,7 @@ pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
 /// When its frames do not fit each other.
 fn reel(field: &Field) -> io::Result<String> {
     let Frames { width, height, levels } = field::frames(field)?;
-    let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
     let mut before: Option<&Vec<u8>> = None;
     for frame in &levels {
         let differences: Vec<u8> = match before {

@@ -9,6 +9,14 @@ use std::sync::Arc;
 #[derive(Clone, Default, PartialEq)]
 pub struct Grains(Arc<Vec<Grain>>);
 
+impl Grains {
+    /// Whether they are the same ones in memory: neither of two copies has changed its own.
+    #[must_use]
+    pub fn are_shared_with(&self, others: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &others.0)
+    }
+}
+
 impl From<Vec<Grain>> for Grains {
     fn from(grains: Vec<Grain>) -> Self {
         Self(Arc::new(grains))
