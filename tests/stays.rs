@@ -281,3 +281,37 @@ fn what_cannot_come_or_go_is_refused() {
     refuse("driven", silo.clone() + "[driven.d]\ngrains = 'feed'\nvelocity = [0.0, 0.0, 1.0]\n", "dem");
     insta::assert_snapshot!(refusals);
 }
+
+/// Two groups from one box, a heap that has grown into the box, and a box that a wall crosses: each ends with who was poured into
+/// what, and never in an overlap.
+#[test]
+fn nothing_is_poured_into_what_stands_there() {
+    let feed = |name: &str, seed: u32, count: u32, z: f64| {
+        format!(
+            "[grains.{name}]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\n\
+             poured = {{ count = {count}, rate = 2.5, seed = {seed}, low = [0.0, 2.0, {z}], high = [0.2, 2.2, {z}] }}\n"
+        )
+    };
+    let broken = |text: &str| {
+        let solver = solvers::by_name("dem").unwrap();
+        solver.run(&scene(text), &Resolution::TimeStep(1e-3), &mut ()).unwrap_err().to_string()
+    };
+    let two = broken(&format!("{HEAD}{}{}", feed("a", 1, 2, 9.0), feed("b", 2, 2, 9.0)));
+    assert!(two.contains("it was poured into grain") && two.contains("of the smaller radius"), "{two}");
+    let heap = broken(&format!("{HEAD}{}{FLOOR}", feed("a", 1, 10, 1.0)));
+    assert!(heap.contains("it was poured into grain") && heap.contains("pour at a lower rate"), "{heap}");
+    let wall = broken(&format!("{HEAD}{}{FLOOR}", feed("a", 1, 1, 0.3)));
+    assert!(wall.contains("it was poured into wall 1 of the scene, which it overlaps by 0.400"), "{wall}");
+}
+
+/// What comes outside of the box of `removal` would be taken out as it comes.
+#[test]
+fn a_pour_outside_of_the_box_of_removal_is_refused() {
+    let text = format!(
+        "{HEAD}removal = {{ low = [-3.0, -1.0, -5.0], high = [3.0, 5.0, 5.0] }}\n[grains.feed]\nmaterial = 'm'\nradius = 0.5\n\
+         poured = {{ count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 6.0], high = [0.0, 4.0, 6.0] }}\n"
+    );
+    let source = SceneSource::from_text("passing", Path::new(""), &text);
+    let error = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
+    assert!(error.contains("grains.feed.poured: expected a box within that of `removal`"), "{error}");
+}

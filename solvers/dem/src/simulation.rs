@@ -18,9 +18,10 @@ use crate::stability::stable_fraction;
 use crate::walls::{MovingWall, NearWall};
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::columns::{Chosen, Columns};
+use grainbench_scene::overlap::nearest_image;
 use grainbench_scene::record::{ContactState, Counts};
 use grainbench_scene::scene::{Driven, Scene};
-use grainbench_scene::solver::{Broken, Cause, Subject};
+use grainbench_scene::solver::{Broken, Cause, LARGEST_ENTRY_OVERLAP, Subject};
 use nalgebra::Vector3;
 
 /// Skin of the neighbour list as a fraction of the mean radius: a tenth of a diameter, as in the stored LAMMPS run. A
@@ -378,6 +379,9 @@ impl<S: Geometry> Simulated<S> {
             .collect();
         let layout = self.forces.layout();
         let slots = self.come_and_go();
+        if let Some(slots) = &slots {
+            self.refuse_crowded(slots)?;
+        }
         let shares = self.shares();
         let Self { neighbours, grains, team, largest_radius, .. } = self;
         neighbours.rebuild(team, shares, (grains, slots.as_deref()), domain.as_ref(), *largest_radius, layout);
@@ -404,6 +408,31 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
+    /// Refuses a grain that comes where another one or a wall is: `slots` are those that grains had before, those that come had none.
+    fn refuse_crowded(&self, slots: &[u32]) -> Result<(), Box<Broken>> {
+        let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
+        for slot in (0..slots.len()).filter(|&slot| slots[slot] == ABSENT) {
+            let (position, radius) = (self.grains.position(slot), self.grains.radius(slot));
+            let into_grain = |other: usize| {
+                let between = nearest_image(self.grains.position(other) - position, domain.as_ref());
+                let smaller = radius.min(self.grains.radius(other));
+                let ratio = (radius + self.grains.radius(other) - between.norm()) / smaller;
+                (ratio > LARGEST_ENTRY_OVERLAP)
+                    .then(|| Cause::CameIntoGrain { other: self.grains.id[other] + 1, ratio })
+            };
+            let into_wall = |(number, wall): (usize, &MovingWall)| {
+                let ratio = 1.0 - wall.facing(position).distance / radius;
+                (!wall.is_gone() && ratio > LARGEST_ENTRY_OVERLAP)
+                    .then_some(Cause::CameIntoWall { wall: number as u16 + 1, ratio })
+            };
+            let cause = (0..slot).find_map(into_grain).or_else(|| self.walls.iter().enumerate().find_map(into_wall));
+            if let Some(cause) = cause {
+                return Err(self.broken(slot, position, cause));
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses a state in which a position or velocity is not finite, or a grain moves by more than its radius in a
     /// step.
     fn refuse_broken_state(&self) -> Result<(), Box<Broken>> {
@@ -426,7 +455,9 @@ impl<S: Geometry> Simulated<S> {
     fn broken(&self, slot: usize, position: Vector3<f64>, cause: Cause) -> Box<Broken> {
         let stable = stable_fraction(&self.scene);
         let fraction = self.motion.time_step / self.critical;
-        let advice = if fraction > stable {
+        let advice = if matches!(cause, Cause::CameIntoGrain { .. } | Cause::CameIntoWall { .. }) {
+            "pour at a lower rate, from higher up, or fewer grains".to_owned()
+        } else if fraction > stable {
             format!(
                 "{stable:.3} of the critical step ({:.4e} s) is stable for any packing of equal grains",
                 stable * self.critical

@@ -76,7 +76,9 @@ fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option
     (ratio > 0.0).then_some(Deepest::Grains(first, second, ratio))
 }
 
-fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
+/// The shorter way between two places around a periodic domain (m).
+#[must_use]
+pub fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
     if let Some(domain) = domain {
         for axis in 0..3 {
             if domain.periodic[axis] {

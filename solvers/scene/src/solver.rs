@@ -263,7 +263,24 @@ pub enum Cause {
         /// Cells that would be needed.
         cells: f64,
     },
+    /// A grain that is poured came where another one was.
+    CameIntoGrain {
+        /// The other one, by id from 1.
+        other: u32,
+        /// Overlap over the smaller radius.
+        ratio: f64,
+    },
+    /// A grain that is poured came where a wall was.
+    CameIntoWall {
+        /// The wall, from 1 in the order of the file.
+        wall: u16,
+        /// Overlap over its radius.
+        ratio: f64,
+    },
 }
+
+/// Overlap over the smaller radius at which a grain that comes has no room: as much as a scene may begin with.
+pub const LARGEST_ENTRY_OVERLAP: f64 = 0.1;
 
 impl fmt::Display for Cause {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -283,6 +300,16 @@ impl fmt::Display for Cause {
                 write!(formatter, "its cell collapsed: one step changed its volume by a factor {volume_ratio:.3e}")
             }
             Self::LeftGrid { cells } => write!(formatter, "it left the grid, which would need {cells:.3e} cells"),
+            Self::CameIntoGrain { other, ratio } => write!(
+                formatter,
+                "it was poured into grain {other}, which it overlaps by {ratio:.3} of the smaller radius: what is poured needs \
+                 room in its box when it comes, whatever stands or falls there by then"
+            ),
+            Self::CameIntoWall { wall, ratio } => write!(
+                formatter,
+                "it was poured into wall {wall} of the scene, which it overlaps by {ratio:.3} of its radius: what is poured needs \
+                 room in its box when it comes"
+            ),
         }
     }
 }

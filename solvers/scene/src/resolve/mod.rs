@@ -86,6 +86,7 @@ impl Resolver<'_> {
         }
         let Placed { mut grains, groups, entries, springs } = self.grains(grain_shape, domain.as_ref())?;
         let stays = Stays { entries, removal: self.removal()? };
+        self.refuse_lost_pours(&stays, &grains, &groups)?;
         if let Some(domain) = &domain {
             self.refuse_outside(domain, &grains, &groups)?;
         }
@@ -103,7 +104,8 @@ impl Resolver<'_> {
         deformable.retain(|_| place.next().is_some_and(|place| materials.contains(&place)));
         self.refuse_deep_overlap(&grains, &stays, &walls, domain.as_ref(), &groups)?;
         self.refuse_passing(&stays, &driven, &bodies)?;
-        let names = Names { groups: &groups, bodies: &bodies, walls: &walls, driven: &driven, stays: &stays };
+        let names =
+            Names { groups: &groups, grains: &grains, bodies: &bodies, walls: &walls, driven: &driven, stays: &stays };
         let mut spots = Vec::new();
         let probes = file
             .probes

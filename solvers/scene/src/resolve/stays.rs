@@ -1,11 +1,11 @@
 //! Grains that come or go.
 
-use super::Resolver;
+use super::{Groups, Resolver};
 use crate::error::SceneError;
 use crate::file::{GrainsSpec, PouredSpec};
 use crate::pouring::{Pour, Unpourable, poured};
-use crate::scene::{Block, Domain, Driven};
-use crate::stays::{Removal, Stays};
+use crate::scene::{Block, Domain, Driven, Grain};
+use crate::stays::{Entry, Removal, Stays};
 use nalgebra::Vector3;
 
 impl Resolver<'_> {
@@ -65,6 +65,18 @@ impl Resolver<'_> {
             return Err(check.error("removal.every_cycles", "one cycle or more", "0"));
         }
         Ok(Some(Removal { low, high, every: spec.every_cycles }))
+    }
+
+    /// A grain that comes where grains are taken out is never there.
+    pub(super) fn refuse_lost_pours(&self, stays: &Stays, grains: &[Grain], groups: &Groups) -> Result<(), SceneError> {
+        let Some(removal) = stays.removal else { return Ok(()) };
+        let dimension = self.check.dimension.count();
+        let is_lost = |entry: &&Entry| removal.takes(grains[entry.grain].position, dimension);
+        let Some(lost) = stays.entries.iter().find(is_lost) else { return Ok(()) };
+        let group = groups.iter().find(|(_, range)| range.contains(&lost.grain)).map_or("", |(name, _)| name);
+        let place = &grains[lost.grain].position.as_slice()[..dimension];
+        let expected = "a box within that of `removal`, outside of which grains are taken out";
+        Err(self.check.error(&format!("grains.{group}.poured"), expected, &format!("a grain that comes at {place:?}")))
     }
 
     /// The corners of a box that is wide along every axis, of the keys `low` and `high` under a key.
