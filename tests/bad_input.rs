@@ -494,3 +494,35 @@ fn checkpoints() {
     let shown: String = refusals.iter().map(|(what, message)| format!("{what}: {message}")).collect();
     insta::assert_snapshot!("checkpoints", shown);
 }
+
+/// How finely another kind of solver works is no option of this one.
+#[test]
+fn options_of_other_solvers() {
+    let mut told = String::new();
+    for options in [
+        ["--cells", "4"],
+        ["--substeps", "4"],
+        ["--solver=mpm", "--time-step=1e-3"],
+        ["--solver=rigid", "--time-step-fraction=.05"],
+        ["--solver=rigid", "--courant=.2"],
+    ] {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+        let mut arguments = vec!["simulate", "scene.toml", "--out", "out"];
+        if !options[0].starts_with("--solver") {
+            arguments.push("--solver=dem");
+        }
+        arguments.extend(options);
+        let set = ["--set=materials.rock.young_modulus=1e7", "--set=materials.rock.poisson_ratio=.3"];
+        arguments.extend(set);
+        told += &format!("{}\n  {}", options.join(" "), refusal(directory.path(), &arguments));
+    }
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn a_probe_of_a_place_or_a_wall_that_is_not_there() {
+    let probes = ["contact = [\"upper\", \"flor\"]", "point = { grain = \"upper\", at = [0.0, 0.9] }"];
+    let told = probes.map(|probe| refused("upper = { grain = \"upper\" }", &format!("upper = {{ {probe} }}")));
+    insta::assert_snapshot!(told.concat());
+}

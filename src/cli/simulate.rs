@@ -15,7 +15,7 @@ use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
 use grainbench::scene::end_state::EndState;
 use grainbench::scene::record::{Cost, Provenance, Record, Remains, Series, Snapshot};
-use grainbench::scene::scene::Scene;
+use grainbench::scene::scene::{Duration, Scene};
 use grainbench::scene::solver::{Ahead, Method, NotStored, Resolution, RunError, Solver, Watch};
 use grainbench::scene::source::SceneSource;
 use serde::Serialize;
@@ -40,36 +40,21 @@ pub(crate) struct Arguments {
     set: Vec<(String, String)>,
     #[command(flatten)]
     step: Step,
-    /// Cells per reference length, of solvers with a grid: per radius, where there are grains.
-    #[arg(long, value_name = "NUMBER", default_value_t = Resolution::CELLS, value_parser = positive)]
-    cells: f64,
-    /// Material points per cell and axis, of solvers with a grid.
-    #[arg(
-        long,
-        value_name = "NUMBER",
-        default_value_t = Resolution::POINTS,
-        value_parser = whole::<u32>(1, 64)
-    )]
-    points: u32,
-    /// Courant number c Δt/h, of solvers with a grid.
-    #[arg(long, value_name = "NUMBER", default_value_t = Resolution::COURANT, value_parser = positive)]
-    courant: f64,
-    /// Time steps in each sixtieth of a second, of solvers for rigid bodies.
-    #[arg(
-        long,
-        value_name = "NUMBER",
-        default_value_t = Resolution::SUBSTEPS,
-        value_parser = whole(1, u32::MAX)
-    )]
-    substeps: u32,
-    /// Iterations of the constraint solver in each time step, of solvers for rigid bodies.
-    #[arg(
-        long,
-        value_name = "NUMBER",
-        default_value_t = Resolution::RIGID_ITERATIONS,
-        value_parser = whole(1, u32::MAX)
-    )]
-    iterations: u32,
+    /// Cells per reference length, of solvers with a grid: per radius, where there are grains; 8 unless given.
+    #[arg(long, value_name = "NUMBER", value_parser = positive)]
+    cells: Option<f64>,
+    /// Material points per cell and axis, of solvers with a grid; 3 unless given.
+    #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, 64))]
+    points: Option<u32>,
+    /// Courant number c Δt/h, of solvers with a grid; .4 unless given.
+    #[arg(long, value_name = "NUMBER", value_parser = positive)]
+    courant: Option<f64>,
+    /// Time steps in each sixtieth of a second, of solvers for rigid bodies; 8 unless given.
+    #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, u32::MAX))]
+    substeps: Option<u32>,
+    /// Iterations of the constraint solver in each time step, of solvers for rigid bodies; 4 unless given.
+    #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, u32::MAX))]
+    iterations: Option<u32>,
     /// Take a time step of the critical one or above.
     #[arg(long)]
     allow_unstable: bool,
@@ -111,6 +96,30 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
+    /// An option that says how finely solvers of another kind work is a mistake, and never dropped.
+    fn refuse_others(&self, method: Method) -> Result<(), Fault> {
+        let given = [
+            ("--time-step or --time-step-fraction", !self.step.is_usual(), Method::Dem),
+            ("--cells", self.cells.is_some(), Method::Grid),
+            ("--points", self.points.is_some(), Method::Grid),
+            ("--courant", self.courant.is_some(), Method::Grid),
+            ("--substeps", self.substeps.is_some(), Method::Rigid),
+            ("--iterations", self.iterations.is_some(), Method::Rigid),
+        ];
+        let Some((option, ..)) = given.into_iter().find(|(_, is_given, of)| *is_given && *of != method) else {
+            return Ok(());
+        };
+        let own = match method {
+            Method::Dem => "`--time-step` or `--time-step-fraction`",
+            Method::Grid => "`--cells`, `--points` and `--courant`, from which its time step follows",
+            Method::Rigid => "`--substeps` and `--iterations`",
+        };
+        let solver = &self.solver;
+        Err(Fault::input(format!(
+            "{option}: how finely `{solver}` works here is said by {own}; expected none of another kind"
+        )))
+    }
+
     /// Whether it was said that snapshots are not to be written.
     fn asks_for_no_snapshots(&self) -> bool {
         self.write.as_ref().is_some_and(|asked| asked.iter().all(|format| format.format().is_none()))
@@ -256,12 +265,19 @@ fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format>
 /// The resolution asked for, unless it is above the critical step and nobody said that this is meant.
 fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Result<Resolution, Fault> {
     if Method::of(&arguments.solver) == Some(Method::Rigid) {
-        let &Arguments { substeps, iterations, .. } = arguments;
-        return Ok(Resolution::Rigid { step: Resolution::RIGID_STEP, substeps, iterations });
+        arguments.refuse_others(Method::Rigid)?;
+        return Ok(Resolution::Rigid {
+            step: Resolution::RIGID_STEP,
+            substeps: arguments.substeps.unwrap_or(Resolution::SUBSTEPS),
+            iterations: arguments.iterations.unwrap_or(Resolution::RIGID_ITERATIONS),
+        });
     }
     // A program that has springs too is given cells where nothing else would do.
     if solver.deforms() && (!solver.has_springs() || scene.needs_deformable().is_some()) {
-        let &Arguments { cells, points, courant, .. } = arguments;
+        arguments.refuse_others(Method::Grid)?;
+        let cells = arguments.cells.unwrap_or(Resolution::CELLS);
+        let points = arguments.points.unwrap_or(Resolution::POINTS);
+        let courant = arguments.courant.unwrap_or(Resolution::COURANT);
         if courant >= 1.0 && !arguments.allow_unstable {
             return Err(Fault::input(format!(
                 "Courant number: expected less than 1, found {courant} (--allow-unstable takes it all the same)"
@@ -269,6 +285,7 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
         }
         return Ok(Resolution::Grid { cells, points, courant });
     }
+    arguments.refuse_others(Method::Dem)?;
     let critical = scene.critical_time_step();
     let resolution = arguments.step.resolution();
     let step = match resolution {
@@ -305,13 +322,32 @@ fn fault(error: &RunError) -> Fault {
 /// What is known before the first step.
 fn header(scene: &Scene, solver: &dyn Solver) -> String {
     let effects = Effects::words(scene);
-    let effects = if effects.is_empty() { "contact springs only".to_owned() } else { effects.join(", ") };
-    format!(
-        "scene      {}\nsolver     {}\neffects    {effects}\ngrains     {}\n",
-        scene.title,
-        solver.name(),
-        number::count(scene.grains.len() as u64)
-    )
+    let effects = match (effects.is_empty(), scene.grains.is_empty()) {
+        (false, _) => effects.join(", "),
+        (true, true) => "none beside deformation".to_owned(),
+        (true, false) => "contact springs only".to_owned(),
+    };
+    let count = |number: usize| number::count(number as u64);
+    let mut lines = format!("scene      {}\nsolver     {}\neffects    {effects}\n", scene.title, solver.name());
+    if !scene.grains.is_empty() || scene.bodies.is_empty() {
+        let comers = &scene.stays.entries;
+        let late = match scene.duration {
+            Duration::Seconds(time) => comers.len() - scene.stays.entered_by(time),
+            Duration::Cycles(_) => 0,
+        };
+        let words = match (comers.len(), late) {
+            (0, _) => String::new(),
+            (some, 0) => format!(", {} of them poured", count(some)),
+            (some, late) => {
+                format!(", {} of them poured, of which {} would come after the end", count(some), count(late))
+            }
+        };
+        lines += &format!("grains     {}{words}\n", count(scene.grains.len()));
+    }
+    if !scene.bodies.is_empty() {
+        lines += &format!("bodies     {}\n", count(scene.bodies.len()));
+    }
+    lines
 }
 
 fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>, arguments: &Arguments) -> String {
@@ -324,8 +360,14 @@ fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>
         String::new()
     } else {
         let (count, rows) = (number::count(snapshots.len()), number::count(snapshots.rows()));
-        let form = if formats.contains(&Format::Parquet) { "as Parquet in snapshots/" } else { "not written" };
-        format!("snapshots  {count} of {rows} rows, {form} (--write dump,vtk for text)\n")
+        let form = if formats.contains(&Format::Parquet) {
+            "as Parquet in snapshots/ (--write dump,vtk for text)"
+        } else if formats.contains(&Format::Vtk) {
+            "in vtk/"
+        } else {
+            "not written (--write dump,vtk for text)"
+        };
+        format!("snapshots  {count} of {rows} rows, {form}\n")
     };
     format!("took       {}{evaluations}\n{bulk}{}\n", number::seconds(cost.wall_seconds), arguments.out.display())
 }
@@ -394,6 +436,8 @@ impl Watch for Watcher {
         let Ahead { time_step, steps, .. } = ahead;
         let of_critical = if self.method == Some(Method::Grid) {
             "within the Courant number of the grid".to_owned()
+        } else if self.method == Some(Method::Rigid) {
+            "of rigid contacts, which have no critical step".to_owned()
         } else if self.critical.is_finite() {
             let fraction = number::significant(time_step / self.critical, 4);
             format!("{fraction} of the critical step {:.6e} s", self.critical)
@@ -405,9 +449,14 @@ impl Watch for Watcher {
                 format!(", about {} at ten million particle-steps a second", rough(seconds))
             });
             let steps = number::count(steps);
+            let points = match self.method {
+                Some(Method::Grid) => format!("points     {}\n", number::count(ahead.particles)),
+                _ => String::new(),
+            };
             // A header that nobody reads any more is no reason to give up the run.
-            let _ =
-                print(&format!("{header}time step  {time_step:.6e} s, {of_critical}\nsteps      {steps}{estimate}\n"));
+            let _ = print(&format!(
+                "{header}{points}time step  {time_step:.6e} s, {of_critical}\nsteps      {steps}{estimate}\n"
+            ));
         }
         if let Some(seconds) = self.estimate(ahead).filter(|&seconds| seconds >= LONG) {
             eprintln!("{}", self.warning(ahead, seconds));

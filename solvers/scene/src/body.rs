@@ -56,6 +56,21 @@ impl BlockShape {
         }
     }
 
+    /// How far outside of it a place is (m); not above zero where it is in it.
+    #[must_use]
+    pub fn outside(&self, at: Vector3<f64>, dimensions: usize) -> f64 {
+        match self {
+            Self::Box { low, high } => {
+                let beyond = |axis: usize| (low[axis] - at[axis]).max(at[axis] - high[axis]);
+                (0..dimensions).map(beyond).fold(f64::NEG_INFINITY, f64::max)
+            }
+            Self::Annulus { centre, inner, outer } => {
+                let radius = (at - centre).norm();
+                (inner - radius).max(radius - outer)
+            }
+        }
+    }
+
     /// Length that says how large it is: the shortest edge, or the width of the ring (m).
     #[must_use]
     pub fn length(&self, dimensions: usize) -> f64 {

@@ -4,8 +4,9 @@ use super::{Groups, Resolver};
 use crate::check::Checker;
 use crate::error::SceneError;
 use crate::file::ProbeSpec;
-use crate::scene::{Block, BodyName, Driven, Probe, ProbeTarget, Spot, Wall};
+use crate::scene::{Block, BodyName, Driven, Grain, Probe, ProbeTarget, Spot, Wall};
 use crate::stays::Stays;
+use nalgebra::Vector3;
 
 impl Resolver<'_> {
     pub(super) fn probe(
@@ -43,13 +44,18 @@ impl Resolver<'_> {
                 (None, Some(body)) => BodyName::Body(names.body(check, &key("point.body"), body)?),
                 _ => return Err(check.error(&key("point"), "one of `grain` and `body`", "both or none")),
             };
-            spots.push(Spot { body, at: check.vector(&key("point.at"), &point.at)? });
+            let at = check.vector(&key("point.at"), &point.at)?;
+            if let Some(away) = names.outside(&body, at, check.dimension.count()) {
+                let expected = "a place in the body at the start";
+                return Err(check.error(&key("point.at"), expected, &format!("{:?}, {away:.3e} m outside", point.at)));
+            }
+            spots.push(Spot { body, at });
             ProbeTarget::Point(spots.len() - 1)
         } else if let Some([first, second]) = &spec.contact {
             let grain = names.grain(check, &key("contact"), first)?;
             match names.walls.iter().position(|wall| &wall.name == second) {
                 Some(wall) => ProbeTarget::GrainWall(grain, wall),
-                None => ProbeTarget::Pair(grain, names.grain(check, &key("contact"), second)?),
+                None => ProbeTarget::Pair(grain, names.grain_or_wall(check, &key("contact"), second)?),
             }
         } else if let Some(wall) = &spec.wall {
             let known = names.walls.iter().map(|wall| &wall.name);
@@ -72,8 +78,13 @@ impl Resolver<'_> {
         };
         let of_a_grain = matches!(target, ProbeTarget::Grain(_) | ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..));
         if !names.stays.is_always() && (of_a_grain || target == ProbeTarget::Budget) {
-            let expected = "a probe of what is there all the time, for grains come or go here";
-            return Err(check.error(&format!("probes.{name}"), expected, "one of a grain, a contact or the budget"));
+            let expected = "a probe of what is there all the time (a wall, the system, the stress, a count), for grains come or go here";
+            let found = match target {
+                ProbeTarget::Grain(_) => "one of a grain",
+                ProbeTarget::Budget => "one of the budget",
+                _ => "one of a contact",
+            };
+            return Err(check.error(&format!("probes.{name}"), expected, found));
         }
         if names.walls.iter().any(|wall| wall.piston.is_some()) && target == ProbeTarget::Budget {
             let expected = "no budget where a wall is pressed, for its energy is not added up";
@@ -86,6 +97,7 @@ impl Resolver<'_> {
 /// What probes can refer to.
 pub(super) struct Names<'a> {
     pub(super) groups: &'a Groups,
+    pub(super) grains: &'a [Grain],
     pub(super) bodies: &'a [Block],
     pub(super) walls: &'a [Wall],
     pub(super) driven: &'a [Driven],
@@ -95,6 +107,32 @@ pub(super) struct Names<'a> {
 impl Names<'_> {
     fn body(&self, check: &Checker<'_>, key: &str, name: &str) -> Result<usize, SceneError> {
         check.place_of(key, name, "a body of this scene", self.bodies.iter().map(|body| &body.name))
+    }
+
+    /// How far outside a body a place is at the start (m), if it is.
+    fn outside(&self, body: &BodyName, at: Vector3<f64>, dimensions: usize) -> Option<f64> {
+        let (away, size) = match *body {
+            BodyName::Grain(grain) => {
+                let Grain { position, radius, .. } = self.grains[grain];
+                ((at - position).norm() - radius, radius)
+            }
+            BodyName::Body(place) => {
+                let shape = self.bodies[place].shape;
+                (shape.outside(at, dimensions), shape.length(dimensions))
+            }
+        };
+        // The slack is for places on the surface that are rounded.
+        (away > 1e-6 * size).then_some(away)
+    }
+
+    /// The grain of a name, where a wall could stand too.
+    fn grain_or_wall(&self, check: &Checker<'_>, key: &str, name: &str) -> Result<usize, SceneError> {
+        let group = name.rsplit_once('.').map_or(name, |(group, _)| group);
+        if !self.groups.contains_key(name) && !self.groups.contains_key(group) {
+            let walls: Vec<String> = self.walls.iter().map(|wall| wall.name.clone()).collect();
+            check.place_of(key, name, "a group of grains or a wall", self.groups.keys().chain(&walls))?;
+        }
+        self.grain(check, key, name)
     }
 
     /// The grain called `group` (when the group has one) or `group.k`.
