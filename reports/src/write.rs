@@ -4,6 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use tempfile::TempDir;
 use thiserror::Error;
 
 use crate::scratch::temporary_in;
@@ -43,6 +44,39 @@ pub fn write_file(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(),
     write().map_err(|source| WriteError::new(path, source))
 }
 
+/// Writes many files into one folder, each whole or not at all: beside it stands one hidden directory for all of them, so that
+/// a file costs no look through the folder.
+#[derive(Debug)]
+pub struct Desk {
+    folder: PathBuf,
+    beside: TempDir,
+}
+
+impl Desk {
+    /// A desk for a folder that is there.
+    ///
+    /// # Errors
+    /// When nothing can be written in it.
+    pub fn new(folder: &Path) -> Result<Self, WriteError> {
+        let beside = temporary_in(folder).map_err(|source| WriteError::new(folder, source))?;
+        Ok(Self { folder: folder.to_owned(), beside })
+    }
+
+    /// Writes a file of the folder.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<(), WriteError> {
+        let (path, staged) = (self.folder.join(name), self.beside.path().join(name));
+        let written = fs::write(&staged, bytes.as_ref()).and_then(|()| fs::rename(&staged, &path));
+        written.map_err(|source| {
+            // What of it was written takes room that others need.
+            let _ = fs::remove_file(&staged);
+            WriteError::new(path, source)
+        })
+    }
+}
+
 /// The directory that holds `path`; the current one for a bare name.
 pub(crate) fn parent_of(path: &Path) -> &Path {
     match path.parent() {
@@ -63,6 +97,19 @@ mod tests {
         write_file(&path, "two").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "two");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_desk_leaves_files_and_nothing_beside_them() {
+        let dir = tempfile::tempdir().unwrap();
+        let desk = Desk::new(dir.path()).unwrap();
+        for (name, text) in [("a.txt", "one"), ("b.txt", "two"), ("a.txt", "three")] {
+            desk.write(name, text).unwrap();
+        }
+        assert!(desk.write("no/such/folder", "").is_err());
+        drop(desk);
+        assert_eq!(fs::read_to_string(dir.path().join("a.txt")).unwrap(), "three");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
 use grainbench_harness::solvers::{Kept, Solvers, Stranger};
 use grainbench_lanes::Processor;
-use grainbench_reports::{WriteError, sweep, write_file};
+use grainbench_reports::{Desk, WriteError, sweep};
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::kept_record;
 use grainbench_scene::record::Record;
@@ -19,8 +19,8 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, Resolution, RunError, Solver, Watch};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, SystemTime};
 
 /// A run that takes less (s) is done sooner than it is read.
@@ -42,6 +42,8 @@ pub struct RunCache {
     fresh: bool,
     edition: Edition,
     taken: AtomicU64,
+    /// Where files are written before they have their names; from the first that is kept.
+    desk: OnceLock<Option<Desk>>,
 }
 
 impl RunCache {
@@ -53,7 +55,8 @@ impl RunCache {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
         // Of a program that was killed while it wrote.
         sweep(folder).map_err(|source| WriteError::new(folder, source))?;
-        Ok(Self { folder: folder.to_owned(), most, fresh, edition, taken: AtomicU64::new(0) })
+        let folder = folder.to_owned();
+        Ok(Self { folder, most, fresh, edition, taken: AtomicU64::new(0), desk: OnceLock::new() })
     }
 
     /// How many runs came from here.
@@ -91,8 +94,10 @@ impl RunCache {
             return;
         }
         let Ok(bytes) = kept_record::to_bytes(name, record) else { return };
-        if bytes.len() <= LARGEST {
-            let _ = write_file(self.path(name), bytes);
+        if bytes.len() <= LARGEST
+            && let Some(desk) = self.desk.get_or_init(|| Desk::new(&self.folder).ok())
+        {
+            let _ = desk.write(&format!("{name}.{ENDING}"), bytes);
         }
     }
 

@@ -5,6 +5,7 @@ use crate::file::SceneFile;
 use crate::scene::Dimension;
 use crate::shape;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 /// The text of a scene file and where it came from.
 #[derive(Clone, Debug)]
@@ -14,6 +15,8 @@ pub struct SceneSource {
     /// Directory that paths in the file are relative to.
     pub directory: PathBuf,
     text: String,
+    /// The text as a table: of all copies, whatever variant and overrides they have, it is read once.
+    read: Arc<OnceLock<toml::Table>>,
     variant: Option<String>,
     overrides: Vec<(String, String)>,
 }
@@ -49,13 +52,13 @@ impl SceneSource {
             });
         }
         let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let source = Self { name, directory, text, variant: None, overrides: Vec::new() };
+        let source = Self { name, directory, text, read: Arc::default(), variant: None, overrides: Vec::new() };
         // A slip in a variant that nobody asked for today is one all the same.
         let table = source.parse()?;
         let mut varied = source.clone();
-        for variant in variant_names(&table) {
+        for variant in variant_names(table) {
             varied.variant = Some(variant);
-            varied.scene_file_of(&table)?;
+            varied.scene_file_of(table)?;
         }
         Ok(source)
     }
@@ -67,6 +70,7 @@ impl SceneSource {
             name: name.to_owned(),
             directory: directory.to_path_buf(),
             text: text.to_owned(),
+            read: Arc::default(),
             variant: None,
             overrides: Vec::new(),
         }
@@ -97,7 +101,7 @@ impl SceneSource {
     /// # Errors
     /// When the text is not TOML.
     pub fn variants(&self) -> Result<Vec<String>, SceneError> {
-        Ok(variant_names(&self.parse()?))
+        Ok(variant_names(self.parse()?))
     }
 
     /// The file with its variant and overrides laid over it.
@@ -105,7 +109,7 @@ impl SceneSource {
     /// # Errors
     /// When the text is not TOML, the variant is unknown, or a key is unknown, missing or of the wrong type.
     pub fn scene_file(&self) -> Result<SceneFile, SceneError> {
-        self.scene_file_of(&self.parse()?)
+        self.scene_file_of(self.parse()?)
     }
 
     /// The same as a table, of which nothing but that it is TOML is known.
@@ -113,7 +117,7 @@ impl SceneSource {
     /// # Errors
     /// When the text is not TOML, the variant is unknown, or an override has no place.
     pub fn table(&self) -> Result<toml::Table, SceneError> {
-        self.laid_over(&self.parse()?)
+        self.laid_over(self.parse()?)
     }
 
     /// The file of the text as a table.
@@ -166,8 +170,11 @@ impl SceneSource {
         }
     }
 
-    fn parse(&self) -> Result<toml::Table, SceneError> {
-        self.text.parse::<toml::Table>().map_err(|error| {
+    fn parse(&self) -> Result<&toml::Table, SceneError> {
+        if let Some(table) = self.read.get() {
+            return Ok(table);
+        }
+        let table = self.text.parse::<toml::Table>().map_err(|error| {
             let line = error.span().map_or(1, |span| line_of(&self.text, span.start));
             let there = error.span().and_then(|span| self.text.get(span)).map(str::trim).unwrap_or_default();
             let at = if there.is_empty() { String::new() } else { format!(" at `{}`", shortened(there)) };
@@ -178,7 +185,8 @@ impl SceneSource {
                 found: error.message().replace('\n', ", ") + &at,
                 help: None,
             }
-        })
+        })?;
+        Ok(self.read.get_or_init(|| table))
     }
 
     fn lay_over(&self, table: &mut toml::Table, key: &str, value: &str) -> Result<(), SceneError> {
