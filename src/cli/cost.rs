@@ -8,6 +8,7 @@ use super::strangers::WithStrangers;
 use super::subject::Variant;
 use grainbench::cases::registry::{self, CASES};
 use grainbench::cases::solvers::Registry;
+use grainbench::harness::study::point::Point;
 use grainbench::harness::subject::Subject;
 use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, write_study};
 use grainbench::studies::Follow;
@@ -16,7 +17,7 @@ use grainbench::studies::cost::run::{Meter, Wanted};
 use grainbench::studies::cost::{load, step};
 use grainbench::studies::result_cache::ResultCache;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -25,16 +26,16 @@ use std::time::Instant;
 pub(crate) struct Arguments {
     /// Cases to measure; all that have an exact answer when none is named.
     #[arg(value_name = "CASE|CASE/VARIANT")]
-    cases: Vec<String>,
+    pub(crate) cases: Vec<String>,
     /// Only this solver, or the program of this manifest; may be given more than once.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
-    solver: Vec<String>,
+    pub(crate) solver: Vec<String>,
     /// Points that take more than twenty seconds too.
     #[arg(long, alias = "rungs", value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
-    levels: String,
+    pub(crate) levels: String,
     /// Measure too what a step costs, piece by piece, and of one grain and of ten thousand; so it is where no case is named.
     #[arg(long)]
-    prices: bool,
+    pub(crate) prices: bool,
     /// Measure every point anew, also those that were finished before.
     #[arg(long)]
     fresh: bool,
@@ -46,14 +47,14 @@ pub(crate) struct Arguments {
     keep: bool,
     /// Directory for the report; finished points are kept in it too.
     #[arg(long, value_name = "DIR", default_value = "grainbench-cost")]
-    out: PathBuf,
+    pub(crate) out: PathBuf,
     /// Print the results as JSON instead of sentences.
     #[arg(long)]
     json: bool,
 }
 
 /// Laps of what a step costs.
-const ROUNDS: u32 = 5;
+pub(crate) const ROUNDS: u32 = 5;
 
 /// Measures and writes the report, after every quantity as far as it is.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
@@ -62,7 +63,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
     check_writable(&arguments.out)?;
     let cache = ResultCache::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::writing)?;
-    let wanted = Wanted { solvers: named, all: arguments.levels == "all" };
+    let wanted = Wanted { solvers: named, all: arguments.levels == "all", counts: false };
     let meter = Meter::new(&cache, wanted, &solvers);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
     if pieces == 0 {
@@ -95,9 +96,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     }
     study.provenance = provenance(words(arguments), start.elapsed().as_secs_f64());
     if let (Some(old), Some(path)) = (&old, &arguments.against) {
-        let new: Vec<_> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
-        study.changes = compare(old, &new);
-        study.against = Some(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
+        set_against(&mut study, old, path);
     }
     write_study(&arguments.out, &study).map_err(Fault::writing)?;
     if arguments.keep {
@@ -107,14 +106,21 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     if arguments.json {
         print(&study_json(&study).map_err(Fault::input)?)?;
     } else {
-        print(&text(&study, arguments))?;
+        print(&text(&study, &arguments.out))?;
         print(&format!("{reused} of {pieces} points were measured before and taken as they were\n"))?;
     }
     Ok(if study.changes.iter().any(|change| change.worse) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
+/// Compares a study with the points of another session, which stand at a path.
+pub(crate) fn set_against(study: &mut Study, old: &[Point], path: &Path) {
+    let new: Vec<Point> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
+    study.changes = compare(old, &new);
+    study.against = Some(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
+}
+
 /// The subjects of the cases named, in the order of the registry.
-fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
+pub(crate) fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();
     for case in CASES {
@@ -136,7 +142,7 @@ fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
 }
 
 /// The options that are not the default, in words.
-fn words(arguments: &Arguments) -> Vec<String> {
+pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["cost".to_owned()];
     words.extend(arguments.cases.iter().cloned());
     words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
@@ -152,7 +158,7 @@ pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
 }
 
 /// The sentences, and what changed.
-fn text(study: &Study, arguments: &Arguments) -> String {
+pub(crate) fn text(study: &Study, out: &Path) -> String {
     let mut text = String::new();
     for diagram in &study.diagrams {
         text.push_str(&format!("{}/{} · {}\n", diagram.case, diagram.variant, diagram.quantity));
@@ -171,7 +177,7 @@ fn text(study: &Study, arguments: &Arguments) -> String {
             text.push_str(&format!("  {}: {}\n", change.what, change.how));
         }
     }
-    text + &format!("{}\n", arguments.out.join("index.html").display())
+    text + &format!("{}\n", out.join("index.html").display())
 }
 
 /// Shows how far a study is, and counts what was reused.
@@ -183,6 +189,11 @@ pub(crate) struct Follower {
 impl Follower {
     pub(crate) fn new(pieces: u64, what: &str) -> Self {
         Self { progress: Some(Progress::new(pieces, what)), reused: 0 }
+    }
+
+    /// Nobody is shown anything.
+    pub(crate) const fn none() -> Self {
+        Self { progress: None, reused: 0 }
     }
 
     /// Takes the bar away; how many pieces were reused.

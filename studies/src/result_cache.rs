@@ -7,11 +7,23 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// Gives the text of the piece of a name.
+type Gives = Box<dyn Fn(&str) -> Option<String> + Send + Sync>;
+/// Takes the text of the piece of a name.
+type Takes = Box<dyn Fn(&str, &str) -> Result<(), WriteError> + Send + Sync>;
+
 /// Where finished pieces are kept, or nowhere.
-#[derive(Clone, Debug)]
 pub struct ResultCache {
-    folder: Option<PathBuf>,
-    fresh: bool,
+    place: Place,
+}
+
+/// The place.
+enum Place {
+    Nowhere,
+    /// A folder, of which nothing is taken where all is to be done anew.
+    Folder(PathBuf, bool),
+    /// Somebody else's.
+    Elsewhere(Gives, Takes),
 }
 
 impl ResultCache {
@@ -21,32 +33,37 @@ impl ResultCache {
     /// When the folder cannot be made.
     pub fn open(folder: &Path, fresh: bool) -> Result<Self, WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
-        let cache = Self { folder: Some(folder.to_owned()), fresh };
         // Of a program that was killed while it wrote, here or in the directory of the report; what has its name is
         // whole.
         for place in [Some(folder), folder.parent()].into_iter().flatten() {
             sweep(place).map_err(|source| WriteError::new(place, source))?;
         }
-        Ok(cache)
+        Ok(Self { place: Place::Folder(folder.to_owned(), fresh) })
     }
 
     /// No result cache: nothing is kept, nothing is found.
     #[must_use]
     pub const fn none() -> Self {
-        Self { folder: None, fresh: false }
+        Self { place: Place::Nowhere }
     }
 
-    fn path(&self, name: &str) -> Option<PathBuf> {
-        self.folder.as_ref().map(|folder| folder.join(format!("{name}.json")))
+    /// A result cache of somebody else's, who gives the texts of pieces and takes them.
+    #[must_use]
+    pub fn elsewhere(
+        gives: impl Fn(&str) -> Option<String> + Send + Sync + 'static,
+        takes: impl Fn(&str, &str) -> Result<(), WriteError> + Send + Sync + 'static,
+    ) -> Self {
+        Self { place: Place::Elsewhere(Box::new(gives), Box::new(takes)) }
     }
 
     /// A piece of that name, if it stands here and can be read. One that cannot is done again.
     #[must_use]
     pub fn take<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
-        if self.fresh {
-            return None;
-        }
-        let text = fs::read_to_string(self.path(name)?).ok()?;
+        let text = match &self.place {
+            Place::Nowhere | Place::Folder(_, true) => return None,
+            Place::Folder(folder, false) => fs::read_to_string(file(folder, name)).ok()?,
+            Place::Elsewhere(gives, _) => gives(name)?,
+        };
         serde_json::from_str(&text).ok()
     }
 
@@ -55,10 +72,17 @@ impl ResultCache {
     /// # Errors
     /// When the disk refuses.
     pub fn put<T: Serialize>(&self, name: &str, piece: &T) -> Result<(), WriteError> {
-        let Some(path) = self.path(name) else { return Ok(()) };
-        let text = serde_json::to_string(piece).map_err(|error| WriteError::new(&path, io::Error::other(error)))?;
-        write_file(&path, text)
+        let text = || serde_json::to_string(piece).map_err(|error| WriteError::new(name, io::Error::other(error)));
+        match &self.place {
+            Place::Nowhere => Ok(()),
+            Place::Folder(folder, _) => write_file(file(folder, name), text()?),
+            Place::Elsewhere(_, takes) => takes(name, &text()?),
+        }
     }
+}
+
+fn file(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.json"))
 }
 
 #[cfg(test)]

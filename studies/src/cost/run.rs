@@ -50,6 +50,21 @@ pub struct Wanted {
     pub solvers: Vec<String>,
     /// Points over twenty seconds too.
     pub all: bool,
+    /// Errors and counts alone, of one run each, whose times are as they happen to be.
+    pub counts: bool,
+}
+
+/// A point as it is known before it is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planned {
+    /// Its name in the result cache.
+    pub name: String,
+    /// Solver, its settings spelt out.
+    pub solver: String,
+    /// Resolution, with the other knobs, in words.
+    pub setting: String,
+    /// What all its repetitions are expected to take (s).
+    pub seconds: f64,
 }
 
 /// One point to measure.
@@ -112,12 +127,65 @@ impl<'a> Meter<'a> {
         self.tasks(subject).len()
     }
 
+    /// The points of a subject, in the order in which they are measured first.
+    #[must_use]
+    pub fn planned(&self, subject: &Subject) -> Vec<Planned> {
+        let planned = |task: Task| {
+            let once = knobs::nominal_seconds(&task.scene, &task.turn.resolution);
+            let once = if task.is_program { PROGRAM * once } else { once };
+            let times = if self.wanted.counts || once >= SHORT { 1.0 } else { 1.0 + REPETITIONS as f64 };
+            // A repetition is no shorter than what the clock tells, and the reference is timed around each.
+            let seconds = times * once.max(if self.wanted.counts { 0.0 } else { LEAST });
+            let Turn { solver, resolution, knobs, .. } = task.turn;
+            let setting = if knobs.is_empty() { resolution.to_string() } else { format!("{resolution}, {knobs}") };
+            Planned { name: task.name, solver, setting, seconds }
+        };
+        self.tasks(subject).into_iter().map(planned).collect()
+    }
+
     /// Measures a subject over all knobs.
     ///
     /// # Errors
     /// When a point cannot be kept.
     pub fn diagram(&self, subject: &Subject, follow: &mut dyn Follow) -> Result<Diagram, WriteError> {
         let tasks = self.tasks(subject);
+        let points = self.measure(subject, &tasks, follow)?;
+        Ok(drawn(subject, &tasks, points))
+    }
+
+    /// The diagram of what of a subject is finished, without measuring anything.
+    #[must_use]
+    pub fn finished(&self, subject: &Subject) -> Diagram {
+        let mut tasks = self.tasks(subject);
+        let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.cache.take(&task.name)).collect();
+        let mut is_there = points.iter().map(Option::is_some).collect::<Vec<_>>().into_iter();
+        tasks.retain(|_| is_there.next().unwrap_or_default());
+        points.retain(Option::is_some);
+        drawn(subject, &tasks, points)
+    }
+
+    /// Measures those points of a subject that have one of these names, in turn, and keeps each.
+    ///
+    /// # Errors
+    /// When a point cannot be kept.
+    pub fn measure_named(
+        &self,
+        subject: &Subject,
+        wanted: &dyn Fn(&str) -> bool,
+        follow: &mut dyn Follow,
+    ) -> Result<(), WriteError> {
+        let mut tasks = self.tasks(subject);
+        tasks.retain(|task| wanted(&task.name));
+        self.measure(subject, &tasks, follow).map(drop)
+    }
+
+    /// Measures tasks of a subject, what is finished left out: one at a time, repetitions in turn.
+    fn measure(
+        &self,
+        subject: &Subject,
+        tasks: &[Task],
+        follow: &mut dyn Follow,
+    ) -> Result<Vec<Option<Point>>, WriteError> {
         let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.cache.take(&task.name)).collect();
         points.iter().flatten().for_each(|_| follow.done(true));
         let mut open: Vec<(usize, f64, Point)> = Vec::new();
@@ -128,7 +196,7 @@ impl<'a> Meter<'a> {
             follow.now(&format!("{} · {} {}", subject.case.name, task.turn.solver, task.turn.resolution));
             let point = first(subject, task);
             let whole = point.repetitions.first().map_or(0.0, |timing| timing.wall + timing.start_up);
-            if whole < SHORT && point.standing == Standing::Measured {
+            if whole < SHORT && point.standing == Standing::Measured && !self.wanted.counts {
                 let repetitions = if whole < WARM { Vec::new() } else { point.repetitions };
                 open.push((at, whole, Point { repetitions, ..point }));
             } else {
@@ -149,15 +217,7 @@ impl<'a> Meter<'a> {
             points[at] = Some(point);
             follow.done(false);
         }
-        let mut points: Vec<Point> = points.into_iter().flatten().collect();
-        mark_floors(&tasks, &mut points);
-        Ok(Diagram {
-            case: subject.case.name.to_owned(),
-            variant: subject.variant.to_owned(),
-            quantity: subject.quantity.clone(),
-            source: subject.source.clone(),
-            points,
-        })
+        Ok(points)
     }
 
     fn tasks(&self, subject: &Subject) -> Vec<Task> {
@@ -185,7 +245,8 @@ impl<'a> Meter<'a> {
                 }
                 let solver = solvers.entry(turn.solver.clone()).or_insert_with(|| self.solvers.find(&turn.solver));
                 let Some(solver) = solver.clone() else { continue };
-                let read = format!("{}|{}|{}", subject.quantity, subject.variant, turn.knobs);
+                let once = if self.wanted.counts { "|once" } else { "" };
+                let read = format!("{}|{}|{}{once}", subject.quantity, subject.variant, turn.knobs);
                 let program = self.program.clone() + &self.solvers.edition(&turn.solver);
                 let name = identity::of_run(&program, &turn.solver, &scene, &turn.resolution, &read);
                 // Two lanes may lead to the same run.
@@ -201,6 +262,19 @@ impl<'a> Meter<'a> {
             }
         }
         tasks
+    }
+}
+
+/// The diagram of the points of some tasks.
+fn drawn(subject: &Subject, tasks: &[Task], points: Vec<Option<Point>>) -> Diagram {
+    let mut points: Vec<Point> = points.into_iter().flatten().collect();
+    mark_floors(tasks, &mut points);
+    Diagram {
+        case: subject.case.name.to_owned(),
+        variant: subject.variant.to_owned(),
+        quantity: subject.quantity.clone(),
+        source: subject.source.clone(),
+        points,
     }
 }
 

@@ -27,6 +27,19 @@ pub const GRIDS: [&str; 6] =
 /// Energy over that at the start that counts as growth.
 const MORE_ENERGY: f64 = 1.1;
 
+/// The name of the limit of an assembly in a result cache.
+#[must_use]
+pub fn name_of_assembly(program: &str, assembly: &Assembly, solver: &str) -> String {
+    let text = format!("{:?}", assembly.scene);
+    identity::of_words(program, &["limit", assembly.name, &text, solver])
+}
+
+/// The name of the limit of the bar.
+#[must_use]
+pub fn name_of_bar(program: &str, setting: &str, cells: f64) -> String {
+    identity::of_words(program, &["bar", setting, &cells.to_string()])
+}
+
 /// The limit of an assembly with a solver, from the result cache where it stands there; and whether it did.
 ///
 /// # Errors
@@ -37,8 +50,7 @@ pub fn of_assembly(
     (solvers, solver): (&dyn Solvers, &str),
     cache: &ResultCache,
 ) -> Result<(Limit, bool), WriteError> {
-    let text = format!("{:?}", assembly.scene);
-    let name = identity::of_words(program, &["limit", assembly.name, &text, solver]);
+    let name = name_of_assembly(program, assembly, solver);
     if let Some(limit) = cache.take(&name) {
         return Ok((limit, true));
     }
@@ -81,7 +93,7 @@ pub fn of_bar(
     cells: f64,
     cache: &ResultCache,
 ) -> Result<(Limit, bool), WriteError> {
-    let name = identity::of_words(program, &["bar", setting, &cells.to_string()]);
+    let name = name_of_bar(program, setting, cells);
     if let Some(limit) = cache.take(&name) {
         return Ok((limit, true));
     }

@@ -83,6 +83,20 @@ fn changed(
     HardCase { name, must, scene, check, goes_on: false, asked: &SOLVERS }
 }
 
+/// The name of the verdict of a solver in a result cache.
+#[must_use]
+pub fn name_of(program: &str, case: &HardCase, solver: &str) -> String {
+    let text = format!("{:?}", case.scene);
+    identity::of_words(program, &["hard", &case.name, &text, solver])
+}
+
+/// What a verdict of a solver is expected to take (s).
+#[must_use]
+pub fn seconds(case: &HardCase, solver: &str) -> f64 {
+    let expected = case.scene.as_ref().map_or(0.0, |scene| nominal_seconds(scene, &resolution(solver, 1.0)));
+    if expected > HOPELESS { 0.0 } else { expected }
+}
+
 /// The verdict of a solver, from the result cache where it stands there; and whether it did.
 ///
 /// # Errors
@@ -93,8 +107,7 @@ pub fn verdict(
     (solvers, solver): (&dyn Solvers, &str),
     cache: &ResultCache,
 ) -> Result<(Hard, bool), WriteError> {
-    let text = format!("{:?}", case.scene);
-    let name = identity::of_words(program, &["hard", &case.name, &text, solver]);
+    let name = name_of(program, case, solver);
     if let Some(row) = cache.take(&name) {
         return Ok((row, true));
     }
