@@ -12,6 +12,7 @@ pub mod verify;
 
 pub use own::{Judgement, conform, judge};
 
+pub use grainbench_campaign as campaign;
 pub use grainbench_cases as cases;
 pub use grainbench_dem as dem;
 pub use grainbench_fields as fields;

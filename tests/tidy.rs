@@ -77,9 +77,23 @@ fn crates_depend_in_one_direction() {
         ("cases", &["scene", "harness", "dem", "mpm", "rigid", "reference", "fields"]),
         ("reports", &["scene", "harness", "fields"]),
         ("studies", &["lanes", "scene", "harness", "reports"]),
+        ("campaign", &["scene", "harness", "cases", "reports", "studies"]),
         (
             ".",
-            &["lanes", "scene", "harness", "dem", "mpm", "rigid", "reference", "fields", "cases", "reports", "studies"],
+            &[
+                "lanes",
+                "scene",
+                "harness",
+                "dem",
+                "mpm",
+                "rigid",
+                "reference",
+                "fields",
+                "cases",
+                "reports",
+                "studies",
+                "campaign",
+            ],
         ),
     ];
     // What tests of a crate may know beside it: solvers are held to the harness, and studies try one.

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Commands with what they cannot do without, which is right.
-const COMMANDS: [&[&str]; 21] = [
+const COMMANDS: [&[&str]; 25] = [
     &["list"],
     &["run", "squash"],
     &["simulate", "scene.toml", "--solver", "dem"],
@@ -22,6 +22,10 @@ const COMMANDS: [&[&str]; 21] = [
     &["cost", "collision"],
     &["stability", "two-discs"],
     &["effects", "collision"],
+    &["plan", "run", "squash"],
+    &["work", "a-plan"],
+    &["status", "a-plan"],
+    &["collect", "a-plan"],
     &["race", "nine-discs/kappa-1"],
     &["reference", "build"],
     &["reference", "verify"],

@@ -26,7 +26,9 @@ pub mod staged;
 pub mod store;
 mod stored_figure;
 pub mod study;
+pub mod sweep;
 pub mod terminal;
+pub mod trend;
 pub mod write;
 
 #[cfg(test)]
@@ -41,4 +43,4 @@ pub use scratch::sweep;
 pub use staged::StagedDir;
 pub use store::{LoadError, SaveError, write_report, write_report_and_parquet};
 pub use terminal::summary_table;
-pub use write::{WriteError, write_file};
+pub use write::{Desk, WriteError, write_file};

@@ -49,15 +49,24 @@ fn columns(report: &Report) -> Vec<(String, Values)> {
 /// # Errors
 /// When a line cannot be encoded, which none of this project can fail to be.
 pub fn rows_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
-    let columns = columns(report);
+    csv(&columns(report))
+}
+
+/// Columns of words and numbers as CSV.
+pub(crate) fn csv(columns: &[(String, Values)]) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(columns.iter().map(|(name, _)| name))?;
+    table.write_record(columns.iter().map(|(name, _)| harmless(name.clone())))?;
     let cell = |values: &Values, row: usize| match values {
         Values::Word(words) => words.get(row).cloned().map(harmless),
         Values::Told(numbers) => numbers.get(row).copied().flatten().map(|value| format!("{value:?}")),
         Values::Whole(_) | Values::Number(_) | Values::Flag(_) => None,
     };
-    for row in 0..report.sections.iter().map(|section| section.verdicts.len()).sum() {
+    let rows = columns.iter().map(|(_, values)| match values {
+        Values::Word(words) => words.len(),
+        Values::Told(numbers) => numbers.len(),
+        Values::Whole(_) | Values::Number(_) | Values::Flag(_) => 0,
+    });
+    for row in 0..rows.max().unwrap_or_default() {
         table.write_record(columns.iter().map(|(_, values)| cell(values, row).unwrap_or_default()))?;
     }
     table.into_inner().map_err(|error| error.into_error().into())

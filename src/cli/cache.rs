@@ -26,9 +26,14 @@ pub(crate) fn open(fresh: bool) -> Option<Arc<RunCache>> {
 
 /// The solvers of the registry, with a cache where there is one.
 pub(crate) fn solvers(cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
+    with(Registry, cache)
+}
+
+/// Solvers with a cache where there is one.
+pub(crate) fn with(solvers: impl Solvers + 'static, cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
     match cache {
-        Some(cache) => Arc::new(WithCache::new(Registry, Arc::clone(cache))),
-        None => Arc::new(Registry),
+        Some(cache) => Arc::new(WithCache::new(solvers, Arc::clone(cache))),
+        None => Arc::new(solvers),
     }
 }
 

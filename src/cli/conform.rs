@@ -8,6 +8,7 @@ use super::run::{exit_code, says_nothing};
 use super::solver;
 use grainbench::cases::solvers;
 use grainbench::harness::conformance;
+use grainbench::harness::verdict::{Control, Verdict};
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, summary_table, write_report};
@@ -63,18 +64,24 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     if says_nothing(&report) { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, arguments.strict)) }
 }
 
-/// What every solver owes, of the solvers and manifests named; of all of ours when none is. Finished runs of ours are taken from a
-/// cache where there is one.
-pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result<Option<Section>, Fault> {
+/// The solvers and manifests named, with what they owe; all of ours when none is named.
+pub(crate) fn owing(named: &[String]) -> Result<Vec<(Arc<dyn Solver>, Terms)>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
     let mut solvers: Vec<(Arc<dyn Solver>, Terms)> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
-    let ours = solvers.len();
     for path in named.iter().filter(|name| solver::is_manifest(name)) {
         let outside = solver::outside(path)?;
         let terms = outside.terms();
         solvers.push((outside, terms));
     }
+    Ok(solvers)
+}
+
+/// What every solver owes, of the solvers and manifests named; of all of ours when none is. Finished runs of ours are taken from a
+/// cache where there is one.
+pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result<Option<Section>, Fault> {
+    let solvers = owing(named)?;
+    let ours = solvers.len() - named.iter().filter(|name| solver::is_manifest(name)).count();
     let judged: Vec<_> = solvers.iter().map(|_| OnceLock::new()).collect();
     let kept = cache::solvers(cache);
     share(
@@ -90,7 +97,12 @@ pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result
         },
     );
     let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().filter_map(OnceLock::into_inner).unzip();
-    Ok((!solvers.is_empty()).then(|| Section {
+    Ok((!solvers.is_empty()).then(|| section_of(verdicts.concat(), controls.concat())))
+}
+
+/// The section of some rows.
+pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<Control>) -> Section {
+    Section {
         name: "conformance".to_owned(),
         title: "What every solver owes".to_owned(),
         claim: format!("Whatever its method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
@@ -103,8 +115,8 @@ pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result
                stiffness. Methods with a grid are run in the plane here, at two cells a radius."
             .to_owned(),
         figures: Vec::new(),
-        verdicts: verdicts.concat(),
-        controls: controls.concat(),
+        verdicts,
+        controls,
         runs: Vec::new(),
-    }))
+    }
 }

@@ -1,6 +1,7 @@
 //! Commands: what can be asked for, and who answers.
 
 mod cache;
+mod campaign;
 mod check;
 mod checkpoint;
 mod compare;
@@ -79,6 +80,14 @@ enum Command {
     Stability(stability::Arguments),
     /// Tell what each effect is worth: each switched off in turn, each absent one compiled in.
     Effects(effects::Arguments),
+    /// Plan many runs: gates, costs, limits, or a sweep over the keys of a scene.
+    Plan(campaign::plan::Arguments),
+    /// Do a plan or a chunk of it, here or by a batch system; what is finished is not done again.
+    Work(campaign::work::Arguments),
+    /// Tell how far a plan is.
+    Status(campaign::status::Arguments),
+    /// Make the report of a plan, as if all of it had been run here.
+    Collect(campaign::collect::Arguments),
     /// Race with LAMMPS and LIGGGHTS, in turn on the same scenes: grains stepped in a second of processor time.
     Race(race::Arguments),
     /// Make the stored runs of LAMMPS and LIGGGHTS, or run these again and compare.
@@ -116,6 +125,10 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Stability(arguments)) => stability::stability(&arguments),
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
+        Some(Command::Plan(arguments)) => campaign::plan::plan(&arguments),
+        Some(Command::Work(arguments)) => campaign::work::work(&arguments),
+        Some(Command::Status(arguments)) => campaign::status::status(&arguments),
+        Some(Command::Collect(arguments)) => campaign::collect::collect(&arguments),
         Some(Command::Race(arguments)) => race::race(&arguments),
         Some(Command::Reference(command)) => reference::reference(&command),
         Some(Command::Conform(arguments)) => conform::conform(&arguments),

@@ -26,7 +26,7 @@ use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::terminal::failing_lines;
 use grainbench::reports::{
-    Headline, Report, RunCost, Section, line, summary_table, write_report, write_report_and_parquet,
+    Headline, Provenance, Report, RunCost, Section, line, summary_table, write_report, write_report_and_parquet,
 };
 use grainbench::scene::solver::RunError;
 use grainbench::studies::run_cache::RunCache;
@@ -52,14 +52,14 @@ pub(crate) struct Options {
     /// Only rows of this solver; may be given more than once. The manifest of a program puts it in the place of the solvers that
     /// rows fair to any solver name.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
-    solver: Vec<String>,
+    pub(crate) solver: Vec<String>,
     /// Only gates at these resolution levels: `default`, `all`, or names such as `dt=.1`.
     #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
-    levels: Vec<String>,
+    pub(crate) levels: Vec<String>,
     /// Only rows whose quantity or source has these words in it or is of this pattern, whose kind of evidence it is, or that end
     /// so (all are run then, and the exit code is that of all). Of several filters of one key one must fit.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
-    filter: Vec<String>,
+    pub(crate) filter: Vec<String>,
     /// Only rows that failed in the report of `--out`, or whose control stayed green there.
     #[arg(long, conflicts_with = "keep")]
     rerun_failed: bool,
@@ -77,16 +77,16 @@ pub(crate) struct Options {
     parquet: bool,
     /// Run `lammps` and `liggghts` even where a run of theirs is stored.
     #[arg(long)]
-    live: bool,
+    pub(crate) live: bool,
     /// Everything that is not green is red: amber rows, and programs that are not installed.
     #[arg(long)]
-    strict: bool,
+    pub(crate) strict: bool,
     /// Do every run anew, also those that were finished before and are kept outside the tree.
     #[arg(long)]
     fresh: bool,
     /// Leave out the negative controls.
     #[arg(long)]
-    no_controls: bool,
+    pub(crate) no_controls: bool,
     /// Keep the rows of the program beside its manifest, as `judged.json`: all cases, with their controls.
     #[arg(long, requires = "solver", conflicts_with = "no_controls")]
     keep: bool,
@@ -146,13 +146,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         }
     }
     let provenance = provenance(words, start.elapsed().as_secs_f64());
-    // They stand beside the whole registry, and not beside a case of it.
-    let (judged, measured) = if is_whole && options.solver.is_empty() {
-        (grainbench::peers::kept().map_err(Fault::input)?, grainbench::kept::measured().map_err(Fault::input)?)
-    } else {
-        (Vec::new(), Measurements::default())
-    };
-    let mut report = Report { provenance, sections, judged, measured };
+    let mut report = report(provenance, sections, is_whole && options.solver.is_empty())?;
     if let Some(program) = keeping {
         if left > 0 {
             return Err(Fault::input(format!("--keep: expected a whole run, found {left} checks left out")));
@@ -187,8 +181,18 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     Ok(if left > 0 || is_mute { ExitCode::from(RED) } else { code })
 }
 
+/// A report; beside the whole registry stands what is kept of programs and of costs, and not beside a case of it.
+pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: bool) -> Result<Report, Fault> {
+    let (judged, measured) = if is_whole {
+        (grainbench::peers::kept().map_err(Fault::input)?, grainbench::kept::measured().map_err(Fault::input)?)
+    } else {
+        (Vec::new(), Measurements::default())
+    };
+    Ok(Report { provenance, sections, judged, measured })
+}
+
 /// Leaves the claims that filters mean and, where that is asked for, that were red in the report that `--out` holds.
-fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &Filters) -> Result<(), Fault> {
+pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &Filters) -> Result<(), Fault> {
     let before = if options.rerun_failed { Some(Earlier::read("--rerun-failed", &options.out)?) } else { None };
     for of_case in &mut *selected {
         let case = of_case.case.name;
@@ -261,7 +265,7 @@ fn is_ours(solver: &str) -> bool {
 }
 
 /// The options that are not the default, in words.
-fn words(cases: &[String], options: &Options) -> Vec<String> {
+pub(crate) fn words(cases: &[String], options: &Options) -> Vec<String> {
     let mut words = cases.to_vec();
     words.extend(options.solver.iter().map(|solver| format!("--solver {solver}")));
     if !options.levels.is_empty() {
@@ -356,10 +360,7 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) {
             }
         }
         Task::Draw(_) => {
-            at.figures.get_or_init(|| match at.selected.stranger {
-                None => course::of_case(at.selected.case, &at.runner, &at.selected.claims),
-                Some(_) => course::figures(&at.runner, &at.selected.claims),
-            });
+            at.figures.get_or_init(|| draw(at.selected, &at.runner));
         }
     }
     progress.advance();
@@ -367,17 +368,9 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) {
 
 impl<'a> Work<'a> {
     fn new(selected: &'a Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Self {
-        let runner = Runner::new(selected.case, solvers).live(options.live).thorough(thorough);
-        let runner = runner.controlled(!options.no_controls);
-        // All levels are asked for: what is kept of runs is done anew too.
-        let runner = if thorough { runner.afresh(Set::Paper) } else { runner };
-        let runner = match &selected.stranger {
-            Some(stranger) => runner.with_solver(Arc::<Outside>::clone(stranger)),
-            None => runner,
-        };
         Self {
             selected,
-            runner: runner.threads(usize::from(options.threads)),
+            runner: runner(selected, options, thorough, solvers),
             verdicts: selected.claims.iter().map(|_| OnceLock::new()).collect(),
             controls: selected.claims.iter().map(|_| OnceLock::new()).collect(),
             figures: OnceLock::new(),
@@ -385,33 +378,70 @@ impl<'a> Work<'a> {
     }
 
     fn section(self) -> Section {
-        let case = self.selected.case;
         let figures = match self.figures.into_inner() {
             Some(Ok(figures)) => figures,
             Some(Err(error)) => {
-                exit::say("warning", &format!("{}: its figures are left out: {error}", case.name));
+                let case = self.selected.case.name;
+                exit::say("warning", &format!("{case}: its figures are left out: {error}"));
                 Vec::new()
             }
             None => Vec::new(),
         };
         Section {
-            name: case.name.to_owned(),
-            title: match &self.selected.stranger {
-                Some(stranger) => format!("{}: {}", case.title, stranger.manifest().name),
-                None => case.title.to_owned(),
-            },
-            claim: case.claim.to_owned(),
-            derivation: case.derivation.to_owned(),
-            weak: case.weakness.to_owned(),
             figures,
             verdicts: self.verdicts.into_iter().filter_map(OnceLock::into_inner).collect(),
             controls: self.controls.into_iter().filter_map(OnceLock::into_inner).collect(),
             runs: self.runner.done().iter().map(|(run, done)| cost(run, done)).collect(),
+            ..blank(self.selected)
         }
     }
 }
 
-fn cost(run: &Run, done: &Done) -> RunCost {
+/// A runner of a case as it was selected.
+pub(crate) fn runner(selected: &Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Runner {
+    let runner = Runner::new(selected.case, solvers).live(options.live).thorough(thorough);
+    let runner = runner.controlled(!options.no_controls);
+    // All levels are asked for: what is kept of runs is done anew too.
+    let runner = if thorough { runner.afresh(Set::Paper) } else { runner };
+    let runner = match &selected.stranger {
+        Some(stranger) => runner.with_solver(Arc::<Outside>::clone(stranger)),
+        None => runner,
+    };
+    runner.threads(usize::from(options.threads))
+}
+
+/// What a case has drawn of the claims that were selected.
+///
+/// # Errors
+/// When a run fails that is drawn.
+pub(crate) fn draw(selected: &Selected, runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    match selected.stranger {
+        None => course::of_case(selected.case, runner, &selected.claims),
+        Some(_) => course::figures(runner, &selected.claims),
+    }
+}
+
+/// The section of a case in which nothing was done yet.
+pub(crate) fn blank(selected: &Selected) -> Section {
+    let case = selected.case;
+    Section {
+        name: case.name.to_owned(),
+        title: match &selected.stranger {
+            Some(stranger) => format!("{}: {}", case.title, stranger.manifest().name),
+            None => case.title.to_owned(),
+        },
+        claim: case.claim.to_owned(),
+        derivation: case.derivation.to_owned(),
+        weak: case.weakness.to_owned(),
+        figures: Vec::new(),
+        verdicts: Vec::new(),
+        controls: Vec::new(),
+        runs: Vec::new(),
+    }
+}
+
+/// What a run took.
+pub(crate) fn cost(run: &Run, done: &Done) -> RunCost {
     let (provenance, cost) = (&done.record.provenance, &done.record.cost);
     RunCost {
         variant: run.scene_words(),

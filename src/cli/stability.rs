@@ -16,6 +16,7 @@ use grainbench::studies::stability::assembly::{self, Assembly};
 use grainbench::studies::stability::hard::{self, HardCase};
 use grainbench::studies::stability::limit;
 use grainbench::studies::{Follow, identity};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -32,10 +33,10 @@ const EVERY: Duration = Duration::from_secs(5);
 pub(crate) struct Arguments {
     /// Assemblies and hard cases, by name or the beginning of one; all when none is named.
     #[arg(value_name = "CASE")]
-    cases: Vec<String>,
+    pub(crate) cases: Vec<String>,
     /// Only this solver, or the program of this manifest; may be given more than once.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
-    solver: Vec<String>,
+    pub(crate) solver: Vec<String>,
     /// Do everything anew, also what was finished before.
     #[arg(long)]
     fresh: bool,
@@ -44,14 +45,14 @@ pub(crate) struct Arguments {
     keep: bool,
     /// Directory for the report; finished pieces are kept in it too.
     #[arg(long, value_name = "DIR", default_value = "grainbench-stability")]
-    out: PathBuf,
+    pub(crate) out: PathBuf,
     /// Print the results as JSON instead of lines.
     #[arg(long)]
     json: bool,
 }
 
 /// One piece of work.
-enum Piece<'a> {
+pub(crate) enum Piece<'a> {
     Assembly(&'a Assembly, &'a str),
     Bar(&'static str, f64),
     Hard(&'a HardCase, &'a str),
@@ -70,9 +71,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     let mut written = start;
     let mut follower = Follower::new(pieces.len() as u64, "limits and cases");
-    let mut words = vec!["stability".to_owned()];
-    words.extend(arguments.cases.iter().cloned());
-    words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
+    let words = words(arguments);
     let mut study = Study::new(provenance(words.clone(), 0.0));
     for (at, piece) in pieces.iter().enumerate() {
         let reused = do_piece(piece, (&program, &solvers), &cache, &mut study, &mut follower)?;
@@ -84,9 +83,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
                 options.push(format!("unfinished: {} of {} limits and cases", at + 1, pieces.len()));
             }
             study.provenance = provenance(options, start.elapsed().as_secs_f64());
-            let limits = study.limits.iter().map(|row| row.solver.clone());
-            let asked: Vec<String> = limits.chain(study.hard.iter().map(|row| row.solver.clone())).collect();
-            study.sources = sources(&asked);
+            study.sources = sources_of(&study);
             write_study(&arguments.out, &study).map_err(Fault::writing)?;
             written = Instant::now();
         }
@@ -102,13 +99,32 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
             format!("{reused} of {} were done before\n{}\n", pieces.len(), arguments.out.join("index.html").display());
         print(&(text(&study) + &end))?;
     }
-    // A program that somebody judges is red as ours are; those that we compare with are not ours to mend.
-    let red = |solver: &str| !grainbench::cases::solvers::is_program(solver) && solver != "rigid";
-    let wrong = study.hard.iter().any(|row| row.standing == Hardness::QuietlyWrong && red(&row.solver));
-    Ok(if wrong { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
-fn do_piece(
+/// The options that are not the default, in words.
+pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
+    let mut words = vec!["stability".to_owned()];
+    words.extend(arguments.cases.iter().cloned());
+    words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
+    words
+}
+
+/// Hashes of the sources of the solvers that were asked.
+pub(crate) fn sources_of(study: &Study) -> BTreeMap<String, String> {
+    let limits = study.limits.iter().map(|row| row.solver.clone());
+    let asked: Vec<String> = limits.chain(study.hard.iter().map(|row| row.solver.clone())).collect();
+    sources(&asked)
+}
+
+/// Whether a solver ends quietly wrong: a program that somebody judges is red as ours are; those that we compare with are not
+/// ours to mend.
+pub(crate) fn is_red(study: &Study) -> bool {
+    let red = |solver: &str| !grainbench::cases::solvers::is_program(solver) && solver != "rigid";
+    study.hard.iter().any(|row| row.standing == Hardness::QuietlyWrong && red(&row.solver))
+}
+
+pub(crate) fn do_piece(
     piece: &Piece<'_>,
     (program, solvers): (&str, &WithStrangers),
     cache: &ResultCache,
@@ -149,7 +165,7 @@ fn do_piece(
 
 /// What the command line means, of the solvers named and the programs among them: names are those of assemblies, with `-` for
 /// spaces, of the bar, and of hard cases.
-fn select<'a>(
+pub(crate) fn select<'a>(
     cases: &[String],
     [solvers, strangers]: [&'a [String]; 2],
     assemblies: &'a [Assembly],
@@ -187,7 +203,7 @@ fn select<'a>(
     Ok(pieces)
 }
 
-fn text(study: &Study) -> String {
+pub(crate) fn text(study: &Study) -> String {
     let mut text = String::new();
     for Limit { scene, at, solver, unit, found, exact, error, detail, .. } in &study.limits {
         let number = |value: &Option<f64>| value.map_or("—".to_owned(), |value| number::significant(value, 4));

@@ -20,6 +20,8 @@ pub(crate) struct WithStrangers {
     strangers: Vec<Arc<Outside>>,
     /// When they were read: what they did before need not be what they do now.
     read: String,
+    /// Whether they are known by the files that they are made of, and not by when they were read.
+    by_content: bool,
 }
 
 impl WithStrangers {
@@ -38,7 +40,12 @@ impl WithStrangers {
         }
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let read = format!("{}-{}", now.as_nanos(), process::id());
-        Ok((Self { strangers, read }, known))
+        Ok((Self { strangers, read, by_content: false }, known))
+    }
+
+    /// The same of work that several processes share: programs are what their files are.
+    pub(crate) fn read_by_content(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
+        Self::read(names).map(|(solvers, known)| (Self { by_content: true, ..solvers }, known))
     }
 
     /// Names of the programs.
@@ -86,7 +93,9 @@ impl Solvers for WithStrangers {
     }
 
     fn edition(&self, name: &str) -> String {
-        self.stranger(name).map_or_else(String::new, |_| self.read.clone())
+        let Some(stranger) = self.stranger(name) else { return String::new() };
+        let content = if self.by_content { stranger.fingerprint().ok() } else { None };
+        content.unwrap_or_else(|| self.read.clone())
     }
 
     fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {

@@ -95,7 +95,7 @@ pub(super) struct Knobs {
 /// How samples are read.
 #[derive(Clone, Copy, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Over {
+pub enum Over {
     /// Each of them: the worst counts.
     Course,
     /// The largest.

@@ -11,26 +11,37 @@ const DEEPEST: usize = 100;
 
 /// An expression.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Expression {
+pub enum Expression {
+    /// A number.
     Number(f64),
+    /// A named one.
     Name(String),
+    /// With a sign before it.
     Negative(Box<Self>),
+    /// Two sides of an operator.
     Of(Operator, Box<[Self; 2]>),
+    /// A function of some.
     Call(Function, Vec<Self>),
 }
 
+/// An operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Operator {
+pub enum Operator {
+    /// +
     Plus,
+    /// −
     Minus,
+    /// ×
     Times,
+    /// /
     Over,
+    /// ^
     Power,
 }
 
 /// A function: its name, how many arguments it takes, and what it does.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Function {
+pub struct Function {
     name: &'static str,
     arguments: usize,
     of: fn(&[f64]) -> f64,
@@ -76,7 +87,7 @@ impl Expression {
     ///
     /// # Errors
     /// What was expected and what was found, with the column.
-    pub(super) fn read(text: &str) -> Result<Self, String> {
+    pub fn read(text: &str) -> Result<Self, String> {
         let mut reader = Reader { text, at: 0, depth: 0 };
         let expression = reader.sum()?;
         match reader.next() {
@@ -86,7 +97,7 @@ impl Expression {
     }
 
     /// The names in it.
-    pub(super) fn names(&self) -> Vec<&str> {
+    pub fn names(&self) -> Vec<&str> {
         match self {
             Self::Number(_) => Vec::new(),
             Self::Name(name) => vec![name],
@@ -97,7 +108,7 @@ impl Expression {
     }
 
     /// Its value, where names have theirs; what has none is not a number.
-    pub(super) fn value(&self, of: &dyn Fn(&str) -> Option<f64>) -> f64 {
+    pub fn value(&self, of: &dyn Fn(&str) -> Option<f64>) -> f64 {
         match self {
             Self::Number(value) => *value,
             Self::Name(name) => of(name).unwrap_or(f64::NAN),

@@ -9,6 +9,11 @@ mod numbers;
 mod read;
 mod row;
 
+pub use claims_file::Over;
+pub use expression::Expression;
+pub use numbers::Numbers;
+pub use read::Read;
+
 use crate::registry::HOME;
 use claims_file::ClaimsFile;
 use grainbench_harness::case::{Case, Home, fraction};

@@ -11,11 +11,11 @@ pub(super) const TIME: &str = "t";
 const DEFINITE: &str = "scene.";
 
 /// Numbers by their names.
-pub(super) struct Numbers {
+pub struct Numbers {
     file: Value,
     definite: Value,
     /// Columns of the record.
-    pub(super) columns: Vec<String>,
+    pub columns: Vec<String>,
 }
 
 impl Numbers {
@@ -23,7 +23,7 @@ impl Numbers {
     ///
     /// # Errors
     /// When the scene cannot be written down, in words.
-    pub(super) fn of(file: Table, scene: &Scene) -> Result<Self, String> {
+    pub fn of(file: Table, scene: &Scene) -> Result<Self, String> {
         // Steps belong to a run and not to a claim: they are taken out again.
         let stepping = Stepping { time_step: 1.0, steps: 1, interval: 1 };
         let resolved = Resolved::of(&Given { scene, stepping, grid: None });
@@ -37,12 +37,12 @@ impl Numbers {
 
     /// Whether a name is one of the record and not of the scene: a column that is not there is missing, whatever else has
     /// its name.
-    pub(super) fn is_of_record(&self, name: &str) -> bool {
+    pub fn is_of_record(&self, name: &str) -> bool {
         name != TIME && (self.columns.iter().any(|column| column == name) || self.get(name).is_none())
     }
 
     /// The number of a name, a path of keys with places in lists counted from 0.
-    pub(super) fn get<'n>(&'n self, name: &str) -> Option<f64> {
+    pub fn get<'n>(&'n self, name: &str) -> Option<f64> {
         let (root, path) = match name.strip_prefix(DEFINITE) {
             Some(path) => (&self.definite, path),
             None => (&self.file, name),

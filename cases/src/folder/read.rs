@@ -14,15 +14,15 @@ use std::sync::Arc;
 type Samples = Arc<dyn Fn(&Done) -> Result<Points, Missing> + Send + Sync>;
 
 /// How a number is read of a record.
-pub(super) struct Read {
+pub struct Read {
     /// Over columns and numbers of the scene.
-    pub(super) value: Expression,
+    pub value: Expression,
     /// Those numbers.
-    pub(super) numbers: Arc<Numbers>,
+    pub numbers: Arc<Numbers>,
     /// At this moment (s),
-    pub(super) at: Option<f64>,
+    pub at: Option<f64>,
     /// or over the samples; else in the end.
-    pub(super) over: Option<Over>,
+    pub over: Option<Over>,
 }
 
 impl Read {
@@ -45,8 +45,11 @@ impl Read {
         if points.is_empty() { Err(Missing("sample".to_owned())) } else { Ok(points) }
     }
 
-    /// One value and its time.
-    pub(super) fn one(&self, done: &Done) -> Result<(f64, f64), Missing> {
+    /// Its time and one value.
+    ///
+    /// # Errors
+    /// When the record has no such column.
+    pub fn one(&self, done: &Done) -> Result<(f64, f64), Missing> {
         let points = self.all(done)?;
         let end = points[points.len() - 1];
         let values = || points.iter().map(|point| point.1);

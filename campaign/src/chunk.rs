@@ -1,0 +1,146 @@
+//! Chunks: tasks that follow one another, so many that all chunks take about as long.
+
+use crate::task::Task;
+use std::fmt;
+use std::ops::Range;
+use std::str::FromStr;
+
+/// Most chunks that can be asked for.
+pub const MOST: u32 = 1_000_000;
+/// A chunk is expected to last at least this long (s): batch systems take a second to start one.
+pub const SECONDS: f64 = 60.0;
+/// A task takes this long (s) at least, beside its run.
+const LEAST: f64 = 1e-3;
+
+/// One of some chunks, counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chunk {
+    /// Which.
+    pub index: u32,
+    /// Of how many.
+    pub count: u32,
+}
+
+impl Chunk {
+    /// All of it.
+    pub const WHOLE: Self = Self { index: 1, count: 1 };
+}
+
+impl FromStr for Chunk {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let read = |text: &str| text.parse::<u32>().ok().filter(|number| (1..=MOST).contains(number));
+        let parts = text.split_once('/').and_then(|(index, count)| Some((read(index)?, read(count)?)));
+        match parts {
+            Some((index, count)) if index <= count => Ok(Self { index, count }),
+            _ => Err(format!("expected i/n, two whole numbers from 1 to {MOST}, the first at most the second")),
+        }
+    }
+}
+
+impl fmt::Display for Chunk {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}/{}", self.index, self.count)
+    }
+}
+
+/// The places of tasks in each of so many chunks, in their order; a chunk may be empty. Tasks of one group are in one chunk.
+#[must_use]
+pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
+    let total: f64 = tasks.iter().map(length).sum();
+    let mut ends = vec![0; count as usize];
+    let (mut before, mut from) = (0.0, 0);
+    while from < tasks.len() {
+        let group = tasks[from].group;
+        let others = tasks[from + 1..].iter().take_while(|task| group.is_some() && task.group == group).count();
+        let to = from + 1 + others;
+        let long: f64 = tasks[from..to].iter().map(length).sum();
+        // Whose middle lies in a chunk is of that chunk.
+        let place = ((before + 0.5 * long) / total * f64::from(count)) as usize;
+        ends[place.min(count as usize - 1)] = to;
+        (before, from) = (before + long, to);
+    }
+    let mut start = 0;
+    ends.into_iter()
+        .map(|end| {
+            let range = start..end.max(start);
+            start = range.end;
+            range
+        })
+        .collect()
+}
+
+/// The places of tasks in a chunk.
+#[must_use]
+pub fn of(tasks: &[Task], chunk: Chunk) -> Range<usize> {
+    all(tasks, chunk.count).swap_remove(chunk.index as usize - 1)
+}
+
+/// As many chunks as last long enough, one at least.
+#[must_use]
+pub fn count(tasks: &[Task]) -> u32 {
+    let total: f64 = tasks.iter().map(length).sum();
+    let groups = tasks.chunk_by(|a, b| a.group.is_some() && a.group == b.group).count();
+    ((total / SECONDS) as u32).clamp(1, MOST).min(u32::try_from(groups).unwrap_or(MOST).max(1))
+}
+
+fn length(task: &Task) -> f64 {
+    task.seconds.max(LEAST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::task::Id;
+    use std::collections::BTreeMap;
+
+    fn tasks(seconds: &[f64], groups: &[Option<u32>]) -> Vec<Task> {
+        let task = |(seconds, group): (&f64, &Option<u32>)| Task {
+            id: Id::of_words("", &[]),
+            scene: String::new(),
+            set: BTreeMap::new(),
+            solver: String::new(),
+            level: String::new(),
+            what: String::new(),
+            repetitions: 1,
+            seconds: *seconds,
+            group: *group,
+        };
+        seconds.iter().zip(groups).map(task).collect()
+    }
+
+    #[test]
+    fn every_task_is_in_one_chunk() {
+        let seconds: Vec<f64> = (0..1000).map(|at| if at % 7 == 0 { 40.0 } else { 0.01 * f64::from(at) }).collect();
+        let groups: Vec<Option<u32>> = (0..1000).map(|at| (at % 11 > 4).then_some(at / 11)).collect();
+        let tasks = tasks(&seconds, &groups);
+        for count in [1, 2, 3, 17, 999, 1000, 5000] {
+            let chunks = all(&tasks, count);
+            assert_eq!((chunks.len(), chunks[0].start, chunks[chunks.len() - 1].end), (count as usize, 0, 1000));
+            assert!(chunks.windows(2).all(|pair| pair[0].end == pair[1].start), "{count}");
+            for chunk in &chunks {
+                let inner = chunk.end == 1000 || chunk.end == 0 || groups[chunk.end - 1].is_none();
+                assert!(inner || groups[chunk.end - 1] != groups[chunk.end], "{count}: a group is torn");
+            }
+        }
+    }
+
+    #[test]
+    fn chunks_last_about_as_long() {
+        let tasks = tasks(&[1.0; 1200], &[None; 1200]);
+        assert_eq!(count(&tasks), 20);
+        assert!(all(&tasks, 20).iter().all(|chunk| chunk.len() == 60));
+        assert_eq!((count(&[]), all(&[], 3)), (1, vec![0..0, 0..0, 0..0]));
+    }
+
+    #[test]
+    fn what_is_no_chunk_is_refused() {
+        assert_eq!("2/3".parse(), Ok(Chunk { index: 2, count: 3 }));
+        for text in
+            ["", "1", "0/0", "0/3", "5/3", "-1/3", "1/3/5", "a/b", "1/1e9", "1/4294967297", "1 / 2", "1/2000000"]
+        {
+            assert!(text.parse::<Chunk>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Results of one worker: a file to which it adds a line a task, and nobody else anything.
+//!
+//! A line is `ID STATE SECONDS LOAD SUM JSON`, the sum over all the rest: what is cut off or damaged is told from what is whole,
+//! and is done again. The first line says who the worker is.
+
+use crate::task::Id;
+use grainbench_reports::WriteError;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How the first line begins.
+const MAGIC: &str = "grainbench-results 1 ";
+/// How names of files end.
+pub const ENDING: &str = "log";
+/// A machine that loses its power loses no more than this of what was done.
+const SYNC: Duration = Duration::from_secs(5);
+/// Digits of a sum.
+const DIGITS: usize = 16;
+
+/// Who works.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Worker {
+    /// Its name, which no other has.
+    pub name: String,
+    /// The machine, or the node of a batch system.
+    pub host: String,
+    /// Process there.
+    pub process: u32,
+    /// Processor, cores and system.
+    pub machine: String,
+    /// Cores that it may use.
+    pub cores: usize,
+    /// Job of a batch system.
+    #[serde(default)]
+    pub job: Option<String>,
+    /// Whether the batch system gave it a node of its own; none where there is no batch system.
+    #[serde(default)]
+    pub alone: Option<bool>,
+    /// When it began.
+    pub began: String,
+}
+
+/// How a task ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// As it should.
+    Done,
+    /// In an error that has a type, which is its result.
+    Failed,
+    /// Our program failed: there is a message and no result.
+    Crashed,
+}
+
+impl State {
+    const fn word(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Failed => "failed",
+            Self::Crashed => "crashed",
+        }
+    }
+
+    fn of(word: &str) -> Option<Self> {
+        [Self::Done, Self::Failed, Self::Crashed].into_iter().find(|state| state.word() == word)
+    }
+}
+
+/// A line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line<'a> {
+    /// Which task.
+    pub id: Id,
+    /// How it ended.
+    pub state: State,
+    /// What it took (s).
+    pub seconds: f64,
+    /// Programs that wanted a core meanwhile; none where that is not known.
+    pub load: Option<f64>,
+    /// What came out.
+    pub json: &'a str,
+}
+
+impl<'a> Line<'a> {
+    fn written(&self) -> String {
+        let load = self.load.map_or_else(|| "-".to_owned(), |load| load.to_string());
+        let head = format!("{} {} {:.6} {load}", self.id, self.state.word(), self.seconds);
+        format!("{head} {} {}\n", sum(&head, self.json), self.json)
+    }
+
+    /// Reads a line without its end; none where it is damaged.
+    #[must_use]
+    pub fn read(text: &'a str) -> Option<Self> {
+        let mut ends = text.match_indices(' ').map(|(at, _)| at);
+        let head = &text[..ends.nth(3)?];
+        let end = ends.next()?;
+        let (told, json) = (&text[head.len() + 1..end], &text[end + 1..]);
+        if told != sum(head, json) {
+            return None;
+        }
+        let mut words = head.split(' ');
+        let (id, state) = (words.next()?.parse().ok()?, State::of(words.next()?)?);
+        let (seconds, load) = (words.next()?.parse().ok()?, words.next()?.parse().ok());
+        Some(Self { id, state, seconds, load, json })
+    }
+}
+
+fn sum(head: &str, json: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(head.as_bytes()).update(b" ").update(json.as_bytes());
+    hasher.finalize().to_hex()[..DIGITS].to_owned()
+}
+
+/// The worker that a first line names.
+#[must_use]
+pub fn worker(line: &str) -> Option<Worker> {
+    serde_json::from_str(line.strip_prefix(MAGIC)?).ok()
+}
+
+/// A file of results in the making.
+#[derive(Debug)]
+pub struct Log {
+    file: File,
+    path: PathBuf,
+    /// Bytes that are whole.
+    whole: u64,
+    synced: Instant,
+}
+
+impl Log {
+    /// Begins the file of a worker in a folder.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn new(folder: &Path, worker: &Worker) -> Result<Self, WriteError> {
+        let path = folder.join(format!("{}.{ENDING}", worker.name));
+        let file = File::create_new(&path).map_err(|source| WriteError::new(&path, source))?;
+        let mut log = Self { file, path, whole: 0, synced: Instant::now() };
+        let words = serde_json::to_string(worker).unwrap_or_default();
+        log.append(&format!("{MAGIC}{words}\n")).inspect_err(|_| {
+            let _ = std::fs::remove_file(&log.path);
+        })?;
+        Ok(log)
+    }
+
+    /// Adds a line. Where the disk refuses nothing of it stays.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn add(&mut self, line: &Line<'_>) -> Result<(), WriteError> {
+        self.append(&line.written())?;
+        if self.synced.elapsed() > SYNC { self.sync() } else { Ok(()) }
+    }
+
+    fn append(&mut self, text: &str) -> Result<(), WriteError> {
+        match self.file.write_all(text.as_bytes()) {
+            Ok(()) => {
+                self.whole += text.len() as u64;
+                Ok(())
+            }
+            Err(source) => {
+                let _ = self.file.set_len(self.whole);
+                Err(WriteError::new(&self.path, source))
+            }
+        }
+    }
+
+    /// Has the disk keep what was added.
+    ///
+    /// # Errors
+    /// When it refuses.
+    pub fn sync(&mut self) -> Result<(), WriteError> {
+        self.synced = Instant::now();
+        match self.file.sync_data() {
+            // Pipes and some file systems cannot.
+            Err(error) if error.kind() != io::ErrorKind::InvalidInput => Err(WriteError::new(&self.path, error)),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    #[test]
+    fn a_line_is_read_as_it_is_written_and_not_when_it_is_damaged() {
+        let id = Id::of_words("", &["a"]);
+        for load in [None, Some(0.25)] {
+            let line = Line { id, state: State::Failed, seconds: 0.5, load, json: "{\"a b\": 1}" };
+            let text = line.written();
+            let text = text.trim_end();
+            assert_eq!(Line::read(text), Some(line));
+            for end in 0..text.len() {
+                assert_eq!(Line::read(&text[..end]), None, "cut off at {end}");
+            }
+            for at in 0..text.len() {
+                let mut bytes = text.as_bytes().to_vec();
+                bytes[at] ^= 1;
+                assert_eq!(Line::read(std::str::from_utf8(&bytes).unwrap()), None, "a bit at {at}");
+            }
+        }
+        for foreign in ["", " ", "     ", "{}", "é é é é é é"] {
+            assert_eq!(Line::read(foreign), None, "{foreign}");
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Plans: a directory with what is to be done (`tasks.jsonl`) and how it came about (`plan.toml`).
+
+use crate::chunk;
+use crate::fault::Fault;
+use crate::task::{self, Task};
+use grainbench_reports::{WriteError, write_file};
+use grainbench_scene::text::line_of;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// How it came about.
+pub const HEAD: &str = "plan.toml";
+/// The tasks, a line each.
+pub const TASKS: &str = "tasks.jsonl";
+/// Where workers leave what comes out.
+pub const RESULTS: &str = "results";
+/// Where workers say what they are at.
+pub const RUNNING: &str = "running";
+/// To be raised whenever anything that is stored changes its meaning.
+const FORMAT: u32 = 1;
+/// How long (s) a worker is waited for that says nothing.
+const LEASE: f64 = 60.0;
+
+/// What a plan is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// Gates of cases.
+    Run,
+    /// What accuracy costs.
+    Cost,
+    /// What stays stable.
+    Stability,
+    /// A design over the keys of a scene.
+    Sweep,
+}
+
+/// `plan.toml`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Head {
+    /// Of this file.
+    pub format: u32,
+    /// What it is of.
+    pub kind: Kind,
+    /// How many tasks there are.
+    pub tasks: usize,
+    /// Hash of their file.
+    pub hash: String,
+    /// Into how many chunks they are best divided.
+    pub chunks: u32,
+    /// What all of them are expected to take on one core (s).
+    pub seconds: f64,
+    /// Whether times are measured, so that nothing else may run beside.
+    pub timed: bool,
+    /// How long (s) a worker is waited for that says nothing.
+    #[serde(default = "lease")]
+    pub lease_seconds: f64,
+    /// Hash of the program that planned, which is the one that works.
+    pub program: String,
+    /// Its version and commit.
+    pub version: String,
+    /// When it planned.
+    pub date: String,
+    /// Where it was started: paths are seen from there.
+    pub directory: PathBuf,
+    /// What it was told.
+    pub arguments: Vec<String>,
+    /// Hashes of files that tasks hang on, by their paths.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
+}
+
+const fn lease() -> f64 {
+    LEASE
+}
+
+impl Head {
+    /// The head of a plan of some tasks, by the program that runs.
+    #[must_use]
+    pub fn new(kind: Kind, arguments: Vec<String>, timed: bool) -> Self {
+        Self {
+            format: FORMAT,
+            kind,
+            tasks: 0,
+            hash: String::new(),
+            chunks: 1,
+            seconds: 0.0,
+            timed,
+            lease_seconds: LEASE,
+            program: grainbench_studies::identity::of_this_program(),
+            version: String::new(),
+            date: String::new(),
+            directory: std::env::current_dir().unwrap_or_default(),
+            arguments,
+            inputs: BTreeMap::new(),
+        }
+    }
+}
+
+/// A plan.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Its directory.
+    pub path: PathBuf,
+    /// How it came about.
+    pub head: Head,
+    /// What is to be done.
+    pub tasks: Vec<Task>,
+}
+
+impl Plan {
+    /// Leaves a plan in a directory that is new, empty, or has a plan: what was finished there stays, and is taken where a task
+    /// is the same.
+    ///
+    /// # Errors
+    /// When something else stands there, or the disk refuses.
+    pub fn write(path: &Path, mut head: Head, tasks: Vec<Task>) -> Result<Self, Fault> {
+        check_place(path)?;
+        let text = task::lines(&tasks)?;
+        head.tasks = tasks.len();
+        head.hash = hash(&text);
+        head.seconds = tasks.iter().map(|task| task.seconds).sum();
+        if head.chunks == 0 {
+            head.chunks = chunk::count(&tasks);
+        }
+        for folder in [path.to_owned(), path.join(RESULTS), path.join(RUNNING)] {
+            fs::create_dir_all(&folder).map_err(|source| WriteError::new(folder, source))?;
+        }
+        write_file(path.join(TASKS), text)?;
+        let words = toml::to_string(&head).map_err(|error| Fault::Input(error.to_string()))?;
+        write_file(path.join(HEAD), words)?;
+        Ok(Self { path: path.to_owned(), head, tasks })
+    }
+
+    /// Reads a plan.
+    ///
+    /// # Errors
+    /// Names the file, the place, what was expected and what was found.
+    pub fn read(path: &Path) -> Result<Self, Fault> {
+        let head = Self::head(path)?;
+        let file = path.join(TASKS);
+        let text = text_of(&file)?;
+        if hash(&text) != head.hash {
+            return Err(Fault::in_file(&file, format!("the tasks that {HEAD} was written for"), "others"));
+        }
+        let tasks = task::read(&file, &text)?;
+        Ok(Self { path: path.to_owned(), head, tasks })
+    }
+
+    /// Reads the head of a plan.
+    ///
+    /// # Errors
+    /// Names the file, the place, what was expected and what was found.
+    pub fn head(path: &Path) -> Result<Head, Fault> {
+        let file = path.join(HEAD);
+        if !file.is_file() {
+            return Err(Fault::in_file(path, "a directory that `grainbench plan` left", format!("no {HEAD} in it")));
+        }
+        let text = text_of(&file)?;
+        let head: Head = toml::from_str(&text).map_err(|error| {
+            let place = format!("{}:{}", file.display(), line_of(&text, &error).unwrap_or(1));
+            Fault::expected(place, "a plan as `grainbench plan` leaves it", error.message().replace('\n', ", "))
+        })?;
+        let wrong = |expected: &str, found: String| Err(Fault::in_file(&file, expected, found));
+        if head.format != FORMAT {
+            return wrong("format = 1", head.format.to_string());
+        }
+        if !(1..=chunk::MOST).contains(&head.chunks) {
+            return wrong("`chunks` from 1 to a million", head.chunks.to_string());
+        }
+        if !(head.lease_seconds.is_finite() && head.lease_seconds > 0.0) {
+            return wrong("`lease_seconds` above zero", head.lease_seconds.to_string());
+        }
+        Ok(head)
+    }
+
+    /// Refuses another program than the one that planned, and other inputs: results would be of something else.
+    ///
+    /// # Errors
+    /// Says what is otherwise.
+    pub fn check_program(&self) -> Result<(), Fault> {
+        let head = &self.head;
+        let here = grainbench_studies::identity::of_this_program();
+        if here != head.program {
+            let expected = format!("the program that planned, version {}", head.version);
+            return Err(Fault::in_file(
+                &self.path,
+                expected,
+                "another build; plan again, what is the same stays finished",
+            ));
+        }
+        for (path, known) in &head.inputs {
+            if hash_of_file(&head.directory.join(path)) != *known {
+                let found = "another since then; plan again, what is the same stays finished";
+                return Err(Fault::expected(path, "the file that was planned with", found));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a place for a plan where something else stands.
+///
+/// # Errors
+/// Says what.
+pub fn check_place(path: &Path) -> Result<(), Fault> {
+    let expected = "a new directory, an empty one, or one with a plan";
+    match fs::read_dir(path) {
+        Ok(mut entries) => {
+            let is_ours = path.join(HEAD).is_file() || entries.next().is_none();
+            if is_ours { Ok(()) } else { Err(Fault::in_file(path, expected, "other files")) }
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(Fault::in_file(path, expected, error)),
+    }
+}
+
+/// Hash of a file's content; another than that of any content where it cannot be read.
+#[must_use]
+pub fn hash_of_file(path: &Path) -> String {
+    fs::read(path).map_or_else(|_| "unreadable".to_owned(), |bytes| blake3::hash(&bytes).to_hex().to_string())
+}
+
+fn hash(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+fn text_of(file: &Path) -> Result<String, Fault> {
+    let bytes = fs::read(file).map_err(|error| Fault::in_file(file, "a file that can be read", error))?;
+    String::from_utf8(bytes).map_err(|_| Fault::in_file(file, "UTF-8 text", "other bytes"))
+}

@@ -1,0 +1,200 @@
+//! The points of a design.
+
+use super::file::{Design, Factor, File, Spacing};
+use crate::fault::Fault;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use serde_json::Value;
+use std::path::Path;
+
+/// Most points of all solvers and levels together.
+pub const MOST: usize = 10_000_000;
+
+/// A value of a factor at each point: points by points, factors in the order of the file.
+///
+/// # Errors
+/// Names the key, what was expected and what was found.
+pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
+    let wrong = |key: String, expected: &str, found: String| {
+        Err(Fault::expected(format!("{}: {key}", path.display()), expected, found))
+    };
+    if let (Design::Grid, Some(points)) = (file.design, file.points) {
+        return wrong("points".to_owned(), "none of a grid, whose factors say how many there are", points.to_string());
+    }
+    for (name, factor) in &file.factors {
+        let is_range = factor.from.is_some() || factor.to.is_some() || factor.count.is_some();
+        let key = format!("factors.{name}");
+        if factor.values.is_some() == is_range {
+            return wrong(key, "`values`, or `from` and `to`", if is_range { "both" } else { "neither" }.to_owned());
+        }
+        if let Some(values) = &factor.values {
+            if values.is_empty() {
+                return wrong(key + ".values", "at least one value", "none".to_owned());
+            }
+            if let Some(value) = values.iter().enumerate().find(|(at, value)| values[..*at].contains(value)) {
+                return wrong(key + ".values", "each value once", format!("{} again", value.1));
+            }
+            continue;
+        }
+        match (factor.from, factor.to) {
+            (Some(from), Some(to)) if from.is_finite() && to.is_finite() && from < to => {
+                if factor.spacing == Spacing::Log && from <= 0.0 {
+                    return wrong(key + ".from", "a number above zero, for ratios are equal", from.to_string());
+                }
+            }
+            (from, to) => return wrong(key, "`from` below `to`", format!("{from:?} and {to:?}")),
+        }
+        match (file.design, factor.count) {
+            (Design::Grid, Some(2..)) | (Design::Random | Design::LatinHypercube, None) => {}
+            (Design::Grid, count) => return wrong(key + ".count", "two values or more", format!("{count:?}")),
+            (_, Some(count)) => {
+                return wrong(key + ".count", "none, for `points` says how many there are", count.to_string());
+            }
+        }
+    }
+    match file.design {
+        Design::Grid => grid(path, file),
+        Design::Random | Design::LatinHypercube => by_lot(path, file),
+    }
+}
+
+/// A value at a place from 0 to 1 of its range.
+fn at(factor: &Factor, part: f64) -> Value {
+    let (from, to) = (factor.from.unwrap_or_default(), factor.to.unwrap_or_default());
+    let value = match factor.spacing {
+        Spacing::Linear => from + (to - from) * part,
+        Spacing::Log => (from.ln() + (to.ln() - from.ln()) * part).exp(),
+    };
+    // Ends are what was written; between them twelve digits keep 0.30000000000000004 out of tables.
+    let value = if part <= 0.0 {
+        from
+    } else if part >= 1.0 {
+        to
+    } else {
+        format!("{value:.11e}").parse().unwrap_or(value)
+    };
+    Value::from(value)
+}
+
+/// The values of a factor in a grid.
+fn values(factor: &Factor) -> Vec<Value> {
+    match (&factor.values, factor.count) {
+        (Some(values), _) => values.iter().map(json).collect(),
+        (None, Some(count)) => (0..count).map(|place| at(factor, f64::from(place) / f64::from(count - 1))).collect(),
+        (None, None) => Vec::new(),
+    }
+}
+
+/// A value of TOML as JSON.
+pub(super) fn json(value: &toml::Value) -> Value {
+    serde_json::to_value(value).unwrap_or(Value::Null)
+}
+
+fn grid(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
+    let factors: Vec<Vec<Value>> = file.factors.values().map(values).collect();
+    let count = factors.iter().try_fold(1_usize, |count, values| count.checked_mul(values.len()));
+    let Some(count) = count.filter(|count| *count <= MOST) else {
+        let found = count.map_or_else(|| "more than can be counted".to_owned(), |count| count.to_string());
+        return Err(Fault::in_file(path, format!("at most {MOST} points"), found));
+    };
+    let point = |mut place: usize| {
+        let mut point: Vec<Value> = Vec::with_capacity(factors.len());
+        // The last factor is the one that changes first.
+        for values in factors.iter().rev() {
+            point.push(values[place % values.len()].clone());
+            place /= values.len();
+        }
+        point.reverse();
+        point
+    };
+    Ok((0..count).map(point).collect())
+}
+
+fn by_lot(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
+    let count = match file.points {
+        Some(count) if count > 0 && count as usize <= MOST => count as usize,
+        found => {
+            let place = format!("{}: points", path.display());
+            return Err(Fault::expected(place, format!("a whole number from 1 to {MOST}"), format!("{found:?}")));
+        }
+    };
+    let mut lot = Pcg64Mcg::seed_from_u64(file.seed);
+    let mut points: Vec<Vec<Value>> = vec![Vec::with_capacity(file.factors.len()); count];
+    for factor in file.factors.values() {
+        let mut slices: Vec<usize> = (0..count).collect();
+        for last in (1..count).rev() {
+            slices.swap(last, lot.random_range(0..=last));
+        }
+        for (point, slice) in points.iter_mut().zip(slices) {
+            let lot: f64 = lot.random();
+            let part = match file.design {
+                Design::LatinHypercube => (slice as f64 + lot) / count as f64,
+                Design::Grid | Design::Random => lot,
+            };
+            point.push(match &factor.values {
+                Some(values) => json(&values[((part * values.len() as f64) as usize).min(values.len() - 1)]),
+                None => at(factor, part),
+            });
+        }
+    }
+    Ok(points)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    const HEAD: &str = "title = 't'\nscene = 'squash'\nsolvers = []\n";
+
+    fn of(text: &str) -> Result<Vec<Vec<Value>>, String> {
+        let file: File = toml::from_str(&(HEAD.to_owned() + text)).map_err(|error| error.to_string())?;
+        points(Path::new("s.toml"), &file).map_err(|fault| fault.to_string())
+    }
+
+    #[test]
+    fn a_grid_has_every_value_with_every_other() {
+        let found = of("factors.a = { values = [1, 2] }\n\
+                        factors.b = { from = 0.1, to = 10.0, count = 3, spacing = 'log' }\n")
+        .unwrap();
+        let rows: Vec<(f64, f64)> =
+            found.iter().map(|row| (row[0].as_f64().unwrap(), row[1].as_f64().unwrap())).collect();
+        assert_eq!(rows, [(1.0, 0.1), (1.0, 1.0), (1.0, 10.0), (2.0, 0.1), (2.0, 1.0), (2.0, 10.0)]);
+        assert_eq!(of("").unwrap(), [Vec::<Value>::new()], "without factors there is one point");
+    }
+
+    #[test]
+    fn a_latin_hypercube_has_a_point_in_every_slice() {
+        let text = "design = 'latin-hypercube'\npoints = 50\nfactors.a = { from = 0.0, to = 1.0 }\n\
+                    factors.b = { from = 1.0, to = 1e4, spacing = 'log' }\n";
+        let found = of(text).unwrap();
+        let mut slices: Vec<usize> = found.iter().map(|row| (row[0].as_f64().unwrap() * 50.0) as usize).collect();
+        slices.sort_unstable();
+        assert_eq!(slices, (0..50).collect::<Vec<_>>());
+        assert_eq!(of(text).unwrap(), found, "the lot is the same again");
+        assert_ne!(of(&("seed = 2\n".to_owned() + text)).unwrap(), found);
+    }
+
+    #[test]
+    fn what_is_no_design_is_refused() {
+        for text in [
+            "factors.a = {}",
+            "factors.a = { values = [] }",
+            "factors.a = { values = [1, 1] }",
+            "factors.a = { values = [1], from = 0.0 }",
+            "factors.a = { from = 1.0, to = 0.0, count = 2 }",
+            "factors.a = { from = 0.0, to = 1.0, count = 1 }",
+            "factors.a = { from = 0.0, to = 1.0 }",
+            "factors.a = { from = 0.0, to = 1.0, count = 3, spacing = 'log' }",
+            "factors.a = { from = nan, to = 1.0, count = 3 }",
+            "points = 3",
+            "design = 'random'",
+            "design = 'random'\npoints = 0",
+            "design = 'random'\npoints = 9\nfactors.a = { from = 0.0, to = 1.0, count = 3 }",
+            "design = 'spiral'",
+            "factors.a = { from = 0.0, to = 1.0, count = 4000000000 }",
+        ] {
+            assert!(of(text).is_err(), "{text}");
+        }
+    }
+}

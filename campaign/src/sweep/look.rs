@@ -1,0 +1,192 @@
+//! What is looked at in each run of a sweep: claims of the case, and quantities of the file's own.
+
+use super::file::{Gate, Recorded};
+use crate::fault::Fault;
+use grainbench_cases::folder::{Expression, Numbers, Over, Read};
+use grainbench_harness::case::Case;
+use grainbench_harness::claim::Claim;
+use grainbench_harness::expect::Measured;
+use grainbench_harness::run::{Done, Missing};
+use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_reports::sweep::{Looked, Quantity};
+use grainbench_scene::error::did_you_mean;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+use std::sync::Arc;
+
+/// One of them.
+pub(super) enum Look {
+    /// A claim of the case, which follows the numbers of the scene.
+    Gate(Box<Claim>, Option<f64>),
+    /// Arithmetic of the file.
+    Own(Box<Own>),
+}
+
+/// A quantity of the file's own.
+pub(super) struct Own {
+    quantity: String,
+    unit: String,
+    value: Expression,
+    at: Option<f64>,
+    over: Option<Over>,
+    equals: Option<Expression>,
+    scale: Option<Expression>,
+    allowed: Option<f64>,
+}
+
+/// A run that is looked at.
+pub(super) struct Seen<'a> {
+    /// The scene's text, with all keys as they were set.
+    pub(super) source: &'a SceneSource,
+    pub(super) done: &'a Done,
+    /// The number of a factor.
+    pub(super) factor: &'a dyn Fn(&str) -> Option<f64>,
+}
+
+impl Look {
+    /// A claim of a case by its words.
+    pub(super) fn gate(
+        path: &Path,
+        gate: &Gate,
+        (case, variant): (Option<&'static Case>, &str),
+    ) -> Result<Self, Fault> {
+        let place = format!("{}: gates", path.display());
+        let Some(case) = case else {
+            return Err(Fault::expected(place, "`scene` to be a case, which has claims", "a scene by itself"));
+        };
+        let elsewhere = |claim: &Claim| claim.elsewhere.as_ref().map(|elsewhere| elsewhere.quantity);
+        let mut claims = (case.claims)();
+        claims.retain(|claim| claim.runs.len() == 1 && claim.runs.iter().all(|run| run.reading.is_none()));
+        let named: Vec<&Claim> = claims
+            .iter()
+            .filter(|claim| claim.quantity == gate.quantity || elsewhere(claim) == Some(gate.quantity.as_str()))
+            .collect();
+        let of_variant = named.iter().find(|claim| claim.runs.iter().all(|run| run.variant == variant));
+        let Some(claim) = of_variant.or(named.first()) else {
+            let mut known: Vec<&str> = Vec::new();
+            for words in claims.iter().flat_map(|claim| [elsewhere(claim), Some(claim.quantity.as_str())]).flatten() {
+                if !known.contains(&words) {
+                    known.push(words);
+                }
+            }
+            let help = did_you_mean(&gate.quantity, known.iter().copied()).map(|help| format!(" ({help})"));
+            let expected = format!("a claim of {} of one run, one of {}", case.name, known.join("; "));
+            return Err(Fault::expected(place, expected, format!("`{}`{}", gate.quantity, help.unwrap_or_default())));
+        };
+        if gate.allowed.is_some_and(|allowed| !(allowed.is_finite() && allowed >= 0.0)) {
+            return Err(Fault::expected(place + ".allowed", "a number of zero or more", "another"));
+        }
+        Ok(Self::Gate(Box::new((*claim).clone()), gate.allowed))
+    }
+
+    /// A quantity of the file's own.
+    pub(super) fn own(path: &Path, recorded: &Recorded) -> Result<Self, Fault> {
+        let place = |key: &str| format!("{}: record ({}): {key}", path.display(), recorded.quantity);
+        let read = |key: &str, text: &str| {
+            Expression::read(text)
+                .map_err(|error| Fault::expected(place(key), "arithmetic", format!("`{text}`: {error}")))
+        };
+        if recorded.at.is_some() && recorded.over.is_some() {
+            return Err(Fault::expected(place("at"), "a moment, or a reading `over` samples", "both"));
+        }
+        if recorded.over == Some(Over::Course) {
+            return Err(Fault::expected(place("over"), "`max`, `min` or `mean`", "`course`"));
+        }
+        if recorded.allowed.is_some_and(|allowed| !(allowed.is_finite() && allowed >= 0.0)) {
+            return Err(Fault::expected(place("allowed"), "a number of zero or more", "another"));
+        }
+        if recorded.allowed.is_some() && recorded.equals.is_none() {
+            return Err(Fault::expected(place("equals"), "what is expected, for it may be off by `allowed`", "none"));
+        }
+        Ok(Self::Own(Box::new(Own {
+            quantity: recorded.quantity.clone(),
+            unit: recorded.unit.clone(),
+            value: read("value", &recorded.value)?,
+            at: recorded.at,
+            over: recorded.over,
+            equals: recorded.equals.as_ref().map(|formula| read("equals", &formula.text())).transpose()?,
+            scale: recorded.scale.as_ref().map(|formula| read("scale", &formula.text())).transpose()?,
+            allowed: recorded.allowed,
+        })))
+    }
+
+    /// What tables call it.
+    pub(super) fn quantity(&self) -> Quantity {
+        match self {
+            Self::Gate(claim, allowed) => Quantity {
+                words: claim
+                    .elsewhere
+                    .as_ref()
+                    .map_or_else(|| claim.quantity.clone(), |other| other.quantity.to_owned()),
+                unit: claim.unit.to_owned(),
+                allowed: *allowed,
+                source: claim.source.words(),
+            },
+            Self::Own(own) => Quantity {
+                words: own.quantity.clone(),
+                unit: own.unit.clone(),
+                allowed: own.allowed,
+                source: String::new(),
+            },
+        }
+    }
+
+    /// Looks at a run.
+    pub(super) fn at(&self, seen: &Seen<'_>) -> Looked {
+        let found = match self {
+            Self::Gate(claim, allowed) => {
+                let allowed = || allowed.unwrap_or_else(|| own_allowance(claim, &seen.done.scene));
+                (claim.measure)(std::slice::from_ref(seen.done)).map(|measured| judged(&measured, allowed()))
+            }
+            Self::Own(own) => own.at(seen),
+        };
+        found.unwrap_or_else(|missing| Looked {
+            verdict: Some(Outcome::Unsupported),
+            detail: Some(missing.to_string()),
+            ..Looked::default()
+        })
+    }
+}
+
+/// How far a claim may be off in a scene of other numbers than its case has, where it says so.
+fn own_allowance(claim: &Claim, scene: &Scene) -> f64 {
+    claim.elsewhere.as_ref().map_or(claim.tolerance.allowed, |elsewhere| (elsewhere.allowed)(scene))
+}
+
+/// A row of what was measured.
+fn judged(measured: &Measured, allowed: f64) -> Looked {
+    let row = Verdict { allowed, ..Verdict::open("", "", "") }.judged(measured);
+    Looked {
+        value: row.value,
+        expected: row.expected,
+        scale: row.scale,
+        error: row.error,
+        allowed: Some(allowed).filter(|allowed| allowed.is_finite()),
+        verdict: Some(row.outcome),
+        detail: row.detail,
+    }
+}
+
+impl Own {
+    fn at(&self, seen: &Seen<'_>) -> Result<Looked, Missing> {
+        let scene = &seen.done.scene;
+        let table = seen.source.table().map_err(|error| Missing(error.to_string()))?;
+        let numbers = Arc::new(Numbers::of(table, scene).map_err(Missing)?);
+        let read = Read { value: self.value.clone(), numbers: Arc::clone(&numbers), at: self.at, over: self.over };
+        let (time, value) = read.one(seen.done)?;
+        let of = |formula: &Expression| {
+            formula.value(&|name| match name {
+                "t" => Some(time),
+                _ => (seen.factor)(name).or_else(|| numbers.get(name)),
+            })
+        };
+        let Some(expected) = self.equals.as_ref().map(of) else {
+            return Ok(Looked { value: Some(value).filter(|value| value.is_finite()), ..Looked::default() });
+        };
+        let scale = self.scale.as_ref().map_or(expected.abs(), of);
+        let row = judged(&Measured::new(value, expected, scale), self.allowed.unwrap_or(f64::INFINITY));
+        // What may be off by anything is told and not judged.
+        Ok(if self.allowed.is_some() { row } else { Looked { verdict: None, ..row } })
+    }
+}

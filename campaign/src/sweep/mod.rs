@@ -1,0 +1,432 @@
+//! Sweeps: a scene over a design of its keys, by solvers at their levels.
+
+mod design;
+mod file;
+pub mod level;
+mod look;
+
+use crate::fault::Fault;
+use crate::log::State;
+use crate::task::{Id, Task};
+use file::{Asked, File};
+use grainbench_cases::folder::Expression;
+use grainbench_cases::registry::{CASES, read_grains};
+use grainbench_harness::case::{Case, PLAIN};
+use grainbench_harness::run::Done;
+use grainbench_harness::solvers::Solvers;
+use grainbench_harness::study::point::Timing;
+use grainbench_harness::verdict::Outcome;
+use grainbench_reports::sweep::{Factor, Left, Quantity, Ran};
+use grainbench_scene::error::did_you_mean;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError, Solver, Threads};
+use grainbench_scene::source::SceneSource;
+use grainbench_scene::text::{line_of, written};
+use grainbench_studies::clock;
+use grainbench_studies::cost::knobs::nominal_seconds;
+use look::{Look, Seen};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+pub use design::MOST;
+
+/// Scenes are made for this long (s) to see what tasks take; of the rest it is taken that they are like those.
+const LOOKING: f64 = 6.0;
+/// A program starts in this time (s), and takes this much longer than ours.
+const START: f64 = 0.3;
+const PROGRAM: f64 = 4.0;
+/// The reference of times is measured for this long (s) before and after a timed run.
+const REFERENCE: f64 = 2e-3;
+
+/// A sweep.
+pub struct Sweep {
+    /// What errors call the file.
+    name: String,
+    file: File,
+    points: Vec<Vec<Value>>,
+    source: SceneSource,
+    /// Where the scene is, if it is no case's.
+    scene_file: Option<PathBuf>,
+    looks: Vec<Look>,
+    levels: Vec<Level>,
+}
+
+/// A solver at a level.
+struct Level {
+    asked: usize,
+    resolution: Resolution,
+    words: String,
+    /// Keys that follow from the factors.
+    formulas: Vec<(String, Formula)>,
+    /// Keys that are otherwise.
+    set: Vec<(String, Value)>,
+}
+
+/// What a key of the scene follows from.
+#[derive(Clone)]
+enum Formula {
+    One(Expression),
+    List(Vec<Self>),
+}
+
+impl Formula {
+    fn read(value: &toml::Value) -> Result<Self, String> {
+        let text = match value {
+            toml::Value::Array(list) => return list.iter().map(Self::read).collect::<Result<_, _>>().map(Self::List),
+            toml::Value::String(text) => text.clone(),
+            other => other.to_string(),
+        };
+        Expression::read(&text).map(Self::One).map_err(|error| format!("`{text}`: {error}"))
+    }
+
+    fn names(&self) -> Vec<&str> {
+        match self {
+            Self::One(expression) => expression.names(),
+            Self::List(list) => list.iter().flat_map(Self::names).collect(),
+        }
+    }
+
+    fn value(&self, of: &dyn Fn(&str) -> Option<f64>) -> Value {
+        match self {
+            Self::One(expression) => Value::from(expression.value(of)),
+            Self::List(list) => list.iter().map(|formula| formula.value(of)).collect(),
+        }
+    }
+}
+
+impl Sweep {
+    /// Reads a sweep.
+    ///
+    /// # Errors
+    /// Names the file, the key, what was expected and what was found.
+    pub fn read(path: &Path) -> Result<Self, Fault> {
+        let told = |(expected, found): (&'static str, String)| Fault::in_file(path, expected, found);
+        let text = written(path).map_err(told)?;
+        let file: File = toml::from_str(&text).map_err(|error| {
+            let place = format!("{}:{}", path.display(), line_of(&text, &error).unwrap_or(1));
+            Fault::expected(place, "the keys of a sweep", error.message().replace('\n', ", "))
+        })?;
+        let wrong = |key: &str, expected: &str, found: String| {
+            Fault::expected(format!("{}: {key}", path.display()), expected, found)
+        };
+        let (source, case, scene_file) = scene(path, &file)?;
+        let points = design::points(path, &file)?;
+        if file.solvers.is_empty() {
+            return Err(wrong("solvers", "at least one solver with its levels", "none".to_owned()));
+        }
+        if !(1..=1000).contains(&file.repetitions) {
+            return Err(wrong("repetitions", "a whole number from 1 to 1000", file.repetitions.to_string()));
+        }
+        if file.repetitions > 1 && !file.timed {
+            return Err(wrong("repetitions", "1, unless `timed = true`", file.repetitions.to_string()));
+        }
+        for name in file.map.iter().flatten() {
+            if !file.factors.contains_key(name) {
+                return Err(wrong("map", "two factors", format!("`{name}`")));
+            }
+        }
+        let mut levels = Vec::new();
+        for (place, asked) in file.solvers.iter().enumerate() {
+            levels.extend(read_levels(path, &file, (place, asked))?);
+        }
+        if points.len().checked_mul(levels.len()).is_none_or(|count| count > MOST) {
+            return Err(Fault::in_file(path, format!("at most {MOST} points of all levels"), "more"));
+        }
+        let variant = file.scene.split_once('/').map_or(PLAIN, |(_, variant)| variant).to_owned();
+        let gates = file.gates.iter().map(|gate| Look::gate(path, gate, (case, &variant)));
+        let own = file.record.iter().map(|recorded| Look::own(path, recorded));
+        let looks = gates.chain(own).collect::<Result<Vec<_>, _>>()?;
+        if looks.is_empty() {
+            return Err(wrong("gates, record", "at least one of either", "neither".to_owned()));
+        }
+        let name = path.display().to_string();
+        Ok(Self { name, file, points, source, scene_file, looks, levels })
+    }
+
+    /// Whether times are wanted.
+    #[must_use]
+    pub const fn is_timed(&self) -> bool {
+        self.file.timed
+    }
+
+    /// Names of solvers, and manifests of programs.
+    #[must_use]
+    pub fn solvers(&self) -> Vec<String> {
+        self.file.solvers.iter().map(|asked| asked.solver.clone()).collect()
+    }
+
+    /// Where the scene is, if it is no case's.
+    #[must_use]
+    pub fn scene_file(&self) -> Option<&Path> {
+        self.scene_file.as_deref()
+    }
+
+    /// Every point by every solver at every level, with what it is expected to take.
+    ///
+    /// # Errors
+    /// When a point's scene is wrong.
+    pub fn tasks(&self, program: &str, solvers: &dyn Solvers, names: &[String]) -> Result<Vec<Task>, Fault> {
+        let base = self.source.text().to_owned();
+        let looks = format!("{:?}", self.looks.iter().map(Look::quantity).collect::<Vec<_>>());
+        // What of the file belongs to all points alike.
+        let common = format!("{base}|{looks}|{:?}|{}", self.source.directory, self.file.repetitions);
+        let common = blake3::hash(common.as_bytes()).to_hex().to_string();
+        let mut tasks = Vec::with_capacity(self.points.len() * self.levels.len());
+        let mut patience = LOOKING;
+        for level in &self.levels {
+            let name = &names[level.asked];
+            let (edition, is_program) = (solvers.edition(name), solvers.is_program(name));
+            let step = format!("{:?}", level.resolution);
+            let mut seconds = 0.0;
+            let mut looked = 0_usize;
+            for (place, point) in self.points.iter().enumerate() {
+                let set = self.set(level, point);
+                // Those that are looked at stand evenly among all.
+                if patience > 0.0 || looked == 0 {
+                    let start = Instant::now();
+                    let scene = self.scene(&set)?;
+                    let once = nominal_seconds(&scene, &level.resolution);
+                    let once = if is_program { START + PROGRAM * once } else { once };
+                    seconds = once * f64::from(self.file.repetitions);
+                    patience -= start.elapsed().as_secs_f64();
+                    looked = place + 1;
+                }
+                let key = serde_json::to_string(&set).map_err(|error| Fault::Input(error.to_string()))?;
+                tasks.push(Task {
+                    id: Id::of_words(program, &["sweep", &common, &key, name, &edition, &step]),
+                    scene: self.file.scene.clone(),
+                    set,
+                    solver: self.file.solvers[level.asked].solver.clone(),
+                    level: level.words.clone(),
+                    what: String::new(),
+                    repetitions: self.file.repetitions,
+                    seconds,
+                    group: None,
+                });
+            }
+        }
+        Ok(tasks)
+    }
+
+    /// Keys of the scene at a point, for a solver.
+    fn set(&self, level: &Level, point: &[Value]) -> BTreeMap<String, Value> {
+        let mut set = BTreeMap::new();
+        for (factor, value) in self.file.factors.values().zip(point) {
+            if let Some(key) = &factor.key {
+                set.insert(key.clone(), value.clone());
+            }
+        }
+        set.extend(level.set.iter().cloned());
+        for (key, formula) in &level.formulas {
+            set.insert(key.clone(), formula.value(&|name| self.factor(point, name)));
+        }
+        set
+    }
+
+    /// The number of a factor at a point.
+    fn factor(&self, point: &[Value], name: &str) -> Option<f64> {
+        point.get(self.file.factors.get_index_of(name)?)?.as_f64()
+    }
+
+    fn source(&self, set: &BTreeMap<String, Value>) -> SceneSource {
+        set.iter().fold(self.source.clone(), |source, (key, value)| source.set(key, &words(value)))
+    }
+
+    fn scene(&self, set: &BTreeMap<String, Value>) -> Result<Scene, Fault> {
+        let scene = self.source(set).scene(&read_grains);
+        scene.map_err(|error| Fault::Input(format!("{}: a point of it: {error}", self.name)))
+    }
+
+    /// The point and the level of the task at a place of all.
+    fn place(&self, place: usize) -> Option<(&[Value], &Level)> {
+        let count = self.points.len();
+        Some((self.points.get(place % count.max(1))?, self.levels.get(place / count.max(1))?))
+    }
+
+    /// Does the task at a place of all.
+    #[must_use]
+    pub fn run(&self, place: usize, task: &Task, solver: &dyn Solver) -> (State, Left) {
+        let Some((point, level)) = self.place(place) else {
+            return failed("the sweep has no such point".to_owned(), Outcome::Broken, self.looks.len());
+        };
+        let source = self.source(&task.set);
+        let scene = match source.scene(&read_grains) {
+            Ok(scene) => Arc::new(scene),
+            Err(error) => return failed(error.to_string(), Outcome::Broken, self.looks.len()),
+        };
+        match self.ran(&scene, &level.resolution, solver) {
+            Err(error) => failed(error.to_string(), Outcome::from(&error), self.looks.len()),
+            Ok((record, timings)) => {
+                let ran = ran(&record);
+                let done = Done::new(scene, Arc::new(record));
+                let seen = Seen { source: &source, done: &done, factor: &|name| self.factor(point, name) };
+                let looked = self.looks.iter().map(|look| look.at(&seen)).collect();
+                (State::Done, Left { ran: Some(ran), looked, timings, detail: None })
+            }
+        }
+    }
+
+    fn ran(&self, scene: &Scene, level: &Resolution, solver: &dyn Solver) -> Result<(Record, Vec<Timing>), RunError> {
+        if !self.file.timed {
+            return Ok((solver.run(scene, level, &mut Threads(1))?, Vec::new()));
+        }
+        let mut timings = Vec::new();
+        let mut last = None;
+        for _ in 0..self.file.repetitions {
+            let clocked = clock::clocked(REFERENCE, || solver.run(scene, level, &mut Threads(1)));
+            let record = clocked.done?;
+            let wall = record.cost.wall_seconds;
+            let start_up = (clocked.wall - wall).max(0.0);
+            timings.push(Timing { wall, cpu: clocked.cpu, start_up, reference: clocked.reference });
+            last = Some(record);
+        }
+        let missing =
+            || RunError::Resolution { solver: solver.name(), reason: "no repetition was asked for".to_owned() };
+        Ok((last.ok_or_else(missing)?, timings))
+    }
+
+    /// The report of what is finished: `of` gives what came out of the task at a place.
+    #[must_use]
+    pub fn report(
+        &self,
+        names: &[String],
+        provenance: grainbench_reports::Provenance,
+        of: impl Fn(usize) -> Option<Left>,
+    ) -> grainbench_reports::sweep::Sweep {
+        let mut points = Vec::new();
+        let mut missing = 0;
+        for place in 0..self.points.len() * self.levels.len() {
+            let (Some(left), Some((point, level))) = (of(place), self.place(place)) else {
+                missing += 1;
+                continue;
+            };
+            points.push(grainbench_reports::sweep::Point {
+                factors: point.to_vec(),
+                solver: names[level.asked].clone(),
+                resolution: level.words.clone(),
+                left,
+            });
+        }
+        let label = |(name, factor): (&String, &file::Factor)| Factor {
+            name: name.clone(),
+            label: factor.label.clone().unwrap_or_else(|| name.clone()),
+        };
+        let place = |name: &String| self.file.factors.get_index_of(name).unwrap_or_default();
+        grainbench_reports::sweep::Sweep {
+            provenance,
+            title: self.file.title.clone(),
+            about: self.file.about.clone(),
+            scene: self.file.scene.clone(),
+            factors: self.file.factors.iter().map(label).collect(),
+            quantities: self.looks.iter().map(Look::quantity).collect::<Vec<Quantity>>(),
+            points,
+            missing,
+            map: self.file.map.as_ref().map(|axes| [place(&axes[0]), place(&axes[1])]),
+        }
+    }
+}
+
+/// What is left where there is no record.
+fn failed(detail: String, outcome: Outcome, looks: usize) -> (State, Left) {
+    let looked = grainbench_reports::sweep::Looked { verdict: Some(outcome), ..Default::default() };
+    (State::Failed, Left { ran: None, looked: vec![looked; looks], timings: Vec::new(), detail: Some(detail) })
+}
+
+fn ran(record: &Record) -> Ran {
+    let (cost, about) = (&record.cost, &record.provenance);
+    Ran {
+        steps: cost.steps,
+        particle_steps: cost.particle_steps,
+        contact_evaluations: cost.contact_evaluations,
+        node_updates: cost.node_updates,
+        time_step: about.time_step,
+        wall_seconds: cost.wall_seconds,
+    }
+}
+
+/// A value as a key is set to it.
+fn words(value: &Value) -> String {
+    match value {
+        Value::Number(number) => number.to_string(),
+        other => toml::Value::try_from(other).map_or_else(|_| other.to_string(), |value| value.to_string()),
+    }
+}
+
+/// The levels of a solver.
+fn read_levels(path: &Path, file: &File, (place, asked): (usize, &Asked)) -> Result<Vec<Level>, Fault> {
+    let key = format!("{}: solvers ({})", path.display(), asked.solver);
+    if asked.levels.is_empty() {
+        return Err(Fault::expected(format!("{key}: levels"), "at least one", "none"));
+    }
+    let mut formulas = Vec::new();
+    for (name, value) in flat(&file.formulas).into_iter().chain(flat(&asked.formulas)) {
+        let place = || format!("{key}: formulas.{name}");
+        let formula = Formula::read(&value).map_err(|found| Fault::expected(place(), "arithmetic", found))?;
+        if let Some(unknown) = formula.names().into_iter().find(|name| !file.factors.contains_key(*name)) {
+            let known: Vec<&str> = file.factors.keys().map(String::as_str).collect();
+            let expected = format!("arithmetic over the factors {}", known.join(", "));
+            return Err(Fault::expected(place(), expected, format!("`{unknown}`")));
+        }
+        formulas.push((name, formula));
+    }
+    let set: Vec<(String, Value)> =
+        flat(&file.set).into_iter().chain(flat(&asked.set)).map(|(key, value)| (key, design::json(&value))).collect();
+    let mut levels: Vec<Level> = Vec::new();
+    for words in &asked.levels {
+        let resolution = level::read(words)
+            .map_err(|expected| Fault::expected(format!("{key}: levels"), expected, format!("`{words}`")))?;
+        if !level::fits(&asked.solver, &resolution) {
+            let expected = format!("a level that {} has", asked.solver);
+            return Err(Fault::expected(format!("{key}: levels"), expected, format!("`{words}`")));
+        }
+        let words = resolution.to_string();
+        if levels.iter().any(|known| known.words == words) {
+            return Err(Fault::expected(format!("{key}: levels"), "each level once", format!("`{words}` again")));
+        }
+        levels.push(Level { asked: place, resolution, words, formulas: formulas.clone(), set: set.clone() });
+    }
+    Ok(levels)
+}
+
+/// Keys of nested tables as paths with dots, and their values.
+fn flat(table: &toml::Table) -> Vec<(String, toml::Value)> {
+    let mut found = Vec::new();
+    for (key, value) in table {
+        match value {
+            toml::Value::Table(inner) => {
+                found.extend(flat(inner).into_iter().map(|(below, value)| (format!("{key}.{below}"), value)));
+            }
+            value => found.push((key.clone(), value.clone())),
+        }
+    }
+    found
+}
+
+/// The scene's text, its case where it is one's, and its file where it is not.
+fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>, Option<PathBuf>), Fault> {
+    let is_file = Path::new(&file.scene).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
+    let told = |error: grainbench_scene::error::SceneError| Fault::Input(error.to_string());
+    if is_file {
+        let place = path.parent().unwrap_or(Path::new("")).join(&file.scene);
+        return Ok((SceneSource::read(&place).map_err(told)?, None, Some(place)));
+    }
+    let (name, variant) = file.scene.split_once('/').map_or((file.scene.as_str(), None), |(a, b)| (a, Some(b)));
+    let Some(case) = CASES.iter().copied().find(|case| case.name == name) else {
+        let help = did_you_mean(name, CASES.iter().map(|case| case.name)).map(|help| format!(" ({help})"));
+        let found = format!("`{name}`{}", help.unwrap_or_default());
+        let place = format!("{}: scene", path.display());
+        return Err(Fault::expected(place, "a case (`grainbench list`), or a scene file from here", found));
+    };
+    let source = case.source();
+    let source = match variant {
+        None | Some(PLAIN) => source,
+        Some(variant) => source.variant(variant),
+    };
+    // A variant that is none is told of now.
+    source.scene_file().map_err(told)?;
+    Ok((source, Some(case), None))
+}

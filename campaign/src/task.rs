@@ -1,0 +1,174 @@
+//! Tasks: what is to be done, a line each.
+
+use crate::fault::Fault;
+use grainbench_scene::text::tamed;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+/// Digits of an id.
+const DIGITS: usize = 32;
+
+/// What a task is known by: the first half of the hash of all that it is. Equal tasks of equal programs have equal ids, in
+/// whichever plan they stand.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Id([u8; 16]);
+
+impl Id {
+    /// Of a hash in hexadecimal digits; none where it has too few.
+    #[must_use]
+    pub fn of_hash(hash: &str) -> Option<Self> {
+        hash.get(..DIGITS)?.parse().ok()
+    }
+
+    /// Of words, and of the program that is to do it.
+    #[must_use]
+    pub fn of_words(program: &str, words: &[&str]) -> Self {
+        let mut id = [0; 16];
+        let hash = grainbench_studies::identity::of_words(program, words);
+        for (byte, digits) in id.iter_mut().zip(hash.as_bytes().chunks(2)) {
+            *byte =
+                std::str::from_utf8(digits).ok().and_then(|two| u8::from_str_radix(two, 16).ok()).unwrap_or_default();
+        }
+        Self(id)
+    }
+}
+
+impl FromStr for Id {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{DIGITS} hexadecimal digits");
+        if text.len() != DIGITS || !text.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f')) {
+            return Err(wrong());
+        }
+        let number = u128::from_str_radix(text, 16).map_err(|_| wrong())?;
+        Ok(Self(number.to_be_bytes()))
+    }
+}
+
+impl fmt::Display for Id {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{:032x}", u128::from_be_bytes(self.0))
+    }
+}
+
+impl fmt::Debug for Id {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{self}")
+    }
+}
+
+impl Serialize for Id {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Id {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = <std::borrow::Cow<'de, str>>::deserialize(deserializer)?;
+        text.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+/// One task.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Task {
+    /// What it is known by.
+    pub id: Id,
+    /// Case and variant, or file of the scene.
+    pub scene: String,
+    /// Keys of the scene that are set otherwise.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub set: BTreeMap<String, Value>,
+    /// Solver, or the manifest of a program.
+    pub solver: String,
+    /// Resolution in words.
+    pub level: String,
+    /// What is looked at, in words.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub what: String,
+    /// How often it is run; more than once where it is timed.
+    pub repetitions: u32,
+    /// What it is expected to take (s), with all repetitions.
+    pub seconds: f64,
+    /// Tasks of one number stand together and are done by one worker in turns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<u32>,
+}
+
+/// Reads a line a task.
+///
+/// # Errors
+/// Names the file, the line, what was expected and what was found.
+pub fn read(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
+    let mut tasks = Vec::new();
+    for (at, line) in text.lines().enumerate() {
+        let task: Task = serde_json::from_str(line).map_err(|error| {
+            let found = tamed(&error.to_string(), |_| false);
+            Fault::expected(format!("{}:{}", path.display(), at + 1), "a task as `grainbench plan` leaves it", found)
+        })?;
+        if !(task.seconds.is_finite() && task.seconds >= 0.0) {
+            let place = format!("{}:{}", path.display(), at + 1);
+            return Err(Fault::expected(place, "`seconds` of zero or more", task.seconds));
+        }
+        tasks.push(task);
+    }
+    Ok(tasks)
+}
+
+/// The lines.
+///
+/// # Errors
+/// When something has no JSON form, which no task of this project has.
+pub fn lines(tasks: &[Task]) -> Result<String, Fault> {
+    let mut text = String::with_capacity(300 * tasks.len());
+    for task in tasks {
+        text.push_str(&serde_json::to_string(task).map_err(|error| Fault::Input(error.to_string()))?);
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    #[test]
+    fn an_id_is_read_as_it_is_written() {
+        let id = Id::of_words("program", &["a", "b"]);
+        assert_eq!(id.to_string().parse(), Ok(id));
+        assert_ne!(id, Id::of_words("program", &["ab", ""]));
+        assert_eq!(Id::of_hash(&grainbench_studies::identity::of_words("program", &["a", "b"])), Some(id));
+        for wrong in ["", "12", "G".repeat(32).as_str(), "é".repeat(16).as_str(), "+".repeat(32).as_str()] {
+            assert!(wrong.parse::<Id>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_line_is_named() {
+        let task = Task {
+            id: Id::of_words("", &[]),
+            scene: "squash".to_owned(),
+            set: BTreeMap::from([("a.b".to_owned(), Value::from(0.1))]),
+            solver: "dem".to_owned(),
+            level: "dt=.1".to_owned(),
+            what: String::new(),
+            repetitions: 1,
+            seconds: 0.5,
+            group: None,
+        };
+        let text = lines(&[task.clone(), task.clone()]).unwrap();
+        assert_eq!(read(Path::new("t"), &text).unwrap(), [task.clone(), task]);
+        for wrong in [&text[..text.len() - 9], &(text.clone() + "\n"), &text.replace("0.5", "-1"), "{}", "\0"] {
+            let said = read(Path::new("t"), wrong).unwrap_err().to_string();
+            assert!(said.starts_with("t:") && said.contains("expected"), "{said}");
+        }
+    }
+}

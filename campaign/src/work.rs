@@ -1,0 +1,255 @@
+//! Work: the tasks of a chunk that are not finished and that nobody else is at, until all of the chunk is finished.
+
+use crate::chunk::{self, Chunk};
+use crate::fault::Fault;
+use crate::finished::Finished;
+use crate::lease::{Lease, Said};
+use crate::log::{Line, Log, State, Worker};
+use crate::machine;
+use crate::plan::{Plan, RESULTS};
+use crate::task::{Id, Task};
+use grainbench_reports::WriteError;
+use serde::Serialize;
+use std::collections::BTreeSet;
+use std::fs;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A worker says that it is there this often in the time of a lease.
+const BEATS: f64 = 12.0;
+/// Others are looked after this often at most.
+const LOOK: Duration = Duration::from_millis(500);
+/// Looking after them takes this share of the time at most.
+const SHARE: u32 = 20;
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// Which chunk.
+    pub chunk: Chunk,
+    /// Whether what failed is done again.
+    pub again: bool,
+}
+
+/// Who is told of what happens, and says whether it goes on.
+pub trait Watch: Send + Sync {
+    /// Whether work is to go on.
+    fn goes_on(&self) -> bool {
+        true
+    }
+    /// So many tasks are taken up.
+    fn begins(&self, _tasks: usize) {}
+    /// A task is finished.
+    fn finished(&self) {}
+    /// Others are at what is left, and are waited for.
+    fn waits(&self, _others: &[Said]) {}
+}
+
+impl Watch for () {}
+
+/// What came of a chunk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// Tasks of the chunk.
+    pub tasks: usize,
+    /// That were finished before.
+    pub before: usize,
+    /// That were done now,
+    pub done: usize,
+    /// and of these such as failed.
+    pub failed: usize,
+    /// That are left.
+    pub left: usize,
+}
+
+/// Where whoever does tasks leaves what comes out.
+pub struct Desk {
+    log: Mutex<Log>,
+    watch: Arc<dyn Watch>,
+    fault: Mutex<Option<WriteError>>,
+    stops: AtomicBool,
+    done: AtomicUsize,
+    failed: AtomicUsize,
+    timed: bool,
+}
+
+impl Desk {
+    /// Whether another task may be begun.
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        !self.stops.load(Ordering::Relaxed) && self.watch.goes_on()
+    }
+
+    /// Leaves what came out of a task in so many seconds.
+    pub fn leave(&self, id: Id, state: State, seconds: f64, result: &impl Serialize) {
+        match serde_json::to_string(result) {
+            Ok(json) => self.leave_text(id, state, seconds, &json),
+            Err(error) => self.leave_text(id, State::Crashed, seconds, &quoted(&error.to_string())),
+        }
+    }
+
+    /// The same of what has a JSON form already, on one line.
+    pub fn leave_text(&self, id: Id, state: State, seconds: f64, json: &str) {
+        let load = if self.timed { machine::load() } else { None };
+        let added =
+            self.log.lock().unwrap_or_else(PoisonError::into_inner).add(&Line { id, state, seconds, load, json });
+        if let Err(error) = added {
+            self.stops.store(true, Ordering::Relaxed);
+            self.fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            return;
+        }
+        self.done.fetch_add(1, Ordering::Relaxed);
+        self.failed.fetch_add(usize::from(state != State::Done), Ordering::Relaxed);
+        self.watch.finished();
+    }
+
+    /// Does one task, whose result is its state and what came out; a panic of ours is what came of that task, and no more.
+    pub fn attempt<T: Serialize>(&self, id: Id, work: impl FnOnce() -> (State, T)) {
+        let start = Instant::now();
+        match std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)) {
+            Ok((state, result)) => self.leave(id, state, start.elapsed().as_secs_f64(), &result),
+            Err(reason) => self.crashed(id, start.elapsed().as_secs_f64(), &*reason),
+        }
+    }
+
+    /// Leaves that our program failed at a task.
+    pub fn crashed(&self, id: Id, seconds: f64, reason: &(dyn std::any::Any + Send)) {
+        let words =
+            reason.downcast_ref::<String>().map(String::as_str).or_else(|| reason.downcast_ref::<&str>().copied());
+        self.leave_text(id, State::Crashed, seconds, &quoted(words.unwrap_or("our program failed")));
+    }
+
+    fn sync(&self) -> Result<(), WriteError> {
+        self.log.lock().unwrap_or_else(PoisonError::into_inner).sync()
+    }
+}
+
+fn quoted(words: &str) -> String {
+    serde_json::to_string(words).unwrap_or_else(|_| "\"\"".to_owned())
+}
+
+/// Does a chunk of a plan with somebody who does tasks.
+///
+/// # Errors
+/// When the disk refuses; what was done before that stays done.
+pub fn work(
+    plan: &Plan,
+    asked: &Asked,
+    worker: &Worker,
+    watch: Arc<dyn Watch>,
+    does: &dyn Fn(&[&Task], &Arc<Desk>) -> Result<(), Fault>,
+) -> Result<Summary, Fault> {
+    let range = chunk::of(&plan.tasks, asked.chunk);
+    let seconds = plan.head.lease_seconds;
+    let said = Said {
+        worker: worker.name.clone(),
+        host: worker.host.clone(),
+        process: worker.process,
+        job: worker.job.clone(),
+        tasks: Vec::new(),
+        done: 0,
+    };
+    let mut summary = Summary { tasks: range.len(), ..Summary::default() };
+    let mut desk: Option<Arc<Desk>> = None;
+    // Each is done by us once at most, though it fail again.
+    let mut tried: BTreeSet<usize> = BTreeSet::new();
+    let mut is_first = true;
+    loop {
+        let (lease, others) = Lease::take(&plan.path, range.clone(), &said, seconds)?;
+        // Looked at when nobody else can finish what is ours.
+        let look = Instant::now();
+        let finished = Finished::read(&plan.path, false)?;
+        let look = look.elapsed();
+        let is_open = |place: usize| match finished.entries.get(&plan.tasks[place].id) {
+            None => true,
+            Some(entry) => asked.again && entry.state != State::Done && !tried.contains(&place),
+        };
+        let open: Vec<usize> = range.clone().filter(|place| is_open(*place)).collect();
+        if is_first {
+            summary.before = range.len() - open.len();
+        }
+        is_first = false;
+        summary.left = open.len();
+        let is_mine = |place: &usize| lease.as_ref().is_some_and(|lease| lease.has(*place));
+        let mine: Vec<usize> = open.iter().copied().filter(is_mine).collect();
+        let others: Vec<Said> = others.into_iter().filter(|other| open.iter().any(|place| other.has(*place))).collect();
+        if mine.is_empty() {
+            drop(lease);
+            if others.is_empty() || !watch.goes_on() {
+                break;
+            }
+            watch.waits(&others);
+            std::thread::sleep(LOOK.max(look * SHARE));
+            continue;
+        }
+        let at = match desk.take() {
+            Some(desk) => desk,
+            None => Arc::new(begin(plan, worker, Arc::clone(&watch))?),
+        };
+        watch.begins(mine.len());
+        let tasks: Vec<&Task> = mine.iter().map(|place| &plan.tasks[*place]).collect();
+        with_a_heart(lease.as_ref(), &at, seconds / BEATS, || does(&tasks, &at))?;
+        at.sync()?;
+        drop(lease);
+        tried.extend(mine);
+        (summary.done, summary.failed) = (at.done.load(Ordering::Relaxed), at.failed.load(Ordering::Relaxed));
+        if let Some(error) = at.fault.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            return Err(error.into());
+        }
+        summary.left = summary.left.saturating_sub(tasks.len());
+        if !at.goes_on() {
+            summary.left = summary.tasks.saturating_sub(summary.before + summary.done);
+            break;
+        }
+        desk = Some(at);
+    }
+    Ok(summary)
+}
+
+fn begin(plan: &Plan, worker: &Worker, watch: Arc<dyn Watch>) -> Result<Desk, Fault> {
+    let folder = plan.path.join(RESULTS);
+    fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
+    Ok(Desk {
+        log: Mutex::new(Log::new(&folder, worker)?),
+        watch,
+        fault: Mutex::new(None),
+        stops: AtomicBool::new(false),
+        done: AtomicUsize::new(0),
+        failed: AtomicUsize::new(0),
+        timed: plan.head.timed,
+    })
+}
+
+/// Does something while the lease is renewed.
+fn with_a_heart<T>(lease: Option<&Lease>, desk: &Desk, every: f64, work: impl FnOnce() -> T) -> T {
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let beats = scope.spawn(|| {
+            let mut last = Instant::now();
+            while !is_over.load(Ordering::Relaxed) {
+                std::thread::park_timeout(Duration::from_secs_f64(every));
+                if last.elapsed().as_secs_f64() >= every {
+                    last = Instant::now();
+                    // A disk that is full now is told of by results.
+                    let _ = lease.map(|lease| lease.renew(desk.done.load(Ordering::Relaxed)));
+                    let _ = desk.sync();
+                }
+            }
+        });
+        let over = Over(&is_over, beats.thread().clone());
+        let done = work();
+        drop(over);
+        done
+    })
+}
+
+/// Ends the beats, also where work panics.
+struct Over<'a>(&'a AtomicBool, std::thread::Thread);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+        self.1.unpark();
+    }
+}

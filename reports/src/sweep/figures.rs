@@ -1,0 +1,65 @@
+//! Graphs of a sweep: what accuracy takes over the whole design.
+
+use super::Sweep;
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+
+/// Every graph.
+pub(super) fn all(sweep: &Sweep) -> Vec<Figure> {
+    work(sweep).into_iter().collect()
+}
+
+/// Solvers with their levels, in the order of the points.
+pub(super) fn levels(sweep: &Sweep) -> Vec<(String, String)> {
+    let mut found: Vec<(String, String)> = Vec::new();
+    for point in &sweep.points {
+        // Points of a level follow one another.
+        if found.last().is_none_or(|(solver, level)| *solver != point.solver || *level != point.resolution) {
+            let level = (point.solver.clone(), point.resolution.clone());
+            if !found.contains(&level) {
+                found.push(level);
+            }
+        }
+    }
+    found
+}
+
+/// The value below which this part of some values lies; none of none.
+fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(((values.len() as f64 * part) as usize).min(values.len().saturating_sub(1))).copied()
+}
+
+/// Errors against steps of particles, a point a level.
+fn work(sweep: &Sweep) -> Option<Figure> {
+    let mut curves: Vec<Curve> = Vec::new();
+    for (solver, level) in levels(sweep) {
+        let of = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
+        let mut steps: Vec<f64> =
+            of().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps as f64)).collect();
+        let mut errors: Vec<f64> = of().filter_map(super::Point::error).collect();
+        let Some(middle) = quantile(&mut steps, 0.5) else { continue };
+        for (label, part, stroke) in
+            [("median", 0.5, Stroke::MarkedLine), ("nine in ten below", 0.9, Stroke::MarkedLine)]
+        {
+            let Some(error) = quantile(&mut errors, part) else { continue };
+            let label = format!("{solver}, {label}");
+            match curves.iter_mut().find(|curve| curve.label == label) {
+                Some(curve) => curve.points.push((middle, error)),
+                None => curves.push(Curve::new(label, stroke, vec![(middle, error)])),
+            }
+        }
+    }
+    for curve in &mut curves {
+        curve.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+    (!curves.is_empty()).then(|| {
+        Figure::graph(
+            "work",
+            "What accuracy takes, over all points of the design",
+            "The worst error of what is looked at, against the steps of a grain or material point in the middle run: a point a \
+             level. Counts do not depend on the machine.",
+            [Axis::log("particle-steps in the middle run"), Axis::log("|error|")],
+            curves,
+        )
+    })
+}

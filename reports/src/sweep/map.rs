@@ -1,0 +1,209 @@
+//! Where each solver is within what is allowed: a map over two factors, a panel for each solver at each level.
+
+use super::figures::levels;
+use super::{Point, Standing, Sweep};
+use crate::number;
+use crate::plot::{FONTS, WIDTH, wrap};
+use maud::{Markup, html};
+use serde_json::Value;
+
+/// Panels side by side.
+const ACROSS: usize = 3;
+/// Room left of a panel for numbers, and below it.
+const LEFT: f64 = 58.0;
+const FOOT: f64 = 46.0;
+/// Room above a panel for its title, and above all for theirs.
+const HEAD: f64 = 26.0;
+const TOP: f64 = 46.0;
+/// Room between panels.
+const GAP: f64 = 12.0;
+/// A panel is this high.
+const HIGH: f64 = 210.0;
+/// Values of a factor that are told apart; of more, neighbours share a cell.
+const MOST: usize = 40;
+/// A cell narrower than this has no room for a sign.
+const SIGN: f64 = 13.0;
+/// Numbers stand this far apart at least.
+const APART: [f64; 2] = [36.0, 15.0];
+
+/// The colours of a cell: all within, some, none, and nothing judged.
+const COLOURS: [&str; 4] = ["#009e73", "#f0c36a", "#d55e00", "#e4e7eb"];
+/// What stands in it, so that colour alone never tells.
+const SIGNS: [&str; 4] = ["", "·", "×", "–"];
+const WORDS: [&str; 4] = ["within what is allowed at every other factor", "at some", "at none", "cannot be asked"];
+
+/// The maps: file name, caption, drawing.
+pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
+    let Some([x, y]) = sweep.map.or_else(|| usual(sweep)) else { return Vec::new() };
+    if sweep.points.is_empty() || !sweep.points.iter().any(|point| point.error().is_some()) {
+        return Vec::new();
+    }
+    let axes = [Marks::of(sweep, x), Marks::of(sweep, y)];
+    let panels = levels(sweep);
+    let columns = panels.len().min(ACROSS).max(1);
+    let wide = (WIDTH - columns as f64 * (LEFT + GAP)) / columns as f64;
+    let pitch = HEAD + HIGH + FOOT;
+    let rows = panels.len().div_ceil(columns);
+    let height = TOP + pitch * rows as f64 + 34.0;
+    let names: Vec<&str> = sweep.quantities.iter().map(|quantity| quantity.words.as_str()).collect();
+    let title = format!("Where each solver is within what is allowed: {}", names.join("; "));
+    let svg = html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
+            aria-label=(title) font-family=(FONTS) {
+            title { (title) }
+            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
+            text x="10" y="24" font-size="16" font-weight="bold" fill="#222" { (wrap(&title, 16.0, WIDTH - 20.0).swap_remove(0)) }
+            @for (place, (solver, level)) in panels.iter().enumerate() {
+                @let left = LEFT + (place % columns) as f64 * (wide + LEFT + GAP);
+                @let top = TOP + HEAD + (place / columns) as f64 * pitch;
+                (panel(sweep, [x, y], &axes, (solver, level), [left, top, wide]))
+            }
+            (legend(height - 22.0))
+        }
+    };
+    let labels = [x, y].map(|place| sweep.factors[place].label.as_str());
+    let caption = format!(
+        "A cell is a pair of {} and {}: green where every point there is within what is allowed, whatever the other factors \
+         are, yellow with a dot where some are, red with a cross where none is. The number over a panel is the share of its \
+         points that are within.",
+        labels[0], labels[1]
+    );
+    vec![("map".to_owned(), caption, svg.into_string())]
+}
+
+/// The first two factors with several numbers.
+fn usual(sweep: &Sweep) -> Option<[usize; 2]> {
+    let varies = |place: &usize| {
+        let mut values = sweep.points.iter().map(|point| &point.factors[*place]);
+        let first = values.next();
+        first.is_some_and(Value::is_number) && values.any(|value| Some(value) != first && value.is_number())
+    };
+    let mut places = (0..sweep.factors.len()).filter(varies);
+    Some([places.next()?, places.next()?])
+}
+
+/// The values along an axis, in their order: those of a factor, or slices of its range.
+struct Marks {
+    values: Vec<f64>,
+    words: Vec<String>,
+    label: String,
+}
+
+impl Marks {
+    fn of(sweep: &Sweep, place: usize) -> Self {
+        let mut values: Vec<f64> = sweep.points.iter().filter_map(|point| point.factors[place].as_f64()).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        if values.len() > MOST {
+            // The middles of slices with equally many values.
+            let slices = MOST / 2;
+            values = (0..slices).map(|slice| values[(2 * slice + 1) * values.len() / (2 * slices)]).collect();
+        }
+        let words = values.iter().map(|value| number::significant(*value, 3)).collect();
+        Self { values, words, label: sweep.factors[place].label.clone() }
+    }
+
+    /// The cell of a value.
+    fn cell(&self, value: &Value) -> Option<usize> {
+        let value = value.as_f64()?;
+        let after = self.values.partition_point(|mark| *mark < value);
+        let near = |at: usize| self.values.get(at).map(|mark| (mark - value).abs());
+        match (after.checked_sub(1).and_then(near), near(after)) {
+            (Some(before), Some(behind)) if before < behind => Some(after - 1),
+            (_, Some(_)) => Some(after),
+            (Some(_), None) => Some(after - 1),
+            (None, None) => None,
+        }
+    }
+}
+
+fn panel(
+    sweep: &Sweep,
+    [x, y]: [usize; 2],
+    axes: &[Marks; 2],
+    (solver, level): (&str, &str),
+    [left, top, wide]: [f64; 3],
+) -> Markup {
+    let [across, up] = [axes[0].values.len(), axes[1].values.len()];
+    let mut cells = vec![[0_usize; 3]; across * up];
+    let of = |point: &&Point| point.solver == solver && point.resolution == level;
+    let mut all = [0_usize; 3];
+    for point in sweep.points.iter().filter(of) {
+        let standing = point.standing() as usize;
+        all[standing] += 1;
+        if let (Some(column), Some(row)) = (axes[0].cell(&point.factors[x]), axes[1].cell(&point.factors[y])) {
+            cells[row * across + column][standing] += 1;
+        }
+    }
+    let judged = all[Standing::Within as usize] + all[Standing::Outside as usize];
+    let share = if judged > 0 { number::fraction(all[0] as f64 / judged as f64) } else { "—".to_owned() };
+    let size = [wide / across as f64, HIGH / up as f64];
+    let has_room = size[0] >= SIGN && size[1] >= SIGN;
+    let title = format!("{solver} {level}: {share}");
+    html! {
+        text x=(px(left + 0.5 * wide)) y=(px(top - 8.0)) text-anchor="middle" font-size="13" fill="#222" { (title) }
+        @for (place, cell) in cells.iter().enumerate() {
+            @let kind = kind(*cell);
+            @if let Some(kind) = kind {
+                @let corner = [
+                    left + (place % across) as f64 * size[0],
+                    top + HIGH - (place / across + 1) as f64 * size[1],
+                ];
+                rect x=(px(corner[0])) y=(px(corner[1])) width=(px(size[0])) height=(px(size[1])) fill=(COLOURS[kind])
+                    stroke="#fff" stroke-width=".6" {}
+                @if has_room && !SIGNS[kind].is_empty() {
+                    text x=(px(corner[0] + 0.5 * size[0])) y=(px(corner[1] + 0.5 * size[1] + 4.0)) text-anchor="middle"
+                        font-size="12" fill="#222" { (SIGNS[kind]) }
+                }
+            }
+        }
+        rect x=(px(left)) y=(px(top)) width=(px(wide)) height=(px(HIGH)) fill="none" stroke="#666" {}
+        @for (at, word) in thinned(&axes[0].words, size[0], APART[0]) {
+            text x=(px(left + (at as f64 + 0.5) * size[0])) y=(px(top + HIGH + 15.0)) text-anchor="middle" font-size="11"
+                fill="#222" { (word) }
+        }
+        @for (at, word) in thinned(&axes[1].words, size[1], APART[1]) {
+            text x=(px(left - 6.0)) y=(px(top + HIGH - (at as f64 + 0.5) * size[1] + 4.0)) text-anchor="end" font-size="11"
+                fill="#222" { (word) }
+        }
+        text x=(px(left + 0.5 * wide)) y=(px(top + HIGH + 32.0)) text-anchor="middle" font-size="12" fill="#666" {
+            (axes[0].label)
+        }
+        @let middle = [left - 44.0, top + 0.5 * HIGH];
+        text x=(px(middle[0])) y=(px(middle[1])) text-anchor="middle" font-size="12" fill="#666"
+            transform=(format!("rotate(-90 {} {})", px(middle[0]), px(middle[1]))) { (axes[1].label) }
+    }
+}
+
+/// Which colour a cell has; none where no point lies in it.
+fn kind([within, outside, amber]: [usize; 3]) -> Option<usize> {
+    match (within, outside) {
+        (0, 0) if amber == 0 => None,
+        (0, 0) => Some(3),
+        (_, 0) => Some(0),
+        (0, _) => Some(2),
+        _ => Some(1),
+    }
+}
+
+/// As many of the words as have room.
+fn thinned(words: &[String], size: f64, apart: f64) -> impl Iterator<Item = (usize, &String)> {
+    let every = (apart / size).ceil().max(1.0) as usize;
+    words.iter().enumerate().step_by(every)
+}
+
+fn legend(y: f64) -> Markup {
+    let step = [0.0, 318.0, 420.0, 520.0];
+    html! {
+        @for (at, colour) in COLOURS.iter().enumerate() {
+            @let x = LEFT + step[at];
+            rect x=(px(x)) y=(px(y)) width="14" height="14" fill=(colour) {}
+            text x=(px(x + 7.0)) y=(px(y + 11.0)) text-anchor="middle" font-size="12" fill="#222" { (SIGNS[at]) }
+            text x=(px(x + 20.0)) y=(px(y + 12.0)) font-size="13" fill="#222" { (WORDS[at]) }
+        }
+    }
+}
+
+fn px(value: f64) -> String {
+    format!("{value:.1}")
+}

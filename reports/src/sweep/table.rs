@@ -1,0 +1,116 @@
+//! Rows of a sweep: a line for each point, solver, level and quantity.
+
+use super::{Looked, Point, Sweep};
+use crate::parts::Values;
+use grainbench_harness::expect::Expected;
+use grainbench_harness::verdict::Outcome;
+use serde_json::Value;
+
+/// A row: the point, and what was seen of a quantity.
+type Row<'a> = (&'a Point, usize, &'a Looked);
+
+fn rows(sweep: &Sweep) -> Vec<Row<'_>> {
+    let of = |point| -> Vec<Row<'_>> {
+        let point: &Point = point;
+        point.left.looked.iter().enumerate().map(|(at, looked)| (point, at, looked)).collect()
+    };
+    sweep.points.iter().flat_map(of).collect()
+}
+
+/// The columns, each with its name. What is absent is null.
+pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
+    let rows = rows(sweep);
+    let words = |of: &dyn Fn(&Row<'_>) -> String| Values::Word(rows.iter().map(of).collect());
+    let told = |of: &dyn Fn(&Row<'_>) -> Option<f64>| Values::Told(rows.iter().map(of).collect());
+    let count = |of: &dyn Fn(&super::Ran) -> Option<u64>| {
+        told(&|(point, _, _)| point.left.ran.as_ref().and_then(of).map(|count| count as f64))
+    };
+    let mut columns = vec![("case".to_owned(), words(&|_| sweep.scene.clone()))];
+    for (place, factor) in sweep.factors.iter().enumerate() {
+        let are_numbers = sweep.points.iter().all(|point| point.factors[place].is_number());
+        let values = if are_numbers {
+            told(&|(point, _, _)| point.factors[place].as_f64())
+        } else {
+            words(&|(point, _, _)| match &point.factors[place] {
+                Value::String(word) => word.clone(),
+                other => other.to_string(),
+            })
+        };
+        columns.push((factor.name.clone(), values));
+    }
+    let bound = |looked: &Looked| match looked.expected {
+        Some(bound @ Expected::Bound(_)) => bound.to_string(),
+        Some(Expected::Value(_)) | None => String::new(),
+    };
+    let detail =
+        |point: &Point, looked: &Looked| looked.detail.clone().or(point.left.detail.clone()).unwrap_or_default();
+    let rest: [(&str, Values); 18] = [
+        ("solver", words(&|(point, _, _)| point.solver.clone())),
+        ("resolution", words(&|(point, _, _)| point.resolution.clone())),
+        ("quantity", words(&|(_, at, _)| sweep.quantities[*at].words.clone())),
+        ("unit", words(&|(_, at, _)| sweep.quantities[*at].unit.clone())),
+        ("value", told(&|(_, _, looked)| looked.value)),
+        ("expected", told(&|(_, _, looked)| looked.expected.and_then(Expected::value))),
+        ("bound", words(&|(_, _, looked)| bound(looked))),
+        ("scale", told(&|(_, _, looked)| looked.scale)),
+        ("error", told(&|(_, _, looked)| looked.error)),
+        ("allowed", told(&|(_, _, looked)| looked.allowed)),
+        ("verdict", words(&|(_, _, looked)| looked.verdict.map_or("", Outcome::word).to_owned())),
+        ("detail", words(&|(point, _, looked)| detail(point, looked))),
+        ("steps", count(&|ran| Some(ran.steps))),
+        ("particle_steps", count(&|ran| Some(ran.particle_steps))),
+        ("contact_evaluations", count(&|ran| ran.contact_evaluations)),
+        ("node_updates", count(&|ran| ran.node_updates)),
+        ("time_step", told(&|(point, _, _)| point.left.ran.map(|ran| ran.time_step))),
+        ("wall_seconds", told(&|(point, _, _)| wall(point))),
+    ];
+    columns.extend(rest.map(|(name, values)| (name.to_owned(), values)));
+    columns
+}
+
+/// The median of the repetitions, or what the one run took (s).
+pub(super) fn wall(point: &Point) -> Option<f64> {
+    let walls: Vec<f64> = point.left.timings.iter().map(|timing| timing.wall).collect();
+    if walls.is_empty() {
+        return point.left.ran.map(|ran| ran.wall_seconds);
+    }
+    Some(grainbench_harness::statistics::median(&walls))
+}
+
+/// `results.json`, as the rest of the world reads it: a verdict a row, and what each run cost.
+pub(super) fn results_json(sweep: &Sweep) -> Result<String, serde_json::Error> {
+    let json = |value: Value| serde_json::to_string(&value);
+    let mut text = String::from("{\n  \"provenance\": ");
+    text += &serde_json::to_string(&sweep.provenance)?;
+    text += ",\n  \"verdicts\": [";
+    let knobs = |point: &Point| -> serde_json::Map<String, Value> {
+        let names = sweep.factors.iter().map(|factor| factor.name.clone());
+        names.zip(point.factors.iter().cloned()).collect()
+    };
+    for (at, (point, quantity, looked)) in rows(sweep).into_iter().enumerate() {
+        let of = &sweep.quantities[quantity];
+        text += if at == 0 { "\n    " } else { ",\n    " };
+        let detail = looked.detail.as_ref().or(point.left.detail.as_ref());
+        text += &json(serde_json::json!({
+            "case": sweep.scene, "variant": "", "set": knobs(point), "solver": point.solver, "resolution": point.resolution,
+            "quantity": of.words, "unit": of.unit, "value": looked.value, "expected": looked.expected, "scale": looked.scale,
+            "error": looked.error, "allowed": looked.allowed, "source": of.source,
+            "verdict": looked.verdict.map(Outcome::word), "detail": detail,
+        }))?;
+    }
+    text += "\n  ],\n  \"controls\": [],\n  \"points\": [";
+    let mut is_first = true;
+    for point in &sweep.points {
+        let Some(ran) = &point.left.ran else { continue };
+        text += if is_first { "\n    " } else { ",\n    " };
+        is_first = false;
+        text += &json(serde_json::json!({
+            "case": sweep.scene, "set": knobs(point), "solver": point.solver, "resolution": point.resolution,
+            "steps": ran.steps, "particle_steps": ran.particle_steps, "contact_evaluations": ran.contact_evaluations,
+            "node_updates": ran.node_updates, "time_step": ran.time_step, "wall_seconds": wall(point),
+            "repetitions": point.left.timings,
+        }))?;
+    }
+    text += "\n  ]\n}\n";
+    Ok(text)
+}

@@ -1,0 +1,288 @@
+//! The trend over plans: verdicts and counts of several reports beside one another, as `trend.html`.
+
+use crate::number;
+use crate::page::{scrolling, shell, sign};
+use crate::plot::{self, DrawError};
+use crate::staged::StagedDir;
+use crate::store::SaveError;
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::verdict::Outcome;
+use maud::{Markup, PreEscaped, html};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// Rows that changed and are told.
+const MOST: usize = 400;
+/// What runs count, in the order of tables.
+const COUNTED: [&str; 5] = ["steps", "particle_steps", "contact_evaluations", "node_updates", "pair_tests"];
+
+/// One report.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// What it is called.
+    name: String,
+    commit: String,
+    date: String,
+    /// Outcomes by row.
+    rows: BTreeMap<String, Outcome>,
+    /// Counts by run.
+    runs: BTreeMap<String, BTreeMap<&'static str, u64>>,
+}
+
+/// `results.json`, as far as it is looked at.
+#[derive(Deserialize)]
+struct Results {
+    provenance: About,
+    #[serde(default)]
+    verdicts: Vec<Row>,
+    #[serde(default)]
+    points: Vec<Map<String, Value>>,
+}
+
+#[derive(Deserialize)]
+struct About {
+    #[serde(default)]
+    commit: String,
+    #[serde(default)]
+    date: String,
+}
+
+#[derive(Deserialize)]
+struct Row {
+    #[serde(flatten)]
+    about: Map<String, Value>,
+    verdict: Option<Outcome>,
+}
+
+/// What tells a row or a run from others, in words.
+fn key(about: &Map<String, Value>) -> String {
+    const PARTS: [&str; 7] = ["case", "variant", "set", "solver", "resolution", "knobs", "quantity"];
+    let words = PARTS.iter().filter_map(|part| match about.get(*part)? {
+        Value::String(word) if word.is_empty() => None,
+        Value::String(word) => Some(word.clone()),
+        Value::Object(knobs) => {
+            let knobs: Vec<String> = knobs.iter().map(|(name, value)| format!("{name}={value}")).collect();
+            Some(knobs.join(" ")).filter(|words| !words.is_empty())
+        }
+        _ => None,
+    });
+    words.collect::<Vec<_>>().join(" · ")
+}
+
+impl Column {
+    /// Reads a `results.json`.
+    ///
+    /// # Errors
+    /// When it is other text.
+    pub fn read(name: &str, text: &str) -> Result<Self, serde_json::Error> {
+        let Results { provenance, verdicts, points } = serde_json::from_str(text)?;
+        let rows = verdicts.iter().filter_map(|row| Some((key(&row.about), row.verdict?))).collect();
+        let counts = |point: &Map<String, Value>| {
+            // Points of a study have theirs one level below.
+            let inner = point.get("counts").and_then(Value::as_object).unwrap_or(point);
+            COUNTED.iter().filter_map(|name| Some((*name, inner.get(*name)?.as_u64()?))).collect()
+        };
+        let runs = points.iter().map(|point| (key(point), counts(point))).collect();
+        Ok(Self { name: name.to_owned(), commit: provenance.commit, date: provenance.date, rows, runs })
+    }
+
+    fn count(&self, of: &[Outcome]) -> u64 {
+        self.rows.values().filter(|outcome| of.contains(outcome)).count() as u64
+    }
+
+    /// The sum over all runs that all of some columns have.
+    fn sum(&self, name: &str, shared: &[&String]) -> u64 {
+        shared.iter().filter_map(|run| self.runs.get(*run)?.get(name)).sum()
+    }
+}
+
+/// Green, red and the rest.
+const KINDS: [(&str, &[Outcome]); 3] = [
+    ("pass", &[Outcome::Pass]),
+    ("fail or broken", &[Outcome::Fail, Outcome::Broken]),
+    ("amber", &[Outcome::Known, Outcome::Stale, Outcome::NoReference, Outcome::Unsupported, Outcome::NotAvailable]),
+];
+
+/// Adds `trend.html` and `figures/trend-*.svg` to the directory of a report, for reports from the oldest to this one.
+///
+/// # Errors
+/// When the disk refuses or a figure cannot be drawn.
+pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), SaveError> {
+    let page = render(columns)?;
+    // What stands in the directory stays: the page is one of its files.
+    let mut out = StagedDir::new(dir.as_ref())?;
+    keep(&mut out, dir.as_ref(), dir.as_ref())?;
+    out.write("trend.html", page)?;
+    out.commit()?;
+    Ok(())
+}
+
+/// Takes over the files of a directory.
+fn keep(out: &mut StagedDir, root: &Path, folder: &Path) -> Result<(), SaveError> {
+    let told = |source| crate::write::WriteError::new(folder, source);
+    for entry in fs::read_dir(folder).map_err(told)? {
+        let path = entry.map_err(told)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if name.starts_with('.') || name == "manifest.json" {
+            continue;
+        }
+        if path.is_dir() {
+            keep(out, root, &path)?;
+        } else {
+            let bytes = fs::read(&path).map_err(|source| crate::write::WriteError::new(&path, source))?;
+            out.write(path.strip_prefix(root).unwrap_or(&path), bytes)?;
+        }
+    }
+    Ok(())
+}
+
+fn render(columns: &[Column]) -> Result<String, DrawError> {
+    let shared: Vec<&String> = columns.first().map_or_else(Vec::new, |first| {
+        first.runs.keys().filter(|run| columns.iter().all(|column| column.runs.contains_key(*run))).collect()
+    });
+    let mut figures = vec![verdicts(columns)];
+    figures.extend(counts(columns, &shared));
+    let drawn = figures.iter().map(plot::draw).collect::<Result<Vec<_>, _>>()?;
+    let body = html! {
+        main.alone {
+            header id="summary" {
+                p.kicker { "grainbench" }
+                h1 { "The trend over " (columns.len()) " reports" }
+                p.lead { "Verdicts, and what runs counted, from the oldest report to this one. Counts do not depend on the \
+                    machine: where they change, the program does." }
+            }
+            @for (figure, svg) in figures.iter().zip(&drawn) {
+                figure { div class="plot graph" { (PreEscaped(svg)) } figcaption { (figure.caption) } }
+            }
+            (table(columns, &shared))
+            (changed_rows(columns))
+            (changed_counts(columns, &shared))
+        }
+    };
+    Ok(shell("grainbench · trend", &body))
+}
+
+fn verdicts(columns: &[Column]) -> Figure {
+    let curve = |(label, of): &(&str, &[Outcome])| {
+        let points = columns.iter().zip(1_u32..).map(|(column, at)| (f64::from(at), column.count(of) as f64)).collect();
+        Curve::new(*label, Stroke::MarkedLine, points)
+    };
+    Figure::graph(
+        "trend-verdicts",
+        "Rows by how they ended",
+        "From the left, the reports in the order of the table below.",
+        [Axis::linear("report"), Axis::linear("rows")],
+        KINDS.iter().map(curve).collect(),
+    )
+}
+
+/// Counts over those of the first report.
+fn counts(columns: &[Column], shared: &[&String]) -> Option<Figure> {
+    let first = columns.first()?;
+    let curves: Vec<Curve> = COUNTED
+        .iter()
+        .filter(|name| first.sum(name, shared) > 0)
+        .map(|name| {
+            let one = first.sum(name, shared) as f64;
+            let part = |(column, at): (&Column, u32)| (f64::from(at), column.sum(name, shared) as f64 / one);
+            Curve::new(name.replace('_', " "), Stroke::MarkedLine, columns.iter().zip(1_u32..).map(part).collect())
+        })
+        .collect();
+    (!curves.is_empty()).then(|| {
+        Figure::graph(
+            "trend-counts",
+            "What runs counted, over the first report",
+            "The sums over the runs that all reports have.",
+            [Axis::linear("report"), Axis::linear("count / that of the first report")],
+            curves,
+        )
+    })
+}
+
+fn table(columns: &[Column], shared: &[&String]) -> Markup {
+    let table = html! {
+        table {
+            thead { tr {
+                @for word in ["Report", "Name", "Commit", "Date", "Pass", "Fail or broken", "Amber"] { th scope="col" { (word) } }
+                @for name in COUNTED { th scope="col" { (name.replace('_', " ")) } }
+            } }
+            tbody { @for (at, column) in columns.iter().enumerate() { tr {
+                td { (at + 1) } td { (column.name) } td { (column.commit) } td { (column.date) }
+                @for (_, of) in KINDS { td { (number::count(column.count(of))) } }
+                @for name in COUNTED { td { (number::count(column.sum(name, shared))) } }
+            } } }
+        }
+    };
+    html! { section id="reports" { h2 { "Reports" } (scrolling("Reports", &table)) } }
+}
+
+/// Rows that did not end alike in all reports.
+fn changed_rows(columns: &[Column]) -> Markup {
+    let mut names: Vec<&String> = columns.iter().flat_map(|column| column.rows.keys()).collect();
+    names.sort();
+    names.dedup();
+    let outcomes = |name: &String| -> Vec<Option<Outcome>> {
+        columns.iter().map(|column| column.rows.get(name).copied()).collect()
+    };
+    names.retain(|name| outcomes(name).windows(2).any(|pair| pair[0] != pair[1]));
+    let count = names.len();
+    let cell = |outcome: Option<Outcome>| {
+        let (symbol, class) = outcome.map_or(("", ""), sign);
+        let word = outcome.map_or("—", Outcome::word);
+        html! { td class=(class) { (symbol) " " (word) } }
+    };
+    let table = html! {
+        table {
+            thead { tr { th scope="col" { "Row" } @for at in 1..=columns.len() { th scope="col" { (at) } } } }
+            tbody { @for name in names.iter().take(MOST) { tr {
+                th scope="row" { (name) } @for outcome in outcomes(name) { (cell(outcome)) }
+            } } }
+        }
+    };
+    html! {
+        section id="rows" {
+            h2 { "Rows that changed" }
+            @if count == 0 { p { "None: every row ended alike in all reports." } }
+            @else {
+                @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
+                (scrolling("Rows that changed", &table))
+            }
+        }
+    }
+}
+
+/// Runs whose counts changed from a report to the next.
+fn changed_counts(columns: &[Column], shared: &[&String]) -> Markup {
+    let mut lines: Vec<[String; 4]> = Vec::new();
+    for run in shared {
+        for (at, pair) in columns.windows(2).enumerate() {
+            let [before, after] = [&pair[0].runs[*run], &pair[1].runs[*run]];
+            for name in COUNTED.iter().filter(|name| before.get(*name) != after.get(*name)) {
+                let count =
+                    |counts: &BTreeMap<&str, u64>| counts.get(name).map_or("—".to_owned(), |n| number::count(*n));
+                let change = format!("{} → {}", count(before), count(after));
+                lines.push([(*run).clone(), format!("{} to {}", at + 1, at + 2), name.replace('_', " "), change]);
+            }
+        }
+    }
+    let count = lines.len();
+    let table = html! {
+        table {
+            thead { tr { @for word in ["Run", "Reports", "Count", "Change"] { th scope="col" { (word) } } } }
+            tbody { @for line in lines.iter().take(MOST) { tr { @for cell in line { td { (cell) } } } } }
+        }
+    };
+    html! {
+        section id="counts" {
+            h2 { "Counts that changed" }
+            @if count == 0 { p { "None: every run that all reports have counted the same." } }
+            @else {
+                @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
+                (scrolling("Counts that changed", &table))
+            }
+        }
+    }
+}

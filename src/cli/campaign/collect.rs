@@ -1,0 +1,134 @@
+//! `grainbench collect`: the report of what is finished of a plan, as if all of it had been run here.
+
+use super::plan::Arguments as Planned;
+use super::{enter, study};
+use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
+use grainbench::campaign::finished::Finished;
+use grainbench::campaign::plan::Plan;
+use grainbench::reports::trend::{Column, write_trend};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf, absolute};
+use std::process::ExitCode;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Directory of the plan.
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+    /// Draw the trend beside earlier reports, oldest first: verdicts and counts of each; may be given more than once. Of a plan
+    /// of costs, whose times are compared, the last of them is what `cost --against` takes.
+    #[arg(long, value_name = "DIR|results.json")]
+    against: Vec<PathBuf>,
+    /// Everything that is not green is red.
+    #[arg(long)]
+    strict: bool,
+    /// Of a plan of `run`: leave the rows as `rows.parquet` too. Sweeps always do.
+    #[arg(long)]
+    parquet: bool,
+    /// Directory for the report; one inside the plan where none is named.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the results as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// How a report is made.
+pub(crate) struct How<'a> {
+    /// Where.
+    pub(crate) out: &'a Path,
+    pub(crate) strict: bool,
+    pub(crate) parquet: bool,
+    pub(crate) json: bool,
+    /// The results of the last of the earlier reports.
+    pub(crate) against: Option<&'a Path>,
+    /// What is to be said beside the options of the study.
+    pub(crate) words: Vec<String>,
+    /// How long all of it took (s).
+    pub(crate) seconds: f64,
+}
+
+/// Makes the report.
+pub(crate) fn collect(arguments: &Arguments) -> Outcome {
+    let earlier = arguments.against.iter().map(|path| read_column(path)).collect::<Result<Vec<_>, _>>()?;
+    // Paths are seen from here, and the plan's from where it was made.
+    let from_here = |path: &Path| absolute(path).unwrap_or_else(|_| path.to_owned());
+    let out = arguments.out.clone().unwrap_or_else(|| arguments.plan.join("report"));
+    let out = from_here(&out);
+    let against = arguments.against.last().map(|path| results_of(&from_here(path)));
+    if let Some(out) = &arguments.out {
+        check_writable(out)?;
+    }
+    let plan = enter(&arguments.plan)?;
+    plan.check_program()?;
+    check_writable(&out)?;
+    let study = study::of(&Planned::read(&plan)?)?;
+    let finished = Finished::read(&plan.path, true)?;
+    let missing = plan.tasks.iter().filter(|task| !finished.entries.contains_key(&task.id)).count();
+    let done = plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id));
+    let how = How {
+        out: &out,
+        strict: arguments.strict,
+        parquet: arguments.parquet,
+        json: arguments.json,
+        against: against.as_deref(),
+        words: words(&plan, &finished, missing),
+        seconds: done.map(|entry| entry.seconds).sum(),
+    };
+    let code = study.collect(&plan, &finished, &how)?;
+    if !earlier.is_empty() {
+        let mut columns = earlier;
+        columns.push(read_column(&out)?);
+        write_trend(&out, &columns).map_err(Fault::writing)?;
+    }
+    if missing > 0 {
+        let what = format!("{missing} of {} tasks are not finished: the report holds the others", plan.tasks.len());
+        exit::say("warning", &what);
+        return Ok(ExitCode::from(RED));
+    }
+    Ok(code)
+}
+
+/// Where the work was done, and what of it is not.
+fn words(plan: &Plan, finished: &Finished, missing: usize) -> Vec<String> {
+    let mut words = Vec::new();
+    if missing > 0 {
+        words.push(format!("unfinished: {} of {} tasks", plan.tasks.len() - missing, plan.tasks.len()));
+    }
+    let used: BTreeSet<usize> =
+        plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.worker).collect();
+    let mut machines: BTreeSet<String> = BTreeSet::new();
+    for worker in used.into_iter().filter_map(|place| finished.workers.get(place)) {
+        machines.insert(format!("{} ({})", worker.host, worker.machine));
+    }
+    if !machines.is_empty() {
+        words.push(format!("worked on {}", machines.into_iter().collect::<Vec<_>>().join("; ")));
+    }
+    if plan.head.timed {
+        let loads = plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)?.load);
+        if let Some(most) = loads.reduce(f64::max) {
+            words.push(format!("load at most {most} while times were measured"));
+        }
+    }
+    words
+}
+
+fn results_of(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join("results.json") } else { path.to_owned() }
+}
+
+/// A report as a column of the trend.
+fn read_column(path: &Path) -> Result<Column, Fault> {
+    let file = results_of(path);
+    let name = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
+    let name = name.file_name().map_or_else(|| "report".to_owned(), |name| name.to_string_lossy().into_owned());
+    let expected = "the directory of a report, or its results.json";
+    let fault =
+        |found: String| Fault::input(format!("--against: {}: expected {expected}, found {found}", file.display()));
+    let text = std::fs::read_to_string(&file).map_err(|error| fault(error.to_string()))?;
+    if text.trim().is_empty() {
+        return Err(fault("an empty file".to_owned()));
+    }
+    Column::read(&name, &text).map_err(|error| fault(format!("other text: {error}")))
+}

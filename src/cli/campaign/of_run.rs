@@ -1,0 +1,353 @@
+//! A plan of gates: a task a row with its control, one for the figures of a case, and one for what each solver owes.
+
+use super::collect::How;
+use super::plan::Arguments;
+use super::study::{Came, Study, came};
+use crate::cli::cache;
+use crate::cli::conform;
+use crate::cli::exit::{self, Fault, Outcome, RED, print};
+use crate::cli::filter::Filters;
+use crate::cli::provenance::provenance;
+use crate::cli::run;
+use crate::cli::select::{self, Selected};
+use grainbench::campaign::finished::Finished;
+use grainbench::campaign::log::State;
+use grainbench::campaign::plan::{Kind, Plan};
+use grainbench::campaign::share::share;
+use grainbench::campaign::task::{Id, Task};
+use grainbench::campaign::work::Desk;
+use grainbench::harness::claim::Claim;
+use grainbench::harness::conformance;
+use grainbench::harness::run::Run;
+use grainbench::harness::runner::Runner;
+use grainbench::harness::verdict::{self, Verdict};
+use grainbench::reports::results::results_json;
+use grainbench::reports::{RunCost, Section, summary_table, write_report, write_report_and_parquet};
+use grainbench::studies::cost::knobs::nominal_seconds;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, HashMap};
+use std::process::ExitCode;
+use std::sync::{Arc, OnceLock};
+
+/// What the figures of a case take beside its runs, and what is tried of what one solver owes (s).
+const FIGURES: f64 = 0.5;
+const CONFORMANCE: f64 = 2.0;
+/// What is kept of a run is read in this time (s), and a program starts in this.
+const KEPT: f64 = 0.1;
+const START: f64 = 0.5;
+
+/// What is judged.
+pub(crate) struct OfRun {
+    selected: Vec<Selected>,
+    options: run::Options,
+    arguments: Arguments,
+    thorough: bool,
+    /// Whether it is the whole registry, beside which stands more.
+    is_whole: bool,
+}
+
+/// The words of `run` by which its options are read.
+#[derive(clap::Parser)]
+struct Again {
+    #[command(flatten)]
+    arguments: run::Arguments,
+}
+
+/// One piece of work, by places in the list of cases and in the claims of the case.
+#[derive(Clone, Copy)]
+enum Piece {
+    Row(usize, usize),
+    Figures(usize),
+    Owed(usize),
+}
+
+/// What comes out of a piece: a part of a section, and the keys by which its runs are in order.
+#[derive(Serialize, Deserialize)]
+struct Part {
+    keys: Vec<String>,
+    section: Section,
+    /// Why there are no figures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    without: Option<String>,
+}
+
+impl OfRun {
+    pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
+        arguments.only(&["CASE", "--solver", "--levels", "--filter", "--no-controls", "--live"])?;
+        let mut words = vec!["run".to_owned()];
+        words.extend(arguments.cases.iter().cloned());
+        words.extend(arguments.solver.iter().map(|value| format!("--solver={value}")));
+        words.extend(arguments.levels.iter().map(|value| format!("--levels={value}")));
+        words.extend(arguments.filter.iter().map(|value| format!("--filter={value}")));
+        words.extend(arguments.no_controls.then(|| "--no-controls".to_owned()));
+        words.extend(arguments.live.then(|| "--live".to_owned()));
+        let again = <Again as clap::Parser>::try_parse_from(words).map_err(Fault::input)?;
+        let run::Arguments { cases, options } = again.arguments;
+        let filters = Filters::read(&options.filter)?;
+        if filters.asks_for_outcomes() {
+            return Err(Fault::input("--filter: expected what is known beforehand, found `outcome`"));
+        }
+        let mut selected = select::select(&cases, &options.solver, &options.levels)?;
+        run::narrow(&mut selected, &options, &filters)?;
+        let thorough = options.levels.iter().any(|level| level == "all");
+        let is_whole = cases.is_empty() && options.filter.is_empty();
+        Ok(Self { selected, options, arguments: arguments.clone(), thorough, is_whole })
+    }
+
+    /// Whether what solvers owe belongs to it.
+    fn owes(&self) -> bool {
+        self.is_whole && (self.options.levels.is_empty() || self.thorough)
+    }
+
+    /// Every piece with its id, in the order of the report.
+    fn pieces(&self, program: &str) -> Result<Vec<(Id, Piece)>, Fault> {
+        let mut pieces = Vec::new();
+        let mut seen: HashMap<String, usize> = HashMap::new();
+        let settings = format!("{} {} {}", self.options.no_controls, self.options.live, self.thorough);
+        for (at, selected) in self.selected.iter().enumerate() {
+            let stranger = match &selected.stranger {
+                Some(outside) => outside.fingerprint().map_err(Fault::input)?,
+                None => String::new(),
+            };
+            let case = selected.case.name;
+            let mut rows = String::new();
+            for (gate, claim) in selected.claims.iter().enumerate() {
+                let keys: Vec<String> = claim.runs.iter().map(Run::key).collect();
+                let words = format!("{case}|{stranger}|{}|{}|{}", keys.join("|"), claim.quantity, claim.control.name);
+                // Two claims may have the same words.
+                let number = seen.entry(words.clone()).and_modify(|number| *number += 1).or_default();
+                rows += &words;
+                pieces.push((
+                    Id::of_words(program, &["row", &words, &number.to_string(), &settings]),
+                    Piece::Row(at, gate),
+                ));
+            }
+            pieces.push((Id::of_words(program, &["figures", &rows, &settings]), Piece::Figures(at)));
+        }
+        if self.owes() {
+            for (at, (solver, _)) in conform::owing(&self.options.solver)?.iter().enumerate() {
+                pieces.push((Id::of_words(program, &["owed", &solver.name()]), Piece::Owed(at)));
+            }
+        }
+        Ok(pieces)
+    }
+
+    /// What a claim is expected to take (s), with its control.
+    fn seconds(&self, runner: &Runner, claim: &Claim) -> f64 {
+        let once = |run: &Run| {
+            let start = if grainbench::cases::solvers::is_program(run.solver) { START } else { 0.0 };
+            if run.kept && !self.thorough {
+                return KEPT;
+            }
+            let scene = runner.scene(run);
+            start + scene.map_or(0.0, |scene| nominal_seconds(&scene, &run.resolution))
+        };
+        let all: f64 = claim.runs.iter().map(once).sum();
+        if self.options.no_controls { all } else { 2.0 * all }
+    }
+
+    fn runners(&self) -> Vec<OnceLock<Runner>> {
+        self.selected.iter().map(|_| OnceLock::new()).collect()
+    }
+}
+
+/// What comes of a row.
+fn row(selected: &Selected, runner: &Runner, gate: usize, controls: bool) -> (State, Part) {
+    let claim = &selected.claims[gate];
+    let verdict = runner.judge(claim);
+    let tried = controls && runner.is_available(claim) && runner.tries_control(claim, &verdict);
+    let control = tried.then(|| runner.control(claim));
+    let state = if verdict.outcome == verdict::Outcome::Broken { State::Failed } else { State::Done };
+    let mut part = Part { keys: Vec::new(), section: run::blank(selected), without: None };
+    part.section.verdicts.push(verdict);
+    part.section.controls.extend(control);
+    for run in &claim.runs {
+        if let Ok(done) = runner.run(run) {
+            part.keys.push(run.key());
+            part.section.runs.push(run::cost(run, &done));
+        }
+    }
+    (state, in_short(part))
+}
+
+/// What comes of the figures.
+fn figures(selected: &Selected, runner: &Runner) -> (State, Part) {
+    let mut part = Part { keys: Vec::new(), section: run::blank(selected), without: None };
+    match run::draw(selected, runner) {
+        Ok(figures) => part.section.figures = figures,
+        Err(error) => part.without = Some(error.to_string()),
+    }
+    for (run, done) in runner.done() {
+        part.keys.push(run.key());
+        part.section.runs.push(run::cost(&run, &done));
+    }
+    (if part.without.is_some() { State::Failed } else { State::Done }, in_short(part))
+}
+
+/// Words that the case has anyway are left out.
+fn in_short(part: Part) -> Part {
+    let nothing = String::new;
+    let section = Section { claim: nothing(), derivation: nothing(), weak: nothing(), ..part.section };
+    Part { section, ..part }
+}
+
+/// The row of a piece at which our program failed.
+fn crashed(selected: &Selected, gate: usize, detail: String) -> Verdict {
+    let claim = &selected.claims[gate];
+    let first = claim.runs.first();
+    let row = Verdict {
+        variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
+        solver: first.map_or_else(String::new, |run| run.solver.to_owned()),
+        resolution: claim.resolution(),
+        allowed: claim.tolerance.allowed,
+        because: claim.tolerance.because.clone(),
+        evidence: claim.evidence(),
+        source: claim.source.words(),
+        ..Verdict::open(selected.case.name, claim.quantity.clone(), claim.unit)
+    };
+    row.left(verdict::Outcome::Broken, detail)
+}
+
+impl Study for OfRun {
+    fn kind(&self) -> Kind {
+        Kind::Run
+    }
+
+    fn is_timed(&self) -> bool {
+        false
+    }
+
+    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
+        let solvers = cache::solvers(None);
+        let runners: Vec<Runner> = self
+            .selected
+            .iter()
+            .map(|selected| run::runner(selected, &self.options, self.thorough, Arc::clone(&solvers)))
+            .collect();
+        let owing = if self.owes() { conform::owing(&self.options.solver)? } else { Vec::new() };
+        let task = |(id, piece): (Id, Piece)| {
+            let new = |scene: String, solver: String, level: String, what: String, seconds: f64| Task {
+                id,
+                scene,
+                set: BTreeMap::new(),
+                solver,
+                level,
+                what,
+                repetitions: 1,
+                seconds,
+                group: None,
+            };
+            match piece {
+                Piece::Row(at, gate) => {
+                    let selected = &self.selected[at];
+                    let claim = &selected.claims[gate];
+                    let first = claim.runs.first();
+                    let variant = first.map_or("", |run| run.variant);
+                    let ours = first.map_or("", |run| run.solver).to_owned();
+                    let solver = selected.stranger.as_ref().map_or(ours, |other| other.manifest().name.clone());
+                    let seconds = self.seconds(&runners[at], claim);
+                    let scene = format!("{}/{variant}", selected.case.name);
+                    new(scene, solver, claim.resolution(), claim.quantity.clone(), seconds)
+                }
+                Piece::Figures(at) => {
+                    let name = self.selected[at].case.name.to_owned();
+                    new(name, String::new(), String::new(), "figures".to_owned(), FIGURES)
+                }
+                Piece::Owed(at) => {
+                    let solver = owing[at].0.name();
+                    new("conformance".to_owned(), solver, String::new(), "what it owes".to_owned(), CONFORMANCE)
+                }
+            }
+        };
+        Ok(self.pieces(program)?.into_iter().map(task).collect())
+    }
+
+    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
+        let cache = cache::open(false);
+        let solvers = cache::solvers(cache.as_ref());
+        let known: HashMap<Id, Piece> = self.pieces(&plan.head.program)?.into_iter().collect();
+        let owing = if self.owes() { conform::owing(&self.options.solver)? } else { Vec::new() };
+        let runners = self.runners();
+        let runner = |at: usize| {
+            let new = || run::runner(&self.selected[at], &self.options, self.thorough, Arc::clone(&solvers));
+            runners[at].get_or_init(new)
+        };
+        let do_piece = |piece: usize| {
+            let id = tasks[piece].id;
+            match known.get(&id) {
+                Some(&Piece::Row(at, gate)) => {
+                    let controls = !self.options.no_controls;
+                    desk.attempt(id, || row(&self.selected[at], runner(at), gate, controls));
+                }
+                Some(&Piece::Figures(at)) => desk.attempt(id, || figures(&self.selected[at], runner(at))),
+                Some(&Piece::Owed(at)) => desk.attempt(id, || {
+                    let (solver, terms) = &owing[at];
+                    let (verdicts, controls) = conformance::judge(&**solver, terms);
+                    let section = Section { title: String::new(), ..conform::section_of(verdicts, controls) };
+                    (State::Done, in_short(Part { keys: Vec::new(), section, without: None }))
+                }),
+                None => {}
+            }
+        };
+        share(tasks.len(), jobs, || desk.goes_on(), do_piece);
+        if let Some(cache) = &cache {
+            cache.make_room();
+        }
+        Ok(())
+    }
+
+    fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome {
+        let mut sections: Vec<Section> = self.selected.iter().map(run::blank).collect();
+        let mut runs: Vec<BTreeMap<String, RunCost>> = vec![BTreeMap::new(); sections.len()];
+        let (mut verdicts, mut controls) = (Vec::new(), Vec::new());
+        for (id, piece) in self.pieces(&plan.head.program)? {
+            let part: Part = match (came(finished, id), piece) {
+                (Came::Out(part), _) => part,
+                (Came::Nothing, _) => continue,
+                (Came::Crash(detail), Piece::Row(at, gate)) => {
+                    sections[at].verdicts.push(crashed(&self.selected[at], gate, detail));
+                    continue;
+                }
+                (Came::Crash(detail), _) => {
+                    exit::say("warning", &format!("figures or what a solver owes are left out: {detail}"));
+                    continue;
+                }
+            };
+            match piece {
+                Piece::Row(at, _) | Piece::Figures(at) => {
+                    if let Some(error) = part.without {
+                        let case = &sections[at].name;
+                        exit::say("warning", &format!("{case}: its figures are left out: {error}"));
+                    }
+                    runs[at].extend(part.keys.into_iter().zip(part.section.runs));
+                    sections[at].figures.extend(part.section.figures);
+                    sections[at].verdicts.extend(part.section.verdicts);
+                    sections[at].controls.extend(part.section.controls);
+                }
+                Piece::Owed(_) => {
+                    verdicts.extend(part.section.verdicts);
+                    controls.extend(part.section.controls);
+                }
+            }
+        }
+        for (section, runs) in sections.iter_mut().zip(runs) {
+            section.runs = runs.into_values().collect();
+        }
+        if self.owes() && !verdicts.is_empty() {
+            sections.push(conform::section_of(verdicts, controls));
+        }
+        let mut words = run::words(&self.arguments.cases, &self.options);
+        words.extend(how.words.iter().cloned());
+        let is_whole = self.is_whole && self.options.solver.is_empty();
+        let report = run::report(provenance(words, how.seconds), sections, is_whole)?;
+        let write = if how.parquet { write_report_and_parquet } else { write_report };
+        write(how.out, &report).map_err(Fault::writing)?;
+        if how.json {
+            print(&results_json(&report).map_err(Fault::input)?)?;
+        } else {
+            print(&format!("{}\n{}\n", summary_table(&report), how.out.join("index.html").display()))?;
+        }
+        let is_mute = self.selected.iter().any(|of| of.stranger.is_some()) && run::says_nothing(&report);
+        Ok(if is_mute { ExitCode::from(RED) } else { run::exit_code(&report, how.strict) })
+    }
+}

@@ -1,0 +1,179 @@
+//! A plan of what stays stable: a task a limit or a hard case.
+
+use super::collect::How;
+use super::plan::Arguments;
+use super::study::Study;
+use crate::cli::cost::Follower;
+use crate::cli::exit::{Fault, Outcome, RED, print};
+use crate::cli::provenance::provenance;
+use crate::cli::stability::{self, Piece};
+use crate::cli::strangers::WithStrangers;
+use grainbench::campaign::finished::Finished;
+use grainbench::campaign::log::State;
+use grainbench::campaign::plan::{Kind, Plan};
+use grainbench::campaign::share::share;
+use grainbench::campaign::task::{Id, Task};
+use grainbench::campaign::work::Desk;
+use grainbench::reports::study::{Study as Report, study_json, write_study};
+use grainbench::studies::identity;
+use grainbench::studies::result_cache::ResultCache;
+use grainbench::studies::stability::assembly::{self, Assembly};
+use grainbench::studies::stability::hard::{self, HardCase};
+use grainbench::studies::stability::limit;
+use std::collections::{BTreeMap, HashMap};
+use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What a limit is expected to take (s): of springs, and of a grid of so many cells.
+const SPRINGS: f64 = 0.5;
+const CELLS: f64 = 0.05;
+/// A hard case is run at smaller steps too, where it fails.
+const TRIES: f64 = 3.0;
+
+/// What is tried.
+pub(crate) struct OfStability {
+    assemblies: Vec<Assembly>,
+    hard: Vec<HardCase>,
+    arguments: Arguments,
+}
+
+impl OfStability {
+    pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
+        arguments.only(&["CASE", "--solver"])?;
+        let study = Self { assemblies: assembly::all()?, hard: hard::all(), arguments: arguments.clone() };
+        study.with(|_, _| Ok(())).map(|()| study)
+    }
+
+    /// Does something with the pieces and who is asked.
+    fn with<T>(&self, work: impl FnOnce(&[Piece<'_>], &WithStrangers) -> Result<T, Fault>) -> Result<T, Fault> {
+        let (solvers, named) = WithStrangers::read_by_content(&self.arguments.solver)?;
+        let strangers = solvers.names();
+        let pieces = stability::select(&self.arguments.cases, [&named, &strangers], &self.assemblies, &self.hard)?;
+        work(&pieces, &solvers)
+    }
+}
+
+/// The name of a piece in a result cache.
+fn name(piece: &Piece<'_>, program: &str, solvers: &WithStrangers) -> String {
+    use grainbench::harness::solvers::Solvers;
+    let by = |solver: &str| program.to_owned() + &solvers.edition(solver);
+    match *piece {
+        Piece::Assembly(assembly, solver) => limit::name_of_assembly(&by(solver), assembly, solver),
+        Piece::Bar(setting, cells) => limit::name_of_bar(program, setting, cells),
+        Piece::Hard(case, solver) => hard::name_of(&by(solver), case, solver),
+    }
+}
+
+impl Study for OfStability {
+    fn kind(&self) -> Kind {
+        Kind::Stability
+    }
+
+    fn is_timed(&self) -> bool {
+        false
+    }
+
+    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
+        self.with(|pieces, solvers| {
+            let task = |piece: &Piece<'_>| {
+                let (scene, solver, level, seconds) = match *piece {
+                    Piece::Assembly(assembly, solver) => {
+                        let at = assembly.kappa.map_or_else(String::new, |kappa| format!(" {kappa}"));
+                        (format!("{}{at}", assembly.name), solver, String::new(), SPRINGS)
+                    }
+                    Piece::Bar(setting, cells) => {
+                        ("vibrating-bar".to_owned(), setting, format!("cells={cells}"), CELLS * cells)
+                    }
+                    Piece::Hard(case, solver) => {
+                        (case.name.clone(), solver, String::new(), TRIES * hard::seconds(case, solver))
+                    }
+                };
+                let id = Id::of_hash(&name(piece, program, solvers))?;
+                let what = if matches!(piece, Piece::Hard(..)) { "hard case" } else { "limit" };
+                Some(Task {
+                    id,
+                    scene,
+                    set: BTreeMap::new(),
+                    solver: solver.to_owned(),
+                    level,
+                    what: what.to_owned(),
+                    repetitions: 1,
+                    seconds,
+                    group: None,
+                })
+            };
+            Ok(pieces.iter().filter_map(task).collect())
+        })
+    }
+
+    fn work(&self, _plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
+        let program = identity::of_this_program();
+        self.with(|pieces, solvers| {
+            let known: HashMap<Id, &Piece<'_>> = pieces
+                .iter()
+                .filter_map(|piece| Some((Id::of_hash(&name(piece, &program, solvers))?, piece)))
+                .collect();
+            let do_piece = |at: usize| {
+                let Some(piece) = known.get(&tasks[at].id) else { return };
+                desk.attempt(tasks[at].id, || {
+                    let kept: Arc<Mutex<String>> = Arc::default();
+                    let keeps = Arc::clone(&kept);
+                    let cache = ResultCache::elsewhere(
+                        |_| None,
+                        move |_, text| {
+                            text.clone_into(&mut keeps.lock().unwrap_or_else(PoisonError::into_inner));
+                            Ok(())
+                        },
+                    );
+                    let mut study = Report::new(provenance(Vec::new(), 0.0));
+                    let done =
+                        stability::do_piece(piece, (&program, solvers), &cache, &mut study, &mut Follower::none());
+                    let text = kept.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                    match (done, serde_json::from_str::<serde_json::Value>(&text)) {
+                        (Ok(_), Ok(result)) => (State::Done, result),
+                        (Err(fault), _) => (State::Failed, serde_json::Value::String(fault.to_string())),
+                        (_, Err(error)) => (State::Failed, serde_json::Value::String(error.to_string())),
+                    }
+                });
+            };
+            share(tasks.len(), jobs, || desk.goes_on(), do_piece);
+            Ok(())
+        })
+    }
+
+    fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome {
+        let texts: HashMap<Id, String> = plan
+            .tasks
+            .iter()
+            .filter_map(|task| {
+                let entry = finished.entries.get(&task.id)?;
+                (entry.state == State::Done).then(|| (task.id, entry.json.to_string()))
+            })
+            .collect();
+        let there: std::collections::HashSet<Id> = texts.keys().copied().collect();
+        let cache = ResultCache::elsewhere(move |name| texts.get(&Id::of_hash(name)?).cloned(), |_, _| Ok(()));
+        let mut words = vec!["stability".to_owned()];
+        words.extend(self.arguments.cases.iter().cloned());
+        words.extend(self.arguments.solver.iter().map(|solver| format!("--solver {solver}")));
+        words.extend(how.words.iter().cloned());
+        let mut study = Report::new(provenance(words, how.seconds));
+        let program = &plan.head.program;
+        self.with(|pieces, solvers| {
+            for piece in pieces {
+                // What is not finished would be done here.
+                if Id::of_hash(&name(piece, program, solvers)).is_some_and(|id| there.contains(&id)) {
+                    stability::do_piece(piece, (program, solvers), &cache, &mut study, &mut Follower::none())?;
+                }
+            }
+            Ok(())
+        })?;
+        study.sources = stability::sources_of(&study);
+        write_study(how.out, &study).map_err(Fault::writing)?;
+        if how.json {
+            print(&study_json(&study).map_err(Fault::input)?)?;
+        } else {
+            print(&format!("{}{}\n", stability::text(&study), how.out.join("index.html").display()))?;
+        }
+        Ok(if stability::is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    }
+}

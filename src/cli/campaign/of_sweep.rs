@@ -1,0 +1,132 @@
+//! A plan of a sweep.
+
+use super::collect::How;
+use super::plan::Arguments;
+use super::study::{Came, Study, came};
+use crate::cli::cache;
+use crate::cli::exit::{Fault, Outcome, RED, print};
+use crate::cli::provenance::provenance;
+use crate::cli::solver::is_manifest;
+use crate::cli::strangers::WithStrangers;
+use grainbench::campaign::finished::Finished;
+use grainbench::campaign::log::State;
+use grainbench::campaign::plan::{Kind, Plan, hash_of_file};
+use grainbench::campaign::share::share;
+use grainbench::campaign::sweep::Sweep;
+use grainbench::campaign::task::{Id, Task};
+use grainbench::campaign::work::Desk;
+use grainbench::harness::verdict;
+use grainbench::reports::number;
+use grainbench::reports::sweep::{Left, Looked, sweep_json, write_sweep};
+use grainbench::scene::solver::Solver;
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// A sweep, and who is asked.
+pub(crate) struct OfSweep {
+    path: String,
+    sweep: Sweep,
+    /// Solvers as the file names them, and as rows do.
+    asked: Vec<String>,
+    names: Vec<String>,
+}
+
+impl OfSweep {
+    pub(crate) fn new(file: &str, arguments: &Arguments) -> Result<Self, Fault> {
+        if !is_manifest(file) {
+            return Err(Fault::unknown("`SWEEP.toml`, or what is planned", file, ["run", "cost", "stability"]));
+        }
+        arguments.only(&[])?;
+        let sweep = Sweep::read(Path::new(file))?;
+        let beside = Path::new(file).parent().unwrap_or(Path::new(""));
+        // Manifests stand where the file says, seen from it.
+        let place = |name: String| if is_manifest(&name) { beside.join(name).display().to_string() } else { name };
+        let asked: Vec<String> = sweep.solvers().into_iter().map(place).collect();
+        let (_, names) = WithStrangers::read_by_content(&asked)?;
+        Ok(Self { path: file.to_owned(), sweep, asked, names })
+    }
+
+    fn solvers(&self) -> Result<WithStrangers, Fault> {
+        WithStrangers::read_by_content(&self.asked).map(|(solvers, _)| solvers)
+    }
+}
+
+impl Study for OfSweep {
+    fn kind(&self) -> Kind {
+        Kind::Sweep
+    }
+
+    fn is_timed(&self) -> bool {
+        self.sweep.is_timed()
+    }
+
+    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
+        Ok(self.sweep.tasks(program, &self.solvers()?, &self.names)?)
+    }
+
+    fn inputs(&self) -> BTreeMap<String, String> {
+        let scene = self.sweep.scene_file().map(|path| path.display().to_string());
+        let manifests = self.asked.iter().filter(|name| is_manifest(name)).cloned();
+        let files = std::iter::once(self.path.clone()).chain(scene).chain(manifests);
+        files.map(|file| (file.clone(), hash_of_file(Path::new(&file)))).collect()
+    }
+
+    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
+        // What is timed is done, and not taken from before.
+        let cache = if self.is_timed() { None } else { cache::open(false) };
+        let solvers = cache::with(self.solvers()?, cache.as_ref());
+        let places: HashMap<Id, usize> = plan.tasks.iter().enumerate().map(|(at, task)| (task.id, at)).collect();
+        let mut found: BTreeMap<&str, Arc<dyn Solver>> = BTreeMap::new();
+        for (asked, name) in self.sweep.solvers().iter().zip(&self.names) {
+            let solver =
+                solvers.find(name).ok_or_else(|| Fault::input(format!("expected a solver, found `{name}`")))?;
+            let named = tasks.iter().find(|task| task.solver == *asked);
+            found.extend(named.map(|task| (task.solver.as_str(), solver)));
+        }
+        let do_piece = |piece: usize| {
+            let task = tasks[piece];
+            if let (Some(place), Some(solver)) = (places.get(&task.id), found.get(task.solver.as_str())) {
+                desk.attempt(task.id, || self.sweep.run(*place, task, &**solver));
+            }
+        };
+        share(tasks.len(), jobs, || desk.goes_on(), do_piece);
+        if let Some(cache) = &cache {
+            cache.make_room();
+        }
+        Ok(())
+    }
+
+    fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome {
+        let mut options = vec![self.path.clone()];
+        options.extend(how.words.iter().cloned());
+        let left = |place: usize| -> Option<Left> {
+            match came(finished, plan.tasks.get(place)?.id) {
+                Came::Nothing => None,
+                Came::Out(left) => Some(left),
+                Came::Crash(detail) => {
+                    let looked = Looked { verdict: Some(verdict::Outcome::Broken), ..Looked::default() };
+                    Some(Left { looked: vec![looked], detail: Some(detail), ..Left::default() })
+                }
+            }
+        };
+        let report = self.sweep.report(&self.names, provenance(options, how.seconds), left);
+        write_sweep(how.out, &report).map_err(Fault::writing)?;
+        let [within, outside, amber] = report.counts();
+        if how.json {
+            print(&sweep_json(&report).map_err(Fault::input)?)?;
+        } else {
+            let [w, o, a] = [within, outside, amber].map(|count| number::count(count as u64));
+            let page = how.out.join("index.html");
+            print(&format!("{w} within, {o} outside or broken, {a} amber\n{}\n", page.display()))?;
+        }
+        // A design goes where methods fail: only a crash of ours is red.
+        let crashed = plan
+            .tasks
+            .iter()
+            .any(|task| finished.entries.get(&task.id).is_some_and(|entry| entry.state == State::Crashed));
+        let is_red = crashed || how.strict && (outside > 0 || amber > 0);
+        Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    }
+}

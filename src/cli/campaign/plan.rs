@@ -1,0 +1,153 @@
+//! `grainbench plan`: what is to be done, a task a line.
+
+use super::study;
+use crate::cli::exit::{Fault, Outcome, print, print_json};
+use crate::cli::value::whole;
+use grainbench::campaign::chunk;
+use grainbench::campaign::plan::{Head, Plan, check_place};
+use grainbench::reports::number;
+use serde::Serialize;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// What the command takes.
+#[derive(Clone, clap::Args)]
+pub(crate) struct Arguments {
+    /// What is planned: the gates of cases, what accuracy costs, what stays stable, or the sweep of a file.
+    #[arg(value_name = "run|cost|stability|SWEEP.toml")]
+    pub(crate) what: String,
+    /// Cases, as `run`, `cost` and `stability` take them; all when none is named.
+    #[arg(value_name = "CASE|CASE/VARIANT")]
+    pub(crate) cases: Vec<String>,
+    /// Only this solver, or the program of this manifest; may be given more than once.
+    #[arg(long, value_name = "NAME|SOLVER.toml")]
+    pub(crate) solver: Vec<String>,
+    /// Of `run` only gates at these resolution levels; of `cost` whether points that take more than twenty seconds are there too.
+    #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
+    pub(crate) levels: Vec<String>,
+    /// Of `run` only these rows, as `run` has it.
+    #[arg(long, value_name = "quantity=…|source=…|evidence=…")]
+    pub(crate) filter: Vec<String>,
+    /// Of `run`: leave out the negative controls.
+    #[arg(long)]
+    pub(crate) no_controls: bool,
+    /// Of `run`: run `lammps` and `liggghts` even where a run of theirs is stored.
+    #[arg(long)]
+    pub(crate) live: bool,
+    /// Of `cost`: what a step costs too, piece by piece, and of one grain and of ten thousand; so it is where no case is named.
+    #[arg(long)]
+    pub(crate) prices: bool,
+    /// Of `cost`: errors and counts alone, of one run each; nothing is timed, so that work can share a machine.
+    #[arg(long, conflicts_with = "prices")]
+    pub(crate) counts: bool,
+    /// Chunks that the plan is best divided into; as many as last a minute each where none are named.
+    #[arg(long, value_name = "N", value_parser = whole(1, chunk::MOST))]
+    chunks: Option<u32>,
+    /// Directory for the plan; what was finished in a plan that stands there stays finished.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-plan")]
+    out: PathBuf,
+    /// Print what was planned as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The words by which a plan is read again.
+#[derive(clap::Parser)]
+struct Again {
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+impl Arguments {
+    /// The words that mean the same.
+    fn words(&self) -> Vec<String> {
+        let mut words = vec![self.what.clone()];
+        words.extend(self.cases.iter().cloned());
+        let options = |name: &str, values: &[String]| -> Vec<String> {
+            values.iter().map(|value| format!("--{name}={value}")).collect()
+        };
+        words.extend(options("solver", &self.solver));
+        words.extend(options("levels", &self.levels));
+        words.extend(options("filter", &self.filter));
+        let flags =
+            [("no-controls", self.no_controls), ("live", self.live), ("prices", self.prices), ("counts", self.counts)];
+        words.extend(flags.iter().filter(|(_, is_set)| *is_set).map(|(name, _)| format!("--{name}")));
+        words
+    }
+
+    /// What a plan was told.
+    pub(crate) fn read(plan: &Plan) -> Result<Self, Fault> {
+        let words = std::iter::once("plan").chain(plan.head.arguments.iter().map(String::as_str));
+        let again = <Again as clap::Parser>::try_parse_from(words).map_err(|error| {
+            let found = error.to_string().lines().next().unwrap_or_default().to_owned();
+            Fault::input(format!("{}: arguments: expected those of `plan`, found others: {found}", plan.path.display()))
+        })?;
+        Ok(again.arguments)
+    }
+
+    /// Refuses options that what is planned does not heed.
+    pub(crate) fn only(&self, heeded: &[&str]) -> Result<(), Fault> {
+        let given = [
+            ("CASE", !self.cases.is_empty()),
+            ("--solver", !self.solver.is_empty()),
+            ("--levels", !self.levels.is_empty()),
+            ("--filter", !self.filter.is_empty()),
+            ("--no-controls", self.no_controls),
+            ("--live", self.live),
+            ("--prices", self.prices),
+            ("--counts", self.counts),
+        ];
+        match given.iter().find(|(name, is_given)| *is_given && !heeded.contains(name)) {
+            Some((name, _)) => {
+                let of = if heeded.is_empty() { "a sweep" } else { self.what.as_str() };
+                Err(Fault::input(format!("{name}: expected none with {of}, found one")))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// A plan in short, for programs.
+#[derive(Serialize)]
+struct Summary<'a> {
+    tasks: usize,
+    chunks: u32,
+    seconds: f64,
+    timed: bool,
+    out: &'a PathBuf,
+}
+
+/// Plans.
+pub(crate) fn plan(arguments: &Arguments) -> Outcome {
+    check_place(&arguments.out).map_err(|fault| Fault::input(format!("--out: {fault}")))?;
+    let study = study::of(arguments)?;
+    let mut head = Head::new(study.kind(), arguments.words(), study.is_timed());
+    head.chunks = arguments.chunks.unwrap_or(0);
+    head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
+    head.date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string();
+    head.inputs = study.inputs();
+    let tasks = study.tasks(&head.program)?;
+    if tasks.is_empty() {
+        return Err(Fault::input("expected at least one task, found none of the cases and solvers named"));
+    }
+    if tasks.len() > u32::MAX as usize {
+        return Err(Fault::input(format!("expected fewer tasks, found {}", tasks.len())));
+    }
+    let plan = Plan::write(&arguments.out, head, tasks)?;
+    let Head { tasks, chunks, seconds, timed, .. } = plan.head;
+    if arguments.json {
+        print_json(&Summary { tasks, chunks, seconds, timed, out: &arguments.out })?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let plural =
+        |count: u64, what: &str| format!("{} {what}{}", number::count(count), if count == 1 { "" } else { "s" });
+    let times = if timed { ", times are measured" } else { "" };
+    print(&format!(
+        "{}, about {} on one core, in {}{times}\n{}\n",
+        plural(tasks as u64, "task"),
+        number::seconds(seconds),
+        plural(u64::from(chunks), "chunk"),
+        arguments.out.display()
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,73 @@
+//! `grainbench status`: how far a plan is.
+
+use crate::cli::exit::{Outcome, print, print_json};
+use grainbench::campaign::plan::Plan;
+use grainbench::campaign::slurm;
+use grainbench::campaign::status::Status;
+use grainbench::reports::number;
+use serde::Serialize;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Directory of the plan.
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+    /// Print it as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// All that is told.
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(flatten)]
+    status: &'a Status,
+    /// Elements of job arrays that wait or run; null where the batch system does not answer.
+    queued: Option<usize>,
+}
+
+/// Tells how far a plan is.
+pub(crate) fn status(arguments: &Arguments) -> Outcome {
+    let plan = Plan::read(&arguments.plan)?;
+    let status = Status::of(&plan)?;
+    let queued = slurm::in_queue(&plan.path);
+    if arguments.json {
+        print_json(&Told { status: &status, queued: queued.ok() })?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut text = String::new();
+    let lines = [
+        ("done", status.done),
+        ("failed", status.failed),
+        ("crashed", status.crashed),
+        ("running", status.running),
+        ("waiting", status.waiting),
+        ("twice", status.twice),
+        ("damaged", status.damaged),
+    ];
+    for (word, count) in lines {
+        // What there should be none of is told where there is some.
+        if count > 0 || !matches!(word, "crashed" | "twice" | "damaged") {
+            text.push_str(&format!("{word:<9} {}\n", number::count(count as u64)));
+        }
+    }
+    text.push_str(&format!("{:<9} {}\n", "of", number::count(status.tasks as u64)));
+    for worker in &status.workers {
+        let tasks: usize = worker.tasks.iter().map(|[from, to]| to - from).sum();
+        let job = worker.job.as_ref().map_or_else(String::new, |job| format!(", job {job}"));
+        text.push_str(&format!("worker    {}{job}: {} of {tasks}\n", worker.worker, worker.done));
+    }
+    match queued {
+        Ok(0) => {}
+        Ok(count) => text.push_str(&format!("queued    {} chunks\n", number::count(count as u64))),
+        Err(fault) => text.push_str(&format!("queued    not known: {fault}\n")),
+    }
+    if !status.is_whole() {
+        text.push_str(&format!("left      about {}\n", number::seconds(status.seconds_left)));
+    }
+    print(&text)?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,148 @@
+//! `grainbench work`: the tasks of a plan, or of a chunk of it, here or by a batch system.
+
+use super::plan::Arguments as Planned;
+use super::{enter, study};
+use crate::cli::cores::{MOST_THREADS, cores};
+use crate::cli::exit::{self, Fault, Outcome, RED, print};
+use crate::cli::interrupt::Interrupt;
+use crate::cli::progress::Progress;
+use crate::cli::provenance::provenance;
+use crate::cli::value::whole;
+use grainbench::campaign::chunk::Chunk;
+use grainbench::campaign::lease::Said;
+use grainbench::campaign::log::Worker;
+use grainbench::campaign::plan::Plan;
+use grainbench::campaign::work::{Asked, Summary, Watch, work as do_chunk};
+use grainbench::campaign::{machine, slurm};
+use grainbench::reports::number;
+use std::env;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// What the command takes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Directory of the plan.
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+    /// Which of how many chunks; the whole plan where none is named.
+    #[arg(long, value_name = "i/n", conflicts_with = "on")]
+    chunk: Option<Chunk>,
+    /// Tasks at once; as many as there are cores where none are named, and one where times are measured.
+    #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with = "on")]
+    jobs: Option<u16>,
+    /// Do again what failed.
+    #[arg(long, conflicts_with = "on")]
+    again: bool,
+    /// Submit the chunks to a batch system instead of working here.
+    #[arg(long, value_name = "slurm", value_parser = ["slurm"])]
+    on: Option<String>,
+    /// Submit what is missing of a plan that was submitted before.
+    #[arg(long, requires = "on")]
+    resubmit: bool,
+    /// Options for `sbatch`, after `--`.
+    #[arg(value_name = "OPTIONS OF sbatch", last = true, requires = "on")]
+    sbatch: Vec<String>,
+}
+
+/// Works, or has others work.
+pub(crate) fn work(arguments: &Arguments) -> Outcome {
+    let plan = enter(&arguments.plan)?;
+    plan.check_program()?;
+    if arguments.on.is_some() {
+        return submit(&plan, arguments);
+    }
+    let study = study::of(&Planned::read(&plan)?)?;
+    let jobs = match (arguments.jobs, plan.head.timed) {
+        (Some(2..), true) => {
+            return Err(Fault::input("--jobs: expected 1, for times are measured, found more"));
+        }
+        (_, true) => 1,
+        (Some(jobs), false) => usize::from(jobs),
+        (None, false) => cores(),
+    };
+    let told = Arc::new(Told { interrupt: Interrupt::listen(), progress: Mutex::new(None) });
+    let asked = Asked { chunk: arguments.chunk.unwrap_or(Chunk::WHOLE), again: arguments.again };
+    let worker = worker();
+    let watch = Arc::<Told>::clone(&told);
+    let done = do_chunk(&plan, &asked, &worker, watch, &|tasks, desk| {
+        study.work(&plan, tasks, jobs, desk).map_err(|fault| grainbench::campaign::Fault::Input(fault.to_string()))
+    });
+    *told.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    let summary = done?;
+    print(&words(&summary))?;
+    if summary.left > 0 {
+        exit::say("warning", &format!("{} tasks are left: the same command goes on with them", summary.left));
+        return Ok(ExitCode::from(RED));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn submit(plan: &Plan, arguments: &Arguments) -> Outcome {
+    let program = env::current_exe().map_err(|error| Fault::input(format!("this program: {error}")))?;
+    let asked = slurm::Asked { program: &program, again: arguments.resubmit, options: &arguments.sbatch };
+    match slurm::submit(plan, &asked)? {
+        Some(job) => print(&format!("job {}: chunks {} of {}\n", job.job, job.indexes, job.chunks))?,
+        None => print("nothing is missing that is not queued or somebody's\n")?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn words(summary: &Summary) -> String {
+    let &Summary { tasks, before, done, failed, .. } = summary;
+    let count = |number: usize| number::count(number as u64);
+    let failed = if failed > 0 { format!(", {} of them failed", count(failed)) } else { String::new() };
+    format!("{} tasks: {} were finished, {} done now{failed}\n", count(tasks), count(before), count(done))
+}
+
+/// Who works here.
+fn worker() -> Worker {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let (host, process) = (machine::name(), std::process::id());
+    let about = provenance(Vec::new(), 0.0);
+    let of = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
+    let array = of("SLURM_ARRAY_JOB_ID").zip(of("SLURM_ARRAY_TASK_ID")).map(|(job, index)| format!("{job}_{index}"));
+    let job = array.or_else(|| of("SLURM_JOB_ID")).or_else(|| of("HQ_JOB_ID"));
+    Worker {
+        name: format!("{:013}-{host}-{process}", now.as_millis()),
+        host,
+        process,
+        machine: about.machine,
+        cores: cores(),
+        job,
+        alone: of("SLURM_JOB_ID").map(|_| of("SLURM_JOB_EXCLUSIVE").is_some() || of("SLURM_EXCLUSIVE").is_some()),
+        began: about.date,
+    }
+}
+
+/// Tells people how far it is, and listens to them.
+struct Told {
+    interrupt: Interrupt,
+    progress: Mutex<Option<Progress>>,
+}
+
+impl Watch for Told {
+    fn goes_on(&self) -> bool {
+        !self.interrupt.is_asked()
+    }
+
+    fn begins(&self, tasks: usize) {
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        *progress = Some(Progress::new(tasks as u64, "tasks"));
+    }
+
+    fn finished(&self) {
+        if let Some(progress) = &*self.progress.lock().unwrap_or_else(PoisonError::into_inner) {
+            progress.advance();
+        }
+    }
+
+    fn waits(&self, others: &[Said]) {
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        let progress = progress.get_or_insert_with(|| Progress::new(0, "tasks"));
+        let names: Vec<&str> = others.iter().map(|other| other.worker.as_str()).collect();
+        progress.now(&format!("the rest is at {}", names.join(", ")));
+    }
+}

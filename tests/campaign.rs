@@ -1,0 +1,516 @@
+//! Plans as a user has them: what is collected is what would have been done here; whatever is killed, cut off or full, nothing is
+//! lost and nothing is done twice; what is no plan is refused.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![cfg(unix)]
+
+mod common;
+
+use common::{Answer, files, grainbench};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::time::Duration;
+
+/// A grid of two factors, by two solvers, with a claim of the case and a quantity of its own.
+const SWEEP: &str = "title = 'Slopes'
+scene = 'incline-disc/60deg-mu.3'
+[factors]
+mu = { key = 'contacts.plane.friction', values = [0.2, 0.5, 0.9] }
+theta = { key = 'gravity.slope_deg', from = 20.0, to = 60.0, count = 5 }
+[set]
+duration = 0.3
+[[gates]]
+quantity = 'displacement at the end'
+allowed = 0.01
+[[record]]
+quantity = 'velocity over g t'
+unit = '1'
+value = 'grain.vx / (9.8 * 0.3)'
+equals = 'sin(theta * pi/180)'
+[[solvers]]
+solver = 'dem'
+levels = ['dt=.1', 'dt=.05']
+[[solvers]]
+solver = 'rigid'
+levels = ['substeps=8']
+";
+/// Its points.
+const POINTS: usize = 45;
+
+fn ok(answer: &Answer) -> &Answer {
+    assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
+    answer
+}
+
+/// A folder with the sweep, planned.
+fn planned() -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("sweep.toml"), SWEEP).unwrap();
+    ok(&grainbench(directory.path(), &["plan", "sweep.toml", "--out", "p"]));
+    directory
+}
+
+/// A table without times.
+fn rows(file: &Path) -> Vec<String> {
+    let text = fs::read_to_string(file).unwrap();
+    let mut table = text.lines();
+    let head = table.next().unwrap();
+    let times = head.split(',').position(|name| name == "wall_seconds").unwrap();
+    // Of these tables it is the last column.
+    assert_eq!(times + 1, head.split(',').count());
+    table.map(|line| line.rsplit_once(',').unwrap().0.to_owned()).collect()
+}
+
+fn json(file: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
+}
+
+/// The number that `status` tells.
+fn status(directory: &Path, plan: &str) -> Value {
+    serde_json::from_str(&ok(&grainbench(directory, &["status", plan, "--json"])).out).unwrap()
+}
+
+/// Ids of all lines of all results.
+fn done(plan: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(plan.join("results")).unwrap() {
+        let text = String::from_utf8_lossy(&fs::read(entry.unwrap().path()).unwrap()).into_owned();
+        let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole).to_owned();
+        found.extend(whole.lines().skip(1).filter_map(|line| Some(line.split_once(' ')?.0.to_owned())));
+    }
+    found
+}
+
+/// Every key of a report but those of times.
+fn without_times(mut value: Value) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                for key in ["provenance", "seconds", "wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds"] {
+                    map.remove(key);
+                }
+                if let Some(Value::Array(repetitions)) = map.get("repetitions") {
+                    let count = repetitions.len();
+                    map.insert("repetitions".to_owned(), count.into());
+                }
+                map.values_mut().for_each(strip);
+            }
+            Value::Array(list) => list.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    strip(&mut value);
+    value
+}
+
+/// What is collected is what the command itself leaves: rows, controls, figures, what runs counted, points, limits.
+#[test]
+fn a_collected_plan_is_the_report_of_its_command() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    for (command, chunks, file) in [
+        (&["run", "squash", "collision"][..], 3, "report.json"),
+        (&["stability", "two-discs", "mass-ratio-1e6"], 2, "study.json"),
+        (&["cost", "collision", "--solver=dem", "--solver=rigid"], 1, "study.json"),
+    ] {
+        let direct = grainbench(here, &[command, &["--out", "direct"]].concat());
+        ok(&grainbench(here, &[&["plan"], command, &["--out", "p"]].concat()));
+        for chunk in 1..=chunks {
+            ok(&grainbench(here, &["work", "p", "--chunk", &format!("{chunk}/{chunks}")]));
+        }
+        let collected = grainbench(here, &["collect", "p", "--out", "collected"]);
+        assert_eq!(collected.code, direct.code, "{}", collected.err);
+        let [direct, collected] = ["direct", "collected"].map(|out| without_times(json(&here.join(out).join(file))));
+        assert_eq!(collected, direct, "{command:?}");
+        for folder in ["p", "direct", "collected"] {
+            fs::remove_dir_all(here.join(folder)).unwrap();
+        }
+    }
+}
+
+#[test]
+fn counts_want_no_times_and_are_those_of_the_command() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let plan =
+        ok(&grainbench(here, &["plan", "cost", "collision", "--solver=dem", "--counts", "--json", "--out", "p"]))
+            .out
+            .clone();
+    assert_eq!(serde_json::from_str::<Value>(&plan).unwrap()["timed"], false);
+    ok(&grainbench(here, &["work", "p", "--jobs", "2"]));
+    ok(&grainbench(here, &["collect", "p", "--out", "collected"]));
+    ok(&grainbench(here, &["cost", "collision", "--solver=dem", "--out", "direct"]));
+    let counts = |out: &str| -> Vec<Value> {
+        let points = json(&here.join(out).join("results.json"))["points"].as_array().unwrap().clone();
+        points.iter().map(|point| serde_json::json!([point["resolution"], point["error"], point["counts"]])).collect()
+    };
+    assert_eq!(counts("collected"), counts("direct"));
+    assert!(!counts("direct").is_empty());
+}
+
+#[test]
+fn a_sweep_is_the_same_in_one_piece_and_in_chunks() {
+    let directory = planned();
+    let here = directory.path();
+    let chunks: usize = (1..=4)
+        .map(|chunk| {
+            let words = ok(&grainbench(here, &["work", "p", "--chunk", &format!("{chunk}/4"), "-j", "2"])).out.clone();
+            words.split_whitespace().next().unwrap().parse::<usize>().unwrap()
+        })
+        .sum();
+    assert_eq!(chunks, POINTS);
+    assert_eq!(done(&here.join("p")).len(), POINTS);
+    // Another division finds all of it finished.
+    assert!(ok(&grainbench(here, &["work", "p", "--chunk", "1/1"])).out.contains("45 were finished, 0 done now"));
+    ok(&grainbench(here, &["collect", "p"]));
+    fs::rename(here.join("p"), here.join("first")).unwrap();
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p"]));
+    let report = here.join("first/report");
+    assert_eq!(rows(&report.join("rows.csv")), rows(&here.join("p/report/rows.csv")));
+    assert_eq!(rows(&report.join("rows.csv")).len(), 2 * POINTS);
+    for name in ["index.html", "rows.parquet", "figures/map.svg", "figures/work.svg"] {
+        assert!(report.join(name).is_file(), "{name}");
+    }
+    // A disc rolls or slips as it should, by both methods: springs of the case are stiff enough.
+    let results = json(&report.join("results.json"));
+    let verdicts = results["verdicts"].as_array().unwrap();
+    let of = |word: &str| verdicts.iter().filter(|row| row["verdict"] == word).count();
+    assert!(of("pass") > 35 && of("pass") + of("fail") == POINTS, "{} {}", of("pass"), of("fail"));
+    // What has no `allowed` is told and not judged; sin θ is what a disc without friction reaches.
+    let told: Vec<&Value> = verdicts.iter().filter(|row| row["verdict"].is_null()).collect();
+    assert!(told.len() == POINTS && told.iter().all(|row| row["value"].as_f64() < row["expected"].as_f64()));
+}
+
+/// Friction that the scene has otherwise is another task and another answer.
+#[test]
+fn another_number_is_another_task() {
+    let directory = planned();
+    let here = directory.path();
+    ok(&grainbench(here, &["work", "p"]));
+    fs::write(here.join("sweep.toml"), SWEEP.replace("0.5, 0.9", "0.5, 0.8")).unwrap();
+    let stale = grainbench(here, &["work", "p"]);
+    assert!(
+        stale.code == Some(2) && stale.err.contains("sweep.toml: expected the file that was planned with"),
+        "{}",
+        stale.err
+    );
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    assert!(ok(&grainbench(here, &["work", "p"])).out.contains("45 tasks: 30 were finished, 15 done now"));
+}
+
+/// Runs of a sweep are those of the cache: what it has is not run again, and what was run is there for others.
+#[test]
+fn a_sweep_shares_the_cache_of_runs() {
+    let directory = planned();
+    let here = directory.path();
+    // Long enough to be kept.
+    fs::write(here.join("sweep.toml"), SWEEP.replace("dt=.05", "dt=.0001")).unwrap();
+    let work = |plan: &str, cache: &str| {
+        ok(&grainbench(here, &["plan", "sweep.toml", "--out", plan]));
+        let done = common::program()
+            .env("GRAINBENCH_CACHE", here.join(cache))
+            .args(["work", plan])
+            .current_dir(here)
+            .output()
+            .unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        ok(&grainbench(here, &["collect", plan]));
+        fs::read_dir(here.join(cache)).unwrap().count()
+    };
+    let kept = work("p1", "cache");
+    assert!(kept >= 15, "{kept}");
+    assert!(work("p2", "cache") >= kept);
+    let times = |plan: &str| -> Vec<String> {
+        let text = fs::read_to_string(here.join(plan).join("report/rows.csv")).unwrap();
+        let slow = text.lines().filter(|line| line.contains("dt=0.0001"));
+        slow.map(|line| line.rsplit_once(',').unwrap().1.to_owned()).collect()
+    };
+    assert_eq!(times("p1"), times("p2"), "a run that is taken tells the time that it took when it was done");
+}
+
+/// A solver that breaks, and one that cannot express the scene, are results that have a type; a report says so.
+#[test]
+fn failures_keep_their_type() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let sweep =
+        SWEEP.replace("'incline-disc/60deg-mu.3'", "'nine-discs/kappa-1'").replace("[[record]]", "[[recorded]]");
+    let sweep = sweep.split("[factors]").next().unwrap().to_owned()
+        + "[[record]]\nquantity = 'velocity'\nunit = 'm/s'\nvalue = 'corner.vy'\n\
+           [[solvers]]\nsolver = 'dem'\nlevels = ['dt=.1', 'dt=40']\n\
+           [[solvers]]\nsolver = 'mpm'\nlevels = ['cells=4']\n";
+    fs::write(here.join("sweep.toml"), sweep).unwrap();
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    ok(&grainbench(here, &["work", "p"]));
+    let told = status(here, "p");
+    assert_eq!((told["tasks"].as_u64(), told["failed"].as_u64()), (Some(3), Some(2)), "{told}");
+    ok(&grainbench(here, &["collect", "p"]));
+    let results = json(&here.join("p/report/results.json"));
+    let ended: Vec<&str> =
+        results["verdicts"].as_array().unwrap().iter().filter_map(|row| row["verdict"].as_str()).collect();
+    assert_eq!(ended, ["broken", "unsupported"], "{results}");
+    // What failed is finished, unless it is asked for again.
+    assert!(ok(&grainbench(here, &["work", "p"])).out.contains("3 were finished, 0 done now"));
+    assert!(ok(&grainbench(here, &["work", "p", "--again"])).out.contains("2 done now, 2 of them failed"));
+}
+
+/// Workers that are killed, each at a moment by lot, and lines that are cut off: what is left is done, and nothing twice.
+#[test]
+fn killed_workers_lose_nothing_and_do_nothing_twice() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    // Two hundred tasks of some milliseconds.
+    let sweep = SWEEP.replace("count = 5", "count = 22").replace("dt=.05", "dt=.002");
+    fs::write(here.join("sweep.toml"), sweep).unwrap();
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "whole"]));
+    ok(&grainbench(here, &["work", "whole"]));
+    ok(&grainbench(here, &["collect", "whole"]));
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    let mut state = 7_u64;
+    let mut killed = 0;
+    for round in 0..40 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        let start = |chunk: &str| {
+            let mut command = common::program();
+            command.args(["work", "p", "--chunk", chunk]).current_dir(here);
+            command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+        };
+        let workers = [start("1/2"), start("2/2")];
+        std::thread::sleep(Duration::from_millis(30 + (state >> 40) % 150));
+        for mut worker in workers {
+            killed += usize::from(worker.try_wait().unwrap().is_none());
+            let _ = worker.kill();
+            worker.wait().unwrap();
+        }
+        if round % 3 == 0 {
+            // The last line of one of them was not whole.
+            let cut = fs::read_dir(here.join("p/results")).unwrap().map(|entry| entry.unwrap().path()).max();
+            if let Some(path) = cut {
+                let bytes = fs::read(&path).unwrap();
+                fs::write(&path, &bytes[..bytes.len().saturating_sub(40)]).unwrap();
+            }
+        }
+    }
+    assert!(killed > 10, "{killed}: too many end before they are killed");
+    ok(&grainbench(here, &["work", "p"]));
+    let ids = done(&here.join("p"));
+    assert_eq!(ids.len(), ids.iter().collect::<BTreeSet<_>>().len(), "a task was done twice");
+    let told = status(here, "p");
+    assert_eq!(
+        (told["twice"].as_u64(), told["waiting"].as_u64(), told["running"].as_u64()),
+        (Some(0), Some(0), Some(0))
+    );
+    ok(&grainbench(here, &["collect", "p"]));
+    assert_eq!(rows(&here.join("p/report/rows.csv")), rows(&here.join("whole/report/rows.csv")));
+    assert!(!files(&here.join("p/running")).iter().any(|name| name.ends_with(".json")), "leases stay of nobody");
+}
+
+/// A disk that is full ends the work with what was finished; when there is room the rest is done.
+#[test]
+fn a_full_disk_loses_nothing() {
+    let directory = planned();
+    let here = directory.path();
+    // Files of this process may have four kilobytes: some ten results.
+    let full = std::process::Command::new("sh")
+        .args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" work p", env!("CARGO_BIN_EXE_grainbench")])
+        .env("GRAINBENCH_CACHE", "off")
+        .current_dir(here)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&full.stderr).into_owned();
+    assert!(!full.status.success() && said.contains("cannot write"), "{said}");
+    let before = done(&here.join("p")).len();
+    assert!((1..POINTS).contains(&before), "{before}");
+    assert_eq!(status(here, "p")["damaged"], 0, "what the disk did not take whole is not there");
+    let rest = ok(&grainbench(here, &["work", "p"])).out.clone();
+    assert!(rest.contains(&format!("{before} were finished, {} done now", POINTS - before)), "{rest}");
+}
+
+/// Two workers at one plan share it.
+#[test]
+fn two_at_once_do_each_task_once() {
+    let directory = planned();
+    let here = directory.path();
+    let start = || common::program().args(["work", "p"]).current_dir(here).stdout(Stdio::null()).spawn().unwrap();
+    for mut worker in [start(), start(), start()] {
+        assert_eq!(worker.wait().unwrap().code(), Some(0));
+    }
+    let ids = done(&here.join("p"));
+    assert_eq!((ids.len(), ids.iter().collect::<BTreeSet<_>>().len()), (POINTS, POINTS));
+}
+
+/// What is no plan, in every way that a file can be wrong.
+#[test]
+fn what_is_no_plan_is_refused() {
+    let directory = planned();
+    let here = directory.path();
+    let plan = here.join("p");
+    let whole: Vec<(PathBuf, Vec<u8>)> =
+        ["plan.toml", "tasks.jsonl"].map(|name| (plan.join(name), fs::read(plan.join(name)).unwrap())).into();
+    let refused = |what: &str| {
+        for command in [&["work", "p"][..], &["status", "p"], &["collect", "p"], &["work", "p", "--on", "slurm"]] {
+            let answer = grainbench(here, command);
+            assert_eq!(answer.code, Some(2), "{what}: {command:?}: {}{}", answer.out, answer.err);
+            assert!(answer.err.contains("expected") && !answer.err.contains("panicked"), "{what}: {}", answer.err);
+        }
+    };
+    for (path, bytes) in &whole {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let foreign: [&[u8]; 6] =
+            [b"", &bytes[..bytes.len() / 2], b"{\"a\": 1}\n", b"\xff\xfe\0", b"format = 1\n", &bytes[1..]];
+        for (at, text) in foreign.into_iter().enumerate() {
+            fs::write(path, text).unwrap();
+            refused(&format!("{name} {at}"));
+        }
+        fs::remove_file(path).unwrap();
+        refused(&format!("no {name}"));
+        fs::write(path, bytes).unwrap();
+    }
+    let head = String::from_utf8(whole[0].1.clone()).unwrap();
+    for (from, to) in [
+        ("format = 1", "format = 2"),
+        ("chunks = 1", "chunks = 0"),
+        ("lease_seconds = 60.0", "lease_seconds = nan"),
+        ("kind = \"sweep\"", "kind = \"sweet\""),
+    ] {
+        assert!(head.contains(from), "{from}");
+        fs::write(&whole[0].0, head.replace(from, to)).unwrap();
+        refused(to);
+    }
+    for (from, to, said) in [
+        ("sweep.toml\"]", "sweep.toml\", \"--nothing\"]", "arguments"),
+        ("program = \"", "program = \"0", "the program that planned"),
+    ] {
+        assert!(head.contains(from), "{from}");
+        fs::write(&whole[0].0, head.replace(from, to)).unwrap();
+        let answer = grainbench(here, &["work", "p"]);
+        assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
+    }
+    fs::write(&whole[0].0, head).unwrap();
+    // Results of others are none of ours.
+    for (name, text) in
+        [("a.log", &b""[..]), ("b.log", b"hello\n"), ("c.log", b"grainbench-results 1 {}\n\xff\n"), ("d.txt", b"x")]
+    {
+        fs::write(plan.join("results").join(name), text).unwrap();
+    }
+    fs::write(plan.join("running/x.json"), "{").unwrap();
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p"]));
+    assert_eq!(status(here, "p")["damaged"], 2);
+    assert_eq!(rows(&plan.join("report/rows.csv")).len(), 2 * POINTS);
+    // A plan is left where nothing else is.
+    fs::create_dir(here.join("full")).unwrap();
+    fs::write(here.join("full/notes"), "").unwrap();
+    let answer = grainbench(here, &["plan", "sweep.toml", "--out", "full"]);
+    assert!(answer.code == Some(2) && answer.err.contains("other files"), "{}", answer.err);
+    for chunk in ["0/0", "5/3", "1/0", "0/1", "1", "a/b", "1/99999999999"] {
+        assert_eq!(grainbench(here, &["work", "p", "--chunk", chunk]).code, Some(2), "{chunk}");
+    }
+}
+
+/// What is no sweep, each with the key that is wrong.
+#[test]
+fn what_is_no_sweep_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let mut told = String::new();
+    for (from, to) in [
+        ("title = 'Slopes'\n", ""),
+        ("title", "titel"),
+        ("incline-disc/60deg-mu.3", "inclin-disc"),
+        ("incline-disc/60deg-mu.3", "incline-disc/61deg"),
+        ("incline-disc/60deg-mu.3", "nowhere.toml"),
+        ("contacts.plane.friction", "contacts.plane.frictoin"),
+        ("contacts.plane.friction", "gravity..x"),
+        ("values = [0.2, 0.5, 0.9]", "values = []"),
+        ("values = [0.2, 0.5, 0.9]", "values = [-1.0]"),
+        ("values = [0.2, 0.5, 0.9]", "values = ['much']"),
+        ("count = 5", "count = 5, spacing = 'logarithmic'"),
+        ("displacement at the end", "displacment at the end"),
+        ("allowed = 0.01", "allowed = -1"),
+        ("equals = 'sin(theta * pi/180)'", "equals = 'sin(theta'"),
+        ("equals = 'sin(theta * pi/180)'\n", "allowed = 1\n"),
+        ("value = 'grain.vx / (9.8 * 0.3)'", "value = '1 +'"),
+        ("'dt=.1', 'dt=.05'", "'fine'"),
+        ("'dt=.1', 'dt=.05'", "'dt=.1', 'dt=0.1'"),
+        ("'dt=.1', 'dt=.05'", "'cells=4'"),
+        ("'dt=.1', 'dt=.05'", ""),
+        ("solver = 'rigid'", "solver = 'rigit'"),
+        ("solver = 'rigid'", "solver = 'nowhere/SOLVER.toml'"),
+        ("[set]", "map = ['mu', 'tau']\n[set]"),
+        ("[set]", "repetitions = 3\n[set]"),
+        ("[set]", "[formulas]\nduration = 'tau * 2'\n[set]"),
+        ("[factors]", "design = 'random'\npoints = 0\n[factors]"),
+    ] {
+        assert!(SWEEP.contains(from), "{from}");
+        // Tables that a line would fall into come after it.
+        let text = if to.starts_with("map") || to.starts_with("repetitions") {
+            format!("{}\n{SWEEP}", to.replace("\n[set]", ""))
+        } else {
+            SWEEP.replacen(from, to, 1)
+        };
+        fs::write(here.join("sweep.toml"), text).unwrap();
+        let answer = grainbench(here, &["plan", "sweep.toml", "--out", "p"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{to}: {}", answer.err);
+        told += &format!("{}\n{}\n", to.trim(), answer.err);
+        assert!(!here.join("p").exists(), "{to}");
+    }
+    for text in ["", "\0", "title", "[", "title = 1"] {
+        fs::write(here.join("sweep.toml"), text).unwrap();
+        assert_eq!(grainbench(here, &["plan", "sweep.toml", "--out", "p"]).code, Some(2), "{text}");
+    }
+    insta::assert_snapshot!("campaign_sweep_refused", told);
+}
+
+/// Another's program, by its manifest, at every point.
+#[test]
+fn a_program_by_its_manifest_takes_part() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let manifest = common::root("examples/python/SOLVER.toml");
+    let sweep = SWEEP
+        .replace(
+            "solver = 'rigid'\nlevels = ['substeps=8']",
+            &format!("solver = '{}'\nlevels = ['dt=.01']", manifest.display()),
+        )
+        .replace("count = 5", "count = 2");
+    fs::write(here.join("sweep.toml"), sweep).unwrap();
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p"]));
+    let rows = rows(&here.join("p/report/rows.csv"));
+    let theirs: Vec<&String> = rows.iter().filter(|row| row.contains(",one-grain,")).collect();
+    assert_eq!(theirs.len(), 12);
+    assert!(theirs.iter().filter(|row| row.contains("displacement")).all(|row| row.contains(",pass,")), "{theirs:?}");
+}
+
+#[test]
+fn a_trend_tells_which_rows_and_counts_changed() {
+    let directory = planned();
+    let here = directory.path();
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p", "--out", "new"]));
+    // An earlier commit, at which a row failed and a run took a step less.
+    let mut old = json(&here.join("new/results.json"));
+    old["verdicts"][0]["verdict"] = "fail".into();
+    let steps = old["points"][0]["steps"].as_u64().unwrap();
+    old["points"][0]["steps"] = (steps - 1).into();
+    fs::create_dir(here.join("old")).unwrap();
+    fs::write(here.join("old/results.json"), old.to_string()).unwrap();
+    ok(&grainbench(here, &["collect", "p", "--out", "new", "--against", "old", "--against", "new"]));
+    let page = fs::read_to_string(here.join("new/trend.html")).unwrap();
+    assert!(page.contains("The trend over 3 reports") && page.contains(&format!("{} → {steps}", steps - 1)), "{page}");
+    assert_eq!(page.matches("scope=\"row\"").count(), 1, "one row changed");
+    assert!(here.join("new/index.html").is_file() && here.join("new/figures/map.svg").is_file());
+    for (wrong, text) in [("missing", None), ("empty", Some("")), ("other", Some("[1]"))] {
+        if let Some(text) = text {
+            fs::write(here.join(wrong), text).unwrap();
+        }
+        assert_eq!(grainbench(here, &["collect", "p", "--out", "new", "--against", wrong]).code, Some(2), "{wrong}");
+    }
+}
