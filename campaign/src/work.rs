@@ -129,6 +129,9 @@ fn quoted(words: &str) -> String {
     serde_json::to_string(words).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
+/// Who does tasks, and leaves at a desk what comes out.
+pub type Does<'a> = &'a dyn Fn(&[&Task], &Arc<Desk>) -> Result<(), Fault>;
+
 /// Does a chunk of a plan with somebody who does tasks.
 ///
 /// # Errors
@@ -138,7 +141,7 @@ pub fn work(
     asked: &Asked,
     worker: &Worker,
     watch: Arc<dyn Watch>,
-    does: &dyn Fn(&[&Task], &Arc<Desk>) -> Result<(), Fault>,
+    does: Does<'_>,
 ) -> Result<Summary, Fault> {
     let range = chunk::of(&plan.tasks, asked.chunk);
     let seconds = plan.head.lease_seconds;

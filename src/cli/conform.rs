@@ -64,11 +64,14 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     if says_nothing(&report) { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, arguments.strict)) }
 }
 
+/// A solver with what it owes.
+pub(crate) type Owing = (Arc<dyn Solver>, Terms);
+
 /// The solvers and manifests named, with what they owe; all of ours when none is named.
-pub(crate) fn owing(named: &[String]) -> Result<Vec<(Arc<dyn Solver>, Terms)>, Fault> {
+pub(crate) fn owing(named: &[String]) -> Result<Vec<Owing>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
-    let mut solvers: Vec<(Arc<dyn Solver>, Terms)> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
+    let mut solvers: Vec<Owing> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
     for path in named.iter().filter(|name| solver::is_manifest(name)) {
         let outside = solver::outside(path)?;
         let terms = outside.terms();

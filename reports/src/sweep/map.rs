@@ -40,7 +40,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     }
     let axes = [Marks::of(sweep, x), Marks::of(sweep, y)];
     let panels = levels(sweep);
-    let columns = panels.len().min(ACROSS).max(1);
+    let columns = panels.len().clamp(1, ACROSS);
     let wide = (WIDTH - columns as f64 * (LEFT + GAP)) / columns as f64;
     let pitch = HEAD + HIGH + FOOT;
     let rows = panels.len().div_ceil(columns);

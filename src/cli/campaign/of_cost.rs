@@ -140,9 +140,9 @@ impl Study for OfCost {
             }
             let start = Instant::now();
             let result = if word == "prices" {
-                step::measure(&Registry, ROUNDS, &mut ()).map_err(Fault::input).map(|model| serde_json::to_value(model))
+                step::measure(&Registry, ROUNDS, &mut ()).map_err(Fault::input).map(serde_json::to_value)
             } else {
-                load::measure(&Registry, ROUNDS, &mut ()).map_err(Fault::from).map(|loads| serde_json::to_value(loads))
+                load::measure(&Registry, ROUNDS, &mut ()).map_err(Fault::from).map(serde_json::to_value)
             };
             let result = result?.map_err(Fault::input)?;
             desk.leave(id, State::Done, start.elapsed().as_secs_f64(), &result);
