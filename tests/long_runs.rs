@@ -34,8 +34,8 @@ fn first_line(young_modulus: f64, duration: f64, cells: &str) -> String {
     line
 }
 
-/// 20 s at .4 of h/c: h = R/8 = 1.25 mm, c = √(M/ρ) = 6020 m/s in steel, M = 1.346 E at ν = .3; 2.4e8 steps of 1804 points, twelve
-/// hours at ten million a second.
+/// 20 s at .4 of h/c: h = R/8 = 1.25 mm, c = √(M/ρ) = 6020 m/s in steel, M = 1.346 E at ν = .3; 2.4e8 steps of 1804 points,
+/// twelve hours at ten million a second.
 #[test]
 fn steel_in_mpm_is_warned_of() {
     let line = first_line(2.1e11, 20.0, "8");

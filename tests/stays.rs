@@ -289,7 +289,7 @@ fn nothing_is_poured_into_what_stands_there() {
     let feed = |name: &str, seed: u32, count: u32, z: f64| {
         format!(
             "[grains.{name}]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\n\
-             poured = {{ count = {count}, rate = 2.5, seed = {seed}, low = [0.0, 2.0, {z}], high = [0.2, 2.2, {z}] }}\n"
+             poured = {{ start = 0.1, count = {count}, rate = 2.5, seed = {seed}, low = [0.0, 2.0, {z}], high = [0.2, 2.2, {z}] }}\n"
         )
     };
     let broken = |text: &str| {
@@ -298,10 +298,15 @@ fn nothing_is_poured_into_what_stands_there() {
     };
     let two = broken(&format!("{HEAD}{}{}", feed("a", 1, 2, 9.0), feed("b", 2, 2, 9.0)));
     assert!(two.contains("it was poured into grain") && two.contains("of the smaller radius"), "{two}");
-    let heap = broken(&format!("{HEAD}{}{FLOOR}", feed("a", 1, 10, 1.0)));
+    let heap = broken(&format!("{HEAD}{FLOOR}{}", feed("a", 1, 10, 1.0)));
     assert!(heap.contains("it was poured into grain") && heap.contains("pour at a lower rate"), "{heap}");
-    let wall = broken(&format!("{HEAD}{}{FLOOR}", feed("a", 1, 1, 0.3)));
+    let wall = broken(&format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3)));
     assert!(wall.contains("it was poured into wall 1 of the scene, which it overlaps by 0.400"), "{wall}");
+    // Who comes at time zero is there from the start, and is looked at then.
+    let text = format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3).replace("start = 0.1, ", ""));
+    let source = SceneSource::from_text("passing", Path::new(""), &text);
+    let first = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
+    assert!(first.contains("grain 1 and wall floor overlapping by 0.4000 of the radius"), "{first}");
 }
 
 /// What comes outside of the box of `removal` would be taken out as it comes.

@@ -102,8 +102,8 @@ pub(crate) fn period(done: &Done) -> Result<f64, Missing> {
     }
 }
 
-/// A mode of a bar of viscous material: its frequency without viscosity ω (rad/s), its decay δ (1/s), and its mean velocity at the start
-/// (m/s).
+/// A mode of a bar of viscous material: its frequency without viscosity ω (rad/s), its decay δ (1/s), and its mean velocity
+/// at the start (m/s).
 struct Damped {
     frequency: f64,
     decay: f64,

@@ -80,8 +80,8 @@ pub(crate) fn owing(named: &[String]) -> Result<Vec<Owing>, Fault> {
     Ok(solvers)
 }
 
-/// What every solver owes, of the solvers and manifests named; of all of ours when none is. Finished runs of ours are taken from a
-/// cache where there is one.
+/// What every solver owes, of the solvers and manifests named; of all of ours when none is. Finished runs of ours are taken from
+/// a cache where there is one.
 pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result<Option<Section>, Fault> {
     let solvers = owing(named)?;
     let ours = solvers.len() - named.iter().filter(|name| solver::is_manifest(name)).count();

@@ -335,8 +335,10 @@ fn header(scene: &Scene, solver: &dyn Solver) -> String {
             Duration::Seconds(time) => comers.len() - scene.stays.entered_by(time),
             Duration::Cycles(_) => 0,
         };
+        // What all groups are poured needs no word.
         let words = match (comers.len(), late) {
             (0, _) => String::new(),
+            (some, 0) if some == scene.grains.len() => String::new(),
             (some, 0) => format!(", {} of them poured", count(some)),
             (some, late) => {
                 format!(", {} of them poured, of which {} would come after the end", count(some), count(late))

@@ -55,8 +55,8 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// The lines of all grains. Those of a large list are remembered: the same one is asked for by every variant and every control that
-/// begins with it.
+/// The lines of all grains. Those of a large list are remembered: the same one is asked for by every variant and every control
+/// that begins with it.
 fn lines_of(grains: &Grains) -> Arc<str> {
     static KNOWN: Mutex<Vec<(Grains, Arc<str>)>> = Mutex::new(Vec::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);

@@ -408,7 +408,8 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
-    /// Refuses a grain that comes where another one or a wall is: `slots` are those that grains had before, those that come had none.
+    /// Refuses a grain that comes where another one or a wall is: `slots` are those that grains had before, and those that come
+    /// had none.
     fn refuse_crowded(&self, slots: &[u32]) -> Result<(), Box<Broken>> {
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
         for slot in (0..slots.len()).filter(|&slot| slots[slot] == ABSENT) {

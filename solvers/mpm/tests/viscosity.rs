@@ -6,8 +6,8 @@ mod support;
 use grainbench_scene::solver::Resolution;
 use support::{collision, column, last, try_run};
 
-/// Two discs of a viscous material meet: what they lose to it stands under damping, and the budget closes to first order in the step.
-/// Without viscosity nothing stands there.
+/// Two discs of a viscous material meet: what they lose to it stands under damping, and the budget closes to first order in the
+/// step. Without viscosity nothing stands there.
 #[test]
 fn the_budget_of_a_viscous_collision_closes() {
     let of = |viscosity: &str, courant: f64| {

@@ -3,7 +3,8 @@
 
 use crate::scene::Dimension;
 
-/// Keys with their shapes, where `@` stands for a vector, `%` for its components and `#` for a symmetric tensor; `table.key` where keys of one name differ.
+/// Keys with their shapes, where `@` stands for a vector, `%` for its components and `#` for a symmetric tensor; `table.key`
+/// where keys of one name differ.
 const SHAPES: &[(&str, &str)] = &[
     ("plane", "{ point = @, normal = @ }"),
     ("segment", "[@, @]"),

@@ -307,8 +307,8 @@ impl fmt::Display for Cause {
             ),
             Self::CameIntoWall { wall, ratio } => write!(
                 formatter,
-                "it was poured into wall {wall} of the scene, which it overlaps by {ratio:.3} of its radius: what is poured needs \
-                 room in its box when it comes"
+                "it was poured into wall {wall} of the scene, which it overlaps by {ratio:.3} of its radius: what is poured \
+                 needs room in its box when it comes"
             ),
         }
     }

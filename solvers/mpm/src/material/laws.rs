@@ -123,7 +123,8 @@ impl Law for NeoHookean {
 }
 
 /// Neo-Hookean, with a viscous stress beside it: σ + 2η dev D + ζ tr D 1, D the symmetric part of ∇v (1/s). In small strain it is
-/// the solid of Kelvin and Voigt, whose wave of wave number k loses its amplitude at η_L k²/2ρ, η_L = 4η/3 + ζ along and η across.
+/// the solid of Kelvin and Voigt, whose wave of wave number k loses its amplitude at η_L k²/2ρ, η_L = 4η/3 + ζ along it and η
+/// across.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KelvinVoigt {
     /// The elastic part.

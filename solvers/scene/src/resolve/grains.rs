@@ -311,7 +311,8 @@ impl Resolver<'_> {
         self.check.not_negative("largest_initial_overlap", bound, "ratio")?;
         // Where the centre of one lies within another it is of no use to know which pair is worse still.
         let mut later = vec![false; grains.len()];
-        stays.entries.iter().for_each(|entry| later[entry.grain] = true);
+        // Who comes at time zero is there from the start.
+        stays.entries[stays.entered_by(0.0)..].iter().for_each(|entry| later[entry.grain] = true);
         let first: Vec<usize> = (0..grains.len()).filter(|&grain| !later[grain]).collect();
         let found = if stays.entries.is_empty() {
             overlap::deepest(grains, walls, domain, bound.max(1.0))

@@ -78,7 +78,8 @@ impl Resolver<'_> {
         };
         let of_a_grain = matches!(target, ProbeTarget::Grain(_) | ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..));
         if !names.stays.is_always() && (of_a_grain || target == ProbeTarget::Budget) {
-            let expected = "a probe of what is there all the time (a wall, the system, the stress, a count), for grains come or go here";
+            let expected =
+                "a probe of what is there all the time (a wall, the system, a count), for grains come or go here";
             let found = match target {
                 ProbeTarget::Grain(_) => "one of a grain",
                 ProbeTarget::Budget => "one of the budget",
