@@ -514,3 +514,82 @@ fn a_trend_tells_which_rows_and_counts_changed() {
         assert_eq!(grainbench(here, &["collect", "p", "--out", "new", "--against", wrong]).code, Some(2), "{wrong}");
     }
 }
+
+/// Programs of Slurm by shell scripts: what they were asked stands in a file each, and `broken` makes `squeue` fail.
+fn fake_slurm(directory: &Path) -> String {
+    let bin = directory.join("bin");
+    fs::create_dir(&bin).unwrap();
+    for (name, text) in [
+        ("sbatch", "echo \"$@\" >>\"$FAKE/sbatch.txt\"; cat \"$FAKE/number\" 2>/dev/null || echo 7"),
+        ("squeue", "test -e \"$FAKE/broken\" && exit 1; cat \"$FAKE/queue\" 2>/dev/null; true"),
+        ("scontrol", "echo 'Configuration data as of now'; echo 'MaxArraySize            = 4'"),
+    ] {
+        let file = bin.join(name);
+        fs::write(&file, format!("#!/bin/sh\n{text}\n")).unwrap();
+        std::process::Command::new("chmod").arg("+x").arg(&file).status().unwrap();
+    }
+    format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
+}
+
+/// The array is as large as the site lets it be, and what is submitted again is what is missing, not queued and nobody's.
+#[test]
+fn slurm_is_asked_for_what_is_missing() {
+    let directory = planned();
+    let here = directory.path();
+    let path = fake_slurm(here);
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p", "--chunks", "9"]));
+    let ask = |words: &[&str]| {
+        let output =
+            common::program().args(words).env("PATH", &path).env("FAKE", here).current_dir(here).output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    };
+    let asked = || fs::read_to_string(here.join("sbatch.txt")).unwrap_or_default().lines().count();
+    let submit = ["work", "p", "--on", "slurm"];
+    for wrong in ["--array=1-2", "-a1", "--wrap=true"] {
+        assert_eq!(ask(&[&submit[..], &["--", wrong]].concat()).code, Some(2), "{wrong}");
+    }
+    fs::write(here.join("broken"), "").unwrap();
+    let answer = ask(&submit);
+    assert!(answer.code == Some(1) && answer.err.contains("squeue failed") && asked() == 0, "{}", answer.err);
+    fs::remove_file(here.join("broken")).unwrap();
+    let answer = ask(&[&submit[..], &["--", "--partition=short", "--time=5"]].concat());
+    // Indexes are below MaxArraySize.
+    assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: chunks 1-3 of 3\n"), "{}", answer.err);
+    let told = fs::read_to_string(here.join("sbatch.txt")).unwrap();
+    assert!(told.contains("--partition=short --time=5") && told.contains("p/slurm/submit-1.sh"), "{told}");
+    let script = fs::read_to_string(here.join("p/slurm/submit-1.sh")).unwrap();
+    assert!(script.contains("#SBATCH --array=1-3\n") && !script.contains("--exclusive"), "{script}");
+    // Once submitted it is not submitted again by chance.
+    assert!(ask(&submit).code == Some(2) && asked() == 1);
+    let again = [&submit[..], &["--resubmit"]].concat();
+    fs::write(here.join("queue"), "7 2\n7 3\n9 1\n").unwrap();
+    fs::write(here.join("number"), "8").unwrap();
+    assert_eq!(ask(&again).out, "job 8: chunks 1 of 3\n");
+    assert!(ask(&["status", "p"]).out.contains("queued    2 chunks"), "the job of another is not ours");
+    for chunk in ["1/3", "3/3"] {
+        ok(&ask(&["work", "p", "--chunk", chunk]));
+    }
+    fs::write(here.join("queue"), "").unwrap();
+    assert_eq!(ask(&again).out, "job 8: chunks 2 of 3\n");
+    fs::write(here.join("broken"), "").unwrap();
+    let before = asked();
+    assert!(ask(&again).code == Some(1) && asked() == before, "an unknown queue is no empty one");
+    assert!(ask(&["status", "p"]).out.contains("queued    not known: squeue failed"));
+    let status: Value = serde_json::from_str(&ask(&["status", "p", "--json"]).out).unwrap();
+    assert!(status["queued"].is_null() && status["waiting"].as_u64() > Some(0), "{status}");
+    fs::remove_file(here.join("broken")).unwrap();
+    ok(&ask(&["work", "p"]));
+    assert!(ask(&again).out.starts_with("nothing is missing"));
+    // What is timed has its node to itself.
+    ok(&ask(&["plan", "cost", "collision", "--solver=dem", "--out", "c"]));
+    ok(&ask(&["work", "c", "--on", "slurm"]));
+    let script = fs::read_to_string(here.join("c/slurm/submit-1.sh")).unwrap();
+    assert!(script.contains("#SBATCH --exclusive\n") && script.contains("--jobs 1"), "{script}");
+    assert_eq!(ask(&["work", "c", "--jobs", "2"]).code, Some(2), "times are measured one at a time");
+    // A script that starts no worker submits nothing that is not one.
+    fs::write(here.join("number"), "Submitted").unwrap();
+    ok(&ask(&["plan", "sweep.toml", "--out", "q"]));
+    let answer = ask(&["work", "q", "--on", "slurm"]);
+    assert!(answer.code == Some(1) && answer.err.contains("expected the number of a job"), "{}", answer.err);
+}

@@ -36,9 +36,9 @@ pub struct Worker {
     /// Job of a batch system.
     #[serde(default)]
     pub job: Option<String>,
-    /// Whether the batch system gave it a node of its own; none where there is no batch system.
+    /// Cores that the batch system gave it; all of a node that is its own. None where there is no batch system.
     #[serde(default)]
-    pub alone: Option<bool>,
+    pub granted: Option<usize>,
     /// When it began.
     pub began: String,
 }

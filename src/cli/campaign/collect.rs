@@ -100,7 +100,8 @@ fn words(plan: &Plan, finished: &Finished, missing: usize) -> Vec<String> {
         plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.worker).collect();
     let mut machines: BTreeSet<String> = BTreeSet::new();
     for worker in used.into_iter().filter_map(|place| finished.workers.get(place)) {
-        machines.insert(format!("{} ({})", worker.host, worker.machine));
+        let granted = worker.granted.map_or_else(String::new, |cores| format!(", {cores} of them its own"));
+        machines.insert(format!("{} ({}{granted})", worker.host, worker.machine));
     }
     if !machines.is_empty() {
         words.push(format!("worked on {}", machines.into_iter().collect::<Vec<_>>().join("; ")));

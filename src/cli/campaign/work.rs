@@ -112,7 +112,7 @@ fn worker() -> Worker {
         machine: about.machine,
         cores: cores(),
         job,
-        alone: of("SLURM_JOB_ID").map(|_| of("SLURM_JOB_EXCLUSIVE").is_some() || of("SLURM_EXCLUSIVE").is_some()),
+        granted: of("SLURM_CPUS_ON_NODE").and_then(|cores| cores.parse().ok()),
         began: about.date,
     }
 }

@@ -1,0 +1,169 @@
+#!/usr/bin/env bash
+# A plan on a real Slurm: two virtual nodes on this machine in a temporary directory, started here and stopped at the end.
+# Tasks are killed, half of an array is cancelled, a node is drained, a disk is full, and in the end the controller does not
+# answer: nothing may be lost, nothing done twice, and the rows are those of a local run but for their times.
+#   .ci/slurm.sh PROGRAM [TASKS]
+set -euo pipefail
+program="$(realpath "$1")"
+tasks="${2:-300}"
+for command in slurmctld slurmd munged sbatch squeue scancel scontrol; do
+    command -v "$command" >/dev/null || { echo "There is no $command here: plans are not tried on Slurm." >&2; exit 1; }
+done
+((EUID == 0)) || { echo "Slurm's nodes are started by root: plans are not tried on Slurm." >&2; exit 1; }
+
+here="$(mktemp -d)"
+place="$here/slurm"
+stop() {
+    for name in slurmd.n1 slurmd.n2 slurmctld munged; do
+        [[ -e "$place/run/$name.pid" ]] && kill "$(cat "$place/run/$name.pid")" 2>/dev/null
+    done
+    mountpoint -q "$here/small" && umount "$here/small"
+    rm -rf "$here"
+}
+trap stop EXIT
+chmod 755 "$here"
+mkdir -p "$place"/{spool/n1,spool/n2,state,log,run}
+dd if=/dev/urandom of="$place/munge.key" bs=1024 count=1 status=none
+chmod 600 "$place/munge.key"
+port=$((20000 + RANDOM % 10000))
+name="$(hostname -s)"
+cat >"$place/slurm.conf" <<CONF
+ClusterName=grainbench
+SlurmctldHost=$name(127.0.0.1)
+SlurmUser=root
+SlurmctldPort=$port
+AuthType=auth/munge
+AuthInfo=socket=$place/run/munge.sock
+CredType=cred/munge
+StateSaveLocation=$place/state
+SlurmdSpoolDir=$place/spool/%n
+SlurmctldPidFile=$place/run/slurmctld.pid
+SlurmdPidFile=$place/run/slurmd.%n.pid
+SlurmctldLogFile=$place/log/slurmctld.log
+SlurmdLogFile=$place/log/slurmd.%n.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+MpiDefault=none
+ReturnToService=2
+SlurmdParameters=config_overrides
+SchedulerParameters=sched_interval=1,bf_interval=2,defer
+MaxArraySize=1001
+KillWait=2
+AccountingStorageType=accounting_storage/none
+NodeName=n[1-2] NodeHostname=$name NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 2))] CPUs=2 RealMemory=1000 State=UNKNOWN
+PartitionName=all Nodes=n[1-2] Default=YES MaxTime=INFINITE State=UP OverSubscribe=NO
+CONF
+export SLURM_CONF="$place/slurm.conf"
+munged --key-file="$place/munge.key" --socket="$place/run/munge.sock" --pid-file="$place/run/munged.pid" \
+    --log-file="$place/log/munged.log" --seed-file="$place/run/munged.seed" --force
+slurmctld -c
+slurmd -N n1
+slurmd -N n2
+for _ in $(seq 60); do
+    [[ "$(sinfo --noheader --format=%D --states=idle 2>/dev/null)" == 2 ]] && break
+    sleep 0.5
+done
+sinfo
+
+# Some hundred runs of some hundredths of a second; what is done is done, and not taken from before.
+export GRAINBENCH_CACHE=off
+cd "$here"
+cat >sweep.toml <<SWEEP
+title = "Slopes"
+scene = "incline-disc/60deg-mu.3"
+design = "latin-hypercube"
+points = $tasks
+[factors]
+mu = { key = "contacts.plane.friction", from = 0.1, to = 0.9 }
+theta = { key = "gravity.slope_deg", from = 10.0, to = 60.0 }
+[set]
+duration = 0.3
+[[gates]]
+quantity = "displacement at the end"
+allowed = 0.01
+[[solvers]]
+solver = "dem"
+levels = ["dt=.00003"]
+SWEEP
+# The plan has a small disk of its own, which can be filled.
+mkdir small
+mount -t tmpfs -o size=$((4 + tasks / 200))m tmpfs small
+chunks=12
+"$program" plan sweep.toml --out here >/dev/null
+"$program" plan sweep.toml --out small/plan --chunks $chunks
+plan=small/plan
+# Who is killed is waited for this long (s).
+sed -i 's/^lease_seconds = .*/lease_seconds = 6.0/' $plan/plan.toml
+"$program" work here
+"$program" collect here >/dev/null
+
+told() { "$program" status $plan --json | python3 -c "import json, sys; print(json.load(sys.stdin)['$1'])"; }
+wait_for_queue() { while [[ -n "$(squeue --noheader)" ]]; do sleep 0.3; done; }
+wait_for_done() { for _ in $(seq 300); do (($(told done) >= $1)) && return; sleep 0.1; done; }
+# Workers by the leases that they hold.
+workers() { python3 -c "
+import glob, json
+for path in glob.glob('$plan/running/*.json'):
+    try: print(json.load(open(path))['process'])
+    except (OSError, ValueError): pass"; }
+
+# Killed, cancelled, drained.
+"$program" work $plan --on slurm -- --time=10
+killed=0
+for _ in $(seq 200); do
+    for process in $(workers); do kill -9 "$process" 2>/dev/null && killed=$((killed + 1)); done
+    ((killed >= 3)) && break
+    sleep 0.3
+done
+((killed >= 3)) || { echo "Only $killed workers could be killed." >&2; exit 1; }
+job="$(tail -n 1 $plan/slurm/jobs.jsonl | python3 -c "import json, sys; print(json.load(sys.stdin)['job'])")"
+scancel "${job}_[$((chunks / 2 + 1))-$chunks]"
+scontrol update NodeName=n2 State=DRAIN Reason=trial
+wait_for_queue
+echo "after $killed kills, half cancelled and a node drained: $(told done) of $tasks"
+(($(told done) < tasks)) || { echo "Nothing was lost: too much was done before." >&2; exit 1; }
+
+# A disk that is full while two work, then a drained node comes back.
+before="$(told done)"
+"$program" work $plan --on slurm --resubmit
+wait_for_done $((before + 1))
+dd if=/dev/zero of=small/full bs=4k status=none || true
+wait_for_queue
+echo "after a full disk: $(told done) of $tasks"
+grep -lq "No space left" $plan/slurm/*.out || { echo "No worker met the full disk." >&2; exit 1; }
+rm small/full
+scontrol update NodeName=n2 State=RESUME
+rounds=0
+while (($(told done) < tasks)); do
+    rounds=$((rounds + 1))
+    ((rounds < 6)) || { echo "Not whole after $rounds rounds." >&2; exit 1; }
+    "$program" work $plan --on slurm --resubmit
+    wait_for_queue
+    echo "after round $rounds: $(told done) of $tasks"
+done
+"$program" work $plan --on slurm --resubmit | grep -qx "nothing is missing that is not queued or somebody's"
+
+# A controller that does not answer is not an empty queue.
+kill "$(cat "$place/run/slurmctld.pid")"
+for _ in $(seq 50); do squeue >/dev/null 2>&1 || break; sleep 0.2; done
+before="$(wc -l <$plan/slurm/jobs.jsonl)"
+"$program" status $plan | grep -q '^queued    not known: squeue failed' ||
+    { echo "A queue that does not answer is taken for empty." >&2; exit 1; }
+if "$program" work $plan --on slurm --resubmit 2>/dev/null || (($(wc -l <$plan/slurm/jobs.jsonl) != before)); then
+    echo "Something was submitted though the queue is not known." >&2
+    exit 1
+fi
+
+# Nothing lost, nothing twice, and the same rows.
+"$program" collect $plan --out collected >/dev/null
+[[ "$(told done)" == "$tasks" && "$(told twice)" == 0 ]] || { "$program" status $plan >&2; exit 1; }
+# The last column is a time.
+if ! cmp <(sed 's/,[^,]*$//' here/report/rows.csv) <(sed 's/,[^,]*$//' collected/rows.csv); then
+    echo "Rows differ from those of a local run." >&2
+    exit 1
+fi
+echo "$tasks tasks on Slurm: none lost, none twice, rows as of a local run"
+echo "1 passed, 0 failed"
