@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use grainbench_scene::end_state::Springs;
 use grainbench_scene::grains::Grains;
 use grainbench_scene::scene::{Driven, Grain, Scene, Wall};
 
@@ -34,7 +35,7 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
         }
     }
     if let Some(springs) = &scene.springs {
-        let _ = writeln!(text, "springs {springs:?}");
+        text.push_str(&SPRINGS.text(springs, springs.pairs.len(), Arc::ptr_eq, || format!("springs {springs:?}\n")));
     }
     if !scene.stays.is_always() {
         let _ = writeln!(text, "stays {:?}", scene.stays);
@@ -55,30 +56,49 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// The lines of all grains. Those of a large list are remembered: the same one is asked for by every variant and every control
-/// that begins with it.
-fn lines_of(grains: &Grains) -> Arc<str> {
-    static KNOWN: Mutex<Vec<(Grains, Arc<str>)>> = Mutex::new(Vec::new());
-    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, lines)) = known.iter().find(|(of, _)| of.are_shared_with(grains)) {
-        return Arc::clone(lines);
-    }
-    let mut text = String::new();
-    for Grain { material, radius, mass, inertia, position, velocity, spin } in grains {
-        let _ = writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");
-    }
-    let lines: Arc<str> = text.into();
-    if grains.len() >= LARGE {
-        known.truncate(FEW - 1);
-        known.insert(0, (grains.clone(), Arc::clone(&lines)));
-    }
-    lines
-}
+/// Texts of the last few large lists. The same one is asked for by every variant and every control that begins with it.
+struct Known<T>(Mutex<Vec<(T, Arc<str>)>>);
 
-/// Grains of a large list.
+/// Members of a large list.
 const LARGE: usize = 1000;
 /// So many lists are remembered.
 const FEW: usize = 4;
+
+static GRAINS: Known<Grains> = Known::new();
+static SPRINGS: Known<Arc<Springs>> = Known::new();
+
+impl<T: Clone> Known<T> {
+    const fn new() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+
+    /// The text of a list of so many members, which `write` makes where none is known of one that is the same in memory.
+    fn text(&self, list: &T, members: usize, is_same: fn(&T, &T) -> bool, write: impl FnOnce() -> String) -> Arc<str> {
+        if members < LARGE {
+            return write().into();
+        }
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, text)) = known.iter().find(|(of, _)| is_same(of, list)) {
+            return Arc::clone(text);
+        }
+        let text: Arc<str> = write().into();
+        known.truncate(FEW - 1);
+        known.insert(0, (list.clone(), Arc::clone(&text)));
+        text
+    }
+}
+
+/// The lines of all grains.
+fn lines_of(grains: &Grains) -> Arc<str> {
+    GRAINS.text(grains, grains.len(), Grains::are_shared_with, || {
+        let mut text = String::new();
+        for Grain { material, radius, mass, inertia, position, velocity, spin } in grains {
+            let _ =
+                writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");
+        }
+        text
+    })
+}
 
 #[cfg(test)]
 mod tests {
