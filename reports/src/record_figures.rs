@@ -74,8 +74,13 @@ impl Default for Shown {
 pub fn figures(records: &[Named<'_>], shown: &Shown) -> Vec<Figure> {
     let (from, to) = shown.window;
     let Some(first) = records.first() else { return Vec::new() };
-    let all: Vec<&Snapshot> =
+    let mut all: Vec<&Snapshot> =
         first.record.snapshots.iter().filter(|snapshot| (from..=to).contains(&snapshot.time)).collect();
+    // What has emptied or flown apart shows nothing in the end: pictures are of the last time at which something touches.
+    let shows = |snapshot: &&Snapshot| !snapshot.points.is_empty() || !snapshot.told_contacts().is_empty();
+    if let Some(last) = all.iter().rposition(shows) {
+        all.truncate(last + 1);
+    }
     let mut figures = if records.iter().all(|named| is_plane(named.record)) {
         plane(records, &all, shown)
     } else {
@@ -207,10 +212,12 @@ fn quantities(records: &[Named<'_>], fringe: Option<f64>, end: f64) -> Vec<Quant
 
 fn forces(named: &Named<'_>, several: bool, end: f64) -> Option<Figure> {
     let last = named.at(end).filter(|snapshot| !snapshot.told_contacts().is_empty())?;
+    let is_end = named.record.snapshots.last().is_some_and(|snapshot| snapshot.time <= end);
+    let when = if is_end { "at the end".to_owned() } else { format!("at t = {}", number::seconds(end)) };
     let name = if several { format!("forces-{}", named.name) } else { "forces".to_owned() };
     Some(Figure::forces(
         &name,
-        format!("Contact forces at the end {}", if several { &named.name } else { "" }).trim_end(),
+        format!("Contact forces {when} {}", if several { &named.name } else { "" }).trim_end(),
         "Bars through the contacts with the orientation of the force, as long as the radii together and as wide as the force is \
          strong (Cundall and Strack 1979); radii show how far grains have turned.",
         force_plot(last),
