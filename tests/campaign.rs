@@ -444,12 +444,15 @@ fn what_is_no_sweep_is_refused() {
         ("solver = 'rigid'", "solver = 'nowhere/SOLVER.toml'"),
         ("[set]", "map = ['mu', 'tau']\n[set]"),
         ("[set]", "repetitions = 3\n[set]"),
+        ("[set]", "line = { formula = 'mu', label = 'l' }\n[set]"),
+        ("[set]", "map = ['mu', 'theta']\nline = { formula = 'theta', label = 'l' }\n[set]"),
+        ("[set]", "map = ['mu', 'theta']\nline = { formula = 'mu +', label = 'l' }\n[set]"),
         ("[set]", "[formulas]\nduration = 'tau * 2'\n[set]"),
         ("[factors]", "design = 'random'\npoints = 0\n[factors]"),
     ] {
         assert!(SWEEP.contains(from), "{from}");
         // Tables that a line would fall into come after it.
-        let text = if to.starts_with("map") || to.starts_with("repetitions") {
+        let text = if ["map", "line", "repetitions"].iter().any(|key| to.starts_with(key)) {
             format!("{}\n{SWEEP}", to.replace("\n[set]", ""))
         } else {
             SWEEP.replacen(from, to, 1)

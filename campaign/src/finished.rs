@@ -84,7 +84,7 @@ impl Finished {
         }
     }
 
-    /// The first result of a task counts, and a result before none.
+    /// The first result of a task counts; of a task that failed and was done again, the last.
     fn take(&mut self, line: &Line<'_>, worker: usize, with_results: bool) {
         let Line { id, state, seconds, load, json } = *line;
         let json = if with_results { json } else { "" };
@@ -93,8 +93,7 @@ impl Finished {
             None => {
                 self.entries.insert(id, entry());
             }
-            Some(known) if known.state != State::Done && state == State::Done => *known = entry(),
-            Some(known) if known.state == State::Crashed => *known = entry(),
+            Some(known) if known.state != State::Done => *known = entry(),
             Some(_) => self.twice += 1,
         }
     }

@@ -232,7 +232,7 @@ fn changed_rows(columns: &[Column]) -> Markup {
     let cell = |outcome: Option<Outcome>| {
         let (symbol, class) = outcome.map_or(("", ""), sign);
         let word = outcome.map_or("—", Outcome::word);
-        html! { td class=(class) { (symbol) " " (word) } }
+        html! { td class=(class) style="color: var(--tone)" { (symbol) " " (word) } }
     };
     let table = html! {
         table {

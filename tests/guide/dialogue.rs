@@ -101,7 +101,9 @@ pub(crate) struct Place {
 impl Place {
     pub(crate) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        for part in ["guide/scenes", "guide/claims", "examples/cpp", "examples/python", "examples/case"] {
+        for part in
+            ["guide/scenes", "guide/claims", "examples/cpp", "examples/python", "examples/case", "examples/sweep"]
+        {
             let to = folder.path().join(part);
             fs::create_dir_all(&to).unwrap();
             for entry in fs::read_dir(crate::common::root(part)).unwrap() {

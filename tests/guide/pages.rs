@@ -16,6 +16,7 @@ pub(crate) fn chapters() -> Vec<Chapter> {
     let mut found: Vec<Chapter> = fs::read_dir(root("guide/src"))
         .unwrap()
         .map(|entry| entry.unwrap())
+        .filter(|entry| entry.path().extension().is_some_and(|ending| ending == "md"))
         .map(|entry| Chapter {
             name: entry.file_name().into_string().unwrap(),
             text: fs::read_to_string(entry.path()).unwrap(),

@@ -49,6 +49,18 @@ pub(super) struct File {
     pub(super) record: Vec<Recorded>,
     /// The factors over which the map is drawn.
     pub(super) map: Option<[String; 2]>,
+    /// A line on it, such as the limit between two kinds of motion.
+    pub(super) line: Option<Line>,
+}
+
+/// A line on the map.
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Line {
+    /// The second factor of the map, by arithmetic over the first.
+    pub(super) formula: String,
+    /// What it parts.
+    pub(super) label: String,
 }
 
 const fn once() -> u32 {

@@ -53,6 +53,8 @@ pub struct Sweep {
     scene_file: Option<PathBuf>,
     looks: Vec<Look>,
     levels: Vec<Level>,
+    /// The line on the map.
+    line: Option<Expression>,
 }
 
 /// A solver at a level.
@@ -144,7 +146,8 @@ impl Sweep {
             return Err(wrong("gates, record", "at least one of either", "neither".to_owned()));
         }
         let name = path.display().to_string();
-        Ok(Self { name, file, points, source, scene_file, looks, levels })
+        let line = read_line(path, &file)?;
+        Ok(Self { name, file, points, source, scene_file, looks, levels, line })
     }
 
     /// Whether times are wanted.
@@ -326,7 +329,36 @@ impl Sweep {
             points,
             missing,
             map: self.file.map.as_ref().map(|axes| [place(&axes[0]), place(&axes[1])]),
+            line: self.line(),
         }
+    }
+
+    /// The line on the map, between the ends of the first factor.
+    fn line(&self) -> Option<grainbench_reports::sweep::Line> {
+        const PIECES: u32 = 200;
+        let (formula, file, axes) = (self.line.as_ref()?, self.file.line.as_ref()?, self.file.map.as_ref()?);
+        let values = self.points.iter().filter_map(|point| self.factor(point, &axes[0]));
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let at = |piece: u32| low + (high - low) * f64::from(piece) / f64::from(PIECES);
+        let points = (0..=PIECES).map(at).map(|x| (x, formula.value(&|name| (name == axes[0]).then_some(x))));
+        Some(grainbench_reports::sweep::Line { label: file.label.clone(), points: points.collect() })
+    }
+}
+
+/// The line on the map.
+fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
+    let Some(line) = &file.line else { return Ok(None) };
+    let place = format!("{}: line", path.display());
+    let Some(axes) = &file.map else { return Err(Fault::expected(place, "`map`, on which it is drawn", "none")) };
+    let told =
+        |error| Fault::expected(format!("{place}.formula"), "arithmetic", format!("`{}`: {error}", line.formula));
+    let formula = Expression::read(&line.formula).map_err(told)?;
+    match formula.names().into_iter().find(|name| *name != axes[0]) {
+        Some(unknown) => {
+            let expected = format!("arithmetic over `{}`, the first factor of the map", axes[0]);
+            Err(Fault::expected(format!("{place}.formula"), expected, format!("`{unknown}`")))
+        }
+        None => Ok(Some(formula)),
     }
 }
 

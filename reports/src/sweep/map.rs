@@ -1,7 +1,7 @@
 //! Where each solver is within what is allowed: a map over two factors, a panel for each solver at each level.
 
 use super::figures::levels;
-use super::{Point, Standing, Sweep};
+use super::{Line, Point, Standing, Sweep};
 use crate::number;
 use crate::plot::{FONTS, WIDTH, wrap};
 use maud::{Markup, html};
@@ -44,7 +44,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     let wide = (WIDTH - columns as f64 * (LEFT + GAP)) / columns as f64;
     let pitch = HEAD + HIGH + FOOT;
     let rows = panels.len().div_ceil(columns);
-    let height = TOP + pitch * rows as f64 + 34.0;
+    let height = TOP + pitch * rows as f64 + if sweep.line.is_some() { 58.0 } else { 34.0 };
     let names: Vec<&str> = sweep.quantities.iter().map(|quantity| quantity.words.as_str()).collect();
     let title = format!("Where each solver is within what is allowed: {}", names.join("; "));
     let svg = html! {
@@ -58,7 +58,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
                 @let top = TOP + HEAD + (place / columns) as f64 * pitch;
                 (panel(sweep, [x, y], &axes, (solver, level), [left, top, wide]))
             }
-            (legend(height - 22.0))
+            (legend(TOP + pitch * rows as f64 + 12.0, sweep.line.as_ref()))
         }
     };
     let labels = [x, y].map(|place| sweep.factors[place].label.as_str());
@@ -101,6 +101,16 @@ impl Marks {
         }
         let words = values.iter().map(|value| number::significant(*value, 3)).collect();
         Self { values, words, label: sweep.factors[place].label.clone() }
+    }
+
+    /// How many cells from the start a value is: at the middle of a cell where it is that of one, between them on a straight
+    /// line, and half a cell beyond the first and the last at most.
+    fn along(&self, value: f64) -> Option<f64> {
+        let last = self.values.len().checked_sub(2)?;
+        let after = self.values.partition_point(|mark| *mark < value).clamp(1, last + 1);
+        let (before, behind) = (self.values[after - 1], self.values[after]);
+        let place = (after - 1) as f64 + (value - before) / (behind - before) + 0.5;
+        (0.0..=self.values.len() as f64).contains(&place).then_some(place)
     }
 
     /// The cell of a value.
@@ -157,6 +167,9 @@ fn panel(
                 }
             }
         }
+        @for run in line(sweep, axes, [left, top], size) {
+            polyline points=(run) fill="none" stroke="#222" stroke-width="2.2" stroke-dasharray="7 4" {}
+        }
         rect x=(px(left)) y=(px(top)) width=(px(wide)) height=(px(HIGH)) fill="none" stroke="#666" {}
         @for (at, word) in thinned(&axes[0].words, size[0], APART[0]) {
             text x=(px(left + (at as f64 + 0.5) * size[0])) y=(px(top + HIGH + 15.0)) text-anchor="middle" font-size="11"
@@ -173,6 +186,21 @@ fn panel(
         text x=(px(middle[0])) y=(px(middle[1])) text-anchor="middle" font-size="12" fill="#666"
             transform=(format!("rotate(-90 {} {})", px(middle[0]), px(middle[1]))) { (axes[1].label) }
     }
+}
+
+/// The line on a panel, in runs: it is cut where it leaves the panel.
+fn line(sweep: &Sweep, axes: &[Marks; 2], [left, top]: [f64; 2], size: [f64; 2]) -> Vec<String> {
+    let mut runs: Vec<Vec<String>> = vec![Vec::new()];
+    for (x, y) in sweep.line.iter().flat_map(|line| &line.points) {
+        match (axes[0].along(*x), axes[1].along(*y)) {
+            (Some(column), Some(row)) => {
+                let at = [left + column * size[0], top + HIGH - row * size[1]];
+                runs[0].push(format!("{},{}", px(at[0]), px(at[1])));
+            }
+            _ => runs.insert(0, Vec::new()),
+        }
+    }
+    runs.into_iter().filter(|run| run.len() > 1).map(|run| run.join(" ")).collect()
 }
 
 /// Which colour a cell has; none where no point lies in it.
@@ -192,7 +220,7 @@ fn thinned(words: &[String], size: f64, apart: f64) -> impl Iterator<Item = (usi
     words.iter().enumerate().step_by(every)
 }
 
-fn legend(y: f64) -> Markup {
+fn legend(y: f64, line: Option<&Line>) -> Markup {
     let step = [0.0, 318.0, 420.0, 520.0];
     html! {
         @for (at, colour) in COLOURS.iter().enumerate() {
@@ -200,6 +228,11 @@ fn legend(y: f64) -> Markup {
             rect x=(px(x)) y=(px(y)) width="14" height="14" fill=(colour) {}
             text x=(px(x + 7.0)) y=(px(y + 11.0)) text-anchor="middle" font-size="12" fill="#222" { (SIGNS[at]) }
             text x=(px(x + 20.0)) y=(px(y + 12.0)) font-size="13" fill="#222" { (WORDS[at]) }
+        }
+        @if let Some(line) = line {
+            line x1=(px(LEFT - 6.0)) x2=(px(LEFT + 26.0)) y1=(px(y + 31.0)) y2=(px(y + 31.0)) stroke="#222" stroke-width="2.2"
+                stroke-dasharray="7 4" {}
+            text x=(px(LEFT + 34.0)) y=(px(y + 36.0)) font-size="13" fill="#222" { (line.label) }
         }
     }
 }

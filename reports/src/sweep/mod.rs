@@ -37,6 +37,17 @@ pub struct Sweep {
     pub missing: usize,
     /// Places of the factors over which the map is drawn.
     pub map: Option<[usize; 2]>,
+    /// A line on it.
+    pub line: Option<Line>,
+}
+
+/// A line on the map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// What it parts.
+    pub label: String,
+    /// Values of the two factors.
+    pub points: Vec<(f64, f64)>,
 }
 
 /// What was varied.

@@ -153,7 +153,9 @@ impl Study for OfCost {
             |_| None,
             move |name, text| {
                 let point: Option<Point> = serde_json::from_str(text).ok();
-                let failed = point.as_ref().is_some_and(|point| point.standing == Standing::Failed);
+                let failed = point
+                    .as_ref()
+                    .is_some_and(|point| matches!(point.standing, Standing::Failed | Standing::NotAvailable));
                 if let Some(id) = id_of(name) {
                     let state = if failed { State::Failed } else { State::Done };
                     at.leave_text(id, state, point.as_ref().map_or(0.0, seconds_of), text);

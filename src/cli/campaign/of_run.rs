@@ -157,7 +157,9 @@ fn row(selected: &Selected, runner: &Runner, gate: usize, controls: bool) -> (St
     let verdict = runner.judge(claim);
     let tried = controls && runner.is_available(claim) && runner.tries_control(claim, &verdict);
     let control = tried.then(|| runner.control(claim));
-    let state = if verdict.outcome == verdict::Outcome::Broken { State::Failed } else { State::Done };
+    // What is not here now may be here when it is asked for again.
+    let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
+    let state = if is_failed { State::Failed } else { State::Done };
     let mut part = Part { keys: Vec::new(), section: run::blank(selected), without: None };
     part.section.verdicts.push(verdict);
     part.section.controls.extend(control);
