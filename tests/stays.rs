@@ -289,7 +289,8 @@ fn nothing_is_poured_into_what_stands_there() {
     let feed = |name: &str, seed: u32, count: u32, z: f64| {
         format!(
             "[grains.{name}]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\n\
-             poured = {{ start = 0.1, count = {count}, rate = 2.5, seed = {seed}, low = [0.0, 2.0, {z}], high = [0.2, 2.2, {z}] }}\n"
+             [grains.{name}.poured]\nstart = 0.1\ncount = {count}\nrate = 2.5\nseed = {seed}\n\
+             low = [0.0, 2.0, {z}]\nhigh = [0.2, 2.2, {z}]\n"
         )
     };
     let broken = |text: &str| {
@@ -303,7 +304,7 @@ fn nothing_is_poured_into_what_stands_there() {
     let wall = broken(&format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3)));
     assert!(wall.contains("it was poured into wall 1 of the scene, which it overlaps by 0.400"), "{wall}");
     // Who comes at time zero is there from the start, and is looked at then.
-    let text = format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3).replace("start = 0.1, ", ""));
+    let text = format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3).replace("start = 0.1\n", ""));
     let source = SceneSource::from_text("passing", Path::new(""), &text);
     let first = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
     assert!(first.contains("grain 1 and wall floor overlapping by 0.4000 of the radius"), "{first}");
@@ -313,7 +314,8 @@ fn nothing_is_poured_into_what_stands_there() {
 #[test]
 fn a_pour_outside_of_the_box_of_removal_is_refused() {
     let text = format!(
-        "{HEAD}removal = {{ low = [-3.0, -1.0, -5.0], high = [3.0, 5.0, 5.0] }}\n[grains.feed]\nmaterial = 'm'\nradius = 0.5\n\
+        "{HEAD}removal = {{ low = [-3.0, -1.0, -5.0], high = [3.0, 5.0, 5.0] }}\n\
+         [grains.feed]\nmaterial = 'm'\nradius = 0.5\n\
          poured = {{ count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 6.0], high = [0.0, 4.0, 6.0] }}\n"
     );
     let source = SceneSource::from_text("passing", Path::new(""), &text);
