@@ -14,6 +14,7 @@ use grainbench_harness::study::point::Timing;
 use grainbench_harness::verdict::Outcome;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::io;
 use std::path::Path;
 
 /// What a sweep left: enough to make every output.
@@ -202,8 +203,7 @@ pub fn write_sweep(dir: impl AsRef<Path>, sweep: &Sweep) -> Result<(), SaveError
     crate::parts::whole("rows", &columns, &mut bytes).map_err(|error| encode("rows.parquet")(error.to_string()))?;
     out.write("rows.parquet", bytes)?;
     drop(columns);
-    let results = table::results_json(sweep).map_err(|error| encode("results.json")(error.to_string()))?;
-    out.write("results.json", results)?;
+    out.write_with("results.json", |file| table::write_results(sweep, file))?;
     let mut drawings: Vec<(String, String, String)> = Vec::new();
     for (name, caption, svg) in map::draw(sweep) {
         drawings.push((name, caption, plot::markup(&svg)));
@@ -223,6 +223,8 @@ pub fn write_sweep(dir: impl AsRef<Path>, sweep: &Sweep) -> Result<(), SaveError
 ///
 /// # Errors
 /// When something has no JSON form, which nothing that was made by this project has.
-pub fn sweep_json(sweep: &Sweep) -> Result<String, serde_json::Error> {
-    table::results_json(sweep)
+pub fn sweep_json(sweep: &Sweep) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    table::write_results(sweep, &mut bytes)?;
+    String::from_utf8(bytes).map_err(io::Error::other)
 }

@@ -5,6 +5,7 @@ use crate::parts::Values;
 use grainbench_harness::expect::Expected;
 use grainbench_harness::verdict::Outcome;
 use serde_json::Value;
+use std::io::{self, Write};
 
 /// A row: the point, and what was seen of a quantity.
 type Row<'a> = (&'a Point, usize, &'a Looked);
@@ -77,40 +78,44 @@ pub(super) fn wall(point: &Point) -> Option<f64> {
     Some(grainbench_harness::statistics::median(&walls))
 }
 
-/// `results.json`, as the rest of the world reads it: a verdict a row, and what each run cost.
-pub(super) fn results_json(sweep: &Sweep) -> Result<String, serde_json::Error> {
-    let json = |value: Value| serde_json::to_string(&value);
-    let mut text = String::from("{\n  \"provenance\": ");
-    text += &serde_json::to_string(&sweep.provenance)?;
-    text += ",\n  \"verdicts\": [";
+/// `results.json`, as the rest of the world reads it: a verdict a row, and what each run cost. Of a hundred thousand rows it is
+/// eighty megabytes, which are written as they are made.
+pub(super) fn write_results(sweep: &Sweep, out: &mut impl Write) -> io::Result<()> {
     let knobs = |point: &Point| -> serde_json::Map<String, Value> {
         let names = sweep.factors.iter().map(|factor| factor.name.clone());
         names.zip(point.factors.iter().cloned()).collect()
     };
-    for (at, (point, quantity, looked)) in rows(sweep).into_iter().enumerate() {
-        let of = &sweep.quantities[quantity];
-        text += if at == 0 { "\n    " } else { ",\n    " };
-        let detail = looked.detail.as_ref().or(point.left.detail.as_ref());
-        text += &json(serde_json::json!({
-            "case": sweep.scene, "variant": "", "set": knobs(point), "solver": point.solver, "resolution": point.resolution,
-            "quantity": of.words, "unit": of.unit, "value": looked.value, "expected": looked.expected, "scale": looked.scale,
-            "error": looked.error, "allowed": looked.allowed, "source": of.source,
-            "verdict": looked.verdict.map(Outcome::word), "detail": detail,
-        }))?;
+    out.write_all(b"{\n  \"provenance\": ")?;
+    serde_json::to_writer(&mut *out, &sweep.provenance)?;
+    out.write_all(b",\n  \"verdicts\": [")?;
+    let mut before = "\n    ";
+    for point in &sweep.points {
+        for (of, looked) in sweep.quantities.iter().zip(&point.left.looked) {
+            let detail = looked.detail.as_ref().or(point.left.detail.as_ref());
+            let row = serde_json::json!({
+                "case": sweep.scene, "variant": "", "set": knobs(point), "solver": point.solver,
+                "resolution": point.resolution, "quantity": of.words, "unit": of.unit, "value": looked.value,
+                "expected": looked.expected, "scale": looked.scale, "error": looked.error, "allowed": looked.allowed,
+                "source": of.source, "verdict": looked.verdict.map(Outcome::word), "detail": detail,
+            });
+            out.write_all(before.as_bytes())?;
+            serde_json::to_writer(&mut *out, &row)?;
+            before = ",\n    ";
+        }
     }
-    text += "\n  ],\n  \"controls\": [],\n  \"points\": [";
-    let mut is_first = true;
+    out.write_all(b"\n  ],\n  \"controls\": [],\n  \"points\": [")?;
+    before = "\n    ";
     for point in &sweep.points {
         let Some(ran) = &point.left.ran else { continue };
-        text += if is_first { "\n    " } else { ",\n    " };
-        is_first = false;
-        text += &json(serde_json::json!({
+        let row = serde_json::json!({
             "case": sweep.scene, "set": knobs(point), "solver": point.solver, "resolution": point.resolution,
             "steps": ran.steps, "particle_steps": ran.particle_steps, "contact_evaluations": ran.contact_evaluations,
             "node_updates": ran.node_updates, "time_step": ran.time_step, "wall_seconds": wall(point),
             "repetitions": point.left.timings,
-        }))?;
+        });
+        out.write_all(before.as_bytes())?;
+        serde_json::to_writer(&mut *out, &row)?;
+        before = ",\n    ";
     }
-    text += "\n  ]\n}\n";
-    Ok(text)
+    out.write_all(b"\n  ]\n}\n")
 }
