@@ -91,12 +91,14 @@ pub(super) fn json(value: &toml::Value) -> Value {
 }
 
 fn grid(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
-    let factors: Vec<Vec<Value>> = file.factors.values().map(values).collect();
-    let count = factors.iter().try_fold(1_usize, |count, values| count.checked_mul(values.len()));
+    // Counted before they are made: there may be more than fit into memory.
+    let length = |factor: &Factor| factor.values.as_ref().map_or(factor.count.unwrap_or(0) as usize, Vec::len);
+    let count = file.factors.values().try_fold(1_usize, |count, factor| count.checked_mul(length(factor)));
     let Some(count) = count.filter(|count| *count <= MOST) else {
         let found = count.map_or_else(|| "more than can be counted".to_owned(), |count| count.to_string());
         return Err(Fault::in_file(path, format!("at most {MOST} points"), found));
     };
+    let factors: Vec<Vec<Value>> = file.factors.values().map(values).collect();
     let point = |mut place: usize| {
         let mut point: Vec<Value> = Vec::with_capacity(factors.len());
         // The last factor is the one that changes first.
