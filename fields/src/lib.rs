@@ -17,7 +17,7 @@ pub mod overlap;
 pub mod packing;
 pub mod paint;
 pub mod picture;
-pub mod points;
+mod points;
 pub mod profile;
 pub mod quantity;
 pub mod tensor;

@@ -1,11 +1,12 @@
 //! Grains of a plane snapshot as pixels: which body each belongs to, and a quantity of its material there.
 
 use crate::disc::LoadedDisc;
-use crate::points::PointCloud;
+use crate::points::{self, Material};
 use crate::quantity::Quantity;
 use grainbench_harness::raster::{RIM, Raster, VOID, level};
 use grainbench_scene::record::{GrainState, Owner, Snapshot};
 use nalgebra::{Vector2, Vector3};
+use std::ops::Range;
 
 /// The part of the plane that is seen, in square pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,8 +72,18 @@ impl View {
         [self.low[0] + f64::from(self.width) * self.pixel, self.low[1] + f64::from(self.height) * self.pixel]
     }
 
+    /// Columns and rows of the pixels in view of the square around a place (m) that reaches so far (m).
+    pub(crate) fn pixels_around(&self, place: [f64; 2], reach: f64) -> (Range<u32>, Range<u32>) {
+        let range = |axis: usize, count: u32| {
+            let at = |place: f64| ((place - self.low[axis]) / self.pixel).floor().clamp(0.0, f64::from(count)) as u32;
+            at(place[axis] - reach)..(at(place[axis] + reach) + 1).min(count)
+        };
+        let (columns, up) = (range(0, self.width), range(1, self.height));
+        (columns, self.height - up.end..self.height - up.start)
+    }
+
     /// Centre of a pixel (m), rows counted from the top.
-    fn centre(&self, column: u32, row: u32) -> [f64; 2] {
+    pub(crate) fn centre(&self, column: u32, row: u32) -> [f64; 2] {
         [
             self.low[0] + (f64::from(column) + 0.5) * self.pixel,
             self.low[1] + (f64::from(self.height - 1 - row) + 0.5) * self.pixel,
@@ -104,17 +115,14 @@ impl Painting {
     }
 
     fn points(&mut self, snapshot: &Snapshot, quantity: Quantity) {
-        let cloud = PointCloud::new(snapshot);
-        for row in 0..self.view.height {
-            for column in 0..self.view.width {
-                let Some((owner, point)) = cloud.at(self.view.centre(column, row)) else { continue };
-                let at = (row * self.view.width + column) as usize;
-                self.owners[at] = match owner {
-                    Owner::Grain(id) => id,
-                    Owner::Body(place) => u32::MAX - place,
-                };
-                self.values[at] = quantity.at_point(&point);
-            }
+        let seen = points::at_pixels(snapshot, self.view, |point| quantity.parts(point));
+        for (at, material) in seen.into_iter().enumerate() {
+            let Some(Material { owner, mean }) = material else { continue };
+            self.owners[at] = match owner {
+                Owner::Grain(id) => id,
+                Owner::Body(place) => u32::MAX - place,
+            };
+            self.values[at] = quantity.of_parts(mean);
         }
     }
 
@@ -130,7 +138,8 @@ impl Painting {
         for (place, grain) in snapshot.grains.iter().enumerate() {
             for (&i, &j) in shifts(0).iter().flat_map(|i| shifts(1).iter().map(move |j| (i, j))) {
                 let centre = [grain.position.x + i * length.x, grain.position.y + j * length.y];
-                for (column, row) in self.box_around(centre, grain.radius) {
+                let (columns, rows) = self.view.pixels_around(centre, grain.radius);
+                for (column, row) in rows.flat_map(|row| columns.clone().map(move |column| (column, row))) {
                     let seen = self.view.centre(column, row);
                     let arm = Vector2::new(seen[0] - centre[0], seen[1] - centre[1]);
                     let at = (row * self.view.width + column) as usize;
@@ -156,24 +165,12 @@ impl Painting {
         }
     }
 
-    /// Pixels of the square around a disc that are in view.
-    fn box_around(&self, centre: [f64; 2], radius: f64) -> Vec<(u32, u32)> {
-        let View { low, pixel, width, height } = self.view;
-        let range = |axis: usize, count: u32| {
-            let at = |place: f64| ((place - low[axis]) / pixel).floor().clamp(0.0, f64::from(count)) as u32;
-            at(centre[axis] - radius)..(at(centre[axis] + radius) + 1).min(count)
-        };
-        let (columns, rows) = (range(0, width), range(1, height));
-        rows.flat_map(|row| columns.clone().map(move |column| (column, height - 1 - row))).collect()
-    }
-
     /// The value below which a part of all pixels with a value lies; zero where there are none.
     #[must_use]
     pub fn quantile(&self, part: f64) -> f64 {
         let mut values: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
-        values.sort_by(f64::total_cmp);
         let at = (part * values.len().saturating_sub(1) as f64).round() as usize;
-        values.get(at).copied().unwrap_or(0.0)
+        if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(at, f64::total_cmp).1 }
     }
 
     /// Levels within a range of values, with a rim around every body.

@@ -109,15 +109,16 @@ fn common_view(shots: &[Shot<'_>], longest: u32) -> View {
 }
 
 fn own_range<'a>(quantity: Quantity, paintings: impl Iterator<Item = &'a Painting>) -> (f64, f64) {
+    if let Quantity::Fringes(_) = quantity {
+        return (-1.0, 1.0);
+    }
     let ends = paintings.map(|painting| (painting.quantile(0.02), painting.quantile(0.98)));
     let (low, high) = ends.fold((f64::INFINITY, 0.0_f64), |(low, high), ends| (low.min(ends.0), high.max(ends.1)));
-    match quantity {
-        Quantity::Fringes(_) => (-1.0, 1.0),
-        Quantity::Rotation => {
-            let largest = two_digits(high.abs().max(low.abs()));
-            (-largest, largest)
-        }
-        Quantity::StressDifference | Quantity::PlasticStrain | Quantity::Speed => (0.0, two_digits(high)),
+    if quantity == Quantity::Rotation {
+        let largest = two_digits(high.abs().max(low.abs()));
+        (-largest, largest)
+    } else {
+        (0.0, two_digits(high))
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a picture of the inside of grains shows.
 
 use grainbench_scene::record::PointState;
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// A quantity at every place of the material.
@@ -33,15 +33,24 @@ impl Quantity {
         }
     }
 
-    /// Its value at a material point.
-    #[must_use]
-    pub fn at_point(self, point: &PointState) -> f64 {
+    /// What it is found from at a material point, and what a mean over several of them is taken of.
+    pub(crate) fn parts(self, point: &PointState) -> [f64; 3] {
         let [xx, yy, _, xy, ..] = point.stress;
         match self {
-            Self::StressDifference | Self::Fringes(_) => self.of_stress(&Matrix2::new(xx, xy, xy, yy)),
-            Self::PlasticStrain => point.plastic_strain,
-            Self::Rotation => point.rotation,
-            Self::Speed => point.velocity.norm(),
+            Self::StressDifference | Self::Fringes(_) => [xx, yy, xy],
+            Self::PlasticStrain => [point.plastic_strain, 0.0, 0.0],
+            Self::Rotation => [point.rotation, 0.0, 0.0],
+            Self::Speed => point.velocity.into(),
+        }
+    }
+
+    /// Its value by what it is found from.
+    pub(crate) fn of_parts(self, parts: [f64; 3]) -> f64 {
+        let [first, second, third] = parts;
+        match self {
+            Self::StressDifference | Self::Fringes(_) => self.of_stress(&Matrix2::new(first, third, third, second)),
+            Self::PlasticStrain | Self::Rotation => first,
+            Self::Speed => Vector3::from(parts).norm(),
         }
     }
 

@@ -108,8 +108,6 @@ pub fn write_report_and_parquet(dir: impl AsRef<Path>, report: &Report) -> Resul
 /// When the disk refuses or a figure cannot be drawn.
 pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError> {
     let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
-    let stored = serde_json::to_string_pretty(report).map_err(|error| encode(REPORT_FILE)(error.to_string()))?;
-    out.write(REPORT_FILE, stored + "\n")?;
     let results = results_json(report).map_err(|error| encode("results.json")(error.to_string()))?;
     out.write("results.json", results)?;
     let points = points_csv(report).map_err(|error| encode("points.csv")(error.to_string()))?;
@@ -123,7 +121,9 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
     let figures: Vec<(&Figure, &String)> =
         report.sections.iter().zip(&names).flat_map(|(section, names)| section.figures.iter().zip(names)).collect();
     let drawn = || figures.par_iter().map(|(figure, name)| figure_files(figure, name)).collect::<Result<Vec<_>, _>>();
-    let (page, drawn) = rayon::join(|| page::render(report), drawn);
+    let stored = || serde_json::to_string(report).map_err(|error| encode(REPORT_FILE)(error.to_string()));
+    let (stored, (page, drawn)) = rayon::join(stored, || rayon::join(|| page::render(report), drawn));
+    out.write(REPORT_FILE, stored? + "\n")?;
     let page = page?;
     out.write("index.html", page.html)?;
     for (path, text) in page.beside {

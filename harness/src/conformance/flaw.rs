@@ -85,6 +85,11 @@ impl<'a> Flawed<'a> {
     pub const fn new(solver: &'a dyn Solver, flaw: Flaw) -> Self {
         Self { solver, flaw, runs: AtomicU64::new(0) }
     }
+
+    /// The same of a solver that has run once before: a run of it is not like the one of the same place of a new one.
+    pub(super) const fn again(solver: &'a dyn Solver, flaw: Flaw) -> Self {
+        Self { solver, flaw, runs: AtomicU64::new(1) }
+    }
 }
 
 impl Solver for Flawed<'_> {

@@ -53,7 +53,12 @@ impl Property {
     /// A row for every scene.
     #[must_use]
     pub fn check(&self, solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
-        (self.check)(&Rows { solver, terms, property: self })
+        self.check_again(solver, solver, terms)
+    }
+
+    /// The same, where runs of the solver may be finished ones, and what is done `again`, or watched, is done by the solver itself.
+    fn check_again(&self, solver: &dyn Solver, again: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
+        (self.check)(&Rows { solver, again, terms, property: self })
     }
 
     /// The flaw that it must see: where free fall may be off by gΔt/2, one that is larger than that.
@@ -90,8 +95,7 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
     let once = Once::new(kept);
     for property in ALL {
-        let is_watched = [rerun::PROPERTY.name, restart::PROPERTY.name].contains(&property.name);
-        let found = property.check(if is_watched { itself } else { &once }, terms);
+        let found = property.check_again(&once, itself, terms);
         let passed = |row: &Verdict| {
             let same = |other: &&Verdict| other.variant == row.variant && other.quantity == row.quantity;
             found.iter().find(same).is_some_and(|other| other.outcome == Outcome::Pass)
@@ -99,9 +103,9 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
         if found.iter().any(|row| row.outcome == Outcome::Pass) {
             let start = Instant::now();
             let flaw = property.flaw(terms);
+            let [flawed, again] = [Flawed::new(kept, flaw), Flawed::again(itself, flaw)];
             // What a method owes less excuses no flaw.
-            let of = if is_watched { itself } else { kept };
-            let flawed = property.check(&Flawed::new(of, flaw), &terms.owing_less(&[]));
+            let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
             let tried = flawed.into_iter().filter(passed);
             controls.extend(tried.map(|row| Control::of(row, flaw.words(), Red::Value, seconds)));

@@ -7,6 +7,7 @@ use crate::evidence::Evidence;
 use crate::verdict::Verdict;
 use grainbench_scene::kept_record;
 use grainbench_scene::record::{Cost, Record};
+use grainbench_scene::solver::Solver;
 
 pub(super) const PROPERTY: Property = Property {
     name: "rerun",
@@ -20,27 +21,20 @@ pub(super) const PROPERTY: Property = Property {
 
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     let (solver, terms) = (rows.solver, rows.terms);
-    let quantity = ("lines of the record that differ", "1");
+    let quantity = ("bytes of the record that differ", "1");
     rows.each(scenes::collisions(), &terms.resolution, quantity, |named| {
-        let run = || solver.run(&named.scene, &terms.resolution, &mut ()).map_err(NoEnd::Run);
-        let differ = differing(run()?, run()?);
+        let run = |solver: &dyn Solver| solver.run(&named.scene, &terms.resolution, &mut ()).map_err(NoEnd::Run);
+        let differ = differing(run(solver)?, run(rows.again)?)?;
         Ok(Found::deviation(differ as f64, 1.0, 0.0))
     })
 }
 
-/// How many lines of two records differ, but for their times. Debug output tells every bit of a number but the sign of a NaN;
-/// the bytes that a record is kept as tell all.
-pub(super) fn differing(mut first: Record, mut second: Record) -> usize {
+/// How many bytes of two records differ, as they are kept and but for their times.
+pub(super) fn differing(mut first: Record, mut second: Record) -> Result<usize, NoEnd> {
     for record in [&mut first, &mut second] {
         record.cost = Cost { wall_seconds: 0.0, ..record.cost };
     }
-    let bytes = |record: &Record| kept_record::to_bytes("", record).ok();
-    if let (Some(first), Some(second)) = (bytes(&first), bytes(&second))
-        && first == second
-    {
-        return 0;
-    }
-    let lines = |record: &Record| -> Vec<String> { format!("{record:#?}").lines().map(str::to_owned).collect() };
-    let (first, second) = (lines(&first), lines(&second));
-    first.iter().zip(&second).filter(|(a, b)| a != b).count() + first.len().abs_diff(second.len())
+    let bytes = |record: &Record| kept_record::body("", record).map_err(NoEnd::Record);
+    let (first, second) = (bytes(&first)?, bytes(&second)?);
+    Ok(first.iter().zip(&second).filter(|(a, b)| a != b).count() + first.len().abs_diff(second.len()))
 }

@@ -20,8 +20,8 @@ pub(super) const PROPERTY: Property = Property {
 };
 
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {
-    let (solver, terms) = (rows.solver, rows.terms);
-    let quantity = ("lines of the record that differ", "1");
+    let (solver, terms) = (rows.again, rows.terms);
+    let quantity = ("bytes of the record that differ", "1");
     let scenes = scenes::collisions().and_then(|mut all| {
         all.extend(scenes::held()?);
         Ok(all)
@@ -31,7 +31,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
         let whole = solver.run(&named.scene, &terms.resolution, &mut halfway)?;
         let checkpoint = halfway.through_a_file().map_err(NoEnd::Run)?.ok_or_else(|| no_checkpoint(solver))?;
         let continued = solver.restart(&named.scene, &terms.resolution, &checkpoint, &mut ())?;
-        Ok(Found::deviation(differing(whole, continued) as f64, 1.0, 0.0))
+        Ok(Found::deviation(differing(whole, continued)? as f64, 1.0, 0.0))
     })
 }
 

@@ -13,6 +13,8 @@ use grainbench_scene::terms::Terms;
 /// What the rows of one property share.
 pub(super) struct Rows<'a> {
     pub(super) solver: &'a dyn Solver,
+    /// The same solver, for what is to be done again and never taken from runs that are finished.
+    pub(super) again: &'a dyn Solver,
     pub(super) terms: &'a Terms,
     pub(super) property: &'a Property,
 }

@@ -8,13 +8,13 @@ use crate::sealed::{self, Broken};
 use crate::text::tamed;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fmt;
+use std::{fmt, mem};
 use thiserror::Error;
 
 /// What a checkpoint begins with, before the number of its format.
 const MAGIC: &[u8] = b"grainbench checkpoint ";
 /// The format that this program writes: to be raised whenever anything that is stored changes its meaning or its place.
-const FORMAT: u32 = 5;
+const FORMAT: u32 = 6;
 
 /// Why a run cannot be continued from a checkpoint, or a checkpoint not be left.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -140,7 +140,8 @@ impl RunIdentity {
     }
 }
 
-/// The hash of everything in a scene. Debug output tells every bit of a number.
+/// The hash of everything in a scene: of the bits of its grains and of what contacts remember, which may be many, and of the
+/// debug output of the rest, which tells every bit of a number.
 #[must_use]
 pub fn fingerprint(scene: &Scene) -> blake3::Hash {
     struct Hashed(blake3::Hasher);
@@ -150,9 +151,15 @@ pub fn fingerprint(scene: &Scene) -> blake3::Hash {
             Ok(())
         }
     }
+    let mut rest = scene.clone();
+    let (grains, springs) = (mem::take(&mut rest.grains), rest.springs.take());
     let mut hashed = Hashed(blake3::Hasher::new());
+    for bits in [grains.bits(), springs.map_or_else(Vec::new, |springs| springs.bits())] {
+        hashed.0.update(&bits.len().to_le_bytes());
+        hashed.0.update(&bits);
+    }
     // A hash takes any text.
-    let _ = fmt::write(&mut hashed, format_args!("{scene:?}"));
+    let _ = fmt::write(&mut hashed, format_args!("{rest:?}"));
     hashed.0.finalize()
 }
 

@@ -65,6 +65,25 @@ pub struct Springs {
 }
 
 impl Springs {
+    /// Every bit of them, contact by contact.
+    #[must_use]
+    pub fn bits(&self) -> Vec<u8> {
+        let Self { layout, pairs, walls } = self;
+        let mut bits = [layout.as_bytes(), &pairs.len().to_le_bytes()].concat();
+        let mut add = |who: &[&[u8]], numbers: &[f64]| {
+            who.iter().for_each(|part| bits.extend_from_slice(part));
+            bits.extend(numbers.len().to_le_bytes());
+            bits.extend(numbers.iter().copied().flat_map(f64::to_le_bytes));
+        };
+        for (first, second, numbers) in pairs {
+            add(&[&first.to_le_bytes(), &second.to_le_bytes()], numbers);
+        }
+        for (grain, wall, numbers) in walls {
+            add(&[&grain.to_le_bytes(), &wall.len().to_le_bytes(), wall.as_bytes()], numbers);
+        }
+        bits
+    }
+
     /// The same of grains that stand so many places later.
     #[must_use]
     pub fn later_by(mut self, places: u32) -> Self {

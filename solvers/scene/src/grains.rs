@@ -10,10 +10,18 @@ use std::sync::Arc;
 pub struct Grains(Arc<Vec<Grain>>);
 
 impl Grains {
-    /// Whether they are the same ones in memory: neither of two copies has changed its own.
+    /// Every bit of them, grain by grain.
     #[must_use]
-    pub fn are_shared_with(&self, others: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &others.0)
+    pub fn bits(&self) -> Vec<u8> {
+        let mut bits = Vec::with_capacity(self.len() * size_of::<Grain>());
+        for Grain { material, radius, mass, inertia, position, velocity, spin } in self {
+            bits.extend(material.to_le_bytes());
+            let vectors = [position, velocity, spin].into_iter().flat_map(|vector| vector.iter());
+            for number in [radius, mass, inertia].into_iter().chain(vectors) {
+                bits.extend(number.to_le_bytes());
+            }
+        }
+        bits
     }
 }
 
@@ -61,7 +69,7 @@ impl<'g> IntoIterator for &'g mut Grains {
     }
 }
 
-/// As the list that they are: fingerprints of scenes are taken of this text.
+/// As the list that they are.
 impl fmt::Debug for Grains {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(formatter)

@@ -26,8 +26,15 @@ struct Read {
 /// # Errors
 /// When it has no such form, which no record of a solver has.
 pub fn to_bytes(name: &str, record: &Record) -> Result<Vec<u8>, String> {
-    let body = postcard::to_allocvec(&Written { name, record }).map_err(|error| error.to_string())?;
-    Ok(sealed::seal(MAGIC, FORMAT, &body))
+    Ok(sealed::seal(MAGIC, FORMAT, &body(name, record)?))
+}
+
+/// The bytes without what tells that they are whole: two records of one name are the same bit by bit where these are.
+///
+/// # Errors
+/// As for [`to_bytes`].
+pub fn body(name: &str, record: &Record) -> Result<Vec<u8>, String> {
+    postcard::to_allocvec(&Written { name, record }).map_err(|error| error.to_string())
 }
 
 /// The record that bytes hold under this name; none where they are damaged, of another format, or hold that of another.
