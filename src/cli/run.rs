@@ -320,17 +320,16 @@ fn judge(
     (work.into_iter().map(Work::section).collect(), left)
 }
 
-/// The first gate of every case, then the second, each with its control behind it: two threads are seldom at one case, where
-/// they would wait for the same scene. Figures last, when what they show has been run.
+/// The first gate of every case, then their controls, then the second: two threads are seldom at one case, where they would wait
+/// for the same scene or the same run. Figures last, when what they show has been run.
 fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
     let mut tasks = Vec::new();
     let most = selected.iter().map(|selected| selected.claims.len()).max().unwrap_or(0);
     for gate in 0..most {
-        for case in (0..selected.len()).filter(|&case| gate < selected[case].claims.len()) {
-            tasks.push(Task::Judge(case, gate));
-            if with_controls {
-                tasks.push(Task::Control(case, gate));
-            }
+        let those = || (0..selected.len()).filter(|&case| gate < selected[case].claims.len());
+        tasks.extend(those().map(|case| Task::Judge(case, gate)));
+        if with_controls {
+            tasks.extend(those().map(|case| Task::Control(case, gate)));
         }
     }
     tasks.extend((0..selected.len()).map(Task::Draw));

@@ -1,6 +1,6 @@
 //! The fingerprint of a scene: two scenes of one fingerprint are one run of a program.
 
-use std::fmt::{self, Write as _};
+use std::fmt::Write as _;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use grainbench_scene::end_state::Springs;
@@ -8,7 +8,6 @@ use grainbench_scene::grains::Grains;
 use grainbench_scene::scene::{Driven, Grain, Scene, Wall};
 
 use crate::deck::Stepping;
-use nalgebra::Vector3;
 
 /// The BLAKE3 hash of all in a scene and its stepping that a run of rigid grains depends on, in lower-case hexadecimal.
 ///
@@ -105,29 +104,53 @@ const LINE: usize = 256;
 /// The lines of all grains.
 fn lines_of(grains: &Grains) -> Arc<str> {
     let write = || {
-        let mut text = String::with_capacity(grains.len() * LINE);
+        let mut text = Numbers(String::with_capacity(grains.len() * LINE));
         for Grain { material, radius, mass, inertia, position, velocity, spin } in grains {
-            let (position, velocity, spin) = (Column(position), Column(velocity), Column(spin));
-            let _ =
-                writeln!(text, "grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}");
+            let _ = write!(text.0, "grain {material}");
+            [radius, mass, inertia].into_iter().for_each(|number| text.one(" ", *number));
+            for vector in [position, velocity, spin] {
+                text.list(" [", vector.as_slice());
+                text.0.push(']');
+            }
+            text.0.push('\n');
         }
-        text
+        text.0
     };
     GRAINS.text(grains.len(), || grains.bits(), write)
 }
 
 /// The text of springs.
 fn text_of(springs: &Springs) -> Arc<str> {
-    SPRINGS.text(springs.pairs.len(), || springs.bits(), || format!("springs {springs:?}\n"))
+    let write = || {
+        let Springs { layout, pairs, walls } = springs;
+        let mut text = Numbers(format!("springs Springs {{ layout: {layout:?}, pairs: ["));
+        for (place, (first, second, numbers)) in pairs.iter().enumerate() {
+            let _ = write!(text.0, "{}({first}, {second}", if place == 0 { "" } else { ", " });
+            text.list(", ", numbers);
+            text.0.push(')');
+        }
+        let _ = writeln!(text.0, "], walls: {walls:?} }}");
+        text.0
+    };
+    SPRINGS.text(springs.pairs.len(), || springs.bits(), write)
 }
 
-/// A vector in the words of its own debug output, which takes twice as long for builders of nested lists.
-struct Column<'a>(&'a Vector3<f64>);
+/// A text of many numbers in the words of their debug output, whose builders of nested lists take twice as long.
+struct Numbers(String);
 
-impl fmt::Debug for Column<'_> {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(vector) = self;
-        write!(out, "[[{:?}, {:?}, {:?}]]", vector.x, vector.y, vector.z)
+impl Numbers {
+    fn one(&mut self, before: &str, number: f64) {
+        self.0.push_str(before);
+        let _ = write!(self.0, "{number:?}");
+    }
+
+    fn list(&mut self, before: &str, numbers: &[f64]) {
+        self.0.push_str(before);
+        self.0.push('[');
+        for (place, number) in numbers.iter().enumerate() {
+            self.one(if place == 0 { "" } else { ", " }, *number);
+        }
+        self.0.push(']');
     }
 }
 
@@ -138,16 +161,44 @@ mod tests {
     use super::*;
     use grainbench_scene::solver::Resolution;
     use grainbench_scene::source::SceneSource;
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
     use std::path::Path;
 
     const SCENE: &str = "title = 'a'\ndimension = 2\nduration = 1.0\n[materials.rock]\ndensity = 1e3\n\
         [contacts.rock]\nbetween = ['rock', 'rock']\nnormal_stiffness = 1e6\n\
         [grains.disc]\nmaterial = 'rock'\nradius = 0.5\nposition = [0.0, 0.0]\n";
 
-    #[test]
-    fn vectors_are_written_as_their_debug_output() {
-        for vector in [Vector3::new(-0.0, 1e-5, 1e16), Vector3::new(0.1 + 0.2, -1e-300, f64::MAX), Vector3::zeros()] {
-            assert_eq!(format!("{:?}", Column(&vector)), format!("{vector:?}"));
+    proptest! {
+        #[test]
+        fn numbers_are_written_as_their_debug_output(bits: Vec<u64>) {
+            let mut numbers = vec![0.0, -0.0, 1e-5, 1e-4, 9.999_999_999_999_999e-6, 1e16, 9_999_999_999_999_998.0, 5e-324, f64::NAN];
+            numbers.extend(bits.iter().copied().map(f64::from_bits));
+            numbers.extend(bits.iter().map(|&bits| bits as f64 / 1e23));
+            numbers.extend(bits.iter().map(|&bits| bits as f64 / 1e18));
+            let mut text = Numbers(String::new());
+            text.list("", &numbers);
+            prop_assert_eq!(text.0, format!("{numbers:?}"));
+        }
+
+        #[test]
+        fn lists_are_written_as_their_debug_output(numbers: Vec<(u32, u32, Vec<f64>)>) {
+            let springs = Springs {
+                layout: "tangential \"spring\"".to_owned(),
+                walls: numbers.iter().map(|(grain, _, values)| (*grain, "floor".to_owned(), values.clone())).collect(),
+                pairs: numbers.clone(),
+            };
+            prop_assert_eq!(&*text_of(&springs), format!("springs {springs:?}\n"));
+            let grain = |(_, _, values): &(u32, u32, Vec<f64>)| {
+                let vector = |at: usize| Vector3::from_fn(|axis, _| values.get(at + axis).copied().unwrap_or(0.5));
+                let (position, velocity, spin) = (vector(0), vector(1), vector(2));
+                Grain { material: 3, radius: 0.1, mass: 2.5e-7, inertia: 1e-17, position, velocity, spin }
+            };
+            let grains: Grains = numbers.iter().map(grain).collect();
+            let line = |Grain { material, radius, mass, inertia, position, velocity, spin }: &Grain| {
+                format!("grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}\n")
+            };
+            prop_assert_eq!(&*lines_of(&grains), grains.iter().map(line).collect::<String>());
         }
     }
 
