@@ -320,20 +320,22 @@ fn judge(
     (work.into_iter().map(Work::section).collect(), left)
 }
 
-/// The first gate of every case, then their controls, then the second: two threads are seldom at one case, where they would wait
-/// for the same scene or the same run. Figures last, when what they show has been run.
+/// All cases go forward evenly, so that two threads are seldom at one of them, where they would wait for the same scene or the same
+/// run. Figures last, when what they show has been run.
 fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
     let mut tasks = Vec::new();
-    let most = selected.iter().map(|selected| selected.claims.len()).max().unwrap_or(0);
-    for gate in 0..most {
-        let those = || (0..selected.len()).filter(|&case| gate < selected[case].claims.len());
-        tasks.extend(those().map(|case| Task::Judge(case, gate)));
-        if with_controls {
-            tasks.extend(those().map(|case| Task::Control(case, gate)));
+    for (case, selected) in selected.iter().enumerate() {
+        let share = 1.0 / selected.claims.len() as f64;
+        for gate in 0..selected.claims.len() {
+            tasks.push((gate as f64 * share, Task::Judge(case, gate)));
+            if with_controls {
+                tasks.push(((gate as f64 + 0.5) * share, Task::Control(case, gate)));
+            }
         }
     }
-    tasks.extend((0..selected.len()).map(Task::Draw));
-    tasks
+    tasks.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let figures = (0..selected.len()).map(Task::Draw);
+    tasks.into_iter().map(|(_, task)| task).chain(figures).collect()
 }
 
 fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) {

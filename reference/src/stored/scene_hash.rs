@@ -105,9 +105,15 @@ const LINE: usize = 256;
 fn lines_of(grains: &Grains) -> Arc<str> {
     let write = || {
         let mut text = Numbers(String::with_capacity(grains.len() * LINE));
+        // Sizes are often those of the grain before.
+        let (mut sizes, mut before) = (String::new(), None);
         for Grain { material, radius, mass, inertia, position, velocity, spin } in grains {
-            let _ = write!(text.0, "grain {material}");
-            [radius, mass, inertia].into_iter().for_each(|number| text.one(" ", *number));
+            let now = (material, [radius, mass, inertia].map(|size| size.to_bits()));
+            if before != Some(now) {
+                before = Some(now);
+                sizes = format!("grain {material} {radius:?} {mass:?} {inertia:?}");
+            }
+            text.0.push_str(&sizes);
             for vector in [position, velocity, spin] {
                 text.list(" [", vector.as_slice());
                 text.0.push(']');

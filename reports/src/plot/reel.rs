@@ -26,15 +26,26 @@ pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
     let mut field = field.clone();
     let is_film = field.times.len() > 1;
     loop {
-        let reel = if is_film { Some(reel(&field)?) } else { None };
+        // Packed in haste a film takes some tenths more: one that is far too heavy is not packed well only to find that out.
+        let far_too_heavy = is_film && reel(&field, Compression::fast())?.len() > 2 * FILM;
+        if far_too_heavy && field.panels[0].frames[0].width >= 2 * ACROSS {
+            field = lighter(&field);
+            continue;
+        }
+        let reel = if is_film { Some(reel(&field, Compression::default())?) } else { None };
         let stills = || Ok::<usize, io::Error>(field::stills(&field)?.iter().map(Vec::len).sum());
         let weight = reel.as_ref().map_or_else(stills, |reel| Ok(reel.len()))?;
         let width = field.panels[0].frames[0].width;
         if weight <= if is_film { FILM } else { PICTURE } || width < 2 * ACROSS {
             return Ok((field, reel));
         }
-        field = if field.times.len() >= 2 * FRAMES { every_other(&field) } else { halved(&field) };
+        field = lighter(&field);
     }
+}
+
+/// Half the frames of a film of many, else half the pixels along each side.
+fn lighter(field: &Field) -> Field {
+    if field.times.len() >= 2 * FRAMES { every_other(field) } else { halved(field) }
 }
 
 /// A film as `width height frames palette levels`: the palette in base64, and so the zlib stream of the levels, which of all
@@ -42,9 +53,9 @@ pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
 ///
 /// # Errors
 /// When its frames do not fit each other.
-fn reel(field: &Field) -> io::Result<String> {
+fn reel(field: &Field, compression: Compression) -> io::Result<String> {
     let Frames { width, height, levels } = field::frames(field)?;
-    let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
+    let mut packed = ZlibEncoder::new(Vec::new(), compression);
     let mut before: Option<&Vec<u8>> = None;
     for frame in &levels {
         let differences: Vec<u8> = match before {
@@ -131,7 +142,7 @@ mod tests {
         for (width, frames) in [(800, 1), (400, 60)] {
             let field = noise(width, frames);
             let (light, packed) = light(&field).unwrap();
-            assert_eq!(packed, (frames > 1).then(|| reel(&light).unwrap()));
+            assert_eq!(packed, (frames > 1).then(|| reel(&light, Compression::default()).unwrap()));
             assert!(light.panels[0].frames[0].width < width && light.times.last() == field.times.last());
             let size = f64::from(light.panels[0].frames[0].width) * light.pixel;
             assert!((size - f64::from(width)).abs() < 0.05 * f64::from(width), "{size}");
@@ -143,7 +154,7 @@ mod tests {
     #[test]
     fn a_reel_unpacks_to_its_frames() {
         let field = noise(20, 3);
-        let text = reel(&field).unwrap();
+        let text = reel(&field, Compression::default()).unwrap();
         let parts: Vec<&str> = text.split(' ').collect();
         let Frames { width, height, levels } = field::frames(&field).unwrap();
         assert_eq!(parts[..3], [width.to_string(), height.to_string(), "3".to_owned()]);
