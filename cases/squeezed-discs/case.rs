@@ -57,12 +57,12 @@ fn mean_force(done: &Done) -> Result<f64, Missing> {
     Ok(sum / 12.0)
 }
 
-/// Number of contacts, and the largest deviation of one's force from the mean of all, over the last quarter of the run.
+/// Number of contacts, and the largest deviation of one's force from the mean of all, over the last quarter of the run, which all
+/// snapshots but the first are of.
 fn spread(done: &Done) -> Result<(usize, f64), Missing> {
-    let snapshots = &done.record.snapshots;
-    let late = &snapshots[snapshots.len() - snapshots.len() / 4..];
+    let late = done.record.snapshots.iter().filter(|snapshot| snapshot.time > 0.0);
     let mut forces: BTreeMap<(u32, String), f64> = BTreeMap::new();
-    for contact in late.iter().flat_map(Snapshot::told_contacts) {
+    for contact in late.flat_map(Snapshot::told_contacts) {
         *forces.entry((contact.grain, format!("{:?}", contact.partner))).or_default() += contact.normal_force;
     }
     if forces.is_empty() {

@@ -22,6 +22,8 @@ use std::time::Instant;
 type Left = (Arc<Record>, Arc<Vec<Table>>, Option<String>);
 /// The place of what a run leaves, which is there once it has been done.
 type Slot = Arc<OnceLock<Result<Left, RunError>>>;
+/// The place of a scene, which is there once somebody has asked for it.
+type SceneSlot = Arc<OnceLock<Result<Arc<Scene>, RunError>>>;
 /// Runs by their keys.
 type Runs = BTreeMap<String, (Run, Result<Done, RunError>)>;
 /// Scenes that were run, with their records, by solver and resolution.
@@ -45,7 +47,7 @@ pub struct Runner {
     /// Runs of scenes as the case means them, by [`Run::key`].
     runs: Mutex<Runs>,
     /// Scenes as the case means them, by [`Run::scene_words`].
-    scenes: Mutex<Vec<(String, Arc<Scene>)>>,
+    scenes: Mutex<BTreeMap<String, SceneSlot>>,
     /// Every run of a scene, right or wrong, by solver and resolution: claims that lead to the same scene share it.
     done: Mutex<Slots>,
 }
@@ -320,18 +322,19 @@ impl Runner {
     /// # Errors
     /// When the scene file is wrong.
     pub fn scene(&self, run: &Run) -> Result<Arc<Scene>, RunError> {
-        let mut scenes = self.scenes.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, known)) = scenes.iter().find(|(key, _)| *key == run.scene_words()) {
-            return Ok(Arc::clone(known));
-        }
-        let variant = self.case.variant(run.variant);
-        let mut scene = variant.map_err(|error| self.unusable(run, error.to_string()))?;
-        if let Some((_, change)) = &run.adjustment {
-            change(&mut scene);
-        }
-        let scene = Arc::new(scene);
-        scenes.push((run.scene_words(), Arc::clone(&scene)));
-        Ok(scene)
+        let slot = {
+            let mut scenes = self.scenes.lock().unwrap_or_else(PoisonError::into_inner);
+            Arc::clone(scenes.entry(run.scene_words()).or_default())
+        };
+        slot.get_or_init(|| {
+            let variant = self.case.variant(run.variant);
+            let mut scene = variant.map_err(|error| self.unusable(run, error.to_string()))?;
+            if let Some((_, change)) = &run.adjustment {
+                change(&mut scene);
+            }
+            Ok(Arc::new(scene))
+        })
+        .clone()
     }
 
     /// The scene that the solver of a run is given: as the case means it, or, where it is `wrong`, as the claim's control has it.

@@ -30,6 +30,7 @@ use grainbench::reports::{
 };
 use grainbench::scene::solver::RunError;
 use grainbench::studies::run_cache::RunCache;
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
@@ -320,16 +321,20 @@ fn judge(
     (work.into_iter().map(Work::section).collect(), left)
 }
 
-/// All cases go forward evenly, so that two threads are seldom at one of them, where they would wait for the same scene or the same
-/// run. Figures last, when what they show has been run.
+/// First the gates that ask for a run that none before them asks for, then the others; and all cases go forward evenly: two
+/// threads are seldom at one case, where they would wait for the same scene or the same run. Figures last, when what they show has
+/// been run.
 fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
     let mut tasks = Vec::new();
     for (case, selected) in selected.iter().enumerate() {
         let share = 1.0 / selected.claims.len() as f64;
-        for gate in 0..selected.claims.len() {
-            tasks.push((gate as f64 * share, Task::Judge(case, gate)));
+        let mut asked = HashSet::new();
+        for (gate, claim) in selected.claims.iter().enumerate() {
+            let is_new = claim.runs.iter().fold(false, |is_new, run| asked.insert(run.key()) || is_new);
+            let turn = gate as f64 * share;
+            tasks.push((if is_new { turn } else { 1.0 + turn }, Task::Judge(case, gate)));
             if with_controls {
-                tasks.push(((gate as f64 + 0.5) * share, Task::Control(case, gate)));
+                tasks.push((1.0 + turn + 0.5 * share, Task::Control(case, gate)));
             }
         }
     }

@@ -212,7 +212,7 @@ impl Solver for Cached {
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
-        let wants_more = !watch.keeps_snapshots() || watch.wants_end_state();
+        let wants_more = !watch.keeps_snapshots() || watch.wants_end_state() || watch.checkpoint_interval().is_some();
         let Some(name) = self.cache.name(&self.name, self.defect, scene, resolution).filter(|_| !wants_more) else {
             return self.solver.run(scene, resolution, watch);
         };

@@ -103,7 +103,8 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
         if found.iter().any(|row| row.outcome == Outcome::Pass) {
             let start = Instant::now();
             let flaw = property.flaw(terms);
-            let [flawed, again] = [Flawed::new(kept, flaw), Flawed::again(itself, flaw)];
+            // Runs that are wrong may be finished ones too: they are there to be told apart.
+            let [flawed, again] = [Flawed::new(kept, flaw), Flawed::again(kept, flaw)];
             // What a method owes less excuses no flaw.
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
