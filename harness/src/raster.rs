@@ -61,7 +61,7 @@ struct Stored {
 
 impl Serialize for Raster {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
+        let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
         let levels = packed.write_all(&self.levels).and_then(|()| packed.finish());
         let levels = STANDARD.encode(levels.map_err(serde::ser::Error::custom)?);
         Stored { width: self.width, height: self.height, levels }.serialize(to)

@@ -64,8 +64,12 @@ fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option
     let mut worst = (0.0, usize::MAX, usize::MAX);
     // Ends early where one is deep enough: there is nothing else to be told.
     let _ = near_pairs(&centres, &radii, 0.0, domain, |a, b| {
-        let ratio =
-            (radii[a] + radii[b] - nearest_image(centres[b] - centres[a], domain).norm()) / radii[a].min(radii[b]);
+        let (between, reach) = (nearest_image(centres[b] - centres[a], domain), radii[a] + radii[b]);
+        // Most pairs are apart: they need no root.
+        if between.norm_squared() >= reach * reach {
+            return ControlFlow::Continue(());
+        }
+        let ratio = (reach - between.norm()) / radii[a].min(radii[b]);
         let (first, second) = (a.min(b), a.max(b));
         if ratio > worst.0 || (ratio == worst.0 && (first, second) < (worst.1, worst.2)) {
             worst = (ratio, first, second);
@@ -83,7 +87,9 @@ pub fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vect
         for axis in 0..3 {
             if domain.periodic[axis] {
                 let length = domain.high[axis] - domain.low[axis];
-                between[axis] -= length * (between[axis] / length).round();
+                if between[axis].abs() > 0.5 * length {
+                    between[axis] -= length * (between[axis] / length).round();
+                }
             }
         }
     }
