@@ -233,7 +233,7 @@ fn momentum(run: &Run) -> [Claim; 2] {
                 let grains = &done[0].scene.grains;
                 let gained = |at: usize| Ok(grains[at].mass * (done[0].last(columns[at])? - grains[at].velocity[axis]));
                 let [first, second] = [gained(0)?, gained(1)?];
-                Ok(Measured::new(second, -first, first.abs()))
+                Ok(Measured::new(first + second, 0.0, first.abs()))
             })
             .within(judged(1e-6, "velocities of the heavy sphere are 1e-5 of the light one's, and told to ten digits"))
             .refuses(Control::scene("the second sphere a hundredth heavier", |scene| scene.grains[1].mass *= 1.01))

@@ -36,7 +36,7 @@ fn run(fraction: f64) -> Run {
 
 fn energy(done: &Done) -> Result<Measured, Missing> {
     let energy = done.column("all.total_energy")?;
-    Ok(Measured::worst(&done.series().time, energy, |_| energy[0], energy[0]))
+    Ok(Measured::drift(&done.series().time, energy, energy[0]))
 }
 
 fn claims() -> Vec<Claim> {

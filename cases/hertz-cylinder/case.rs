@@ -121,7 +121,7 @@ fn measured(done: &Done) -> Result<Hertz, Missing> {
 /// What is allowed with so many cells a half-width, from what is with one.
 fn tolerance(coarsest: f64, cells: f64) -> Tolerance {
     if cells > 1.0 {
-        computed(
+        judged(
             NO_HALF_SPACE + (coarsest - NO_HALF_SPACE) / (cells * cells),
             "(b/R)² = 1.6 % of bodies that are no half-spaces, and what cells of b are allowed beyond it, falling with \
              the square of the cell",

@@ -3,7 +3,7 @@
 #[path = "bulk.rs"]
 mod bulk;
 
-use crate::rows::draws::apart;
+use crate::rows::draws::{apart, mean_of};
 use crate::rows::programs::row;
 use bulk::BULK;
 use grainbench_harness::prelude::*;
@@ -205,14 +205,13 @@ fn shear(variant: &'static str, about: &str) -> Claim {
 
 /// At four times the pressure and twice the speed nothing is another.
 fn scales(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
-    const LAW: &str =
-        "dimensions: grains as good as rigid have no time but 1/γ̇ and √(m/P), so that I alone counts (derivation)";
+    const LAW: &str = "the run at four times the pressure and twice the speed: grains as good as rigid have no time but 1/γ̇ and √(m/P), so that I alone counts (derivation)";
     let quantity = format!("{name}, I ≈ {about}");
-    let allowed = apart(PACKINGS, &quantity);
+    let (allowed, scale) = of_draws(&quantity);
     claim(quantity, "1")
         .of_all([ours(variant).aside(), pressed(variant)])
-        .holds(LAW, move |done| Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0)))
-        .within(computed(allowed, BECAUSE))
+        .agrees(Source::Ourselves(LAW), move |done| Ok(Measured::new(of(&done[0])?, of(&done[1])?, scale)))
+        .within(allowed)
         .refuses(wrongly_pressed(about.starts_with(".0"), name == INERTIA.0))
 }
 
@@ -244,13 +243,19 @@ fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
 /// Our solver in LAMMPS' convention and LAMMPS, from the same start.
 fn beside(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
-    let allowed = computed(apart(PACKINGS, &quantity), BECAUSE);
+    let (allowed, scale) = of_draws(&quantity);
     let control = Control::ours("friction 0 between grains in ours", |scene| {
         scene.change_laws(|law| law.friction = if law.friction > 1.0 { law.friction } else { 0.0 });
     });
     row(&quantity, "1", allowed, [run(variant, "dem:lammps"), run(variant, "lammps")], control, move |done| {
-        Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0))
+        Ok(Measured::new(of(&done[0])?, of(&done[1])?, scale))
     })
+}
+
+/// What draws of a quantity differ by, in units of their mean, and that mean.
+fn of_draws(quantity: &str) -> (Tolerance, f64) {
+    let mean = mean_of(PACKINGS, quantity);
+    (computed(apart(PACKINGS, quantity) / mean, format!("{BECAUSE}; in units of the mean of the packings")), mean)
 }
 
 /// Friction and packing fraction over the inertial number, of ours and of LAMMPS.

@@ -84,7 +84,7 @@ fn unaccounted(done: &Done) -> Result<Measured, Missing> {
     for name in ["springs", "friction", "transfer", "contact"] {
         sum += entry(done, name)?;
     }
-    Ok(Measured::new(sum, work, work))
+    Ok(Measured::new(sum - work, 0.0, work))
 }
 
 /// The work of the walls is found again, as a part of it.
@@ -238,7 +238,7 @@ pub(super) fn claims() -> Vec<Claim> {
             }))
             .holds("the slab is periodic", |done| {
                 let (there, here) = (yielded(&done[1])?, yielded(&done[0])?);
-                Ok(Measured::new(there, here, here))
+                Ok(Measured::new(there - here, 0.0, here))
             })
             .within(judged(1e-9, "rounding of positions; nothing has become chaotic yet"))
             .refuses(Control::without(Effect::PeriodicAxes)),

@@ -352,6 +352,8 @@ impl Claim {
         match (self.source, self.expectation) {
             (Source::Program, _) => Evidence::OtherCode,
             (Source::Regression(_), _) => Evidence::Regression,
+            // That a prototype has the order of a method tells it no better than the method does.
+            (Source::Printed(..), Expectation::Converges(_)) => Evidence::Convergence,
             (Source::Printed(work, _), _) => match work.kind {
                 Kind::Literature => Evidence::Paper,
                 Kind::Experiment => Evidence::Experiment,

@@ -145,6 +145,14 @@ impl Measured {
         Self { value: pick(values), expected: Expected::Value(pick(expected)), scale, course }
     }
 
+    /// The worst change of a series since its first sample, of what does not change.
+    #[must_use]
+    pub fn drift(time: &[f64], values: &[f64], scale: f64) -> Self {
+        let first = values.first().copied().unwrap_or(f64::NAN);
+        let changes: Vec<f64> = values.iter().map(|value| value - first).collect();
+        Self::worst(time, &changes, |_| 0.0, scale)
+    }
+
     /// The one with the largest error; none of none.
     #[must_use]
     pub fn worst_among(all: impl IntoIterator<Item = Self>) -> Option<Self> {

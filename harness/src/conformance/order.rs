@@ -5,6 +5,7 @@ use super::row::{Found, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::expect::{Bound, Expected, Measured};
+use crate::tolerance::Made;
 use crate::verdict::Verdict;
 
 pub(super) const PROPERTY: Property = Property {
@@ -27,6 +28,6 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
         // The solver's own finer runs stand for the exact answer, so that no convention of a law is judged.
         let (coarse, fine) = (ends[0].apart(&ends[1]), ends[1].apart(&ends[2]));
         let expected = Expected::Bound(Bound::Order(order.expected));
-        Ok(Found { measured: Measured::new((coarse / fine).log2(), expected, 1.0), allowed: 0.01 })
+        Ok(Found { measured: Measured::new((coarse / fine).log2(), expected, 1.0), allowed: 0.01, made: Made::Judged })
     })
 }

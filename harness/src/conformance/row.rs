@@ -23,12 +23,13 @@ pub(super) struct Rows<'a> {
 pub(super) struct Found {
     pub(super) measured: Measured,
     pub(super) allowed: f64,
+    pub(super) made: Made,
 }
 
 impl Found {
     /// A deviation that should be zero; `allowed` in the same unit.
     pub(super) fn deviation(value: f64, scale: f64, allowed: f64) -> Self {
-        Self { measured: Measured::new(value, 0.0, scale), allowed: allowed / scale }
+        Self { measured: Measured::new(value, 0.0, scale), allowed: allowed / scale, made: Made::Computed }
     }
 }
 
@@ -72,8 +73,8 @@ impl Rows<'_> {
         match found {
             Err(NoEnd::Run(error)) => row.ended(&error),
             Err(NoEnd::Record(lack)) => row.left(Outcome::Fail, lack),
-            Ok(Found { measured, allowed }) => {
-                let row = Verdict { allowed, tolerance: Made::Computed, ..row }.judged(&measured);
+            Ok(Found { measured, allowed, made }) => {
+                let row = Verdict { allowed, tolerance: made, ..row }.judged(&measured);
                 match self.terms.less_of(self.property.name, quantity) {
                     Some(less) if row.outcome == Outcome::Fail && measured.error().abs() <= less.at_most => {
                         row.left(Outcome::Known, less.because)

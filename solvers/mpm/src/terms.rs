@@ -13,9 +13,8 @@ const GRID_HAS_AXES: &str = "the grid has axes: a body that is turned stands oth
                              here";
 const SPINNING: &str = "a spinning body is held together by stresses, which swing; at two cells a radius, and as it turns its \
                         points pass from cell to cell";
-const NO_AFFINE_PART: &str = "points hand on a velocity and no spin: what turns within a cell is lost to the \
-  grid, a seventh of it \
-                              at two cells a radius";
+const NO_AFFINE_PART: &str = "points hand on a velocity and no spin: what turns within a cell is lost to the grid, a seventh \
+                              of it at two cells a radius";
 const KINK: &str = "hat functions have a kink at nodes: a point on the face between two cells is given the slope of one side, \
                     and its mirror image that of the other";
 const OWN_NORMALS: &str = "each body is stopped along a normal of its own, so that what two bodies give each other is not \

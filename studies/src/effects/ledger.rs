@@ -248,7 +248,7 @@ fn knows(run: &Run, effect: Effect) -> bool {
     Method::of(run.solver).is_none_or(|method| effect.concerns(method))
 }
 
-/// Whether a claim turns red at an error: what cannot be run or measured any more is red, as in any control.
+/// Whether a claim turns red at an error, by its value: what cannot be run or measured any more shows nothing, as in any control.
 fn is_red(claim: &Claim, error: Option<f64>) -> bool {
-    error.is_none_or(|error| error.abs() > claim.tolerance.allowed)
+    error.is_some_and(|error| error.abs() > claim.tolerance.allowed)
 }
