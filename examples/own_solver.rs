@@ -25,7 +25,7 @@ impl Solver for Rigid {
         let ([grain], [wall]) = (&scene.grains[..], &scene.walls[..]) else {
             return Err(unsupported("it knows one grain and one wall"));
         };
-        let (WallShape::Plane { normal, .. }, false) = (wall.shape, wall.motion.is_moving()) else {
+        let (&WallShape::Plane { normal, .. }, false) = (&wall.shape, wall.motion.is_moving()) else {
             return Err(unsupported("it knows only planes at rest"));
         };
         let Duration::Seconds(duration) = scene.duration else {

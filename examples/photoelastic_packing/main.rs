@@ -40,7 +40,7 @@ fn rounded(mut packing: Scene) -> Scene {
     let round = |length: f64| (length * 1e9).round() / 1e9;
     let mut corner = [0.0; 2];
     for (number, wall) in packing.walls.iter().enumerate() {
-        if let (WallShape::Plane { point, .. }, 0 | 2) = (wall.shape, number) {
+        if let (&WallShape::Plane { point, .. }, 0 | 2) = (&wall.shape, number) {
             corner[number / 2] = point[number / 2];
         }
     }
@@ -81,7 +81,7 @@ fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn E
     let mut scene =
         source.set("grains.disc.file.path", &format!("{:?}", std::path::absolute(data)?)).scene(&read_grains)?;
     for (wall, prepared) in scene.walls.iter_mut().zip(&packing.walls) {
-        wall.shape = prepared.shape;
+        wall.shape = prepared.shape.clone();
     }
     Ok(scene)
 }

@@ -82,10 +82,10 @@ class Wall:
     name: str
     material: str
     shape: str
-    """`plane`, `segment`, `rectangle` or `round`."""
+    """`plane`, `segment`, `rectangle`, `round` or `mesh`."""
     geometry: dict[str, Floats]
     """Of a plane `point` (3,) (m) and `normal` (3,), out of the solid; of a segment `ends` (2, 3); of a rectangle `corner` (3,) and
-    `edges` (2, 3); of a round one `axis` (2, 3) and `radii` (2,)."""
+    `edges` (2, 3); of a round one `axis` (2, 3) and `radii` (2,); of a mesh `triangles` (n, 3, 3)."""
     centre: Floats
     """Centre of rotation (m), shape (3,); it moves with the wall."""
     motion: list[dict[str, Any]]
@@ -93,9 +93,9 @@ class Wall:
 
     @classmethod
     def _of(cls, wall: dict[str, Any]) -> Wall:
-        shape = next(name for name in ("plane", "segment", "rectangle", "round") if name in wall)
+        shape = next(name for name in ("plane", "segment", "rectangle", "round", "mesh") if name in wall)
         said = wall[shape]
-        parts = {"ends": said} if shape == "segment" else said
+        parts = {"segment": {"ends": said}, "mesh": {"triangles": said}}.get(shape, said)
         geometry = {name: np.array(part, dtype=np.float64) for name, part in parts.items()}
         centre = np.array(wall["centre"], dtype=np.float64)
         return cls(wall["name"], wall["material"], shape, geometry, centre, wall["motion"])

@@ -83,7 +83,7 @@ def solver(
 
     What is not declared is not asked for: such a row reads `unsupported`, with the reason.
 
-    dimension: 2, 3 or both. laws: `linear`, `hertz-mindlin`, `coulomb`. walls: `plane`, `segment`, `rectangle`, `round`.
+    dimension: 2, 3 or both. laws: `linear`, `hertz-mindlin`, `coulomb`. walls: `plane`, `segment`, `rectangle`, `round`, `mesh`.
     effects: `friction`, `contact-damping`, `rolling-resistance`, … as `grainbench scene CASE` names them; gravity is everybody's.
     driven: whether grains can be driven. seconds and memory_mib: what a run may take. critical_fraction: time steps, as parts of the
     critical one, at which it is seen how the error falls and what it costs.

@@ -185,7 +185,8 @@ fn outline(wall: &WallState, (low, high): (Vector3<f64>, Vector3<f64>)) -> Vec<V
             let sides = (0..PIECES).step_by(PIECES / 8).map(|at| vec![ring_a[at], ring_b[at]]).collect::<Vec<_>>();
             [vec![ring_a, ring_b], sides].concat()
         }
-        [] => Vec::new(),
+        // A snapshot has of a mesh where it is, and not its triangles.
+        [] | [_, _, _] => Vec::new(),
         ref corners => vec![corners.iter().chain(corners.first()).copied().collect()],
     }
 }

@@ -74,6 +74,7 @@ fn lacks_wall(can: &Can, scene: &Scene) -> Option<String> {
             WallShape::Segment { .. } => (Wall::Segment, "segment"),
             WallShape::Rectangle { .. } => (Wall::Rectangle, "rectangle"),
             WallShape::Round { .. } => (Wall::Round, "round"),
+            WallShape::Mesh(_) => (Wall::Mesh, "mesh"),
         };
         (!can.walls.contains(&kind)).then(|| format!("it does not declare walls that are a `{word}`"))
     })

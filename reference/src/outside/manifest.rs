@@ -108,6 +108,8 @@ pub enum Wall {
     Rectangle,
     /// Sides of cylinders and cones.
     Round,
+    /// Meshes of triangles.
+    Mesh,
 }
 
 /// Knobs.

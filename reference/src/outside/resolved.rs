@@ -233,6 +233,8 @@ pub enum Shape {
         /// Radius at each (m).
         radii: [f64; 2],
     },
+    /// The corners of every triangle of a mesh (m), whose normal is on the side from which they go round to the left.
+    Mesh(Vec<[[f64; 3]; 3]>),
 }
 
 /// Constant velocity and spin between two moments.
@@ -398,6 +400,7 @@ fn resolved_wall(wall: &Wall, material: String, stepping: &Stepping) -> Resolved
                 Shape::Rectangle { corner: vector(corner), edges: edges.map(vector) }
             }
             WallShape::Round { axis, radii } => Shape::Round { axis: axis.map(vector), radii },
+            WallShape::Mesh(ref mesh) => Shape::Mesh(mesh.triangles().map(|triangle| triangle.map(vector)).collect()),
         },
         centre: vector(wall.motion.centre),
         motion: wall.motion.phases.iter().map(phase).collect(),

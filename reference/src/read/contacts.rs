@@ -78,6 +78,7 @@ fn to_wall(at: Vector3<f64>, shape: &WallShape) -> (Vector3<f64>, f64) {
         WallShape::Segment { ends } => direction(nearest_on_segment(at, ends) - at),
         WallShape::Rectangle { corner, edges } => direction(nearest_on_rectangle(at, corner, edges) - at),
         WallShape::Round { axis, radii } => direction(nearest_on_round(at, axis, radii) - at),
+        WallShape::Mesh(mesh) => direction(mesh.nearest(at) - at),
     }
 }
 

@@ -3,11 +3,16 @@
 use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;
 use crate::listed::Pairs;
+use crate::meshes::Held;
 use crate::observe::grain_states;
 use crate::share::Share;
 use crate::simulation::Simulated;
 use grainbench_scene::end_state::{EndState, Springs, StateGrain};
+use nalgebra::Vector3;
 use std::collections::BTreeMap;
+
+/// What stands between the name of a mesh and the number of a part of it.
+const PART: &str = ", part ";
 
 /// What contacts remember, in words that change when it does.
 pub(crate) fn words([tangential, rolling, dimension]: [usize; 3]) -> String {
@@ -35,6 +40,14 @@ impl<S: Geometry> Simulated<S> {
                 .flat_map(|wall| wall.near.iter().map(move |near| (wall.name(), near)))
                 .filter(|(_, (_, memory))| memory.iter().any(|&number| number != 0.0))
                 .map(|(name, &(slot, memory))| (of_slot(slot), name.to_owned(), memory[..numbers].to_vec()))
+                .chain(
+                    self.walls
+                        .iter()
+                        .flat_map(|wall| wall.at_mesh.held.iter().map(move |held| (wall.name(), held)))
+                        .map(|(name, held)| {
+                            (of_slot(held.slot), format!("{name}{PART}{}", held.group), held.memory[..numbers].to_vec())
+                        }),
+                )
                 .collect(),
         };
         // Lists of several threads have another order.
@@ -79,9 +92,20 @@ impl<S: Geometry> Simulated<S> {
             self.neighbours.shares = vec![whole];
         }
         for (grain, name, numbers) in &springs.walls {
-            let wall = self.walls.iter_mut().find(|wall| wall.name() == name);
-            if let (Some(wall), Some(slot)) = (wall, slot(*grain)) {
-                wall.near.push((slot, memory(numbers)));
+            let (name, part) =
+                name.rsplit_once(PART).map_or((&name[..], None), |(wall, part)| (wall, part.parse().ok()));
+            let wall =
+                self.walls.iter_mut().find(|wall| wall.name() == name && wall.mesh().is_some() == part.is_some());
+            let (Some(wall), Some(slot)) = (wall, slot(*grain)) else { continue };
+            match part {
+                None => wall.near.push((slot, memory(numbers))),
+                // Nothing goes on from where no part is.
+                Some(group) => wall.at_mesh.held.push(Held {
+                    slot,
+                    group,
+                    point: Vector3::repeat(f64::INFINITY),
+                    memory: memory(numbers),
+                }),
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::contact::chain::{Evaluation, Layout};
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
-use crate::contact::{MEMORY, Options};
+use crate::contact::{MEMORY, Memory, Options};
 use crate::geometry::Geometry;
 use crate::grains::{Grains, Read, Sums};
 use crate::laws::Laws;
@@ -17,7 +17,7 @@ use crate::listed::Pairs;
 use crate::pairs::OfPairs;
 use crate::seen::Seen;
 use crate::touching::Touching;
-use crate::walls::MovingWall;
+use crate::walls::{Facing, MovingWall};
 use grainbench_lanes::{Kernel, Processor, Quad, Single};
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
@@ -71,12 +71,69 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
     fn words(&self) -> &'static str;
 }
 
+/// Adds the forces and torques of a contact between the grain in a slot and a wall of a number.
+#[inline(always)]
+fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
+    terms: Terms<'_>,
+    grains: &mut Grains<S>,
+    wall: &mut MovingWall,
+    (slot, number): (usize, u16),
+    facing: &Facing,
+    memory: &mut Memory<f64>,
+    seen: &mut Option<&mut Seen>,
+) {
+    let (position, radius) = (grains.position(slot), grains.radius(slot));
+    let at_wall = AtWall::<S> {
+        law: terms.laws.between(grains.material[slot], wall.material()),
+        normal: S::vector_of(facing.normal),
+        distance: facing.distance,
+        radius,
+        velocity: S::vector_of(grains.velocity(slot) - facing.velocity),
+        inverse_mass: grains.inverse_mass(slot),
+        spin: grains.spin(slot).filter(|_| T::ACTIVE).map(|spin| S::as_spin(spin.into())),
+        inertia: if R::ACTIVE { 1.0 / grains.inverse_inertia[slot] } else { 0.0 },
+    };
+    let answer = at_wall.respond::<N, T, R>(terms.evaluation(seen.is_some()), memory);
+    let [load, torque] = S::load(answer.force, answer.torques[0], 0.0);
+    grains.load[slot].add(&Quad(load));
+    if let Some(sum) = grains.torque.get_mut(slot) {
+        sum.add(&Quad(torque));
+    }
+    let force = S::whole(answer.force, 0.0);
+    (0..3).for_each(|axis| wall.force[axis] -= force[axis]);
+    if let Some(seen) = seen {
+        let (id, partner) = (grains.id[slot] + 1, Partner::Wall(number));
+        seen.add(&answer, id, partner, position, radius);
+    }
+}
+
 /// A normal, a tangential and a rolling stage in a space.
 pub(crate) struct Chain<S, N, T, R>(PhantomData<(S, N, T, R)>);
 
 impl<S, N, T, R> Chain<S, N, T, R> {
     pub(crate) const fn new() -> Self {
         Self(PhantomData)
+    }
+}
+
+impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Chain<S, N, T, R> {
+    /// The loop over grains at a wall that is a mesh: each may touch several parts of it.
+    fn at_mesh(
+        &self,
+        terms: Terms<'_>,
+        grains: &mut Grains<S>,
+        wall: &mut MovingWall,
+        number: u16,
+        mut seen: Option<&mut Seen>,
+    ) -> u64 {
+        let Some(mesh) = wall.mesh().cloned() else { return 0 };
+        let mut at_mesh = std::mem::take(&mut wall.at_mesh);
+        let touching = at_mesh.evaluate(&mesh, grains, |grains, slot, touched, memory| {
+            let facing = wall.facing_part(&mesh, grains.position(slot), touched);
+            at_contact::<S, N, T, R>(terms, grains, wall, (slot, number), &facing, memory, &mut seen);
+        });
+        wall.at_mesh = at_mesh;
+        touching
     }
 }
 
@@ -107,40 +164,21 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         number: u16,
         mut seen: Option<&mut Seen>,
     ) -> u64 {
-        let mut near = std::mem::take(&mut wall.near);
         wall.force = Default::default();
+        if wall.mesh().is_some() {
+            return self.at_mesh(terms, grains, wall, number, seen);
+        }
+        let mut near = std::mem::take(&mut wall.near);
         let mut touching = 0;
         for (slot, memory) in &mut near {
             let slot = *slot as usize;
-            let (position, radius) = (grains.position(slot), grains.radius(slot));
-            let facing = wall.facing(position);
-            if facing.distance >= radius {
+            let facing = wall.facing(grains.position(slot));
+            if facing.distance >= grains.radius(slot) {
                 *memory = [0.0; MEMORY];
                 continue;
             }
             touching += 1;
-            let at_wall = AtWall::<S> {
-                law: terms.laws.between(grains.material[slot], wall.material()),
-                normal: S::vector_of(facing.normal),
-                distance: facing.distance,
-                radius,
-                velocity: S::vector_of(grains.velocity(slot) - facing.velocity),
-                inverse_mass: grains.inverse_mass(slot),
-                spin: grains.spin(slot).filter(|_| T::ACTIVE).map(|spin| S::as_spin(spin.into())),
-                inertia: if R::ACTIVE { 1.0 / grains.inverse_inertia[slot] } else { 0.0 },
-            };
-            let answer = at_wall.respond::<N, T, R>(terms.evaluation(seen.is_some()), memory);
-            let [load, torque] = S::load(answer.force, answer.torques[0], 0.0);
-            grains.load[slot].add(&Quad(load));
-            if let Some(sum) = grains.torque.get_mut(slot) {
-                sum.add(&Quad(torque));
-            }
-            let force = S::whole(answer.force, 0.0);
-            (0..3).for_each(|axis| wall.force[axis] -= force[axis]);
-            if let Some(seen) = &mut seen {
-                let (id, partner) = (grains.id[slot] + 1, Partner::Wall(number));
-                seen.add(&answer, id, partner, position, radius);
-            }
+            at_contact::<S, N, T, R>(terms, grains, wall, (slot, number), &facing, memory, &mut seen);
         }
         wall.near = near;
         touching

@@ -29,6 +29,7 @@ mod grains;
 mod laws;
 mod listed;
 mod mean_virial;
+mod meshes;
 mod motion;
 mod neighbours;
 mod observe;

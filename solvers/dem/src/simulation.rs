@@ -273,7 +273,7 @@ impl<S: Geometry> Simulated<S> {
             *seen_at = Some(*step);
         }
         for (number, wall) in walls.iter_mut().enumerate() {
-            cost.pair_tests += wall.near.len() as u64;
+            cost.pair_tests += wall.pairs() as u64;
             let seen = record.then_some(&mut *seen_at_walls);
             cost.contact_evaluations += forces.at_wall(terms, grains, wall, number as u16, seen);
         }
@@ -325,9 +325,7 @@ impl<S: Geometry> Simulated<S> {
     /// Forgets what every contact remembers.
     pub(crate) fn forget(&mut self) {
         self.neighbours.forget();
-        for wall in &mut self.walls {
-            wall.near.iter_mut().for_each(|(_, memory)| *memory = [0.0; MEMORY]);
-        }
+        self.walls.iter_mut().for_each(MovingWall::forget);
     }
 
     /// Whether grains come at a time (s).
@@ -377,6 +375,8 @@ impl<S: Geometry> Simulated<S> {
             .iter()
             .map(|wall| wall.near.iter().map(|&(slot, memory)| (self.grains.id[slot as usize], memory)).collect())
             .collect();
+        let any_mesh = self.walls.iter().any(|wall| wall.mesh().is_some());
+        let ids = if any_mesh { self.grains.id.clone() } else { Vec::new() };
         let layout = self.forces.layout();
         let slots = self.come_and_go();
         if let Some(slots) = &slots {
@@ -388,6 +388,12 @@ impl<S: Geometry> Simulated<S> {
         let mut remembered = vec![[0.0; MEMORY]; self.scene.grains.len()];
         self.extent = 0.0;
         for (wall, before) in self.walls.iter_mut().zip(&by_wall) {
+            if wall.list_triangles(&self.grains, &ids, self.neighbours.skin) {
+                (0..self.grains.len()).for_each(|slot| {
+                    self.extent = self.extent.max(wall.distance_to_centre(self.grains.position(slot)));
+                });
+                continue;
+            }
             before.iter().for_each(|&(id, memory)| remembered[id as usize] = memory);
             wall.begin_list();
             if wall.is_gone() {

@@ -65,7 +65,7 @@ impl<S: Geometry> Simulated<S> {
             && state.entered <= self.scene.stays.entries.len()
             && state.neighbours.is_of(count, self.forces.layout())
             && state.walls.len() == self.walls.len()
-            && state.walls.iter().all(|wall| wall.is_of(count));
+            && state.walls.iter().zip(&self.walls).all(|(memory, wall)| memory.is_of(count, wall));
         if !same {
             return Err(CheckpointError::Damaged("it has other grains, pairs or walls".to_owned()));
         }

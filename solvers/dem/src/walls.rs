@@ -1,6 +1,10 @@
 //! Walls in motion: where they are at a step, how they moved over it, and which grains are near.
 
-use crate::contact::Memory;
+use crate::contact::{MEMORY, Memory};
+use crate::geometry::Geometry;
+use crate::grains::{ABSENT, Grains};
+use crate::meshes::AtMesh;
+use grainbench_scene::mesh::{Mesh, Touched};
 use grainbench_scene::motion::Displacement;
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
 use grainbench_scene::scene::{Piston, Wall, WallShape};
@@ -24,6 +28,8 @@ pub(crate) struct MovingWall {
     spin: Vector3<f64>,
     /// The grains near the wall, by slot.
     pub(crate) near: NearWall,
+    /// What a mesh knows of them instead.
+    pub(crate) at_mesh: AtMesh,
     /// Force of the grains on the wall in the last force evaluation (N).
     pub(crate) force: Vector3<f64>,
     /// How far it has been pressed along its normal (m), and its speed half a step ago (m/s).
@@ -38,15 +44,20 @@ pub(crate) struct WallMemory {
     displacement: Displacement,
     at_list: Displacement,
     near: NearWall,
+    at_mesh: AtMesh,
     force: Vector3<f64>,
     pressed: [f64; 2],
     gone: bool,
 }
 
 impl WallMemory {
-    /// Whether it remembers none but so many grains.
-    pub(crate) fn is_of(&self, grains: usize) -> bool {
-        self.near.iter().all(|&(slot, _)| (slot as usize) < grains)
+    /// Whether it remembers none but so many grains, of this wall.
+    pub(crate) fn is_of(&self, grains: usize, wall: &MovingWall) -> bool {
+        let of_mesh = match wall.mesh() {
+            Some(mesh) => self.near.is_empty() && self.at_mesh.is_of(grains, mesh),
+            None => self.at_mesh.is_empty(),
+        };
+        of_mesh && self.near.iter().all(|&(slot, _)| (slot as usize) < grains)
     }
 }
 
@@ -64,13 +75,14 @@ impl MovingWall {
     pub(crate) fn new(wall: &Wall) -> Self {
         let rest = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
         Self {
-            shape: wall.shape,
+            shape: wall.shape.clone(),
             centre: wall.motion.centre,
             displacement: rest,
             at_list: rest,
             velocity: Vector3::zeros(),
             spin: Vector3::zeros(),
             near: Vec::new(),
+            at_mesh: AtMesh::default(),
             force: Vector3::zeros(),
             pressed: [0.0; 2],
             gone: false,
@@ -87,6 +99,22 @@ impl MovingWall {
         self.velocity
     }
 
+    /// Its triangles, where it is a mesh.
+    pub(crate) fn mesh(&self) -> Option<&Mesh> {
+        if let WallShape::Mesh(mesh) = &self.shape { Some(mesh) } else { None }
+    }
+
+    /// Number of pairs of a grain and a part of it that are near.
+    pub(crate) fn pairs(&self) -> usize {
+        self.near.len() + self.at_mesh.pairs()
+    }
+
+    /// Forgets what every contact remembers.
+    pub(crate) fn forget(&mut self) {
+        self.near.iter_mut().for_each(|(_, memory)| *memory = [0.0; MEMORY]);
+        self.at_mesh.forget();
+    }
+
     pub(crate) fn name(&self) -> &str {
         &self.wall.name
     }
@@ -97,6 +125,7 @@ impl MovingWall {
             displacement: self.displacement,
             at_list: self.at_list,
             near: self.near.clone(),
+            at_mesh: self.at_mesh.clone(),
             force: self.force,
             pressed: self.pressed,
             gone: self.gone,
@@ -109,7 +138,7 @@ impl MovingWall {
             self.displaced_to(memory.displacement);
         }
         self.at_list = memory.at_list;
-        self.near = memory.near;
+        (self.near, self.at_mesh) = (memory.near, memory.at_mesh);
         self.force = memory.force;
         (self.pressed, self.gone) = (memory.pressed, memory.gone);
     }
@@ -128,8 +157,8 @@ impl MovingWall {
 
     /// What presses it, the acceleration along its normal that this and the grains give it (m/s²), and the normal.
     fn pressure(&self) -> Option<(Piston, f64, Vector3<f64>)> {
-        let (Some(piston), WallShape::Plane { normal, .. }) = (self.wall.piston, self.shape) else { return None };
-        Some((piston, (piston.force + self.force.dot(&normal)) / piston.mass, normal))
+        let (Some(piston), WallShape::Plane { normal, .. }) = (self.wall.piston, &self.shape) else { return None };
+        Some((piston, (piston.force + self.force.dot(normal)) / piston.mass, *normal))
     }
 
     /// Takes the speed of a wall that is pressed, and at rest, to half a step before the start.
@@ -179,6 +208,32 @@ impl MovingWall {
         self.near.clear();
     }
 
+    /// Lists the triangles near each grain, where it is a mesh, for grains that had these ids in order of slots before. Gives
+    /// whether it is one.
+    pub(crate) fn list_triangles<S: Geometry>(&mut self, grains: &Grains<S>, ids: &[u32], skin: f64) -> bool {
+        if self.mesh().is_none() {
+            return false;
+        }
+        self.begin_list();
+        let mut held = self.at_mesh.begin_list();
+        let WallShape::Mesh(mesh) = &self.shape else { return false };
+        if self.gone {
+            return true;
+        }
+        for slot in 0..grains.len() {
+            self.at_mesh.list(mesh, slot, grains.position(slot), grains.radius(slot) + skin);
+        }
+        held.retain_mut(|held| {
+            let id = ids[held.slot as usize];
+            held.slot = grains.slot[id as usize];
+            held.slot != ABSENT
+        });
+        // Those of a grain stay in their order.
+        held.sort_by_key(|held| held.slot);
+        self.at_mesh.held = held;
+        true
+    }
+
     /// Distance from a point to the wall's centre of rotation (m).
     pub(crate) fn distance_to_centre(&self, point: Vector3<f64>) -> f64 {
         (point - self.centre).norm()
@@ -195,9 +250,21 @@ impl MovingWall {
             WallShape::Segment { ends } => facing_point(at, nearest_on_segment(at, ends)),
             WallShape::Rectangle { corner, edges } => facing_point(at, nearest_on_rectangle(at, corner, edges)),
             WallShape::Round { axis, radii } => facing_point(at, nearest_on_round(at, axis, radii)),
+            WallShape::Mesh(mesh) => facing_point(at, mesh.nearest(at)),
         };
-        let velocity = self.velocity + self.spin.cross(&(nearest - self.centre));
-        Facing { normal, distance, velocity }
+        Facing { normal, distance, velocity: self.velocity_at(nearest) }
+    }
+
+    /// What a grain at `position` sees of a part of the mesh that it touches.
+    pub(crate) fn facing_part(&self, mesh: &Mesh, at: Vector3<f64>, touched: &Touched) -> Facing {
+        let normal = mesh.turn * touched.direction;
+        Facing { normal, distance: touched.distance, velocity: self.velocity_at(at + normal * touched.distance) }
+    }
+
+    /// Velocity at a point of it (m/s).
+    #[inline(always)]
+    fn velocity_at(&self, point: Vector3<f64>) -> Vector3<f64> {
+        self.velocity + self.spin.cross(&(point - self.centre))
     }
 }
 

@@ -13,7 +13,7 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
         return Some(format!("it has {what}, which was written for `dem` alone"));
     }
-    if let Some(what) = scene.round_wall() {
+    if let Some(what) = scene.round_wall().or_else(|| scene.mesh_wall()) {
         return Some(format!("{what}, which was written for `dem` alone"));
     }
     if let Some(what) = scene.needs_deformable() {

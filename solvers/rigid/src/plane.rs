@@ -49,7 +49,7 @@ fn finite(shape: &WallShape, origin: Vector3<f64>) -> Option<ColliderBuilder> {
         WallShape::Segment { ends } => {
             Some(ColliderBuilder::segment(vector(ends[0] - origin), vector(ends[1] - origin)))
         }
-        WallShape::Plane { .. } | WallShape::Rectangle { .. } | WallShape::Round { .. } => None,
+        WallShape::Plane { .. } | WallShape::Rectangle { .. } | WallShape::Round { .. } | WallShape::Mesh(_) => None,
     }
 }
 

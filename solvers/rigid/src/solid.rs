@@ -62,7 +62,7 @@ fn finite(shape: &WallShape, origin: Vector3<f64>) -> Option<ColliderBuilder> {
             let position = Pose::from_parts(vector(middle - origin), Rotation::from_mat3(&axes));
             Some(ColliderBuilder::cuboid(0.5 * u.norm(), 0.5 * v.norm(), 0.0).position(position))
         }
-        WallShape::Plane { .. } | WallShape::Segment { .. } | WallShape::Round { .. } => None,
+        WallShape::Plane { .. } | WallShape::Segment { .. } | WallShape::Round { .. } | WallShape::Mesh(_) => None,
     }
 }
 

@@ -22,6 +22,7 @@ pub mod kept_record;
 pub mod manufactured;
 pub mod material;
 pub mod memory;
+pub mod mesh;
 pub mod motion;
 mod near;
 pub mod overlap;

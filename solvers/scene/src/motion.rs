@@ -129,6 +129,13 @@ impl Motion {
             None => direction,
         }
     }
+
+    /// How the wall is turned after a displacement.
+    #[must_use]
+    pub fn turning(&self, displacement: &Displacement) -> Rotation3<f64> {
+        let turned = Unit::try_new_and_get(displacement.rotation, 0.0);
+        turned.map_or_else(Rotation3::identity, |(axis, angle)| Rotation3::from_axis_angle(&axis, angle))
+    }
 }
 
 #[cfg(test)]

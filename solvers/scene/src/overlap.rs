@@ -104,6 +104,7 @@ pub fn distance(point: Vector3<f64>, shape: &WallShape) -> f64 {
         WallShape::Segment { ends } => (point - nearest_on_segment(point, ends)).norm(),
         WallShape::Rectangle { corner, edges } => (point - nearest_on_rectangle(point, corner, edges)).norm(),
         WallShape::Round { axis, radii } => (point - nearest_on_round(point, axis, radii)).norm(),
+        WallShape::Mesh(mesh) => (point - mesh.nearest(point)).norm(),
     }
 }
 

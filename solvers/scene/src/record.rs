@@ -186,7 +186,8 @@ pub struct WallState {
     /// Name in the scene.
     pub name: String,
     /// Corner points (m): two for a segment, four for a rectangle; point and normal for a plane; the ends of its axis, and a
-    /// point of the rim at each, for a cylinder or a cone; none of a wall that has been taken away.
+    /// point of the rim at each, for a cylinder or a cone; where the origin of its file and points 1 m along x and y from
+    /// there are, for a mesh; none of a wall that has been taken away.
     pub corners: Vec<Vector3<f64>>,
     /// True when `corners` is a point and the unit normal of an infinite plane.
     pub infinite: bool,

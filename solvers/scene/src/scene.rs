@@ -8,6 +8,7 @@ use crate::end_state::Springs;
 use crate::file::GrainShape;
 use crate::grains::Grains;
 use crate::material::Deformable;
+use crate::mesh::Mesh;
 use crate::motion::{Displacement, Motion};
 use crate::stays::Stays;
 use nalgebra::Vector3;
@@ -74,7 +75,7 @@ pub struct Grain {
 }
 
 /// Shape of a wall at the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum WallShape {
     /// Everything behind the plane through `point` with unit `normal` is solid.
     Plane {
@@ -102,6 +103,8 @@ pub enum WallShape {
         /// Radius at each end (m).
         radii: [f64; 2],
     },
+    /// A surface of triangles, in space.
+    Mesh(Mesh),
 }
 
 impl WallShape {
@@ -115,6 +118,7 @@ impl WallShape {
             Self::Segment { ends } => Self::Segment { ends: ends.map(at) },
             Self::Rectangle { corner, edges } => Self::Rectangle { corner: at(corner), edges: edges.map(turn) },
             Self::Round { axis, radii } => Self::Round { axis: axis.map(at), radii },
+            Self::Mesh(ref mesh) => Self::Mesh(mesh.moved(motion, displacement)),
         }
     }
 
@@ -129,6 +133,7 @@ impl WallShape {
                 let out = across(to - from);
                 (vec![from, to, from + out * radii[0], to + out * radii[1]], false)
             }
+            Self::Mesh(ref mesh) => (vec![mesh.origin, mesh.place(Vector3::x()), mesh.place(Vector3::y())], false),
         }
     }
 }
@@ -474,6 +479,13 @@ impl Scene {
     pub fn round_wall(&self) -> Option<String> {
         let round = self.walls.iter().find(|wall| matches!(wall.shape, WallShape::Round { .. }))?;
         Some(format!("wall `{}` is the side of a cylinder or a cone", round.name))
+    }
+
+    /// Walls of triangles, in words, if there are any: not every solver has them.
+    #[must_use]
+    pub fn mesh_wall(&self) -> Option<String> {
+        let mesh = self.walls.iter().find(|wall| matches!(wall.shape, WallShape::Mesh(_)))?;
+        Some(format!("wall `{}` is a mesh of triangles", mesh.name))
     }
 
     /// What needs a solver of deformable bodies, in words, if anything does.

@@ -133,7 +133,7 @@ pub(super) fn ways(scene: &Scene, wall: &Wall, number: usize, stepping: &Steppin
         let way: &mut String = &mut ways[axis];
         *way = if way.is_empty() { term } else { format!("{way}+{term}") };
     };
-    if let (Some(gone), WallShape::Plane { normal, .. }) = (advance(scene, number), wall.shape) {
+    if let (Some(gone), WallShape::Plane { normal, .. }) = (advance(scene, number), &wall.shape) {
         (0..3).filter(|&axis| normal[axis] != 0.0).for_each(|axis| add(axis, format!("({:?})*{gone}", normal[axis])));
     }
     if let Some(until) = wall.until {

@@ -75,6 +75,7 @@ fn placed(wall: &Wall) -> Result<Placed, String> {
             })?;
             Ok(Placed { shape, centre: motion.centre, rotation: Vector3::zeros() })
         }
+        WallShape::Mesh(_) => Err(format!("wall `{}` is a mesh of triangles: no region of LAMMPS is one", wall.name)),
     }
 }
 

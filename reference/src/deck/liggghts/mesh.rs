@@ -14,6 +14,7 @@ pub(crate) type Triangle = [Vector3<f64>; 3];
 /// rectangle across the layer.
 pub(crate) fn triangles(shape: &WallShape, centre: Vector3<f64>, reach: f64) -> Vec<Triangle> {
     match *shape {
+        WallShape::Mesh(ref mesh) => mesh.triangles().collect(),
         WallShape::Plane { point, normal } => {
             let foot = centre - normal * (centre - point).dot(&normal);
             let (u, v) = tangents(normal);

@@ -21,7 +21,9 @@ pub use grains::{
 pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
 pub use output::OutputSpec;
 pub use probes::{PointSpec, ProbeSpec};
-pub use walls::{ConeSpec, CylinderSpec, MotionSpec, PistonSpec, PlaneSpec, RectangleSpec, SineSpec, WallSpec};
+pub use walls::{
+    ConeSpec, CylinderSpec, LengthUnit, MeshSpec, MotionSpec, PistonSpec, PlaneSpec, RectangleSpec, SineSpec, WallSpec,
+};
 
 use crate::body::InitialPressure;
 use indexmap::IndexMap;

@@ -4,7 +4,7 @@ use super::SpinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A wall: exactly one of `plane`, `segment`, `rectangle`, `cylinder` and `cone`.
+/// A wall: exactly one of `plane`, `segment`, `rectangle`, `cylinder`, `cone` and `mesh`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallSpec {
@@ -27,6 +27,10 @@ pub struct WallSpec {
     /// The side of a cone or of a part of one, as of a cylinder.
     #[serde(default)]
     pub cone: Option<ConeSpec>,
+    /// A surface of triangles, solid on both sides; three dimensions only. A grain touches each flat part, each edge between
+    /// two and each corner once at most, however they are cut into triangles: over a seam it feels nothing.
+    #[serde(default)]
+    pub mesh: Option<MeshSpec>,
     /// What presses it: then it moves along its normal as a piston does, beside its prescribed motion. Planes only.
     #[serde(default)]
     pub piston: Option<PistonSpec>,
@@ -91,6 +95,36 @@ pub struct ConeSpec {
     pub axis: [Vec<f64>; 2],
     /// Radius at each end (m); one of them may be zero.
     pub radii: [f64; 2],
+}
+
+/// A surface of triangles from a file beside the scene: STL, as text or binary.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshSpec {
+    /// The file, relative to that of the scene.
+    pub file: String,
+    /// The unit of its coordinates: `m` or `mm`. The format has none.
+    pub unit: LengthUnit,
+    /// Whether edges of one triangle only are meant, as of a funnel; else they are refused.
+    #[serde(default)]
+    pub open: bool,
+    /// Whether the normals of a mesh that is closed point into what it encloses, as of a vessel that is drawn from within; else
+    /// that is refused.
+    #[serde(default)]
+    pub inward: bool,
+    /// Corners that are no farther apart are taken for one (m); those that are equal are one anyway.
+    #[serde(default)]
+    pub merge: f64,
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LengthUnit {
+    /// Metres.
+    M,
+    /// Millimetres.
+    Mm,
 }
 
 /// One part of a motion: a `velocity` or `spin` from `start` to `stop`, reached at once or by a `ramp`; a `table`; or a `sine`.

@@ -21,6 +21,7 @@ mod driven;
 mod grains;
 mod laws;
 mod materials;
+mod meshes;
 mod motion;
 mod probes;
 mod random;
@@ -104,6 +105,7 @@ impl Resolver<'_> {
         deformable.retain(|_| place.next().is_some_and(|place| materials.contains(&place)));
         self.refuse_deep_overlap(&grains, &stays, &walls, domain.as_ref(), &groups)?;
         self.refuse_passing(&stays, &driven, &bodies)?;
+        self.refuse_other_units(&grains, &walls, domain.as_ref())?;
         let names =
             Names { groups: &groups, grains: &grains, bodies: &bodies, walls: &walls, driven: &driven, stays: &stays };
         let mut spots = Vec::new();

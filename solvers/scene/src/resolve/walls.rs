@@ -18,6 +18,7 @@ impl Resolver<'_> {
                 ("rectangle", spec.rectangle.is_some()),
                 ("cylinder", spec.cylinder.is_some()),
                 ("cone", spec.cone.is_some()),
+                ("mesh", spec.mesh.is_some()),
             ],
         )?;
         let shape = if let Some(plane) = &spec.plane {
@@ -64,6 +65,8 @@ impl Resolver<'_> {
                 return Err(check.error(&key("cone.radii"), "two different radii (a `cylinder` has one)", &found));
             }
             self.round(&key("cone"), &cone.axis, cone.radii)?
+        } else if let Some(mesh) = &spec.mesh {
+            self.mesh(name, mesh)?
         } else {
             return Err(check.error(&format!("walls.{name}"), "a shape", "none"));
         };

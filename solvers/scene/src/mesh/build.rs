@@ -1,0 +1,373 @@
+//! From the facets of a file to a surface: corners merged, triangles checked, and how they hang together.
+
+use super::flaw::Flaw;
+use super::geometry::{Part, nearest};
+use super::groups::Groups;
+use super::stl::Facet;
+use super::tree::Tree;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+/// Least height of a triangle over its longest side: below it the direction of its normal is rounding.
+const FLAT: f64 = 1e-9;
+
+/// How a file is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// What its unit is (m).
+    pub unit: f64,
+    /// Corners that are no farther apart are one (m); those that are equal are one anyway.
+    pub merge: f64,
+    /// Whether edges of one triangle only are meant.
+    pub open: bool,
+    /// Whether its normals point into what it encloses.
+    pub inward: bool,
+}
+
+/// An edge between two corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Edge {
+    pub(super) ends: [u32; 2],
+    /// The triangles that it is a side of; the last twice where it is open.
+    pub(super) faces: [u32; 2],
+    /// Unit vectors from it into these, across it.
+    pub(super) into: [Vector3<f64>; 2],
+}
+
+impl Edge {
+    pub(super) fn is_open(&self) -> bool {
+        self.faces[0] == self.faces[1]
+    }
+}
+
+/// A surface of triangles.
+pub struct Surface {
+    pub(super) corners: Vec<Vector3<f64>>,
+    pub(super) faces: Vec<[u32; 3]>,
+    pub(super) triangles: Vec<[Vector3<f64>; 3]>,
+    pub(super) normals: Vec<Vector3<f64>>,
+    /// The edges of each triangle, from the corner of that number to the next.
+    pub(super) sides: Vec<[u32; 3]>,
+    pub(super) edges: Vec<Edge>,
+    /// Where the directions of the edges from each corner begin, and unit vectors along these.
+    pub(super) from_corner: Vec<u32>,
+    pub(super) directions: Vec<Vector3<f64>>,
+    pub(super) groups: Groups,
+    pub(super) tree: Tree,
+}
+
+/// Two surfaces are one where their triangles are.
+impl PartialEq for Surface {
+    fn eq(&self, other: &Self) -> bool {
+        self.triangles == other.triangles
+    }
+}
+
+/// Shown by the number and the hash of its triangles: what scenes are known by.
+impl std::fmt::Debug for Surface {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut hash = blake3::Hasher::new();
+        for number in self.triangles.iter().flatten().flatten() {
+            hash.update(&number.to_bits().to_le_bytes());
+        }
+        write!(formatter, "Surface({}, {})", self.triangles.len(), hash.finalize().to_hex())
+    }
+}
+
+impl Surface {
+    /// The surface of some facets.
+    ///
+    /// # Errors
+    /// When a triangle has no area or is there twice, when its normal says another side than the order of its corners, when
+    /// neighbours do, when more than two meet at an edge or, unless that is meant, one only, when a corner lies on an edge that
+    /// it should end, or when what is enclosed lies on the wrong side.
+    pub fn new(facets: &[Facet], reading: Reading) -> Result<Self, Flaw> {
+        let (corners, faces) = merged(facets, reading);
+        let triangles: Vec<_> = faces.iter().map(|face| face.map(|corner| corners[corner as usize])).collect();
+        let name = |face: usize| format!("facet {} ({})", face + 1, facets[face].place);
+        let normals = normals(facets, &faces, &triangles, &name)?;
+        refuse_twice(&faces, &name)?;
+        let (edges, sides) = edges(&faces, &corners, &normals, &name)?;
+        let tree = Tree::new(&triangles);
+        let open: Vec<&Edge> = edges.iter().filter(|edge| edge.is_open()).collect();
+        if let Some(edge) = open.first().filter(|_| !reading.open) {
+            return Err(open_flaw(edge, open.len(), &corners, &name));
+        }
+        let (from_corner, directions) = directions(&corners, &edges);
+        let groups = Groups::new(&corners, &faces, &normals, &edges, &sides);
+        let surface = Self { corners, faces, triangles, normals, sides, edges, from_corner, directions, groups, tree };
+        if reading.open {
+            surface.refuse_corners_on_edges(reading.merge, &name)?;
+        } else {
+            surface.refuse_wrong_side(reading.inward)?;
+        }
+        Ok(surface)
+    }
+
+    /// The corners of every triangle (m).
+    #[must_use]
+    pub fn triangles(&self) -> &[[Vector3<f64>; 3]] {
+        &self.triangles
+    }
+
+    /// The corners of the box around it (m).
+    #[must_use]
+    pub fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+        self.corners.iter().fold(start, |(low, high), corner| (low.inf(corner), high.sup(corner)))
+    }
+
+    /// How many patches, ridges and corners a sphere may touch.
+    #[must_use]
+    pub fn parts(&self) -> [usize; 3] {
+        self.groups.counts()
+    }
+
+    /// Volume that the triangles enclose (m³), negative where their normals point into it.
+    fn volume(&self) -> f64 {
+        let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
+        let of = |[a, b, c]: &[Vector3<f64>; 3]| (a - middle).dot(&(b - middle).cross(&(c - middle))) / 6.0;
+        self.triangles.iter().map(of).sum()
+    }
+
+    fn refuse_wrong_side(&self, inward: bool) -> Result<(), Flaw> {
+        match (self.volume() < 0.0, inward) {
+            (true, false) => Err(Flaw::new("normals that point out of what the mesh encloses", "all point into it")
+                .help("its triangles are turned over; `inward = true` says that this is meant")),
+            (false, true) => {
+                Err(Flaw::new("normals that point into what the mesh encloses (`inward`)", "all point out of it"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a corner of an open edge that lies in the middle of another: what looks like a seam is two rims, and a grain
+    /// there would touch both.
+    fn refuse_corners_on_edges(&self, merge: f64, name: &dyn Fn(usize) -> String) -> Result<(), Flaw> {
+        let (low, high) = self.bounds();
+        let near = merge.max(1e-9 * (high - low).norm());
+        for edge in self.edges.iter().filter(|edge| edge.is_open()) {
+            for end in edge.ends {
+                let corner = self.corners[end as usize];
+                let mut on = None;
+                self.tree.near(corner, |face| {
+                    if let Some(face) = face {
+                        let open = self.sides[face as usize].map(|side| &self.edges[side as usize]);
+                        let is_on = |other: &&&Edge| {
+                            let [a, b] = other.ends.map(|end| self.corners[end as usize]);
+                            let (line, from) = (b - a, corner - a);
+                            let part = from.dot(&line) / line.norm_squared();
+                            let within = near / line.norm();
+                            other.is_open()
+                                && part > within
+                                && part < 1.0 - within
+                                && (from - line * part).norm() <= near
+                        };
+                        on = on.or(open.iter().find(is_on).map(|_| face));
+                    }
+                    near
+                });
+                if let Some(face) = on {
+                    let found = format!(
+                        "one of {} on a side of {}: {:?}",
+                        name(edge.faces[0] as usize),
+                        name(face as usize),
+                        corner.as_slice()
+                    );
+                    return Err(Flaw::new("corners that end the edges on which they lie", &found)
+                        .help("divide the other triangle there, or it is a rim of its own"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The point of the surface that is nearest to a place (m).
+    #[must_use]
+    pub fn nearest(&self, place: Vector3<f64>) -> Vector3<f64> {
+        let mut point = nearest(place, &self.triangles[0]).0;
+        let mut least = (point - place).norm();
+        self.tree.near(place, |face| {
+            if let Some(face) = face {
+                let other = nearest(place, &self.triangles[face as usize]).0;
+                let distance = (other - place).norm();
+                if distance < least {
+                    (point, least) = (other, distance);
+                }
+            }
+            least
+        });
+        point
+    }
+
+    fn distance_to(&self, place: Vector3<f64>, face: usize) -> f64 {
+        match nearest(place, &self.triangles[face]) {
+            (_, Part::Face) => (place - self.triangles[face][0]).dot(&self.normals[face]).abs(),
+            (point, _) => (point - place).norm(),
+        }
+    }
+
+    /// Adds every triangle within a distance (m) of a place to a list, in order.
+    pub fn near(&self, place: Vector3<f64>, reach: f64, list: &mut Vec<u32>) {
+        let from = list.len();
+        self.tree.near(place, |face| {
+            list.extend(face.filter(|&face| self.distance_to(place, face as usize) <= reach));
+            reach
+        });
+        list[from..].sort_unstable();
+    }
+}
+
+/// The corners without those that are there more than once, and which each facet has.
+fn merged(facets: &[Facet], reading: Reading) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
+    let mut corners: Vec<Vector3<f64>> = Vec::new();
+    let mut known: BTreeMap<[i64; 3], Vec<u32>> = BTreeMap::new();
+    let merge = reading.merge;
+    let mut number = |corner: &Vector3<f64>| {
+        // Of zero there are two.
+        let corner = corner * reading.unit + Vector3::zeros();
+        let cell: [i64; 3] = if merge > 0.0 {
+            (corner / merge).map(|part| part.floor() as i64).into()
+        } else {
+            corner.map(|part| part.to_bits() as i64).into()
+        };
+        let around = if merge > 0.0 { -1..=1 } else { 0..=0 };
+        for i in around.clone() {
+            for j in around.clone() {
+                for k in around.clone() {
+                    let beside = [0, 1, 2].map(|axis| cell[axis].wrapping_add([i, j, k][axis]));
+                    let found = known.get(&beside).and_then(|there| {
+                        there.iter().find(|&&there| (corners[there as usize] - corner).norm() <= merge)
+                    });
+                    if let Some(&found) = found {
+                        return found;
+                    }
+                }
+            }
+        }
+        let new = corners.len() as u32;
+        corners.push(corner);
+        known.entry(cell).or_default().push(new);
+        new
+    };
+    let faces = facets.iter().map(|facet| facet.corners.each_ref().map(&mut number)).collect();
+    (corners, faces)
+}
+
+fn normals(
+    facets: &[Facet],
+    faces: &[[u32; 3]],
+    triangles: &[[Vector3<f64>; 3]],
+    name: &dyn Fn(usize) -> String,
+) -> Result<Vec<Vector3<f64>>, Flaw> {
+    let of = |number: usize| {
+        let ([a, b, c], [i, j, k]) = (triangles[number], faces[number]);
+        let across = (b - a).cross(&(c - a));
+        let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+        let height = across.norm() / longest;
+        if i == j || j == k || k == i || !(height > FLAT * longest) {
+            let found = format!("{}: {:?}, {:?}, {:?}", name(number), a.as_slice(), b.as_slice(), c.as_slice());
+            return Err(Flaw::new("triangles with an area", &found));
+        }
+        let normal = across.normalize();
+        if normal.dot(&facets[number].normal) < 0.0 {
+            let found = format!("{}, whose normal points to the other side", name(number));
+            return Err(Flaw::new("normals on the side from which the corners go round to the left", &found)
+                .help("the triangle is turned over, or its normal is wrong"));
+        }
+        Ok(normal)
+    };
+    (0..facets.len()).map(of).collect()
+}
+
+fn refuse_twice(faces: &[[u32; 3]], name: &dyn Fn(usize) -> String) -> Result<(), Flaw> {
+    let mut known = BTreeMap::new();
+    for (number, face) in faces.iter().enumerate() {
+        let mut sorted = *face;
+        sorted.sort_unstable();
+        if let Some(first) = known.insert(sorted, number) {
+            let found = format!("{} and {} with the same corners", name(first), name(number));
+            return Err(Flaw::new("every triangle once", &found));
+        }
+    }
+    Ok(())
+}
+
+/// The edges, and those of each triangle.
+fn edges(
+    faces: &[[u32; 3]],
+    corners: &[Vector3<f64>],
+    normals: &[Vector3<f64>],
+    name: &dyn Fn(usize) -> String,
+) -> Result<(Vec<Edge>, Vec<[u32; 3]>), Flaw> {
+    let (mut edges, mut sides): (Vec<Edge>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
+    let mut known: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+    for (number, face) in faces.iter().enumerate() {
+        let mut own = [0; 3];
+        for side in 0..3 {
+            let ends = [face[side], face[(side + 1) % 3]];
+            let [a, b] = ends.map(|end| corners[end as usize]);
+            let into = normals[number].cross(&(b - a)).normalize();
+            let between = || format!("between {:?} and {:?}", a.as_slice(), b.as_slice());
+            let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            let Some(&at) = known.get(&key) else {
+                known.insert(key, edges.len() as u32);
+                own[side] = edges.len() as u32;
+                edges.push(Edge { ends, faces: [number as u32; 2], into: [into; 2] });
+                continue;
+            };
+            own[side] = at;
+            let edge = &mut edges[at as usize];
+            let first = edge.faces[0] as usize;
+            if !edge.is_open() {
+                let found =
+                    format!("{}, {} and {} {}", name(first), name(edge.faces[1] as usize), name(number), between());
+                return Err(Flaw::new("no more than two triangles at an edge", &found)
+                    .help("surfaces that branch are walls of their own"));
+            }
+            if edge.ends == ends {
+                let found = format!("{} and {} {}, which face different sides", name(first), name(number), between());
+                return Err(Flaw::new("neighbours that face the same side", &found).help("one of them is turned over"));
+            }
+            (edge.faces[1], edge.into[1]) = (number as u32, into);
+        }
+        sides.push(own);
+    }
+    Ok((edges, sides))
+}
+
+fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], name: &dyn Fn(usize) -> String) -> Flaw {
+    let [a, b] = edge.ends.map(|end| corners[end as usize]);
+    let found = format!(
+        "{count} with one, the first of {} between {:?} and {:?}",
+        name(edge.faces[0] as usize),
+        a.as_slice(),
+        b.as_slice()
+    );
+    // What is nearly another corner is a seam that rounding has opened.
+    let size = (b - a).norm();
+    let nearly =
+        corners.iter().map(|corner| (corner - a).norm()).filter(|&away| away > 0.0).fold(f64::INFINITY, f64::min);
+    let help = if nearly < 1e-3 * size {
+        format!("another corner is {nearly:e} m from the first: `merge` (m) takes them for one")
+    } else {
+        "`open = true` says that this is meant, as of a funnel".to_owned()
+    };
+    Flaw::new("two triangles at every edge", &found).help(&help)
+}
+
+/// Unit vectors along the edges from every corner.
+fn directions(corners: &[Vector3<f64>], edges: &[Edge]) -> (Vec<u32>, Vec<Vector3<f64>>) {
+    let mut from = vec![0; corners.len() + 1];
+    edges.iter().flat_map(|edge| edge.ends).for_each(|end| from[end as usize + 1] += 1);
+    (1..from.len()).for_each(|at| from[at] += from[at - 1]);
+    let mut next = from.clone();
+    let mut directions = vec![Vector3::zeros(); 2 * edges.len()];
+    for edge in edges {
+        for [a, b] in [edge.ends, [edge.ends[1], edge.ends[0]]] {
+            directions[next[a as usize] as usize] = (corners[b as usize] - corners[a as usize]).normalize();
+            next[a as usize] += 1;
+        }
+    }
+    (from, directions)
+}

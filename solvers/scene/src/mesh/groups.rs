@@ -1,0 +1,134 @@
+//! What a surface is made of, however it is cut into triangles: patches, ridges and corners.
+
+use super::build::Edge;
+use nalgebra::Vector3;
+
+/// Sine of the angle by which triangles may differ from the first of their patch, and edges from the first of their ridge. A
+/// file of single precision turns the triangles of a plane by as much as 10⁻⁵; a cylinder of as many sides as it takes to be
+/// flat by this has 60 000.
+const STRAIGHT: f64 = 1e-4;
+/// Not in a group yet.
+const NONE: u32 = u32::MAX;
+
+/// The patch, ridge or corner that every part of a triangle belongs to: numbers of patches come first, then those of ridges.
+#[derive(Clone, Debug)]
+pub(super) struct Groups {
+    pub(super) of_face: Vec<u32>,
+    pub(super) of_edge: Vec<u32>,
+    pub(super) of_corner: Vec<u32>,
+    counts: [usize; 3],
+}
+
+impl Groups {
+    pub(super) fn new(
+        corners: &[Vector3<f64>],
+        faces: &[[u32; 3]],
+        normals: &[Vector3<f64>],
+        edges: &[Edge],
+        sides: &[[u32; 3]],
+    ) -> Self {
+        let (of_face, patches) = patches(normals, edges, sides);
+        let in_patch = |edge: &Edge| {
+            let [a, b] = edge.faces.map(|face| of_face[face as usize]);
+            (!edge.is_open() && a == b).then_some(a)
+        };
+        let mut of_edge: Vec<u32> = edges.iter().map(|edge| in_patch(edge).unwrap_or(NONE)).collect();
+        // The edges that are no seams, of each corner.
+        let mut sharp: Vec<Vec<u32>> = vec![Vec::new(); corners.len()];
+        for (number, edge) in edges.iter().enumerate().filter(|(number, _)| of_edge[*number] == NONE) {
+            edge.ends.iter().for_each(|&end| sharp[end as usize].push(number as u32));
+        }
+        let ridges = ridges(corners, edges, &sharp, &mut of_edge, patches);
+        let mut of_corner = vec![NONE; corners.len()];
+        let mut several = vec![false; corners.len()];
+        for (number, face) in faces.iter().enumerate() {
+            for &corner in face {
+                let corner = corner as usize;
+                several[corner] |= of_corner[corner] != NONE && of_corner[corner] != of_face[number];
+                of_corner[corner] = of_face[number];
+            }
+        }
+        let mut next = patches + ridges;
+        for corner in 0..corners.len() {
+            match sharp[corner][..] {
+                [] if !several[corner] => {}
+                [a, b] if of_edge[a as usize] == of_edge[b as usize] => of_corner[corner] = of_edge[a as usize],
+                _ => {
+                    of_corner[corner] = next;
+                    next += 1;
+                }
+            }
+        }
+        let counts = [patches, ridges, next - patches - ridges].map(|count| count as usize);
+        Self { of_face, of_edge, of_corner, counts }
+    }
+
+    pub(super) fn counts(&self) -> [usize; 3] {
+        self.counts
+    }
+}
+
+/// The patch of every triangle, and how many there are.
+fn patches(normals: &[Vector3<f64>], edges: &[Edge], sides: &[[u32; 3]]) -> (Vec<u32>, u32) {
+    let mut of_face = vec![NONE; normals.len()];
+    let (mut count, mut open) = (0, Vec::new());
+    for first in 0..normals.len() {
+        if of_face[first] != NONE {
+            continue;
+        }
+        of_face[first] = count;
+        open.push(first);
+        while let Some(face) = open.pop() {
+            for side in sides[face] {
+                for other in edges[side as usize].faces.map(|other| other as usize) {
+                    if of_face[other] == NONE && is_straight(normals[first], normals[other]) {
+                        of_face[other] = count;
+                        open.push(other);
+                    }
+                }
+            }
+        }
+        count += 1;
+    }
+    (of_face, count)
+}
+
+/// Finds the ridge of every edge that is no seam. Gives how many there are.
+fn ridges(corners: &[Vector3<f64>], edges: &[Edge], sharp: &[Vec<u32>], of_edge: &mut [u32], patches: u32) -> u32 {
+    let along = |edge: &Edge| (corners[edge.ends[1] as usize] - corners[edge.ends[0] as usize]).normalize();
+    let (mut count, mut open) = (0, Vec::new());
+    for first in 0..edges.len() {
+        if of_edge[first] != NONE {
+            continue;
+        }
+        of_edge[first] = patches + count;
+        open.push(first);
+        let line = along(&edges[first]);
+        while let Some(edge) = open.pop() {
+            for end in edges[edge].ends {
+                let [a, b] = sharp[end as usize][..] else { continue };
+                let other = (if a as usize == edge { b } else { a }) as usize;
+                let direction = along(&edges[other]);
+                if of_edge[other] == NONE
+                    && line.cross(&direction).norm() <= STRAIGHT
+                    && goes_on(edges, edge, other, end, &along)
+                {
+                    of_edge[other] = patches + count;
+                    open.push(other);
+                }
+            }
+        }
+        count += 1;
+    }
+    count
+}
+
+/// Whether an edge goes on in another beyond their common end, and does not turn back.
+fn goes_on(edges: &[Edge], a: usize, b: usize, end: u32, along: &dyn Fn(&Edge) -> Vector3<f64>) -> bool {
+    let away = |edge: &Edge| if edge.ends[0] == end { along(edge) } else { -along(edge) };
+    away(&edges[a]).dot(&away(&edges[b])) < 0.0
+}
+
+fn is_straight(first: Vector3<f64>, other: Vector3<f64>) -> bool {
+    first.dot(&other) > 0.0 && first.cross(&other).norm() <= STRAIGHT
+}

@@ -1,0 +1,84 @@
+//! Walls of triangles, from files beside the scene.
+
+use super::Resolver;
+use crate::error::SceneError;
+use crate::file::{LengthUnit, MeshSpec};
+use crate::mesh::{Flaw, Mesh, Reading, Surface, stl};
+use crate::scene::{Dimension, Domain, Grain, Wall, WallShape};
+use nalgebra::Vector3;
+
+/// Most bytes of a file: some ten million triangles of the binary form.
+const MOST: u64 = 1 << 29;
+/// How much larger than all grains together a mesh may be: one in millimetres that is taken for metres is a thousand times
+/// as large as it should be, and no less than what it holds.
+const TOO_LARGE: f64 = 300.0;
+
+impl Resolver<'_> {
+    pub(super) fn mesh(&self, wall: &str, spec: &MeshSpec) -> Result<WallShape, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("walls.{wall}.mesh{part}");
+        if check.dimension == Dimension::Two {
+            return Err(check.error(&key(""), "a `segment` or `plane` in two dimensions", "a mesh"));
+        }
+        let merge = check.not_negative(&key(".merge"), spec.merge, "length (m)")?;
+        if spec.open && spec.inward {
+            return Err(check.error(&key(".inward"), "a mesh that encloses something", "one that is `open`"));
+        }
+        let path = check.source.directory.join(&spec.file);
+        let unreadable = |found: String| check.error(&key(".file"), "a file of triangles (STL)", &found);
+        let length = std::fs::metadata(&path).map_err(|error| unreadable(error.to_string()))?;
+        if !length.is_file() || length.len() > MOST {
+            let found = if length.is_file() {
+                format!("{} bytes, more than {MOST}", length.len())
+            } else {
+                "no file".to_owned()
+            };
+            return Err(unreadable(found));
+        }
+        let bytes = std::fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
+        let unit = match spec.unit {
+            LengthUnit::M => 1.0,
+            LengthUnit::Mm => 1e-3,
+        };
+        let reading = Reading { unit, merge, open: spec.open, inward: spec.inward };
+        let read = stl::read(&bytes).and_then(|facets| Surface::new(&facets, reading));
+        let surface = read.map_err(|Flaw { expected, found, help }| {
+            check.source.error(&key(".file"), &expected, &format!("in `{}` {found}", spec.file), help)
+        })?;
+        Ok(WallShape::Mesh(Mesh::at_rest(surface)))
+    }
+
+    /// Refuses a mesh that is so much larger than all grains together, or than the domain, that its unit is another.
+    pub(super) fn refuse_other_units(
+        &self,
+        grains: &[Grain],
+        walls: &[Wall],
+        domain: Option<&Domain>,
+    ) -> Result<(), SceneError> {
+        let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+        let (low, high) = grains.iter().fold(start, |(low, high), grain| {
+            (low.inf(&grain.position.add_scalar(-grain.radius)), high.sup(&grain.position.add_scalar(grain.radius)))
+        });
+        let size = domain.map_or(0.0, |domain| (domain.high - domain.low).norm()).max((high - low).norm());
+        for wall in walls {
+            let WallShape::Mesh(mesh) = &wall.shape else { continue };
+            let (low, high) = mesh.surface.bounds();
+            let own = (high - low).norm();
+            if own > TOO_LARGE * size {
+                let expected =
+                    format!("a mesh no more than {TOO_LARGE} times as large as all grains together or the domain");
+                let found = format!("one of {own} m for {size} m");
+                let spec = self.file.walls.get(&wall.name).and_then(|spec| spec.mesh.as_ref());
+                let help = match spec.map(|spec| spec.unit) {
+                    Some(LengthUnit::M) => {
+                        "`unit = \"mm\"` where the file is in millimetres, or a `domain` where that is meant"
+                    }
+                    _ => "a `domain` where that is meant",
+                };
+                let key = format!("walls.{}.mesh.unit", wall.name);
+                return Err(self.check.source.error(&key, &expected, &found, Some(help.to_owned())));
+            }
+        }
+        Ok(())
+    }
+}
