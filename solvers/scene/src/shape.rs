@@ -13,6 +13,8 @@ const SHAPES: &[(&str, &str)] = &[
     ("cylinder", "{ axis = [[x, y, z], [x, y, z]], radius = r }"),
     ("cone", "{ axis = [[x, y, z], [x, y, z]], radii = [r, r] }"),
     ("cone.radii", "[r, r]"),
+    ("mesh", "{ file = \"FILE.stl\", unit = \"m\" }"),
+    ("mesh.file", "\"FILE.stl\""),
     ("axis", "[[x, y, z], [x, y, z]]"),
     ("piston", "{ force = F, mass = m }"),
     ("motion", "[{ velocity = @ }]"),

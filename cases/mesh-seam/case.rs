@@ -1,0 +1,156 @@
+//! A sphere on meshes of triangles: over seams that are none, and at edges and corners that are.
+
+#[path = "floors.rs"]
+mod floors;
+
+use crate::rows::programs::row;
+use grainbench_harness::compare::pointwise::worst;
+use grainbench_harness::prelude::*;
+use grainbench_scene::nalgebra::Vector3;
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+/// Time step (s): a sixty-fifth of the critical one.
+const STEP: Resolution = Resolution::TimeStep(1e-4);
+const FLOORS: [&str; 2] = ["two-triangles", "many-triangles"];
+const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
+
+pub(crate) static CASE: Case = Case {
+    name: "mesh-seam",
+    title: "A sphere on a mesh",
+    claim: "A sphere that rolls over the seams of coplanar triangles feels nothing of them, a mesh of a plane gives the plane's \
+            answer to 1e-9, and at ridges, corners and within corners it feels the solid that the mesh is.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "Flat floors and right angles: what a surface of many small angles does to a grain, as a drum of facets does, is \
+               the surface's own answer and is not compared with the smooth one.",
+    levels: LEVELS,
+    default_level: LEVELS[1],
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+fn claims() -> Vec<Claim> {
+    let mut claims: Vec<Claim> =
+        FLOORS.into_iter().flat_map(|floor| [level(floor), rolls(floor), as_plane(floor)]).collect();
+    claims.extend(PLACES.iter().map(held));
+    claims.extend(FLOORS.map(liggghts));
+    claims
+}
+
+/// The sphere stays at its static overlap.
+fn level(floor: &'static str) -> Claim {
+    let control = match floor {
+        "two-triangles" => {
+            Control::scene("a contact with each side of the seam: two rectangles", floors::of_two_rectangles)
+        }
+        _ => Control::scene("a step of 1e-3 R at the seams along a line", floors::with_a_step),
+    };
+    claim(format!("height over the seams, {floor}, worst, over the overlap at rest"), "m")
+        .of(Run::new(floor, "dem:lammps", STEP))
+        .holds("a plane has no seams (derivation)", |done| {
+            let (scene, height) = (&done[0].scene, done[0].column("ball.z")?);
+            let grain = &scene.grains[0];
+            let overlap = grain.radius - grain.position.z;
+            Ok(Measured::worst(&done[0].series().time, height, |_| grain.position.z, overlap))
+        })
+        .within(computed(1e-9, "rounding: 1e-16 m/1e-4 m a step, which springs bring back; a thousand steps of it"))
+        .refuses(control)
+}
+
+/// It ends at 5/7 of its velocity.
+fn rolls(floor: &'static str) -> Claim {
+    claim(format!("velocity at 1 s, {floor}"), "m/s")
+        .of(Run::new(floor, "dem:lammps", STEP))
+        .equals(Source::Derived("5/7 of the velocity that it is set down with (derivation)"), |done| {
+            let start = done[0].scene.grains[0].velocity.norm();
+            let exact = 5.0 / 7.0 * start;
+            Ok(Measured::new(done[0].last("ball.vx")?.hypot(done[0].last("ball.vy")?), exact, exact))
+        })
+        .within(judged(1e-9, "momentum about the contact fixes it once the spring has come to rest"))
+        .refuses(Control::scene("the inertia of a disc", |scene| {
+            scene.grains.iter_mut().for_each(|grain| grain.inertia *= 1.25);
+        }))
+}
+
+/// All of it turned, so that nothing is flat in any bit: as over the plane.
+fn as_plane(floor: &'static str) -> Claim {
+    let of = |variant| Run::new(variant, "dem:lammps", STEP).adjusted("turned by 20°", floors::turned);
+    claim(format!("position on a slant, {floor} and a plane, worst, over R"), "m")
+        .of_all([floor, "plane"].map(of))
+        .agrees(Source::Ourselves("the same on a plane"), |done| worst(done, &AXES, done[0].scene.grains[0].radius))
+        .within(required(1e-9, "a mesh of a plane is the plane"))
+        .refuses(Control::ours("a hundred-thousandth more stiffness on the mesh", |scene| {
+            scene.change_laws(|law| law.scale_normal(1.0 + 1e-5));
+        }))
+}
+
+/// A place at the cube, and the directions in which its surface is a distance away (m).
+struct At {
+    words: &'static str,
+    /// Centre (m).
+    centre: [f64; 3],
+    /// Vectors from each point that is touched to the centre (m).
+    away: &'static [[f64; 3]],
+}
+
+const PLACES: [At; 4] = [
+    At { words: "over the seam of a face", centre: [0.5, 0.5, 1.07], away: &[[0.0, 0.0, 0.07]] },
+    At { words: "at a ridge", centre: [1.06, 0.4, 1.07], away: &[[0.06, 0.0, 0.07]] },
+    At { words: "at a corner", centre: [1.05, 1.04, 1.07], away: &[[0.05, 0.04, 0.07]] },
+    At {
+        words: "within a corner",
+        centre: [0.91, 0.92, 0.93],
+        away: &[[-0.09, 0.0, 0.0], [0.0, -0.08, 0.0], [0.0, 0.0, -0.07]],
+    },
+];
+
+/// The force on the sphere where it is held.
+fn held(at: &'static At) -> Claim {
+    let place = |scene: &mut grainbench_scene::scene::Scene| scene.grains[0].position = at.centre.into();
+    claim(format!("force {}, off from the exact vector", at.words), "N")
+        .of(Run::new("cube", "dem", STEP).adjusted(at.words, place))
+        .holds("k (R − d) from every point that is touched (derivation)", |done| {
+            let (scene, done) = (&done[0].scene, &done[0]);
+            let grain = &scene.grains[0];
+            let stiffness = scene
+                .law(grain.material, scene.walls[0].material)
+                .map_or(f64::NAN, |law| law.springs.stiffness(0.0, 1.0).0);
+            let exact: Vector3<f64> = at
+                .away
+                .iter()
+                .map(|away| {
+                    let away = Vector3::from(*away);
+                    away.normalize() * (stiffness * (grain.radius - away.norm()))
+                })
+                .sum();
+            let force =
+                Vector3::new(done.last("held.force_x")?, done.last("held.force_y")?, done.last("held.force_z")?);
+            Ok(Measured::new((force - exact).norm(), 0.0, exact.norm()))
+        })
+        .within(computed(
+            1e-13,
+            "rounding of places near 1 m, 2e-16 in each of three directions, over an overlap of 5 mm",
+        ))
+        .refuses(Control::scene("the plane of the face above for the cube", move |scene| {
+            floors::of_a_plane(scene);
+            // Over the face the plane is the answer; there the sphere is a hair off.
+            scene.grains[0].position.z += 1e-9;
+        }))
+}
+
+/// As LIGGGHTS has it, over the same triangles.
+fn liggghts(floor: &'static str) -> Claim {
+    let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new(floor, solver, STEP));
+    let control = Control::ours("tangential stiffness × 1.001 in ours", |scene| {
+        scene.change_laws(|law| law.scale_tangential(1.001));
+    });
+    let allowed = judged(1e-11, "the same cycle: rounding, which grows over 10,000 steps; in units of R");
+    row(&format!("position over {floor}, worst"), "m", allowed, runs, control, |done| {
+        worst(done, &AXES, done[0].scene.grains[0].radius)
+    })
+}
+
+fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(Vec::new())
+}
