@@ -4,23 +4,26 @@ use crate::geometry::Geometry;
 use grainbench_lanes::Quad;
 use nalgebra::Vector3;
 
-/// A grid over the bounding box of the grains. Cells are at least `reach` wide, so that what lies within reach of a
-/// grain lies in its cell or the next; there are never more than a few cells a grain.
+/// A grid over the bounding box of the grains but the few that are far larger than the others. Cells are at least `reach` wide,
+/// so that what lies within reach of a grain lies in its cell or the next; there are never more than a few cells a grain.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     low: Vector3<f64>,
     width: Vector3<f64>,
+    reach: f64,
     pub(crate) count: [usize; 3],
-    /// First slot of every cell, and the number of grains at the end.
+    /// First slot of every cell, and the number of grains that have one at the end.
     pub(crate) start: Vec<u32>,
 }
 
 impl Cells {
-    /// Lays the grid and gives the order that sorts the grains by cell (a stable sort).
-    pub(crate) fn sort<S: Geometry>(place: &[Quad], reach: f64) -> (Self, Vec<u32>) {
+    /// Lays the grid and gives the order that sorts the grains by cell (a stable sort). Grains with radii above `limit` have no
+    /// cell and come last.
+    pub(crate) fn sort<S: Geometry>(place: &[Quad], reach: f64, limit: f64) -> (Self, Vec<u32>) {
         let mut low = Vector3::repeat(f64::INFINITY);
         let mut high = Vector3::repeat(f64::NEG_INFINITY);
-        for grain in place {
+        let has_cell = |grain: &&Quad| grain.0[3] <= limit;
+        for grain in place.iter().filter(has_cell) {
             let position = S::vector_in_space(grain);
             low = low.inf(&position);
             high = high.sup(&position);
@@ -40,9 +43,12 @@ impl Cells {
             cell *= 1.3;
         }
         let width = Vector3::from_fn(|axis, _| (extent[axis] / count[axis] as f64).max(reach));
-        let mut cells = Self { low, width, count, start: Vec::new() };
-        let cell_of: Vec<u32> = place.iter().map(|grain| cells.index(S::vector_in_space(grain)) as u32).collect();
-        let mut start = vec![0_u32; count.iter().product::<usize>() + 1];
+        let mut cells = Self { low, width, reach, count, start: Vec::new() };
+        // Those without a cell are sorted as if they had one more.
+        let last = count.iter().product::<usize>();
+        let cell = |grain: &Quad| if has_cell(&grain) { cells.index(S::vector_in_space(grain)) } else { last };
+        let cell_of: Vec<u32> = place.iter().map(|grain| cell(grain) as u32).collect();
+        let mut start = vec![0_u32; last + 2];
         cell_of.iter().for_each(|&cell| start[cell as usize + 1] += 1);
         for cell in 1..start.len() {
             start[cell] += start[cell - 1];
@@ -53,6 +59,7 @@ impl Cells {
             order[next[cell as usize] as usize] = slot as u32;
             next[cell as usize] += 1;
         }
+        start.truncate(last + 1);
         cells.start = start;
         (cells, order)
     }
@@ -77,6 +84,16 @@ impl Cells {
     pub(crate) fn place(&self, cell: usize) -> [usize; 3] {
         let [along, across, _] = self.count;
         [cell % along, cell / along % across, cell / (along * across)]
+    }
+
+    /// How far apart the centres of two grains with cells can be that are near (m).
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Slots of grains that have a cell.
+    pub(crate) fn sorted(&self) -> usize {
+        self.start.last().map_or(0, |&end| end as usize)
     }
 
     fn index(&self, position: Vector3<f64>) -> usize {
@@ -105,7 +122,7 @@ mod tests {
                 let along = |part: u32| origin + 1.01 * f64::from(part);
                 Quad([along(number % 8), along(number / 8), 0.0, 0.4])
             };
-            let (cells, order) = Cells::sort::<Plane>(&(0..64).map(at).collect::<Vec<_>>(), 1.0);
+            let (cells, order) = Cells::sort::<Plane>(&(0..64).map(at).collect::<Vec<_>>(), 1.0, f64::MAX);
             // The last of a row is on the border of the grid and shares the cell before it.
             assert_eq!(cells.count, [7, 7, 1]);
             let most = (0..7).flat_map(|j| (0..7).map(move |i| (i, j))).map(|(i, j)| cells.row(i, i, j, 0).len()).max();

@@ -50,14 +50,15 @@ impl Neighbours {
 
     /// Wraps the positions into the domain, sorts the grains and lists the pairs anew, in so many shares. Contacts go on
     /// remembering: `slots` are those that the grains had when the list was made, [`crate::grains::ABSENT`] of those that have
-    /// come since; they are as they were where none are given.
+    /// come since; they are as they were where none are given. `largest` is the largest radius of a grain up to `limit` (m):
+    /// those above it are few, and each looks for its partners over all cells that it reaches, where no axis is periodic.
     pub(crate) fn rebuild<S: Geometry>(
         &mut self,
         team: &Team,
         count: usize,
         (grains, slots): (&mut Grains<S>, Option<&[u32]>),
         domain: Option<&Domain>,
-        largest: f64,
+        [largest, limit]: [f64; 2],
         layout: Layout,
     ) {
         if let Some(domain) = domain {
@@ -67,7 +68,7 @@ impl Neighbours {
             }
         }
         let reach = 2.0 * largest + self.skin;
-        let (cells, mut order) = Cells::sort::<S>(&grains.place, reach);
+        let (cells, mut order) = Cells::sort::<S>(&grains.place, reach, limit);
         grains.reorder(&order);
         if let Some(slots) = slots {
             order.iter_mut().for_each(|slot| *slot = slots[*slot as usize]);
@@ -137,10 +138,14 @@ fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
 /// Every pair of some rows that is near in the domain itself, once: each grain with those after it in its own cells and in
 /// the next.
 fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range<usize>, layout: Layout) -> Pairs {
-    let mut cell = cells.of(rows.start);
+    let sorted = cells.sorted();
+    let mut cell = cells.of(rows.start.min(sorted.saturating_sub(1)));
     let mut at = cells.place(cell);
     Pairs::list(rows, layout, |slot, partners, _| {
         let grain = &place[slot];
+        if slot >= sorted {
+            return beside_a_large_one::<S>(place, cells, skin, slot, partners);
+        }
         while cells.start[cell + 1] as usize <= slot {
             cell += 1;
             at = cells.place(cell);
@@ -167,6 +172,26 @@ fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range
             }
         }
     })
+}
+
+/// What is near to a grain that is far larger than others and has no cell: of those in cells all that it reaches, and of those
+/// without the ones after it.
+fn beside_a_large_one<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, slot: usize, partners: &mut Vec<u32>) {
+    let (grain, sorted) = (&place[slot], cells.sorted());
+    let mut take = |range: Range<usize>| {
+        partners.extend(range.filter(|&other| is_near::<S>(grain, &place[other], skin)).map(|other| other as u32));
+    };
+    let reach = Vector3::repeat(grain.0[3] + cells.reach());
+    let middle = S::vector_in_space(grain);
+    let (low, high) = (cells.coordinates(middle - reach), cells.coordinates(middle + reach));
+    if sorted > 0 {
+        for k in low[2]..=high[2] {
+            for j in low[1]..=high[1] {
+                take(cells.row(low[0], high[0], j, k));
+            }
+        }
+    }
+    take(slot + 1..place.len());
 }
 
 /// One of each pair of opposite periodic shifts (m).
@@ -254,7 +279,7 @@ mod tests {
         let domain = Domain { low: Vector3::zeros(), high: Vector3::repeat(size), periodic };
         let mut grains = Grains::<S>::at(&points, radius);
         let mut neighbours = Neighbours::new(skin);
-        neighbours.rebuild(&Team::new(1), shares, (&mut grains, None), Some(&domain), radius, NOTHING);
+        neighbours.rebuild(&Team::new(1), shares, (&mut grains, None), Some(&domain), [radius, f64::MAX], NOTHING);
         let mut listed = BTreeSet::new();
         for pairs in neighbours.shares.iter().flat_map(|share| [&share.near, &share.across]) {
             for at in pairs.own() {
@@ -288,6 +313,36 @@ mod tests {
             agrees_with_all_pairs::<Solid>([false; 3], shares);
             agrees_with_all_pairs::<Solid>([false, true, false], shares);
             agrees_with_all_pairs::<Solid>([true; 3], shares);
+        }
+    }
+
+    /// Two grains ten times as large as the others, one of them far from all cells.
+    #[test]
+    fn lists_what_is_near_to_large_grains_once() {
+        let (radius, large, skin) = (0.1, 1.0, 0.05);
+        let mut points = scatter(400, 3, 4.0);
+        points.extend([Vector3::new(2.0, 1.5, 4.5), Vector3::new(2.0, 3.0, 3.5), Vector3::new(2.0, 2.0, 40.0)]);
+        let radius_of = |id: usize| if id < 400 { radius } else { large };
+        for shares in [1, 3] {
+            let mut grains = Grains::<Solid>::at(&points, radius);
+            (400..points.len()).for_each(|slot| grains.place[slot].0[3] = large);
+            let mut neighbours = Neighbours::new(skin);
+            for _ in 0..2 {
+                let slots: Vec<u32> = (0..points.len() as u32).collect();
+                let grains = (&mut grains, Some(&slots[..]));
+                neighbours.rebuild(&Team::new(1), shares, grains, None, [radius, 0.4], NOTHING);
+            }
+            let mut listed = BTreeSet::new();
+            for share in &neighbours.shares {
+                for at in share.near.own() {
+                    let (a, b) = (grains.id[share.near.row[at] as usize], grains.id[share.near.partner[at] as usize]);
+                    assert!(listed.insert((a.min(b), a.max(b))), "pair {a} {b} listed twice");
+                }
+            }
+            let near = |a: usize, b: usize| (points[b] - points[a]).norm() < radius_of(a) + radius_of(b) + skin;
+            let all = (0..points.len()).flat_map(|a| (a + 1..points.len()).map(move |b| (a, b)));
+            let expected: BTreeSet<_> = all.filter(|&(a, b)| near(a, b)).map(|(a, b)| (a as u32, b as u32)).collect();
+            assert_eq!(listed, expected);
         }
     }
 }

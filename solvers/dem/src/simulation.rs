@@ -28,6 +28,9 @@ use nalgebra::Vector3;
 /// wider skin tests more pairs in vain and builds fewer lists anew.
 const SKIN: f64 = 0.2;
 
+/// Radius from which on a grain is far larger than others, in mean radii: cells as wide as it would hold hundreds of those.
+const FAR_LARGER: f64 = 4.0;
+
 /// A simulation in a space.
 pub(crate) struct Simulated<S: Geometry> {
     pub(crate) scene: Scene,
@@ -383,8 +386,9 @@ impl<S: Geometry> Simulated<S> {
             self.refuse_crowded(slots)?;
         }
         let shares = self.shares();
-        let Self { neighbours, grains, team, largest_radius, .. } = self;
-        neighbours.rebuild(team, shares, (grains, slots.as_deref()), domain.as_ref(), *largest_radius, layout);
+        let radii = self.radii_of_cells();
+        let Self { neighbours, grains, team, .. } = self;
+        neighbours.rebuild(team, shares, (grains, slots.as_deref()), domain.as_ref(), radii, layout);
         let mut remembered = vec![[0.0; MEMORY]; self.scene.grains.len()];
         self.extent = 0.0;
         for (wall, before) in self.walls.iter_mut().zip(&by_wall) {
@@ -412,6 +416,16 @@ impl<S: Geometry> Simulated<S> {
         self.travelled = 0.0;
         self.cost.neighbour_builds = self.neighbours.builds;
         Ok(())
+    }
+
+    /// The largest radius of a grain that has a cell of the grid, and the radius above which none has (m).
+    fn radii_of_cells(&self) -> [f64; 2] {
+        let limit = if self.scene.is_periodic() { f64::MAX } else { FAR_LARGER / SKIN * self.neighbours.skin };
+        if self.largest_radius <= limit {
+            return [self.largest_radius, f64::MAX];
+        }
+        let radii = self.scene.grains.iter().map(|grain| grain.radius);
+        [radii.filter(|radius| *radius <= limit).fold(0.0, f64::max), limit]
     }
 
     /// Refuses a grain that comes where another one or a wall is: `slots` are those that grains had before, and those that come
