@@ -1,0 +1,104 @@
+//! Every pair of materials of the round robin of bulk processes, beside LIGGGHTS.
+
+use crate::rows::programs::row;
+use grainbench_harness::compare::pointwise::together;
+use grainbench_harness::prelude::*;
+
+/// The step of the paper's impact (Dosta et al. 2024).
+const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) }];
+
+pub(crate) static CASE: Case = Case {
+    name: "bulk-pairs",
+    title: "Pairs of the round robin of bulk processes",
+    claim: "Between M1, M2 and steel, and at walls of steel, the force of a pair that meets obliquely and the torque about it are those \
+            of LIGGGHTS, step by step.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "One impact a pair, at one speed and spin. LIGGGHTS is run without its dashpot along the tangent, which our law does \
+               not have; what the codes of the paper had is not known here.",
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims: &claims,
+    figures: |_| Ok(Vec::new()),
+    home: &crate::registry::HOME,
+};
+
+/// Our solver in LIGGGHTS' convention, and LIGGGHTS.
+const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
+
+/// Variants, and which pairs they are.
+const PAIRS: [(&str, &str); 8] = [
+    ("m1-m1", "M1 on M1"),
+    ("m1-m2", "M1 on M2"),
+    ("m2-m2", "M2 on M2"),
+    ("m1-steel", "M1 on steel"),
+    ("m2-steel", "M2 on steel"),
+    ("steel-steel", "steel on steel"),
+    ("m1-wall", "M1 on a wall of steel"),
+    ("m2-wall", "M2 on a wall of steel"),
+];
+
+fn claims() -> Vec<Claim> {
+    let mut all = Vec::new();
+    for (variant, about) in PAIRS {
+        all.push(force(variant, about));
+        all.push(torque(variant, about));
+    }
+    all
+}
+
+fn runs(variant: &'static str) -> [Run; 2] {
+    SIDES.map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
+}
+
+/// The force on the first of a pair, m Δv/Δt, over all steps.
+fn force(variant: &'static str, about: &str) -> Claim {
+    let allowed = judged(
+        1e-10,
+        "the same cycle: rounding of velocities, which forces are the differences of; in units of the largest",
+    );
+    let control = Control::ours("E* × 1.00001 in ours", |scene| {
+        scene.change_laws(|law| law.scale_normal(1.00001));
+    });
+    row(&format!("force, {about}, worst"), "N", allowed, runs(variant), control, |done| {
+        let grain = &done[0].scene.grains[0];
+        rate(done, &["a.vx", "a.vz"], grain.mass)
+    })
+}
+
+/// The torque on it, I Δω/Δt.
+fn torque(variant: &'static str, about: &str) -> Claim {
+    let allowed = judged(
+        1e-10,
+        "the same cycle: rounding of spins, which torques are the differences of; in units of the largest",
+    );
+    let control = Control::ours("μ × 1.00001 in ours", |scene| {
+        scene.change_laws(|law| law.friction *= 1.00001);
+    });
+    row(&format!("torque, {about}, worst"), "N m", allowed, runs(variant), control, |done| {
+        let grain = &done[0].scene.grains[0];
+        rate(done, &["a.omega_y"], grain.inertia)
+    })
+}
+
+/// What velocities gain a step times an inertia, the worst difference of ours from the program's in units of its largest.
+fn rate(done: &[Done], columns: &[&str], inertia: f64) -> Result<Measured, Missing> {
+    let [ours, theirs, ..] = done else { return Err(Missing("second run to compare with".to_owned())) };
+    let times = &theirs.series().time;
+    let middle: Vec<f64> = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+    let gains = |values: &[f64]| -> Vec<f64> {
+        let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+        values.windows(2).zip(steps).map(|(pair, step)| inertia * (pair[1] - pair[0]) / step).collect()
+    };
+    let mut both = Vec::new();
+    let mut largest = 0.0_f64;
+    for column in columns {
+        let (ours, theirs) = together(ours, theirs, column)?;
+        let (ours, theirs) = (gains(&ours), gains(&theirs));
+        largest = theirs.iter().fold(largest, |most, value| most.max(value.abs()));
+        both.push((ours, theirs));
+    }
+    let found: Vec<Measured> =
+        both.iter().map(|(ours, theirs)| Measured::worst_of(&middle, ours, theirs, largest)).collect();
+    Measured::worst_among(found).ok_or_else(|| Missing("columns to compare".to_owned()))
+}
