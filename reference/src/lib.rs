@@ -17,6 +17,7 @@ pub mod outside;
 mod pair_forces;
 mod process;
 mod read;
+pub mod round_robin;
 mod run_files;
 pub mod stored;
 

@@ -16,6 +16,7 @@ mod exit;
 mod fields;
 mod filter;
 mod github;
+mod import;
 mod interrupt;
 mod keep;
 mod list;

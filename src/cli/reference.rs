@@ -3,6 +3,7 @@
 use super::check::rows;
 use super::cores::MOST_THREADS;
 use super::exit::{Fault, Outcome, check_writable, print, say};
+use super::import::{Import, import};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::run::exit_code;
@@ -38,6 +39,8 @@ pub(crate) enum Command {
     /// Estimate how far values may be off because cells and steps are finite: three levels of resolution for each row
     /// whose tolerance is an estimate.
     Uncertainty(Uncertainty),
+    /// Derive numbers from published data of others that you have, and draw it: the data stays where it is.
+    Import(Import),
 }
 
 /// What `keep` takes.
@@ -102,6 +105,7 @@ pub(crate) fn reference(command: &Command) -> Outcome {
         Command::Verify(arguments) => verify(arguments),
         Command::Keep(arguments) => keep(arguments),
         Command::Uncertainty(arguments) => uncertainty(arguments),
+        Command::Import(arguments) => import(arguments),
     }
 }
 

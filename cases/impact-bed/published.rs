@@ -1,0 +1,87 @@
+//! What seven codes found on ten beds, and where ours are in it.
+
+use grainbench_harness::prelude::*;
+use grainbench_harness::source::Cited;
+
+/// Beds that are published.
+const PUBLISHED: usize = 10;
+
+/// Means and deviations of the ball's height over time (s, mm): derived from the published data.
+pub(super) static BEDS: std::sync::LazyLock<Vec<[f64; 4]>> = std::sync::LazyLock::new(|| {
+    let mut table = csv::Reader::from_reader(grainbench_reference::round_robin::IMPACT.as_bytes());
+    let number = |row: &csv::StringRecord, place: usize| row.get(place)?.parse().ok();
+    let row = |row: csv::StringRecord| Some([number(&row, 0)?, number(&row, 1)?, number(&row, 2)?, number(&row, 3)?]);
+    table.records().flatten().filter_map(row).collect()
+});
+
+/// A quantity's mean and its deviations between codes and between beds.
+#[derive(Clone, Copy)]
+pub(super) struct Spread {
+    pub(super) mean: f64,
+    of: grainbench_reference::round_robin::Spread,
+}
+
+impl Spread {
+    pub(super) fn of(mean: Cited, code: Cited, bed: Cited) -> Self {
+        let of = grainbench_reference::round_robin::Spread { mean: mean.value, code: code.value, bed: bed.value };
+        Self { mean: mean.value, of }
+    }
+
+    /// What so many beds of ours may be off by.
+    pub(super) fn allowed(&self, own: usize) -> f64 {
+        self.of.allowed(own, PUBLISHED)
+    }
+}
+
+/// Heights of our beds beside the codes' mean, and our code as a whole in the spread: how many of its deviations it is off.
+pub(super) fn figures(done: &[Done], published: &[[f64; 4]]) -> Vec<Figure> {
+    let course = |done: &Done| -> Vec<(f64, f64)> {
+        let heights = done.column("ball.z").unwrap_or_default();
+        done.series().time.iter().zip(heights).map(|(time, height)| (time * 1e3, height * 1e3)).collect()
+    };
+    let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
+    let within: Vec<&[f64; 4]> = published.iter().filter(|row| row[0] <= last + 1e-9).collect();
+    let band = within.iter().flat_map(|[time, mean, code, bed]| {
+        let half = 2.0 * code.hypot(bed * (1.0 + 1.0 / PUBLISHED as f64).sqrt());
+        [(time * 1e3, mean - half), (time * 1e3, mean + half)]
+    });
+    let mut curves = vec![Curve::new("one bed of one more code, two deviations", Stroke::Bars, band.collect())];
+    curves.push(Curve::new(
+        "seven codes, mean",
+        Stroke::Dashed,
+        within.iter().map(|[time, mean, ..]| (time * 1e3, *mean)).collect(),
+    ));
+    for (number, of) in done.iter().enumerate() {
+        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, course(of)));
+    }
+    let scores = within.iter().filter(|[.., code, bed]| *code > 0.01 && *bed > 0.01).filter_map(|[time, mean, code, bed]| {
+        let at = |done: &Done| {
+            let heights = done.column("ball.z").ok()?;
+            let place = done.series().time.iter().position(|sampled| (sampled - time).abs() < 1e-9)?;
+            Some(heights[place] * 1e3)
+        };
+        let own: Vec<f64> = done.iter().filter_map(at).collect();
+        let deviation = code.hypot(bed * (1.0 / own.len() as f64 + 1.0 / PUBLISHED as f64).sqrt());
+        (own.len() == done.len()).then(|| (time * 1e3, (own.iter().sum::<f64>() / own.len() as f64 - mean) / deviation))
+    });
+    let scores: Vec<(f64, f64)> = scores.collect();
+    let ends = [scores.first().map_or(0.0, |first| first.0), scores.last().map_or(1.0, |last| last.0)];
+    let bound = |at: f64| Curve::new(format!("{at:+}"), Stroke::Dashed, ends.map(|end| (end, at)).to_vec());
+    vec![
+        Figure::graph(
+            "heights",
+            "Height of the ball",
+            "Height of the ball's centre over time on five beds of our own, and the mean of seven codes on ten beds (Dosta et al. 2024, \
+             derived) with two deviations of one bed of one more code.",
+            [Axis::linear("time (ms)"), Axis::linear("height (mm)")],
+            curves,
+        ),
+        Figure::graph(
+            "score",
+            "Place among the codes",
+            "How far the mean of our five beds is from the mean of seven codes, in deviations √(s_code² + s_bed² (1/5 + 1/10)), over time.",
+            [Axis::linear("time (ms)"), Axis::linear("deviations")],
+            vec![Curve::new("dem:liggghts", Stroke::MarkedLine, scores), bound(2.0), bound(-2.0)],
+        ),
+    ]
+}

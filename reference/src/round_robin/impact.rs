@@ -1,0 +1,104 @@
+//! Courses of the ball: a column for each code and bed, `CODE_ICn`, of heights (m) over `t` (s).
+
+use super::spread::Spread;
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::table::Table;
+
+/// Gravity (m/s²) and the velocity that the ball is released with (m/s).
+pub(super) const GRAVITY: f64 = 9.81;
+pub(super) const RELEASED: f64 = -5.0;
+
+/// The ball of one code on one bed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// The code.
+    pub code: String,
+    /// Number of the bed, from 1.
+    pub bed: usize,
+    /// Heights (m).
+    pub heights: Vec<f64>,
+}
+
+/// All courses of one table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Impact {
+    /// Times (s), none of them twice.
+    pub times: Vec<f64>,
+    /// The courses, in the order of the columns.
+    pub courses: Vec<Course>,
+    /// Rows whose time stands in the row before already, which are passed over.
+    pub repeated: usize,
+}
+
+impl Impact {
+    /// Of a table whose first column is the time.
+    pub(super) fn of(table: &Table, file: &str) -> Result<Self, ReadError> {
+        let mut times: Vec<f64> = Vec::new();
+        let mut kept = Vec::new();
+        for (row, time) in table.values(0).enumerate() {
+            if times.last().is_some_and(|&last| time < last) {
+                let expected = format!("times that do not fall, in row {} below the names", row + 1);
+                return Err(ReadError::at(file, row as u64 + 2, expected, format!("{time}")));
+            }
+            if times.last().is_none_or(|&last| time > last) {
+                times.push(time);
+                kept.push(row);
+            }
+        }
+        let mut courses = Vec::new();
+        for (place, column) in table.columns.iter().enumerate().skip(1) {
+            let named = column.name.rsplit_once("_IC").and_then(|(code, bed)| Some((code, bed.parse().ok()?)));
+            let Some((code, bed)) = named.filter(|&(code, bed)| !code.is_empty() && (1..1000).contains(&bed)) else {
+                let expected = "columns CODE_ICn of a code and the number of its bed";
+                return Err(ReadError::at(file, 1, expected, quoted(&column.name)));
+            };
+            let all: Vec<f64> = table.values(place).collect();
+            let heights = kept.iter().map(|&row| all[row]).collect();
+            courses.push(Course { code: code.to_owned(), bed, heights });
+        }
+        Ok(Self { repeated: table.rows() - times.len(), times, courses })
+    }
+
+    /// The height of a course at a time (m), between samples in proportion; none beyond them.
+    #[must_use]
+    pub fn height(&self, course: &Course, time: f64) -> Option<f64> {
+        let after = self.times.partition_point(|&sampled| sampled < time - 1e-9);
+        let (next, there) = (*self.times.get(after)?, *course.heights.get(after)?);
+        if (next - time).abs() < 1e-9 {
+            return Some(there);
+        }
+        let before = after.checked_sub(1)?;
+        let part = (time - self.times[before]) / (next - self.times[before]);
+        Some(course.heights[before] + part * (there - course.heights[before]))
+    }
+
+    /// How far above free flight from z₀ at −5 m/s it is at a time (m).
+    pub(super) fn held_up(&self, course: &Course, time: f64) -> Option<f64> {
+        const START: f64 = 0.06;
+        Some(self.height(course, time)? - (START + RELEASED * time - 0.5 * GRAVITY * time * time))
+    }
+
+    /// The mean velocity between two times (m/s).
+    #[must_use]
+    pub fn velocity(&self, course: &Course, [from, to]: [f64; 2]) -> Option<f64> {
+        Some((self.height(course, to)? - self.height(course, from)?) / (to - from))
+    }
+
+    /// The deepest point (m).
+    #[must_use]
+    pub fn deepest(course: &Course) -> f64 {
+        course.heights.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Mean and deviations of a quantity over the courses that are `kept`.
+    pub fn spread(
+        &self,
+        kept: impl Fn(&Course) -> bool,
+        of: impl Fn(&Self, &Course) -> Option<f64>,
+    ) -> Option<Spread> {
+        let kept: Vec<&Course> = self.courses.iter().filter(|course| kept(course)).collect();
+        let values: Option<Vec<(&str, f64)>> =
+            kept.iter().map(|course| Some((course.code.as_str(), of(self, course)?))).collect();
+        Spread::of(values?)
+    }
+}

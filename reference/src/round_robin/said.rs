@@ -1,0 +1,207 @@
+//! What the published data says of itself: each computed from the data, and told soberly.
+
+use super::impact::{Course, GRAVITY, Impact, RELEASED};
+use super::spread::mean;
+use super::tables::Drum;
+
+/// Something that is seen in the data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Said {
+    /// Of what.
+    pub about: String,
+    /// What is seen, with its number.
+    pub seen: String,
+}
+
+/// A velocity at the start off by more than this (m/s) is another release.
+const OTHER_RELEASE: f64 = 0.1;
+/// Deviations from which on a bed or a code stands out: beyond what eighty draws have.
+const STANDS_OUT: f64 = 4.0;
+/// When the ball has just met the bed (s): beds are told by how far it is held up, before chaos has grown.
+const MET: f64 = 0.022;
+/// When depths are compared (s).
+const DEEP: f64 = 0.030;
+/// By how much codes may differ in how far one bed holds the ball up at first (m).
+const SAME_BED: f64 = 1.2e-5;
+
+/// Of the courses of the ball.
+#[must_use]
+pub fn of_impact(impact: &Impact) -> Vec<Said> {
+    let mut all = Vec::new();
+    if impact.repeated > 0 {
+        let seen = format!("{} rows have the time of the row before", impact.repeated);
+        all.push(Said { about: "clock".to_owned(), seen });
+    }
+    for course in &impact.courses {
+        all.extend(released(impact, course));
+    }
+    let flown: Vec<&Course> = impact.courses.iter().filter(|course| released(impact, course).is_none()).collect();
+    all.extend(clocks(impact, &flown));
+    if impact.courses.len() > 1 {
+        all.extend(numbers(impact, &flown));
+        all.extend(outside(impact, &flown));
+    }
+    all
+}
+
+fn name(course: &Course) -> String {
+    format!("{}, bed {}", course.code, course.bed)
+}
+
+/// A ball that is not released at −5 m/s: by the height after three milliseconds, when even the highest bed is not reached.
+fn released(impact: &Impact, course: &Course) -> Option<Said> {
+    const FLIGHT: f64 = 0.003;
+    let (start, then) = (impact.height(course, *impact.times.first()?)?, impact.height(course, FLIGHT)?);
+    let flown = FLIGHT - impact.times.first()?;
+    let speed = (then - start + 0.5 * GRAVITY * flown * flown) / flown;
+    let seen = format!("the ball begins at {speed:.2} m/s, not at {RELEASED} m/s");
+    ((speed - RELEASED).abs() > OTHER_RELEASE).then(|| Said { about: name(course), seen })
+}
+
+/// Clocks that are ahead: by the height at the first sample, where the ball has fallen already.
+fn clocks(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
+    let of = |code: &str, time: f64| -> Option<f64> {
+        let of: Option<Vec<f64>> = flown
+            .iter()
+            .filter(|course| course.code == code)
+            .map(|course| impact.held_up(course, time))
+            .collect();
+        of.filter(|of| !of.is_empty()).map(|of| mean(&of) / RELEASED)
+    };
+    let (Some(&first), Some(&later)) = (impact.times.first(), impact.times.get(3)) else { return Vec::new() };
+    let mut all = Vec::new();
+    for code in codes(flown) {
+        let (Some(ahead), Some(later)) = (of(code, first), of(code, later)) else { continue };
+        if ahead.abs() > 1e-5 || later.abs() > 1e-5 {
+            let seen = format!(
+                "clock ahead by {:.2e} s at its first sample, and by {:.1e} s three samples later",
+                ahead, later
+            );
+            all.push(Said { about: code.to_owned(), seen });
+        }
+    }
+    all
+}
+
+fn codes<'a>(courses: &[&'a Course]) -> Vec<&'a str> {
+    let mut codes: Vec<&str> = Vec::new();
+    for course in courses {
+        if !codes.contains(&course.code.as_str()) {
+            codes.push(&course.code);
+        }
+    }
+    codes
+}
+
+/// How far a code's beds hold the ball up at first, by number.
+fn prints<'a>(impact: &Impact, flown: &[&'a Course]) -> Vec<(&'a str, Vec<(usize, f64)>)> {
+    let of = |code: &'a str| {
+        let beds = flown.iter().filter(|course| course.code == code);
+        (code, beds.filter_map(|course| Some((course.bed, impact.held_up(course, MET)?))).collect())
+    };
+    codes(flown).into_iter().map(of).collect()
+}
+
+/// Beds that stand under another number: how far a bed holds the ball up at first is its fingerprint, which all codes find alike.
+fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
+    let prints = prints(impact, flown);
+    // What most codes have for each number.
+    let usual = |bed: usize| {
+        let mut of: Vec<f64> =
+            prints.iter().flat_map(|(_, of)| of.iter().filter(|(number, _)| *number == bed).map(|(_, up)| *up)).collect();
+        of.sort_by(f64::total_cmp);
+        of.get(of.len() / 2).copied()
+    };
+    let mut all = Vec::new();
+    for (code, of) in &prints {
+        let off = |shift: usize| -> Vec<f64> {
+            of.iter().filter_map(|&(bed, up)| Some(up - usual(bed.checked_sub(shift)?)?)).collect()
+        };
+        let size = |off: &[f64]| (off.iter().map(|off| off * off).sum::<f64>() / off.len() as f64).sqrt();
+        let (as_said, shifted) = (off(0), off(1));
+        if of.len() < 3 || size(&as_said) < SAME_BED || size(&shifted) > SAME_BED {
+            continue;
+        }
+        let others: Vec<String> = of
+            .iter()
+            .filter(|(_, up)| prints.iter().flat_map(|(_, of)| of).filter(|(_, other)| (up - other).abs() < SAME_BED).count() < 2)
+            .map(|(bed, up)| format!("; its bed {bed} (held up by {:.0} µm) is none of the others'", up * 1e6))
+            .collect();
+        let seen = format!(
+            "its beds are the others' under numbers one higher: at 22 ms the ball is held up as on those within {:.1} µm, as on \
+             those of the same number within {:.0} µm{}",
+            size(&shifted) * 1e6,
+            size(&as_said) * 1e6,
+            others.concat()
+        );
+        all.push(Said { about: (*code).to_owned(), seen });
+    }
+    all
+}
+
+/// Beds and codes that stand out at 30 ms.
+fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
+    let depth = |course: &Course| impact.height(course, DEEP).map(|height| height * 1e3);
+    let of = |code: &str, but: Option<usize>| -> Vec<f64> {
+        let of = flown.iter().filter(|course| course.code == code && Some(course.bed) != but);
+        of.filter_map(|course| depth(course)).collect()
+    };
+    let deviation = |of: &[f64]| {
+        (of.iter().map(|value| (value - mean(of)).powi(2)).sum::<f64>() / (of.len() as f64 - 1.0)).sqrt()
+    };
+    let mut all = Vec::new();
+    let mut left_out = Vec::new();
+    for course in flown {
+        let (rest, Some(depth)) = (of(&course.code, Some(course.bed)), depth(course)) else { continue };
+        let off = depth - mean(&rest);
+        if rest.len() > 2 && off.abs() > 2.0 * STANDS_OUT * deviation(&rest) {
+            let seen = format!(
+                "at 30 ms at {depth:.2} mm, {:.1} mm {} the mean of its code's other beds, {:.0} of their deviations",
+                off.abs(),
+                if off < 0.0 { "below" } else { "above" },
+                off.abs() / deviation(&rest)
+            );
+            all.push(Said { about: name(course), seen });
+            left_out.push((course.code.clone(), course.bed));
+        }
+    }
+    let known: Vec<&&Course> =
+        flown.iter().filter(|course| !left_out.contains(&(course.code.clone(), course.bed))).collect();
+    let means: Vec<(&str, f64)> = codes(flown)
+        .into_iter()
+        .map(|code| {
+            let of: Vec<f64> = known.iter().filter(|of| of.code == code).filter_map(|of| depth(of)).collect();
+            (code, mean(&of))
+        })
+        .collect();
+    for (code, depth) in &means {
+        let rest: Vec<f64> = means.iter().filter(|(other, _)| other != code).map(|(_, of)| *of).collect();
+        let off = depth - mean(&rest);
+        if rest.len() > 2 && off.abs() > STANDS_OUT * deviation(&rest) {
+            let seen = format!(
+                "mean of its beds at 30 ms {depth:.2} mm, {:.1} deviations between the other codes {} their mean",
+                off.abs() / deviation(&rest),
+                if off < 0.0 { "below" } else { "above" }
+            );
+            all.push(Said { about: (*code).to_owned(), seen });
+        }
+    }
+    all
+}
+
+/// Of the zones of the drum: a frame that is counted twice.
+#[must_use]
+pub fn of_drum(drum: &Drum) -> Vec<Said> {
+    let total = |row: usize| drum.zones.iter().map(|zone| zone[row]).sum::<f64>();
+    let even = |row: usize| drum.zones.iter().all(|zone| zone[row] % 2.0 == 0.0);
+    let twice = |row: &usize| even(*row) && total(*row) > 1.6 * total(row - 1);
+    let rows = (2..drum.times.len()).filter(twice);
+    rows.map(|row| Said {
+        about: format!("t = {} s", drum.times[row]),
+        seen: format!(
+            "both zones together hold {:.2} times what they held a sample before, and all four numbers are even: counted twice",
+            total(row) / total(row - 1)
+        ),
+    })
+    .collect()
+}

@@ -1,0 +1,69 @@
+//! Mean and deviations of a quantity between codes, and between beds of a code.
+
+use std::collections::BTreeMap;
+
+/// A quantity of every code and bed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Mean over codes of their means over beds.
+    pub mean: f64,
+    /// Standard deviation of the codes' means.
+    pub code: f64,
+    /// Standard deviation of the beds about their code's mean, pooled.
+    pub bed: f64,
+}
+
+impl Spread {
+    /// Of values by code; none where there are fewer than two codes or no code has two beds.
+    #[must_use]
+    pub fn of<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Self> {
+        let mut codes: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+        values.into_iter().for_each(|(code, value)| codes.entry(code).or_default().push(value));
+        let means: Vec<f64> = codes.values().map(|of| mean(of)).collect();
+        let freedom: usize = codes.values().map(|of| of.len() - 1).sum();
+        if means.len() < 2 || freedom == 0 {
+            return None;
+        }
+        let about = |of: &Vec<f64>| of.iter().map(|value| (value - mean(of)).powi(2)).sum::<f64>();
+        let all = mean(&means);
+        let between: f64 = means.iter().map(|value| (value - all).powi(2)).sum();
+        Some(Self {
+            mean: all,
+            code: (between / (means.len() - 1) as f64).sqrt(),
+            bed: (codes.values().map(about).sum::<f64>() / freedom as f64).sqrt(),
+        })
+    }
+
+    /// What one more code may be off by with so many beds of its own, where so many are published:
+    /// 2 √(s_code² + s_bed² (1/m + 1/n)).
+    #[must_use]
+    pub fn allowed(&self, own: usize, published: usize) -> f64 {
+        2.0 * self.deviation(own, published)
+    }
+
+    /// √(s_code² + s_bed² (1/m + 1/n)).
+    #[must_use]
+    pub fn deviation(&self, own: usize, published: usize) -> f64 {
+        let beds = 1.0 / own as f64 + 1.0 / published as f64;
+        (self.code * self.code + self.bed * self.bed * beds).sqrt()
+    }
+}
+
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two codes, two beds each: means 1 and 3, each bed one off its code's mean.
+    #[test]
+    fn tells_codes_from_beds() {
+        let spread = Spread::of([("a", 0.0), ("a", 2.0), ("b", 2.0), ("b", 4.0)]).unwrap();
+        assert_eq!((spread.mean, spread.code, spread.bed), (2.0, 2.0_f64.sqrt(), 2.0_f64.sqrt()));
+        assert_eq!(spread.allowed(1, 1), 2.0 * 6.0_f64.sqrt());
+        assert_eq!(Spread::of([("a", 0.0), ("a", 2.0)]), None);
+        assert_eq!(Spread::of([("a", 0.0), ("b", 2.0)]), None);
+    }
+}

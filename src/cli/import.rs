@@ -1,0 +1,193 @@
+//! `grainbench reference import`: what published data of others, that the user has, says: derived numbers, what it says of itself,
+//! and every code's curve. The data stays where it is.
+
+use super::exit::{Fault, Outcome, check_writable, print};
+use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench::reference::round_robin::{Course, Drum, Impact, Kind, Published, Said, Silo, Spread, of_drum, of_impact, read};
+use grainbench::reports::StagedDir;
+use grainbench::reports::plot::draw;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// What it takes.
+#[derive(clap::Args)]
+pub(crate) struct Import {
+    /// The work: `dosta-2024`, the round robin of bulk processes.
+    #[arg(value_name = "WORK", value_parser = ["dosta-2024"])]
+    work: String,
+    /// Directory of the tables, CSV or Parquet: `t,CODE_ICn,…` of the ball's height (m) by code and bed, `t,z` of one run,
+    /// `t,z1_m1,z1_m2,z2_m1,z2_m2` of grains in the drum's zones, `t,count` of grains left in the silo.
+    #[arg(value_name = "DIR")]
+    directory: PathBuf,
+    /// Directory for numbers and curves.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-import")]
+    out: PathBuf,
+}
+
+/// Endings of tables.
+const ENDINGS: [&str; 4] = [".csv", ".csv.gz", ".csv.zst", ".parquet"];
+/// The codes and beds that stand for no draw of the others: a code that lies far off, a bed that is another, and one whose ball was
+/// released at rest.
+const LEFT_OUT: [(&str, Option<usize>); 3] = [("Yade", None), ("MUSEN", Some(1)), ("LIGGGHTS", Some(10))];
+/// Times at which heights are derived (ms).
+const TIMES: [u32; 7] = [25, 28, 30, 32, 35, 40, 50];
+/// When the ball rebounds (s).
+const REBOUND: [f64; 2] = [0.038, 0.050];
+/// When the flow out of the silo is steady (s).
+const STEADY: [f64; 2] = [0.5, 3.5];
+
+pub(crate) fn import(arguments: &Import) -> Outcome {
+    let tables = tables(&arguments.directory)?;
+    check_writable(&arguments.out)?;
+    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
+    let mut said = String::new();
+    let mut derived = format!("# Derived by `grainbench reference import {}` from tables of the user's own.\n", arguments.work);
+    for Published { name, kind } in &tables {
+        let (of, figure) = match kind {
+            Kind::Impact(impact) => {
+                if impact.courses.len() > 1 {
+                    derived += &values(impact);
+                    out.write(&format!("{name}-derived.csv"), course(impact).as_bytes()).map_err(Fault::writing)?;
+                }
+                (of_impact(impact), heights(name, impact))
+            }
+            Kind::Drum(drum) => (of_drum(drum), zones(name, drum)),
+            Kind::Silo(silo) => (leaving(silo), left(name, silo)),
+        };
+        for Said { about, seen } in of {
+            let _ = writeln!(said, "{name}: {about}: {seen}");
+        }
+        let svg = draw(&figure).map_err(Fault::input)?;
+        out.write(&format!("{name}.svg"), svg.as_bytes()).map_err(Fault::writing)?;
+    }
+    said += &beside(&tables);
+    out.write("derived.toml", derived.as_bytes()).map_err(Fault::writing)?;
+    out.write("said.txt", said.as_bytes()).map_err(Fault::writing)?;
+    out.commit().map_err(Fault::writing)?;
+    print(&format!("{said}\n{}\n", arguments.out.display()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The tables of a directory, by name; others' are passed over.
+fn tables(directory: &Path) -> Result<Vec<Published>, Fault> {
+    let shown = directory.display();
+    let unreadable = |error: std::io::Error| Fault::input(format!("{shown}: expected a directory of tables, found {error}"));
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(directory).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        if path.is_file() && ENDINGS.iter().any(|ending| name.ends_with(ending)) {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    let mut tables = Vec::new();
+    for path in &paths {
+        tables.extend(read(path).map_err(Fault::input)?);
+    }
+    if tables.is_empty() {
+        return Err(Fault::input(format!("{shown}: expected tables of the round robin, found none")));
+    }
+    Ok(tables)
+}
+
+fn is_kept(course: &Course) -> bool {
+    !LEFT_OUT.iter().any(|(code, bed)| course.code == *code && bed.is_none_or(|bed| bed == course.bed))
+}
+
+/// Numbers as the provenance of the work has them.
+fn values(impact: &Impact) -> String {
+    let mut lines = String::new();
+    let mut add = |key: &str, what: &str, unit: &str, spread: Option<Spread>| {
+        let Some(Spread { mean, code, bed }) = spread else { return };
+        for (suffix, of, value) in [
+            ("", "mean between codes", mean),
+            ("_code", "standard deviation between codes", code),
+            ("_bed", "standard deviation between beds, pooled over codes", bed),
+        ] {
+            let _ = write!(lines, "\n[[value]]\nkey = \"{key}{suffix}\"\nwhat = \"{what}: {of} ({unit})\"\nvalue = {value:.4}\n");
+        }
+    };
+    for time in TIMES {
+        let of = |impact: &Impact, course: &Course| Some(impact.height(course, f64::from(time) * 1e-3)? * 1e3);
+        add(&format!("height_{time}"), &format!("height of the ball at {time} ms, 25 thousand grains"), "mm", impact.spread(is_kept, of));
+    }
+    let deepest = impact.spread(is_kept, |_, course| Some(Impact::deepest(course) * 1e3));
+    add("deepest", "deepest point of the ball, 25 thousand grains", "mm", deepest);
+    let speed = impact.spread(is_kept, |impact, course| impact.velocity(course, REBOUND));
+    add("rebound", "mean velocity of the ball from 38 to 50 ms, 25 thousand grains", "m/s", speed);
+    lines
+}
+
+/// Mean and deviations at every time.
+fn course(impact: &Impact) -> String {
+    let mut lines = "t,mean,code,bed\n".to_owned();
+    for &time in &impact.times {
+        let of = impact.spread(is_kept, |impact, course| Some(impact.height(course, time)? * 1e3));
+        if let Some(Spread { mean, code, bed }) = of {
+            let _ = writeln!(lines, "{time},{mean:.4},{code:.4},{bed:.4}");
+        }
+    }
+    lines
+}
+
+/// Every code's curve: the mean of its beds.
+fn heights(name: &str, impact: &Impact) -> Figure {
+    let mut codes: Vec<&str> = Vec::new();
+    for course in &impact.courses {
+        if !codes.contains(&course.code.as_str()) {
+            codes.push(&course.code);
+        }
+    }
+    let curve = |code: &&str| {
+        let of: Vec<&Course> = impact.courses.iter().filter(|course| course.code == **code).collect();
+        let mean = |row: usize| of.iter().map(|course| course.heights[row] * 1e3).sum::<f64>() / of.len() as f64;
+        let points = impact.times.iter().enumerate().map(|(row, time)| (time * 1e3, mean(row)));
+        Curve::new(*code, Stroke::Line, points.collect())
+    };
+    let axes = [Axis::linear("time (ms)"), Axis::linear("height of the ball (mm)")];
+    Figure::graph(name, "Impact of a ball", "", axes, codes.iter().map(curve).collect())
+}
+
+fn zones(name: &str, drum: &Drum) -> Figure {
+    let names = ["M1, zone 1", "M2, zone 1", "M1, zone 2", "M2, zone 2"];
+    let curve = |(label, of): (&str, &Vec<f64>)| {
+        Curve::new(label, Stroke::Line, drum.times.iter().copied().zip(of.iter().copied()).collect())
+    };
+    let axes = [Axis::linear("time (s)"), Axis::linear("grains")];
+    Figure::graph(name, "Zones of the drum", "", axes, names.into_iter().zip(&drum.zones).map(curve).collect())
+}
+
+fn left(name: &str, silo: &Silo) -> Figure {
+    let points = silo.times.iter().copied().zip(silo.left.iter().copied()).collect();
+    let axes = [Axis::linear("time (s)"), Axis::linear("grains left")];
+    Figure::graph(name, "Silo", "", axes, vec![Curve::new(name, Stroke::Line, points)])
+}
+
+fn leaving(silo: &Silo) -> Vec<Said> {
+    let rate = silo.rate(STEADY).map(|rate| Said {
+        about: "from .5 to 3.5 s".to_owned(),
+        seen: format!("{:.2} thousand grains leave in a second", rate / 1e3),
+    });
+    rate.into_iter().collect()
+}
+
+/// What several tables of the drum say of one another.
+fn beside(tables: &[Published]) -> String {
+    let drums: Vec<(&str, &Drum)> = tables
+        .iter()
+        .filter_map(|table| if let Kind::Drum(drum) = &table.kind { Some((table.name.as_str(), drum)) } else { None })
+        .collect();
+    let mut lines = String::new();
+    let Some(((first, drum), rest)) = drums.split_first() else { return lines };
+    for (name, other) in rest {
+        for time in [0.5, 1.0, 2.0] {
+            if let (Some(of), Some(against)) = (other.in_zone_2(time), drum.in_zone_2(time)) {
+                let off = 100.0 * (of / against - 1.0);
+                let _ = writeln!(lines, "{name}: M1 in zone 2 at {time} s: {of}, {off:+.1} % of {first}'s {against}");
+            }
+        }
+    }
+    lines
+}
