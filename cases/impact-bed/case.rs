@@ -3,7 +3,9 @@
 #[path = "published.rs"]
 mod published;
 
+use crate::rows::programs::row;
 use crate::sources::literature::dosta_2024 as dosta;
+use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 use published::{BEDS, Spread};
@@ -21,7 +23,9 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "How the published beds were made is not in the data: ours are filled with a friction of .1, which leaves the packing \
-               fraction of theirs, about .60, and a looser bed lets the ball deeper. Past 35 ms beds tell more than codes do.",
+               fraction of theirs, about .60, and a looser bed lets the ball deeper. Past 35 ms beds tell more than codes do, \
+               and what grain is caught between ball and floor. Restitution is not told: e = .9 moves the ball by .2 mm at 30 ms, and friction \
+               does nearly all.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -37,8 +41,10 @@ const REBOUND: [f64; 2] = [0.038, 0.050];
 const DEEP: f64 = 0.030;
 
 /// How far one bed, or the mean of five, may be off.
-const BECAUSE: &str = "our packing is one more draw: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 1 bed of ours, n = 10 published";
-const BECAUSE_FIVE: &str = "our packings are five more draws: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 5 beds of ours, n = 10 published";
+const BECAUSE: &str =
+    "our packing is one more draw: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 1 bed of ours, n = 10 published";
+const BECAUSE_FIVE: &str =
+    "our packings are five more draws: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 5 beds of ours, n = 10 published";
 
 fn on(variant: &'static str) -> Run {
     Run::new(variant, "dem:liggghts", LEVELS[0].resolution).long().kept()
@@ -82,8 +88,10 @@ fn claims() -> Vec<Claim> {
     let lowest = Spread::of(dosta::DEEPEST, dosta::DEEPEST_CODE, dosta::DEEPEST_BED);
     let speed = Spread::of(dosta::REBOUND, dosta::REBOUND_CODE, dosta::REBOUND_BED);
     let mut all_claims = vec![
-        of_mean("height of the ball at 30 ms, mean of five beds", "mm", dosta::HEIGHT_30, depth, |done| height(done, DEEP))
-            .refuses(half_the_density()),
+        of_mean("height of the ball at 30 ms, mean of five beds", "mm", dosta::HEIGHT_30, depth, |done| {
+            height(done, DEEP)
+        })
+        .refuses(pair_of_m1()),
         claim("beds of five on which it is within the spread of one bed at 30 ms", "1")
             .of_all(on_all())
             .at_least(4.0, dosta::HEIGHT_30.source(), move |done| {
@@ -91,13 +99,15 @@ fn claims() -> Vec<Claim> {
                 Ok(heights.iter().filter(|height| (*height - depth.mean).abs() <= depth.allowed(1)).count() as f64)
             })
             .within(exactly("asked for before: two deviations hold nineteen draws of twenty"))
+            .refuses(smooth()),
+        of_each("deepest point, farthest of five beds", "mm", dosta::DEEPEST, lowest, deepest)
+            .refuses(half_the_density()),
+        of_mean("mean velocity from 38 to 50 ms, mean of five beds", "m/s", dosta::REBOUND, speed, rebound)
             .refuses(at_rest()),
-        of_each("deepest point, farthest of five beds", "mm", dosta::DEEPEST, lowest, deepest).refuses(elastic()),
-        of_mean("mean velocity from 38 to 50 ms, mean of five beds", "m/s", dosta::REBOUND, speed, rebound).refuses(smooth()),
         of_each("mean velocity from 38 to 50 ms, farthest of five beds", "m/s", dosta::REBOUND, speed, rebound)
-            .refuses(pair_of_m1()),
+            .refuses(at_rest()),
     ];
-    all_claims.push(early());
+    all_claims.extend([early(), beside()]);
     all_claims
 }
 
@@ -140,6 +150,21 @@ fn early() -> Claim {
         .refuses(half_the_density())
 }
 
+/// LIGGGHTS on a thousand grains, until what it keeps of contacts that open and close again is felt: the ball meets the bed at
+/// .24 ms.
+fn beside() -> Claim {
+    const UNTIL: f64 = 2.5e-4;
+    let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new("thousand", solver, LEVELS[1].resolution));
+    let allowed = judged(1e-11, "the same cycle: order of sums; in units of its radius");
+    let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
+    row("height of the ball on a thousand grains until .25 ms, worst", "m", allowed, runs, control, |done| {
+        let (ours, theirs) = together(&done[0], &done[1], "ball.z")?;
+        let until = done[1].series().time.partition_point(|time| *time < UNTIL + 1e-9);
+        let radius = done[0].scene.grains[0].radius;
+        Ok(Measured::worst_of(&done[1].series().time[..until], &ours[..until], &theirs[..until], radius))
+    })
+}
+
 /// The lighter ball has half the mass and half the moment of inertia.
 fn half_the_density() -> Control {
     Control::scene("half the density of the ball", |scene| {
@@ -154,14 +179,6 @@ fn at_rest() -> Control {
 
 fn smooth() -> Control {
     Control::scene("no friction", |scene| scene.change_laws(|law| law.friction = 0.0))
-}
-
-fn elastic() -> Control {
-    const LITTLE: f64 = 0.9;
-    Control::scene("e = .9 everywhere", |scene| {
-        let ratio = -LITTLE.ln() / std::f64::consts::PI.hypot(LITTLE.ln());
-        scene.change_laws(|law| law.damping_ratio = ratio);
-    })
 }
 
 /// The ball and the walls meet grains as these meet one another.

@@ -54,16 +54,18 @@ pub(super) fn figures(done: &[Done], published: &[[f64; 4]]) -> Vec<Figure> {
     for (number, of) in done.iter().enumerate() {
         curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, course(of)));
     }
-    let scores = within.iter().filter(|[.., code, bed]| *code > 0.01 && *bed > 0.01).filter_map(|[time, mean, code, bed]| {
-        let at = |done: &Done| {
-            let heights = done.column("ball.z").ok()?;
-            let place = done.series().time.iter().position(|sampled| (sampled - time).abs() < 1e-9)?;
-            Some(heights[place] * 1e3)
-        };
-        let own: Vec<f64> = done.iter().filter_map(at).collect();
-        let deviation = code.hypot(bed * (1.0 / own.len() as f64 + 1.0 / PUBLISHED as f64).sqrt());
-        (own.len() == done.len()).then(|| (time * 1e3, (own.iter().sum::<f64>() / own.len() as f64 - mean) / deviation))
-    });
+    let scores =
+        within.iter().filter(|[.., code, bed]| *code > 0.01 && *bed > 0.01).filter_map(|[time, mean, code, bed]| {
+            let at = |done: &Done| {
+                let heights = done.column("ball.z").ok()?;
+                let place = done.series().time.iter().position(|sampled| (sampled - time).abs() < 1e-9)?;
+                Some(heights[place] * 1e3)
+            };
+            let own: Vec<f64> = done.iter().filter_map(at).collect();
+            let deviation = code.hypot(bed * (1.0 / own.len() as f64 + 1.0 / PUBLISHED as f64).sqrt());
+            (own.len() == done.len())
+                .then(|| (time * 1e3, (own.iter().sum::<f64>() / own.len() as f64 - mean) / deviation))
+        });
     let scores: Vec<(f64, f64)> = scores.collect();
     let ends = [scores.first().map_or(0.0, |first| first.0), scores.last().map_or(1.0, |last| last.0)];
     let bound = |at: f64| Curve::new(format!("{at:+}"), Stroke::Dashed, ends.map(|end| (end, at)).to_vec());

@@ -3,7 +3,9 @@
 
 use super::exit::{Fault, Outcome, check_writable, print};
 use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
-use grainbench::reference::round_robin::{Course, Drum, Impact, Kind, Published, Said, Silo, Spread, of_drum, of_impact, read};
+use grainbench::reference::round_robin::{
+    Course, Drum, Impact, Kind, Published, Said, Silo, Spread, of_drum, of_impact, read, read_start,
+};
 use grainbench::reports::StagedDir;
 use grainbench::reports::plot::draw;
 use std::fmt::Write as _;
@@ -17,7 +19,8 @@ pub(crate) struct Import {
     #[arg(value_name = "WORK", value_parser = ["dosta-2024"])]
     work: String,
     /// Directory of the tables, CSV or Parquet: `t,CODE_ICn,…` of the ball's height (m) by code and bed, `t,z` of one run,
-    /// `t,z1_m1,z1_m2,z2_m1,z2_m2` of grains in the drum's zones, `t,count` of grains left in the silo.
+    /// `t,z1_m1,z1_m2,z2_m1,z2_m2` of grains in the drum's zones, `t,count` of grains left in the silo; and the drum's start as an
+    /// `xyz` file, of which a scene is made.
     #[arg(value_name = "DIR")]
     directory: PathBuf,
     /// Directory for numbers and curves.
@@ -25,6 +28,8 @@ pub(crate) struct Import {
     out: PathBuf,
 }
 
+/// The scene that begins with the drum's shared start.
+const DRUM: &str = include_str!("../../examples/round-robin/drum.toml");
 /// Endings of tables.
 const ENDINGS: [&str; 4] = [".csv", ".csv.gz", ".csv.zst", ".parquet"];
 /// The codes and beds that stand for no draw of the others: a code that lies far off, a bed that is another, and one whose ball was
@@ -39,10 +44,12 @@ const STEADY: [f64; 2] = [0.5, 3.5];
 
 pub(crate) fn import(arguments: &Import) -> Outcome {
     let tables = tables(&arguments.directory)?;
+    let start = start(&arguments.directory)?;
     check_writable(&arguments.out)?;
     let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
     let mut said = String::new();
-    let mut derived = format!("# Derived by `grainbench reference import {}` from tables of the user's own.\n", arguments.work);
+    let mut derived =
+        format!("# Derived by `grainbench reference import {}` from tables of the user's own.\n", arguments.work);
     for Published { name, kind } in &tables {
         let (of, figure) = match kind {
             Kind::Impact(impact) => {
@@ -62,6 +69,13 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
         out.write(&format!("{name}.svg"), svg.as_bytes()).map_err(Fault::writing)?;
     }
     said += &beside(&tables);
+    if let Some(start) = &start {
+        for (name, kind, diameter, density) in [("drum-m2", 0, 0.004, 2000.0), ("drum-m1", 1, 0.002, 2500.0)] {
+            out.write(&format!("{name}.data"), start.data(kind, diameter, density).as_bytes())
+                .map_err(Fault::writing)?;
+        }
+        out.write("drum.toml", DRUM.as_bytes()).map_err(Fault::writing)?;
+    }
     out.write("derived.toml", derived.as_bytes()).map_err(Fault::writing)?;
     out.write("said.txt", said.as_bytes()).map_err(Fault::writing)?;
     out.commit().map_err(Fault::writing)?;
@@ -72,7 +86,8 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
 /// The tables of a directory, by name; others' are passed over.
 fn tables(directory: &Path) -> Result<Vec<Published>, Fault> {
     let shown = directory.display();
-    let unreadable = |error: std::io::Error| Fault::input(format!("{shown}: expected a directory of tables, found {error}"));
+    let unreadable =
+        |error: std::io::Error| Fault::input(format!("{shown}: expected a directory of tables, found {error}"));
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(directory).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
@@ -92,6 +107,16 @@ fn tables(directory: &Path) -> Result<Vec<Published>, Fault> {
     Ok(tables)
 }
 
+/// The drum's shared start, where the directory has one file of that kind.
+fn start(directory: &Path) -> Result<Option<grainbench::reference::round_robin::Start>, Fault> {
+    let entries =
+        std::fs::read_dir(directory).map_err(|error| Fault::input(format!("{}: {error}", directory.display())))?;
+    let is_start = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "xyz");
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(is_start).collect();
+    paths.sort();
+    paths.first().map(|path| read_start(path).map_err(Fault::input)).transpose()
+}
+
 fn is_kept(course: &Course) -> bool {
     !LEFT_OUT.iter().any(|(code, bed)| course.code == *code && bed.is_none_or(|bed| bed == course.bed))
 }
@@ -106,12 +131,20 @@ fn values(impact: &Impact) -> String {
             ("_code", "standard deviation between codes", code),
             ("_bed", "standard deviation between beds, pooled over codes", bed),
         ] {
-            let _ = write!(lines, "\n[[value]]\nkey = \"{key}{suffix}\"\nwhat = \"{what}: {of} ({unit})\"\nvalue = {value:.4}\n");
+            let _ = write!(
+                lines,
+                "\n[[value]]\nkey = \"{key}{suffix}\"\nwhat = \"{what}: {of} ({unit})\"\nvalue = {value:.4}\n"
+            );
         }
     };
     for time in TIMES {
         let of = |impact: &Impact, course: &Course| Some(impact.height(course, f64::from(time) * 1e-3)? * 1e3);
-        add(&format!("height_{time}"), &format!("height of the ball at {time} ms, 25 thousand grains"), "mm", impact.spread(is_kept, of));
+        add(
+            &format!("height_{time}"),
+            &format!("height of the ball at {time} ms, 25 thousand grains"),
+            "mm",
+            impact.spread(is_kept, of),
+        );
     }
     let deepest = impact.spread(is_kept, |_, course| Some(Impact::deepest(course) * 1e3));
     add("deepest", "deepest point of the ball, 25 thousand grains", "mm", deepest);

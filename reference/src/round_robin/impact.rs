@@ -91,11 +91,7 @@ impl Impact {
     }
 
     /// Mean and deviations of a quantity over the courses that are `kept`.
-    pub fn spread(
-        &self,
-        kept: impl Fn(&Course) -> bool,
-        of: impl Fn(&Self, &Course) -> Option<f64>,
-    ) -> Option<Spread> {
+    pub fn spread(&self, kept: impl Fn(&Course) -> bool, of: impl Fn(&Self, &Course) -> Option<f64>) -> Option<Spread> {
         let kept: Vec<&Course> = self.courses.iter().filter(|course| kept(course)).collect();
         let values: Option<Vec<(&str, f64)>> =
             kept.iter().map(|course| Some((course.code.as_str(), of(self, course)?))).collect();

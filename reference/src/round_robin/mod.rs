@@ -6,11 +6,13 @@
 mod impact;
 mod said;
 mod spread;
+mod start;
 mod tables;
 
 pub use impact::{Course, Impact};
 pub use said::{Said, of_drum, of_impact};
 pub use spread::Spread;
+pub use start::{Start, read_start};
 pub use tables::{Drum, Kind, Published, Silo, read};
 
 /// Heights of the ball over time, derived: t (s), mean between codes and deviations between codes and between beds (mm), 25 thousand

@@ -61,11 +61,8 @@ fn released(impact: &Impact, course: &Course) -> Option<Said> {
 /// Clocks that are ahead: by the height at the first sample, where the ball has fallen already.
 fn clocks(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     let of = |code: &str, time: f64| -> Option<f64> {
-        let of: Option<Vec<f64>> = flown
-            .iter()
-            .filter(|course| course.code == code)
-            .map(|course| impact.held_up(course, time))
-            .collect();
+        let of: Option<Vec<f64>> =
+            flown.iter().filter(|course| course.code == code).map(|course| impact.held_up(course, time)).collect();
         of.filter(|of| !of.is_empty()).map(|of| mean(&of) / RELEASED)
     };
     let (Some(&first), Some(&later)) = (impact.times.first(), impact.times.get(3)) else { return Vec::new() };
@@ -107,8 +104,10 @@ fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     let prints = prints(impact, flown);
     // What most codes have for each number.
     let usual = |bed: usize| {
-        let mut of: Vec<f64> =
-            prints.iter().flat_map(|(_, of)| of.iter().filter(|(number, _)| *number == bed).map(|(_, up)| *up)).collect();
+        let mut of: Vec<f64> = prints
+            .iter()
+            .flat_map(|(_, of)| of.iter().filter(|(number, _)| *number == bed).map(|(_, up)| *up))
+            .collect();
         of.sort_by(f64::total_cmp);
         of.get(of.len() / 2).copied()
     };
@@ -124,7 +123,9 @@ fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
         }
         let others: Vec<String> = of
             .iter()
-            .filter(|(_, up)| prints.iter().flat_map(|(_, of)| of).filter(|(_, other)| (up - other).abs() < SAME_BED).count() < 2)
+            .filter(|(_, up)| {
+                prints.iter().flat_map(|(_, of)| of).filter(|(_, other)| (up - other).abs() < SAME_BED).count() < 2
+            })
             .map(|(bed, up)| format!("; its bed {bed} (held up by {:.0} µm) is none of the others'", up * 1e6))
             .collect();
         let seen = format!(
@@ -146,9 +147,8 @@ fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
         let of = flown.iter().filter(|course| course.code == code && Some(course.bed) != but);
         of.filter_map(|course| depth(course)).collect()
     };
-    let deviation = |of: &[f64]| {
-        (of.iter().map(|value| (value - mean(of)).powi(2)).sum::<f64>() / (of.len() as f64 - 1.0)).sqrt()
-    };
+    let deviation =
+        |of: &[f64]| (of.iter().map(|value| (value - mean(of)).powi(2)).sum::<f64>() / (of.len() as f64 - 1.0)).sqrt();
     let mut all = Vec::new();
     let mut left_out = Vec::new();
     for course in flown {
