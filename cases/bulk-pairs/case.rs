@@ -10,12 +10,12 @@ const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::Ti
 pub(crate) static CASE: Case = Case {
     name: "bulk-pairs",
     title: "Pairs of the round robin of bulk processes",
-    claim: "Between M1, M2 and steel, and at walls of steel, the force of a pair that meets obliquely and the torque about it are those \
-            of LIGGGHTS, step by step.",
+    claim: "Between M1, M2 and steel, and at walls of steel, the force of a pair that meets obliquely and the torque about it \
+            are those of LIGGGHTS, step by step.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One impact a pair, at one speed and spin. LIGGGHTS is run without its dashpot along the tangent, which our law does \
-               not have; what the codes of the paper had is not known here.",
+    weakness: "One impact a pair, at one speed and spin. LIGGGHTS is run without its dashpot along the tangent, which our law \
+               does not have; what the codes of the paper had is not known here.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

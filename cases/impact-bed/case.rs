@@ -18,14 +18,15 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "impact-bed",
     title: "Impact of a ball on a bed",
-    claim: "A ball of steel that falls into a bed of 25,000 spheres is found where seven codes of the round robin of 2024 find it, \
-            within the spread between codes and between beds, and rebounds as there.",
+    claim: "A ball of steel that falls into a bed of 25,000 spheres is found where seven codes of the round robin of 2024 find \
+            it, within the spread between codes and between beds, and rebounds as there.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "How the published beds were made is not in the data: ours are filled with a friction of .1, which leaves the packing \
-               fraction of theirs, about .60, and a looser bed lets the ball deeper. Past 35 ms beds tell more than codes do, \
-               and what grain is caught between ball and floor. Restitution is not told: e = .9 moves the ball by .2 mm at 30 ms, and friction \
-               does nearly all.",
+    weakness: "How the published beds were made is not in the data: ours are filled with a friction of .1, which leaves the \
+               packing fraction of theirs, about .60, and a looser bed lets the \
+               ball deeper. Past 35 ms beds tell more than codes do, \
+               and what grain is caught between ball and floor. Restitution is not told: e = .9 moves the ball by .2 mm at \
+               30 ms, and friction does nearly all.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

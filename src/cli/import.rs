@@ -1,5 +1,5 @@
-//! `grainbench reference import`: what published data of others, that the user has, says: derived numbers, what it says of itself,
-//! and every code's curve. The data stays where it is.
+//! `grainbench reference import`: what published data of others, that the user has, says: derived numbers, what it says of
+//! itself, and every code's curve. The data stays where it is.
 
 use super::exit::{Fault, Outcome, check_writable, print};
 use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
@@ -19,8 +19,8 @@ pub(crate) struct Import {
     #[arg(value_name = "WORK", value_parser = ["dosta-2024"])]
     work: String,
     /// Directory of the tables, CSV or Parquet: `t,CODE_ICn,…` of the ball's height (m) by code and bed, `t,z` of one run,
-    /// `t,z1_m1,z1_m2,z2_m1,z2_m2` of grains in the drum's zones, `t,count` of grains left in the silo; and the drum's start as an
-    /// `xyz` file, of which a scene is made.
+    /// `t,z1_m1,z1_m2,z2_m1,z2_m2` of grains in the drum's zones, `t,count` of grains left in the silo; and the drum's start as
+    /// an `xyz` file, of which a scene is made.
     #[arg(value_name = "DIR")]
     directory: PathBuf,
     /// Directory for numbers and curves.
@@ -32,8 +32,8 @@ pub(crate) struct Import {
 const DRUM: &str = include_str!("../../examples/round-robin/drum.toml");
 /// Endings of tables.
 const ENDINGS: [&str; 4] = [".csv", ".csv.gz", ".csv.zst", ".parquet"];
-/// The codes and beds that stand for no draw of the others: a code that lies far off, a bed that is another, and one whose ball was
-/// released at rest.
+/// The codes and beds that stand for no draw of the others: a code that lies far off, a bed that is another, and one whose ball
+/// was released at rest.
 const LEFT_OUT: [(&str, Option<usize>); 3] = [("Yade", None), ("MUSEN", Some(1)), ("LIGGGHTS", Some(10))];
 /// Times at which heights are derived (ms).
 const TIMES: [u32; 7] = [25, 28, 30, 32, 35, 40, 50];

@@ -15,6 +15,6 @@ pub use spread::Spread;
 pub use start::{Start, read_start};
 pub use tables::{Drum, Kind, Published, Silo, read};
 
-/// Heights of the ball over time, derived: t (s), mean between codes and deviations between codes and between beds (mm), 25 thousand
-/// grains.
+/// Heights of the ball over time, derived: t (s), mean between codes and deviations between codes and between beds (mm), 25
+/// thousand grains.
 pub const IMPACT: &str = include_str!("../../literature/dosta-2024/impact-25k.csv");

@@ -48,9 +48,9 @@ fn name(course: &Course) -> String {
     format!("{}, bed {}", course.code, course.bed)
 }
 
-/// A ball that is not released at −5 m/s: by the height after three milliseconds, when even the highest bed is not reached.
+/// A ball that is not released at −5 m/s: by the height after two milliseconds, when even the highest bed is not reached.
 fn released(impact: &Impact, course: &Course) -> Option<Said> {
-    const FLIGHT: f64 = 0.003;
+    const FLIGHT: f64 = 0.002;
     let (start, then) = (impact.height(course, *impact.times.first()?)?, impact.height(course, FLIGHT)?);
     let flown = FLIGHT - impact.times.first()?;
     let speed = (then - start + 0.5 * GRAVITY * flown * flown) / flown;
@@ -65,15 +65,13 @@ fn clocks(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
             flown.iter().filter(|course| course.code == code).map(|course| impact.held_up(course, time)).collect();
         of.filter(|of| !of.is_empty()).map(|of| mean(&of) / RELEASED)
     };
-    let (Some(&first), Some(&later)) = (impact.times.first(), impact.times.get(3)) else { return Vec::new() };
+    let (Some(&first), Some(&later)) = (impact.times.first(), impact.times.get(2)) else { return Vec::new() };
     let mut all = Vec::new();
     for code in codes(flown) {
         let (Some(ahead), Some(later)) = (of(code, first), of(code, later)) else { continue };
         if ahead.abs() > 1e-5 || later.abs() > 1e-5 {
-            let seen = format!(
-                "clock ahead by {:.2e} s at its first sample, and by {:.1e} s three samples later",
-                ahead, later
-            );
+            let seen =
+                format!("clock ahead by {:.2e} s at its first sample, and by {:.1e} s two samples later", ahead, later);
             all.push(Said { about: code.to_owned(), seen });
         }
     }

@@ -1,0 +1,101 @@
+//! The round robin of bulk processes: what is derived of tables that a user has, and which are refused.
+
+use grainbench_reference::round_robin::{Kind, Published, of_drum, of_impact, read};
+use std::fmt::Write as _;
+
+fn published(name: &str, text: &str) -> Result<Option<Published>, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, text).unwrap();
+    read(&path).map_err(|error| error.to_string())
+}
+
+/// Heights of free flight, held up from 21 ms on: `print` (m) at 22 ms, and `stop` (m) above free flight at the end.
+fn course(time: f64, speed: f64, print: f64, stop: f64) -> f64 {
+    let flight = 0.06 + speed * time - 0.5 * 9.81 * time * time;
+    let met = ((time - 0.021) / 0.001).clamp(0.0, 1.0);
+    flight + print * met + (stop - print) * ((time - 0.022) / 0.008).clamp(0.0, 1.0)
+}
+
+/// Four codes on four beds: the last has its beds under numbers one higher and a deep one first; one ball is at rest.
+fn table() -> String {
+    let prints = [1.5e-4, 1.8e-4, 2.1e-4, 2.4e-4];
+    let mut lines = "t".to_owned();
+    for code in ["A", "B", "C", "D"] {
+        for bed in 1..=4 {
+            write!(lines, ",{code}_IC{bed}").unwrap();
+        }
+    }
+    for step in 0..=40 {
+        let time = f64::from(step) * 1e-3;
+        write!(lines, "\n{time}").unwrap();
+        for (code, off) in [("A", 0.0), ("B", 1e-5), ("C", 2e-5), ("D", 1e-5)] {
+            for bed in 0..4_usize {
+                let print = match (code, bed) {
+                    ("D", 0) => 4.0e-4,
+                    ("D", _) => prints[bed - 1],
+                    _ => prints[bed],
+                };
+                let deep = if (code, bed) == ("D", 0) { -1.5e-3 } else { 0.0 };
+                let speed = if (code, bed) == ("C", 3) { 0.0 } else { -5.0 };
+                write!(lines, ",{:.7}", course(time, speed, print, 0.015 + off + 0.5 * print + deep)).unwrap();
+            }
+        }
+    }
+    lines
+}
+
+#[test]
+fn says_which_ball_was_at_rest_and_which_beds_have_other_numbers() {
+    let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &table()).unwrap() else {
+        panic!("no courses")
+    };
+    let said: Vec<String> =
+        of_impact(&impact).into_iter().map(|said| format!("{}: {}", said.about, said.seen)).collect();
+    let has = |words: [&str; 2]| said.iter().any(|line| words.iter().all(|word| line.contains(word)));
+    assert!(has(["C, bed 4:", "begins at 0.00 m/s"]), "{said:#?}");
+    assert!(has(["D:", "numbers one higher"]), "{said:#?}");
+    assert!(has(["D:", "its bed 1 (held up by 400 µm)"]), "{said:#?}");
+    assert!(has(["D, bed 1:", "1.5 mm below"]) || has(["D, bed 1:", "1.6 mm below"]), "{said:#?}");
+    assert!(!said.iter().any(|line| line.starts_with("A") || line.starts_with("B")), "{said:#?}");
+}
+
+#[test]
+fn derives_means_and_deviations() {
+    let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &table()).unwrap() else {
+        panic!("no courses")
+    };
+    let kept = |course: &grainbench_reference::round_robin::Course| ["A", "B"].contains(&course.code.as_str());
+    let spread = impact.spread(kept, |impact, course| impact.height(course, 0.0305)).unwrap();
+    let flight = 0.06 - 5.0 * 0.0305 - 0.5 * 9.81 * 0.0305 * 0.0305;
+    assert!((spread.mean - (flight + 0.015 + 5e-6 + 0.5 * 1.95e-4)).abs() < 2e-6, "{spread:?}");
+    assert!((spread.code - 1e-5 / 2.0_f64.sqrt()).abs() < 1e-7, "{spread:?}");
+    assert!((spread.bed - 0.5 * 3.0e-5 * (5.0_f64 / 3.0).sqrt()).abs() < 1e-7, "{spread:?}");
+}
+
+#[test]
+fn says_which_frame_is_counted_twice() {
+    let text = "t,z1_m1,z1_m2,z2_m1,z2_m2\n0,1,2,30,41\n1,1,3,33,41\n2,4,6,66,80\n";
+    let Some(Published { kind: Kind::Drum(drum), .. }) = published("a.csv", text).unwrap() else { panic!("no zones") };
+    let said = of_drum(&drum);
+    assert_eq!(said.len(), 1);
+    assert_eq!(said[0].about, "t = 2 s");
+    assert_eq!(drum.in_zone_2(1.0), Some(33.0));
+}
+
+#[test]
+fn refuses_what_is_no_table_of_it() {
+    for (text, place) in [
+        ("t,A_IC1,B\n0,1,2\n", "a.csv:1: expected columns CODE_ICn"),
+        ("t,A_IC0\n0,1\n", "a.csv:1: expected columns CODE_ICn"),
+        ("t,A_IC1\n0,1\n-1,1\n", "a.csv:3: expected times that do not fall"),
+        ("t,A_IC1\n0,x\n", "a.csv:2"),
+        ("t,count\n0,5\n0,4\n", "a.csv:3: expected times that rise"),
+        ("t,z1_m1,z2_m1\n0,1,2\n", "a.csv:1: expected columns z1_m1"),
+        ("t,count\n", "a.csv"),
+    ] {
+        let error = published("a.csv", text).unwrap_err();
+        assert!(error.contains(place), "{text}: {error}");
+    }
+    assert_eq!(published("a.csv", "x,y\n1,2\n").unwrap(), None);
+}
