@@ -52,7 +52,7 @@ const CHAINS: [Chain; 3] = [
 /// Frames of the film, in quarters of a transit.
 const FILM: u32 = 44;
 const PIXELS: u32 = 720;
-const FILM_PIXELS: u32 = 480;
+const FILM_PIXELS: u32 = 400;
 
 /// One transit of a disc, d/c (s).
 fn transit(scene: &Scene) -> f64 {
