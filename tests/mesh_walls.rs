@@ -103,8 +103,9 @@ fn a_box_of_triangles_is_a_box_of_planes() {
     let mut ours = scene(&triangles, &format!("{mesh}{GRAINS}"));
     let as_planes = run(&scene(&triangles, &format!("{planes}{GRAINS}")), &mut ());
     let record = run(&ours, &mut ());
-    let touching = record.snapshots.last().unwrap().contacts.len();
-    assert!(touching > 48 && touching == as_planes.snapshots.last().unwrap().contacts.len(), "{touching}");
+    let contacts = |record: &Record| record.snapshots.last().unwrap().contacts.as_ref().map_or(0, Vec::len);
+    let touching = contacts(&record);
+    assert!(touching > 20 && touching == contacts(&as_planes), "{touching}");
     assert!(apart(&record, &as_planes) < 1e-9, "{}", apart(&record, &as_planes));
     // What is a little softer is seen.
     ours.change_laws(|law| law.scale_normal(1.0 + 1e-6));
@@ -191,7 +192,8 @@ fn threads_and_restarts_change_no_bit() {
 
 #[test]
 fn who_has_no_meshes_says_so() {
-    let scene = funnel();
+    let mut scene = funnel();
+    scene.stays = Default::default();
     for (name, resolution, word) in [
         ("rigid", Resolution::Rigid { step: Resolution::RIGID_STEP, substeps: 8, iterations: 4 }, "mesh of triangles"),
         ("mpm", Resolution::Grid { cells: 4.0, points: 2, courant: 0.4 }, ""),
@@ -200,9 +202,7 @@ fn who_has_no_meshes_says_so() {
         let has_it = matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains(word));
         assert!(has_it, "{name}: {refused:?}");
     }
-    let mut still = scene;
-    still.stays = Default::default();
-    let refused = solvers::by_name("lammps").unwrap().run(&still, &STEP, &mut ());
+    let refused = solvers::by_name("lammps").unwrap().run(&scene, &STEP, &mut ());
     assert!(matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains("mesh")), "{refused:?}");
 }
 

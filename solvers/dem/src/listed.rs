@@ -181,7 +181,8 @@ impl Pairs {
             && (shift.is_empty() || shift.len() == partner.len())
             && touches.len() == remembers(0, count.div_ceil(WIDEST))
             && [memory[0].len(), memory[1].len()] == [remembers(0, 1 + touched), remembers(4, 1 + touched)]
-            && row.iter().chain(partner).all(|&slot| (slot as usize) < grains)
+            // Beyond the last pair stands the first slot, of no grain where none are left.
+            && row.iter().chain(partner).all(|&slot| (slot as usize) < grains.max(1))
     }
 
     /// Number of a pair in the rows of its own.
