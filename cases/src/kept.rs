@@ -11,7 +11,7 @@ use grainbench_harness::reading::Table;
 use grainbench_harness::run::{Done, Run, Set};
 use grainbench_harness::solvers::Kept;
 use grainbench_reference::deck::Stepping;
-use grainbench_reference::stored::{compressed, scene_hash};
+use grainbench_reference::stored::{compressed, is_scene_of, scene_hash_by_bits};
 use grainbench_scene::record::{Cost, Provenance as OfRecord, Record, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
@@ -41,7 +41,8 @@ pub struct Provenance {
     pub title: String,
     /// How its snapshots were read.
     pub reading: String,
-    /// BLAKE3 hash of everything in the scene that the run depends on.
+    /// BLAKE3 hash of everything in the scene that the run depends on, by [`scene_hash_by_bits`] or, of runs of before, by the
+    /// digits of its grains.
     pub scene: String,
     /// What makes it again.
     pub command: String,
@@ -134,10 +135,6 @@ fn folder(case: &Case, id: &str) -> PathBuf {
     case.directory().join("kept").join(id)
 }
 
-fn hash(scene: &Scene, run: &Run) -> Result<String, String> {
-    Ok(scene_hash(scene, &Stepping::of(scene, &run.resolution)?))
-}
-
 /// What is kept of a run of a scene, under a control of this name; none where nothing is.
 #[must_use]
 pub(crate) fn load(case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
@@ -168,7 +165,8 @@ fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<Kept, Unusable> {
     let text = fs::read_to_string(folder.join(PROVENANCE)).map_err(|error| Unusable::Broken(error.to_string()))?;
     let provenance: Provenance = toml::from_str(&text).map_err(|error| Unusable::Broken(error.to_string()))?;
     let reading = run.reading.map_or("", |reading| reading.name);
-    if hash(scene, run).map_err(Unusable::Broken)? != provenance.scene || reading != provenance.reading {
+    let stepping = Stepping::of(scene, &run.resolution).map_err(Unusable::Broken)?;
+    if !is_scene_of(&provenance.scene, scene, &stepping) || reading != provenance.reading {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let reason =
             format!("`{name}` is of another scene, time step or reading; `grainbench reference keep` does it anew");
@@ -249,7 +247,7 @@ pub fn files(of: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result
         date: made[1].to_owned(),
         title: format!("{}/{}{control}, {}, {}", of.case.name, of.run.scene_words(), of.run.solver, of.run.resolution),
         reading: of.run.reading.map_or("", |reading| reading.name).to_owned(),
-        scene: hash(given, &of.run)?,
+        scene: scene_hash_by_bits(given, &Stepping::of(given, &of.run.resolution)?),
         command: format!("grainbench reference keep {}", of.case.name),
         blake3: files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect(),
         run: record.provenance.clone(),

@@ -23,7 +23,7 @@ pub use error::StoredError;
 pub use file_hash::hash_file;
 pub use making::{Made, compressed, make};
 pub use provenance::Provenance;
-pub use scene_hash::scene_hash;
+pub use scene_hash::{is_scene_of, scene_hash, scene_hash_by_bits};
 
 const PROVENANCE: &str = "provenance.toml";
 const SERIES: &str = "series.csv.gz";
