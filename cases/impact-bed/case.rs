@@ -100,9 +100,8 @@ fn claims() -> Vec<Claim> {
                 Ok(heights.iter().filter(|height| (*height - depth.mean).abs() <= depth.allowed(1)).count() as f64)
             })
             .within(exactly("asked for before: two deviations hold nineteen draws of twenty"))
-            .refuses(smooth()),
-        of_each("deepest point, farthest of five beds", "mm", dosta::DEEPEST, lowest, deepest)
             .refuses(half_the_density()),
+        of_each("deepest point, farthest of five beds", "mm", dosta::DEEPEST, lowest, deepest).refuses(smooth()),
         of_mean("mean velocity from 38 to 50 ms, mean of five beds", "m/s", dosta::REBOUND, speed, rebound)
             .refuses(at_rest()),
         of_each("mean velocity from 38 to 50 ms, farthest of five beds", "m/s", dosta::REBOUND, speed, rebound)
