@@ -221,9 +221,9 @@ fn a_red_report_ends_with_one() {
     let path = directory.path().join("out/report.json");
     let text = std::fs::read_to_string(&path).unwrap();
     for (green, red) in [
-        (r#""verdict": "pass""#, r#""verdict": "fail""#),
-        (r#""verdict": "pass""#, r#""verdict": "broken""#),
-        (r#""turned_red": true"#, r#""turned_red": false"#),
+        (r#""verdict":"pass""#, r#""verdict":"fail""#),
+        (r#""verdict":"pass""#, r#""verdict":"broken""#),
+        (r#""turned_red":true"#, r#""turned_red":false"#),
     ] {
         std::fs::write(&path, text.replacen(green, red, 1)).unwrap();
         let answer = grainbench(directory.path(), &["report", "out"]);
@@ -231,7 +231,7 @@ fn a_red_report_ends_with_one() {
         assert!(answer.out.contains('✗'), "{}", answer.out);
     }
     // Amber is neither.
-    std::fs::write(&path, text.replacen(r#""verdict": "pass""#, r#""verdict": "no-reference""#, 1)).unwrap();
+    std::fs::write(&path, text.replacen(r#""verdict":"pass""#, r#""verdict":"no-reference""#, 1)).unwrap();
     assert_eq!(grainbench(directory.path(), &["report", "out"]).code, Some(0));
 }
 

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Commands with what they cannot do without, which is right.
-const COMMANDS: [&[&str]; 25] = [
+const COMMANDS: [&[&str]; 26] = [
     &["list"],
     &["run", "squash"],
     &["simulate", "scene.toml", "--solver", "dem"],
@@ -31,6 +31,7 @@ const COMMANDS: [&[&str]; 25] = [
     &["reference", "verify"],
     &["reference", "keep", "squash"],
     &["reference", "uncertainty", "squash"],
+    &["reference", "import", "dosta-2024", "a-directory"],
     &["conform", "dem"],
     &["scene", "collision"],
     &["schema"],

@@ -205,7 +205,8 @@ fn shear(variant: &'static str, about: &str) -> Claim {
 
 /// At four times the pressure and twice the speed nothing is another.
 fn scales(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
-    const LAW: &str = "the run at four times the pressure and twice the speed: grains as good as rigid have no time but 1/γ̇ and √(m/P), so that I alone counts (derivation)";
+    const LAW: &str =
+        "the run at four times the pressure and twice the speed: of rigid grains I alone counts (derivation)";
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
     claim(quantity, "1")

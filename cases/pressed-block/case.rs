@@ -5,8 +5,8 @@ use grainbench_scene::material::{Constitutive, Deformable};
 
 const LEVELS: &[Level] = &[cells("L/8", 8.0, 2), cells("L/16", 16.0, 2)];
 
-/// Bulk and shear modulus, yield stress, hardening modulus (Pa), density (kg/m³), speed of the ram (m/s) and time (s) of the scene:
-/// tolerances are computed of them before there is a scene.
+/// Bulk and shear modulus, yield stress, hardening modulus (Pa), density (kg/m³), speed of the ram (m/s) and time (s) of the
+/// scene: tolerances are computed of them before there is a scene.
 const BULK: f64 = 80.0;
 const SHEAR: f64 = 40.0;
 const YIELD: f64 = 0.4;

@@ -115,7 +115,7 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("energy after over before, manufactured by the 2000 criterion", "1")
             .of(run("head-on", "mpm:2000").known(
-                "less than the least of six that the prototype has: it hangs on where the discs lie on the grid, which is not told",
+                "less than the least of six that the prototype has: it hangs on where discs lie on the grid, which is not told",
             ))
             .at_least(ENERGY_OF_2000.value, ENERGY_OF_2000.source(), |done| energy(&done[0]))
             .within(exactly("the least of what the prototype has at three resolutions, with two kinds of normals"))

@@ -451,7 +451,7 @@ impl Runner {
                     // A solver of another's need not tell all that ours do.
                     Err(missing) if self.stranger.is_some() => row.left(Outcome::Unsupported, missing.to_string()),
                     Err(missing) => row.left(Outcome::Fail, missing.to_string()),
-                    Ok(found) => known(row.judged(&found).unless_all_passes(), claim.standing(), &found),
+                    Ok(found) => known(row.judged(&found), claim.standing(), &found),
                 }
             }
         }

@@ -270,14 +270,14 @@ mod tests {
         write_report(dir.path(), &sample::report()).unwrap();
         let path = dir.path().join(REPORT_FILE);
         let text = fs::read_to_string(&path).unwrap();
-        fs::write(&path, text.replacen("\"steps\": 25000", "\"steps\": \"many\"", 1)).unwrap();
+        fs::write(&path, text.replacen("\"steps\":25000", "\"steps\":\"many\"", 1)).unwrap();
         let message = Report::load(dir.path()).unwrap_err().to_string();
         assert!(message.contains("report.json, line "), "{message}");
         assert!(message.contains("at `sections[0].runs[0].steps`"), "{message}");
         assert!(message.contains("invalid type: string \"many\", expected u64"), "{message}");
 
         // What steers a terminal is written out.
-        fs::write(&path, text.replacen("\"steps\": 25000", "\"steps\": \"ma\u{7f}ny\"", 1)).unwrap();
+        fs::write(&path, text.replacen("\"steps\":25000", "\"steps\":\"ma\u{7f}ny\"", 1)).unwrap();
         let message = Report::load(dir.path()).unwrap_err().to_string();
         assert!(message.contains("string \"ma\\u{7f}ny\""), "{message:?}");
 

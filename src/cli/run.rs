@@ -322,8 +322,8 @@ fn judge(
 }
 
 /// First the gates that ask for a run that none before them asks for, then the others; and all cases go forward evenly: two
-/// threads are seldom at one case, where they would wait for the same scene or the same run. Figures last, when what they show has
-/// been run.
+/// threads are seldom at one case, where they would wait for the same scene or the same run. Figures last, when what they show
+/// has been run.
 fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
     let mut tasks = Vec::new();
     for (case, selected) in selected.iter().enumerate() {

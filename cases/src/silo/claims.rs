@@ -160,8 +160,8 @@ impl Silo {
         apart(self.packings, quantity)
     }
 
-    /// A quantity that is what the prototype gives, within what packings differ by. Angles between axes, which may be none, are in
-    /// units of the mean of what axes that know nothing of each other have in the plane.
+    /// A quantity that is what the prototype gives, within what packings differ by. Angles between axes, which may be none, are
+    /// in units of the mean of what axes that know nothing of each other have in the plane.
     pub(crate) fn equals(
         &self,
         [quantity, unit]: [&'static str; 2],

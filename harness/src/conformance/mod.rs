@@ -56,7 +56,7 @@ impl Property {
         self.check_again(solver, solver, terms)
     }
 
-    /// The same, where runs of the solver may be finished ones, and what is done `again`, or watched, is done by the solver itself.
+    /// The same, where runs of the solver may be finished ones: what is done `again`, or watched, is done by the solver itself.
     fn check_again(&self, solver: &dyn Solver, again: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
         (self.check)(&Rows { solver, again, terms, property: self })
     }

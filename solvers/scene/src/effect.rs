@@ -165,8 +165,8 @@ impl Effect {
         !matches!(self, Self::Plasticity | Self::Viscosity) || method == Method::Grid
     }
 
-    /// The kinds of solver that leave it out of their loops where it is absent, and are tried with it there. On a grid gravity and
-    /// damping are a product and a sum a node, which nobody leaves out.
+    /// The kinds of solver that leave it out of their loops where it is absent, and are tried with it there. On a grid gravity
+    /// and damping are a product and a sum a node, which nobody leaves out.
     #[must_use]
     pub const fn left_out_by(self) -> &'static [Method] {
         match self {

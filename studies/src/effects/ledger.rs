@@ -96,17 +96,24 @@ impl Ledger {
         Ok((entry, false))
     }
 
-    /// Whether some claim of the case turns red when the effect is switched off: the first that does.
+    /// Whether some claim of the case turns red by its value when the effect is switched off: the first that does. Where none
+    /// does, one that has no value without it, as the pressure under what nothing presses has none.
     #[must_use]
     pub fn catches(&mut self, effect: Effect) -> Option<String> {
         let mut claims = self.claims.clone();
         claims.retain(|claim| self.calls_for(claim, effect));
         // One that is caught by what the main job runs need not wait for more.
         claims.sort_by_key(Claim::set);
-        claims.iter().find_map(|claim| {
-            let red = is_red(claim, self.error_without(claim, effect));
-            red.then(|| format!("{} · {}", claim.runs[0].solver, claim.quantity))
-        })
+        let words = |claim: &Claim| format!("{} · {}", claim.runs[0].solver, claim.quantity);
+        let mut nothing = None;
+        for claim in &claims {
+            match self.error_without(claim, effect) {
+                None => nothing = nothing.or_else(|| Some(format!("{}: no value without it", words(claim)))),
+                error if is_red(claim, error) => return Some(words(claim)),
+                _ => {}
+            }
+        }
+        nothing
     }
 
     fn calls_for(&self, claim: &Claim, effect: Effect) -> bool {
