@@ -1,5 +1,7 @@
 //! The round robin of bulk processes: what is derived of tables that a user has, and which are refused.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
 use grainbench_reference::round_robin::{Kind, Published, of_drum, of_impact, read};
 use std::fmt::Write as _;
 

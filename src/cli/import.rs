@@ -55,7 +55,7 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
             Kind::Impact(impact) => {
                 if impact.courses.len() > 1 {
                     derived += &values(impact);
-                    out.write(&format!("{name}-derived.csv"), course(impact).as_bytes()).map_err(Fault::writing)?;
+                    out.write(format!("{name}-derived.csv"), course(impact).as_bytes()).map_err(Fault::writing)?;
                 }
                 (of_impact(impact), heights(name, impact))
             }
@@ -66,12 +66,12 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
             let _ = writeln!(said, "{name}: {about}: {seen}");
         }
         let svg = draw(&figure).map_err(Fault::input)?;
-        out.write(&format!("{name}.svg"), svg.as_bytes()).map_err(Fault::writing)?;
+        out.write(format!("{name}.svg"), svg.as_bytes()).map_err(Fault::writing)?;
     }
     said += &beside(&tables);
     if let Some(start) = &start {
         for (name, kind, diameter, density) in [("drum-m2", 0, 0.004, 2000.0), ("drum-m1", 1, 0.002, 2500.0)] {
-            out.write(&format!("{name}.data"), start.data(kind, diameter, density).as_bytes())
+            out.write(format!("{name}.data"), start.data(kind, diameter, density).as_bytes())
                 .map_err(Fault::writing)?;
         }
         out.write("drum.toml", DRUM.as_bytes()).map_err(Fault::writing)?;

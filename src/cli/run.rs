@@ -330,7 +330,9 @@ fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
         let share = 1.0 / selected.claims.len() as f64;
         let mut asked = HashSet::new();
         for (gate, claim) in selected.claims.iter().enumerate() {
-            let is_new = claim.runs.iter().fold(false, |is_new, run| asked.insert(run.key()) || is_new);
+            let known = asked.len();
+            asked.extend(claim.runs.iter().map(Run::key));
+            let is_new = asked.len() > known;
             let turn = gate as f64 * share;
             tasks.push((if is_new { turn } else { 1.0 + turn }, Task::Judge(case, gate)));
             if with_controls {

@@ -265,7 +265,7 @@ fn normals(
         let across = (b - a).cross(&(c - a));
         let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
         let height = across.norm() / longest;
-        if i == j || j == k || k == i || !(height > FLAT * longest) {
+        if i == j || j == k || k == i || height.is_nan() || height <= FLAT * longest {
             let found = format!("{}: {:?}, {:?}, {:?}", name(number), a.as_slice(), b.as_slice(), c.as_slice());
             return Err(Flaw::new("triangles with an area", &found));
         }
