@@ -2,7 +2,7 @@
 //!
 //! A mesh is taken for the surface that it is, whatever its triangles are: triangles in one plane that hang together are one
 //! *patch*, edges in one line between the same patches one *ridge*, and what is left are *corners*. A sphere touches each of
-//! these once at most ([`touch`]).
+//! these once at most (`touch`).
 
 mod build;
 mod flaw;
