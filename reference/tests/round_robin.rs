@@ -76,6 +76,26 @@ fn derives_means_and_deviations() {
     assert!((spread.bed - 0.5 * 3.0e-5 * (5.0_f64 / 3.0).sqrt()).abs() < 1e-7, "{spread:?}");
 }
 
+/// LIGGGHTS' first sample stands half a tenth of a millisecond late, and its ball was let go like the others.
+#[test]
+fn a_clock_that_is_ahead_is_no_other_release() {
+    let mut text = "t,A_IC1,L_IC1,R_IC1".to_owned();
+    for step in 0..4 {
+        let time = f64::from(step) * 1e-3;
+        let fall = |speed: f64, time: f64| 0.06 + speed * time - 0.5 * 9.81 * time * time;
+        let late = if step == 0 { 4.95e-5 } else { time };
+        write!(text, "\n{time},{:.8},{:.8},{:.8}", fall(-5.0, time), fall(-5.0, late), fall(0.0, time)).unwrap();
+    }
+    let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &text).unwrap() else {
+        panic!("no courses")
+    };
+    let said: Vec<String> =
+        of_impact(&impact).into_iter().map(|said| format!("{}: {}", said.about, said.seen)).collect();
+    let begins = ["R, bed 1: the ball begins at 0.00 m/s", "L: clock ahead by 4.95e-5 s at its first sample"];
+    let is_said = |begin: &&str| said.iter().any(|line| line.starts_with(*begin));
+    assert!(begins.iter().all(is_said) && said.len() == begins.len(), "{said:#?}");
+}
+
 #[test]
 fn says_which_frame_is_counted_twice() {
     let text = "t,z1_m1,z1_m2,z2_m1,z2_m2\n0,1,2,30,41\n1,1,3,33,41\n2,4,6,66,80\n";
