@@ -5,6 +5,7 @@ mod published;
 
 use crate::rows::programs::row;
 use crate::sources::literature::dosta_2024 as dosta;
+use grainbench_harness::claim::Tolerated;
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
@@ -91,7 +92,7 @@ fn claims() -> Vec<Claim> {
     let lowest = Spread::of(dosta::DEEPEST, dosta::DEEPEST_CODE, dosta::DEEPEST_BED);
     let speed = Spread::of(dosta::REBOUND, dosta::REBOUND_CODE, dosta::REBOUND_BED);
     let mut all_claims = vec![
-        of_mean("height of the ball at 30 ms, mean of five beds", "mm", dosta::HEIGHT_30, depth, |done| {
+        of_beds(("height of the ball at 30 ms, mean of five beds", "mm"), MEAN, dosta::HEIGHT_30, depth, |done| {
             height(done, DEEP)
         })
         .refuses(pair_of_m1()),
@@ -103,42 +104,36 @@ fn claims() -> Vec<Claim> {
             })
             .within(exactly("asked for before: two deviations hold nineteen draws of twenty"))
             .refuses(half_the_density()),
-        of_each("deepest point, farthest of five beds", "mm", dosta::DEEPEST, lowest, deepest).refuses(smooth()),
-        of_mean("mean velocity from 38 to 50 ms, mean of five beds", "m/s", dosta::REBOUND, speed, rebound)
+        of_beds(("deepest point, farthest of five beds", "mm"), EACH, dosta::DEEPEST, lowest, deepest)
+            .refuses(smooth()),
+        of_beds(("mean velocity from 38 to 50 ms, mean of five beds", "m/s"), MEAN, dosta::REBOUND, speed, rebound)
             .refuses(at_rest()),
-        of_each("mean velocity from 38 to 50 ms, farthest of five beds", "m/s", dosta::REBOUND, speed, rebound)
+        of_beds(("mean velocity from 38 to 50 ms, farthest of five beds", "m/s"), EACH, dosta::REBOUND, speed, rebound)
             .refuses(at_rest()),
     ];
     all_claims.extend([early(), beside()]);
     all_claims
 }
 
-/// The mean of five beds is where codes are.
-fn of_mean(
-    quantity: &str,
-    unit: &'static str,
-    cited: Cited,
-    spread: Spread,
-    of: fn(&Done) -> Result<f64, Missing>,
-) -> grainbench_harness::claim::Tolerated {
-    claim(quantity, unit)
-        .of_all(on_all())
-        .equals_cited(cited, 1.0, move |done| Ok(mean(&all(done, of)?)))
-        .within(computed(spread.allowed(OWN.len()), BECAUSE_FIVE))
-}
+/// What the beds show together: a value of theirs all, by what is expected, and how far it may be off.
+type Together = (fn(&[f64], f64) -> f64, fn(Spread) -> Tolerance);
 
+/// The mean of five beds is where codes are.
+const MEAN: Together = (|values, _| mean(values), |spread| computed(spread.allowed(OWN.len()), BECAUSE_FIVE));
 /// Each of five beds is where one bed of a code may be.
-fn of_each(
-    quantity: &str,
-    unit: &'static str,
+const EACH: Together = (farthest, |spread| computed(spread.allowed(1), BECAUSE));
+
+fn of_beds(
+    (quantity, unit): (&str, &'static str),
+    (together, tolerance): Together,
     cited: Cited,
     spread: Spread,
     of: fn(&Done) -> Result<f64, Missing>,
-) -> grainbench_harness::claim::Tolerated {
+) -> Tolerated {
     claim(quantity, unit)
         .of_all(on_all())
-        .equals_cited(cited, 1.0, move |done| Ok(farthest(&all(done, of)?, cited.value)))
-        .within(computed(spread.allowed(1), BECAUSE))
+        .equals_cited(cited, 1.0, move |done| Ok(together(&all(done, of)?, cited.value)))
+        .within(tolerance(spread))
 }
 
 /// The default part: one bed from 20 ms on, before the ball meets anything.

@@ -63,7 +63,9 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
             Kind::Silo(silo) => (leaving(silo), left(name, silo)),
         };
         for Said { about, seen } in of {
-            let _ = writeln!(said, "{name}: {about}: {seen}");
+            // A course that is alone in its file has no other name.
+            let about = if about == *name { String::new() } else { format!("{about}: ") };
+            let _ = writeln!(said, "{name}: {about}{seen}");
         }
         let svg = draw(&figure).map_err(Fault::input)?;
         out.write(format!("{name}.svg"), svg.as_bytes()).map_err(Fault::writing)?;

@@ -48,7 +48,7 @@ fn name(course: &Course) -> String {
     format!("{}, bed {}", course.code, course.bed)
 }
 
-/// A ball that is not released at −5 m/s: by its fall between one and two milliseconds, before which a bed hardly holds it up. The
+/// A ball that is not released at −5 m/s: by its fall between one and two milliseconds, when a bed hardly holds it up yet. The
 /// first sample is not asked: a clock that is ahead in it alone is no other release.
 fn released(impact: &Impact, course: &Course) -> Option<Said> {
     const FLIGHT: [f64; 2] = [0.001, 0.002];
