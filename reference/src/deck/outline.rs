@@ -1,10 +1,13 @@
 //! What both decks ask of a scene.
 
-use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
 use grainbench_scene::file::GrainShape;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Dimension, Driven, Scene, Wall, WallShape};
 use nalgebra::Vector3;
+
+/// The laws that decks are written for; another is refused, and not taken for one of them.
+const WRITTEN: [SpringsKind; 3] = [SpringsKind::Coulomb, SpringsKind::Linear, SpringsKind::HertzMindlin];
 
 /// Refuses physics that neither program has, or has in another form than the scene.
 pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
@@ -30,6 +33,9 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     }
     if scene.global_damping != 0.0 {
         return Err("mass-proportional damping of translation and rotation (`global_damping`) is in neither".to_owned());
+    }
+    if let Some(law) = laws().find(|law| !WRITTEN.contains(&law.springs.kind())) {
+        return Err(format!("its law is `{}`, which decks do not write", law.springs.kind().word()));
     }
     if laws().any(|law| law.cohesion != 0.0) {
         let here = "cohesion is shear strength that needs no load here, |F_s| <= F_n tan phi + c, and never pulls";

@@ -1,7 +1,6 @@
 //! What a scene calls for that a program does not declare.
 
-use super::manifest::{Can, Law, Manifest, Wall};
-use grainbench_scene::contact_law::Springs;
+use super::manifest::{Can, Manifest, Wall};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::{Scene, WallShape};
 use grainbench_scene::solver::Resolution;
@@ -33,13 +32,9 @@ fn lacks_law(can: &Can, scene: &Scene) -> Option<String> {
         });
     }
     for law in scene.laws.iter().flatten() {
-        let (law, word) = match law.springs {
-            Springs::Absent => (Law::Coulomb, "coulomb"),
-            Springs::Linear { .. } => (Law::Linear, "linear"),
-            Springs::Hertz { .. } => (Law::HertzMindlin, "hertz-mindlin"),
-        };
+        let law = law.springs.kind();
         if !can.laws.contains(&law) {
-            return Some(format!("it does not declare the law `{word}`"));
+            return Some(format!("it does not declare the law `{}`", law.word()));
         }
     }
     None

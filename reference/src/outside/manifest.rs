@@ -2,6 +2,7 @@
 
 use crate::observer::Names;
 use crate::read::read_error::{one_line, quoted};
+use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::material::ConstitutiveKind;
 use grainbench_scene::text::{line_of, written};
@@ -69,7 +70,7 @@ pub struct Can {
     pub dimension: Vec<usize>,
     /// Contact laws of grains that keep their shape.
     #[serde(default)]
-    pub laws: Vec<Law>,
+    pub laws: Vec<SpringsKind>,
     /// Laws of materials, of programs whose grains and bodies deform.
     #[serde(default)]
     pub deformable: Vec<ConstitutiveKind>,
@@ -82,18 +83,6 @@ pub struct Can {
     /// Whether grains can be driven.
     #[serde(default)]
     pub driven: bool,
-}
-
-/// Contact laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Law {
-    /// Linear springs.
-    Linear,
-    /// Hertz along the normal, Mindlin's spring along the tangent.
-    HertzMindlin,
-    /// Coulomb friction and no spring.
-    Coulomb,
 }
 
 /// Kinds of walls.

@@ -12,7 +12,7 @@ mod report;
 mod resolved;
 mod worker;
 
-pub use manifest::{Can, GrainFormat, Grains, Knobs, Law, Limits, Manifest, ManifestError, Output, SceneFormat, Wall};
+pub use manifest::{Can, GrainFormat, Grains, Knobs, Limits, Manifest, ManifestError, Output, SceneFormat, Wall};
 pub use resolved::{Given, Resolved, schema};
 
 use crate::deadline::Deadline;
@@ -23,6 +23,7 @@ use crate::outputs::{OutputError, Outputs, Sources};
 use crate::process::{self, ERRORS, Ended, SCREEN, Started};
 use crate::read::read_error::one_line;
 use crate::read::table::read_table;
+use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::record::{Cost, Provenance, Record};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Ahead, Failure, Resolution, RunError, Solver, Watch};
@@ -385,7 +386,7 @@ impl Solver for Outside {
     }
 
     fn has_springs(&self) -> bool {
-        self.manifest.can.laws.iter().any(|law| *law != Law::Coulomb)
+        self.manifest.can.laws.iter().any(|law| *law != SpringsKind::Coulomb)
     }
 
     fn deforms(&self) -> bool {

@@ -127,7 +127,7 @@ pub struct Law {
     pub between: [String; 2],
     /// `linear`, `hertz-mindlin` or `coulomb`, with its numbers.
     #[serde(flatten)]
-    pub springs: LawSprings,
+    pub springs: Springs,
     /// Coefficient of friction μ.
     pub friction: f64,
     /// Cohesion c (N): |F_s| ≤ μ F_n + c.
@@ -145,28 +145,6 @@ pub struct Law {
     pub rolling_friction: f64,
     /// Damping ratio of the rolling spring.
     pub rolling_damping: f64,
-}
-
-/// The springs of a law.
-#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-#[serde(tag = "law", rename_all = "kebab-case")]
-pub enum LawSprings {
-    /// F_n = k_n δ.
-    Linear {
-        /// k_n (N/m; of discs per metre of depth).
-        normal_stiffness: f64,
-        /// k_s (N/m).
-        tangential_stiffness: f64,
-    },
-    /// F_n = (4/3) E* √R* δ^{3/2}, k_s = 8 G* √(R* δ).
-    HertzMindlin {
-        /// E* (Pa).
-        effective_modulus: f64,
-        /// G* (Pa).
-        effective_shear_modulus: f64,
-    },
-    /// Friction and no spring.
-    Coulomb,
 }
 
 /// A grain at the start.
@@ -358,15 +336,7 @@ fn law(between: [String; 2], law: &ContactLaw) -> Law {
     let damping = law.damping_ratio;
     Law {
         between,
-        springs: match law.springs {
-            Springs::Absent => LawSprings::Coulomb,
-            Springs::Linear { normal, tangential } => {
-                LawSprings::Linear { normal_stiffness: normal, tangential_stiffness: tangential }
-            }
-            Springs::Hertz { effective_modulus, effective_shear_modulus } => {
-                LawSprings::HertzMindlin { effective_modulus, effective_shear_modulus }
-            }
-        },
+        springs: law.springs,
         friction: law.friction,
         cohesion: law.cohesion,
         stiffness_damping: law.stiffness_damping,

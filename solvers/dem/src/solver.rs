@@ -14,6 +14,7 @@ use crate::simulation::Simulated;
 use crate::stability::damped_step;
 use grainbench_lanes::Team;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
+use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::end_state::EndState;
@@ -196,11 +197,14 @@ pub(crate) fn solid(scene: &Scene) -> Box<dyn Forces<Solid>> {
 /// The loops over contacts for the effects that a scene calls for, with `T` where it has friction.
 fn chain<S: Geometry, T: Tangential<S>>(scene: &Scene) -> Box<dyn Forces<S>> {
     let effects = Effects::of(scene);
-    match (effects.hertz, effects.contact_damping) {
-        (false, false) => after::<S, Spring, T>(effects),
-        (false, true) => after::<S, SpringDashpot, T>(effects),
-        (true, false) => after::<S, Hertz, T>(effects),
-        (true, true) => after::<S, HertzDashpot, T>(effects),
+    // All laws of a scene that have springs are of one kind.
+    let kinds = scene.laws.iter().flatten().map(|law| law.springs.kind());
+    let kind = kinds.fold(SpringsKind::Coulomb, |found, kind| if found == SpringsKind::Coulomb { kind } else { found });
+    match (kind, effects.contact_damping) {
+        (SpringsKind::Coulomb | SpringsKind::Linear, false) => after::<S, Spring, T>(effects),
+        (SpringsKind::Coulomb | SpringsKind::Linear, true) => after::<S, SpringDashpot, T>(effects),
+        (SpringsKind::HertzMindlin, false) => after::<S, Hertz, T>(effects),
+        (SpringsKind::HertzMindlin, true) => after::<S, HertzDashpot, T>(effects),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The law of a contact between two materials, from the keys that a user writes to the numbers that act.
 //!
-//! A new law is a variant of [`Springs`] with its word, what it takes from the scene, and how stiff it is.
+//! A new law is a variant of [`Springs`] with its word, what it takes from the scene, and how stiff it is. Decks and programs that
+//! were not written for it refuse it by its kind.
 
 use crate::check::Checker;
 use crate::error::SceneError;
@@ -98,20 +99,50 @@ pub struct ContactLaw {
     pub rolling_damping: f64,
 }
 
-/// The springs of a contact law.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What kind of springs a law has, by the word that manifests declare and resolved scenes hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SpringsKind {
+    /// Coulomb friction and no spring.
+    Coulomb,
+    /// Linear springs.
+    Linear,
+    /// Hertz along the normal, Mindlin's spring along the tangent.
+    HertzMindlin,
+}
+
+impl SpringsKind {
+    /// Its word.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Coulomb => "coulomb",
+            Self::Linear => "linear",
+            Self::HertzMindlin => "hertz-mindlin",
+        }
+    }
+}
+
+/// The springs of a contact law, and how programs of others are told of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[serde(tag = "law")]
 pub enum Springs {
-    /// None: for bodies that deform themselves, or not at all.
+    /// Friction and no spring: for bodies that deform themselves, or not at all.
     #[default]
+    #[serde(rename = "coulomb")]
     Absent,
     /// F_n = k_n δ, and k_s along the tangent.
+    #[serde(rename = "linear")]
     Linear {
-        /// Normal stiffness k_n (N/m).
+        /// Normal stiffness k_n (N/m; of discs per metre of depth).
+        #[serde(rename = "normal_stiffness")]
         normal: f64,
-        /// Tangential stiffness k_s (N/m).
+        /// Tangential stiffness k_s (N/m; of discs per metre of depth).
+        #[serde(rename = "tangential_stiffness")]
         tangential: f64,
     },
     /// F_n = (4/3) E* √R* δ^{3/2}, and Mindlin's k_s = 8 G* √(R* δ) along the tangent.
+    #[serde(rename = "hertz-mindlin")]
     Hertz {
         /// 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂ (Pa).
         effective_modulus: f64,
@@ -121,6 +152,16 @@ pub enum Springs {
 }
 
 impl Springs {
+    /// What kind they are.
+    #[must_use]
+    pub const fn kind(&self) -> SpringsKind {
+        match self {
+            Self::Absent => SpringsKind::Coulomb,
+            Self::Linear { .. } => SpringsKind::Linear,
+            Self::Hertz { .. } => SpringsKind::HertzMindlin,
+        }
+    }
+
     /// The two numbers that say how stiff: k_n and k_s (N/m), or E* and G* (Pa).
     #[must_use]
     pub const fn constants(&self) -> [f64; 2] {

@@ -34,10 +34,9 @@ impl Resolver<'_> {
                 table[b * count + a] = Some(law);
             }
         }
-        let all = table.iter().flatten().count();
-        let hertz = table.iter().flatten().filter(|law| ContactLaw::is_hertz(law)).count();
-        let springs = table.iter().flatten().filter(|law| ContactLaw::has_stiffness(law)).count();
-        if (hertz > 0 && hertz < springs) || (springs > 0 && springs < all) {
+        let mut kinds = table.iter().flatten().map(|law| law.springs.kind());
+        let first = kinds.next();
+        if kinds.any(|kind| Some(kind) != first) {
             return Err(self.check.error("contacts", "laws of one kind, all `linear` or all `hertz`", "both"));
         }
         self.require_laws(materials, &table, grains, bodies, walls)?;
