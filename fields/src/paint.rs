@@ -217,9 +217,9 @@ mod tests {
     fn a_disc_that_rolled_away_does_not_shrink_the_others() {
         let mut many = snapshot(Vec::new());
         many.periodic = [false; 3];
-        let grain = GrainState { radius: 0.05, ..many.grains[0] };
+        let grain = GrainState { radius: 0.05, ..many.grains[0].clone() };
         let place = |at: u32| Vector3::new(0.1 * f64::from(at % 20), 0.1 * f64::from(at / 20), 0.0);
-        many.grains = (0..200).map(|at| GrainState { position: place(at), ..grain }).collect();
+        many.grains = (0..200).map(|at| GrainState { position: place(at), ..grain.clone() }).collect();
         let all = View::of(&many, 200);
         assert_eq!(all.outside(&many), 0);
         many.grains[7].position.x = 100.0;

@@ -29,7 +29,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
         let end = End::of(solver, &permuted, &terms.resolution)?;
         let mut restored = straight.clone();
         for place in 0..count {
-            restored.grains[old_place(place)] = end.grains[place];
+            restored.grains[old_place(place)] = end.grains[place].clone();
         }
         let allowed = rounding(&named.scene, [&straight, &end]);
         Ok(Found::deviation(straight.apart(&restored), straight.reach().1, allowed))

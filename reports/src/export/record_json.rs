@@ -86,7 +86,7 @@ mod tests {
     fn a_large_run_keeps_its_last_snapshot() {
         let folder = tempfile::tempdir().unwrap();
         let mut store = SnapshotStore::for_output(&folder.path().join("out"));
-        let many = Snapshot { grains: vec![sample::snapshot().grains[0]; 70_000], ..sample::snapshot() };
+        let many = Snapshot { grains: vec![sample::snapshot().grains[0].clone(); 70_000], ..sample::snapshot() };
         for step in 0..3 {
             store.add(Snapshot { step, ..many.clone() }).unwrap();
         }

@@ -18,8 +18,8 @@ fn grain(id: u32, x: f64, y: f64) -> GrainState {
         force: Some(Vector3::new(1.0, 2.0, 0.0)),
         torque: Some(Vector3::new(0.0, 0.0, -0.125)),
         plastic_strain: 0.0,
-        virial: Some([-3.0, -2.5, 0.0, 0.125, 0.0, 0.0]),
-        mean_virial: Some([-1.0, -2.0, 0.0, 0.5, 0.0, 0.0]),
+        virial: Some(Box::new([-3.0, -2.5, 0.0, 0.125, 0.0, 0.0])),
+        mean_virial: Some(Box::new([-1.0, -2.0, 0.0, 0.5, 0.0, 0.0])),
     }
 }
 

@@ -35,6 +35,13 @@ pub(super) trait Columns {
         *value = all.then_some(numbers);
     }
 
+    /// The same of numbers that are held apart.
+    fn told_apart<const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<Box<[f64; N]>>) {
+        let mut numbers = value.as_deref().copied();
+        self.told_numbers(names, &mut numbers);
+        *value = numbers.map(Box::new);
+    }
+
     /// The components of a vector that may be absent as a whole.
     fn told_vector(&mut self, names: [&'static str; 3], value: &mut Option<Vector3<f64>>) {
         let mut components = value.map(Into::into);

@@ -143,7 +143,7 @@ impl OpenPart {
         }
         let directory = self.directory.path().join("part");
         self.frames.add(&directory, &[], rows(first, snapshots, |of| std::iter::once(Frame::of(of))))?;
-        self.grains.add(&directory, &self.without, rows(first, snapshots, |of| of.grains.iter().copied()))?;
+        self.grains.add(&directory, &self.without, rows(first, snapshots, |of| of.grains.iter().cloned()))?;
         self.contacts.add(&directory, &[], rows(first, snapshots, |of| of.told_contacts().iter().copied()))?;
         self.walls.add(&directory, &[], rows(first, snapshots, |of| of.walls.iter().cloned()))?;
         self.bodies.add(&directory, &[], rows(first, snapshots, |of| of.bodies.iter().cloned()))?;

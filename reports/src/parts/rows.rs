@@ -107,8 +107,8 @@ impl Row for GrainState {
         columns.told_vector(FORCE, &mut self.force);
         columns.told_vector(TORQUE, &mut self.torque);
         columns.number("plastic_strain", &mut self.plastic_strain);
-        columns.told_numbers(VIRIAL, &mut self.virial);
-        columns.told_numbers(MEAN_VIRIAL, &mut self.mean_virial);
+        columns.told_apart(VIRIAL, &mut self.virial);
+        columns.told_apart(MEAN_VIRIAL, &mut self.mean_virial);
     }
 }
 

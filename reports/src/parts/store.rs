@@ -512,7 +512,7 @@ mod tests {
     fn what_nobody_wants_is_not_kept_and_cannot_be_asked_for_later() {
         let folder = tempfile::tempdir().unwrap();
         let checkpoint = folder.path().join("run.checkpoint");
-        let many = Snapshot { grains: vec![sample::snapshot().grains[0]; 150_000], ..sample::snapshot() };
+        let many = Snapshot { grains: vec![sample::snapshot().grains[0].clone(); 150_000], ..sample::snapshot() };
         let mut store = SnapshotStore::for_checkpoint(&checkpoint).in_short();
         for step in 0..3 {
             store.add(Snapshot { step, ..many.clone() }).unwrap();
@@ -532,7 +532,7 @@ mod tests {
     fn memory_holds_a_few_snapshots_and_disk_the_others() {
         let folder = tempfile::tempdir().unwrap();
         let mut store = SnapshotStore::for_output(&folder.path().join("out"));
-        let many = Snapshot { grains: vec![sample::snapshot().grains[0]; 10_000], ..sample::snapshot() };
+        let many = Snapshot { grains: vec![sample::snapshot().grains[0].clone(); 10_000], ..sample::snapshot() };
         for _ in 0..20 {
             store.add(many.clone()).unwrap();
             assert!(store.waiting_bytes < WAITING);

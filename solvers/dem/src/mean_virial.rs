@@ -50,7 +50,7 @@ impl MeanVirial {
         }
         let share = 1.0 / self.steps as f64;
         for grain in grains {
-            grain.mean_virial = Some(self.sums[grain.id as usize - 1].map(|sum| sum * share));
+            grain.mean_virial = Some(Box::new(self.sums[grain.id as usize - 1].map(|sum| sum * share)));
         }
         self.sums.fill([0.0; 6]);
         self.steps = 0;

@@ -43,8 +43,8 @@ pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
 pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> Vec<GrainState> {
     let scene = &simulation.scene;
     let is_there = |id: &usize| simulation.grains.slot[*id] != ABSENT;
-    let mut grains: Vec<GrainState> =
-        (0..scene.grains.len()).filter(is_there).map(|id| grain_state(simulation, id)).collect();
+    let mut grains: Vec<GrainState> = Vec::with_capacity(simulation.grains.len());
+    grains.extend((0..scene.grains.len()).filter(is_there).map(|id| grain_state(simulation, id)));
     for driven in scene.driven.iter().filter(|driven| driven.is_moved_at(simulation.time())) {
         for &grain in &driven.grains {
             let velocity = driven.velocity_at(simulation.time(), simulation.motion.time_step);

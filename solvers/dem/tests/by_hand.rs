@@ -196,7 +196,7 @@ fn grains_turn_by_the_moments_that_snapshots_show() {
         let gravity = if dimension == 2 { Vector3::new(6.0, -8.0, 0.0) } else { Vector3::new(6.0, 0.0, -8.0) };
         assert_eq!(record.snapshots.len(), 61);
         let step = record.provenance.time_step;
-        let speeds = end(&record).grains[0];
+        let speeds = &end(&record).grains[0];
         for pair in record.snapshots.windows(2) {
             let [one, two] = [&pair[0].grains[0], &pair[1].grains[0]];
             let turned = (two.spin - one.spin) * inertia - (one.torque.unwrap() + two.torque.unwrap()) * (0.5 * step);

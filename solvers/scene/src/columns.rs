@@ -58,7 +58,7 @@ impl Columns {
         if self.has(Chosen::Virial)
             && let Some(virials) = virial::virials(snapshot)
         {
-            snapshot.grains.iter_mut().zip(virials).for_each(|(grain, virial)| grain.virial = Some(virial));
+            snapshot.grains.iter_mut().zip(virials).for_each(|(grain, virial)| grain.virial = Some(Box::new(virial)));
         }
         if !self.has(Chosen::Contacts) {
             snapshot.contacts = None;
@@ -92,7 +92,7 @@ impl Columns {
 fn round_grain(grain: &mut GrainState, bits: u32) {
     let GrainState { position, velocity, spin, angle, force, torque, virial, mean_virial, .. } = grain;
     let vectors = [Some(position), Some(velocity), Some(spin), force.as_mut(), torque.as_mut()];
-    let tensors = [virial.as_mut(), mean_virial.as_mut()];
+    let tensors = [virial, mean_virial].map(|told| told.as_deref_mut());
     let numbers = vectors.into_iter().flatten().flatten().chain(tensors.into_iter().flatten().flatten()).chain(angle);
     numbers.for_each(|number| *number = rounded(*number, bits));
 }

@@ -39,7 +39,7 @@ impl Series {
 }
 
 /// One grain as a snapshot shows it. In two dimensions z components are zero and spin is along z.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GrainState {
     /// Identity, from 1, the same in every snapshot.
     pub id: u32,
@@ -65,12 +65,13 @@ pub struct GrainState {
     /// Equivalent plastic strain, its mean over the mass; zero for a grain that does not yield.
     #[serde(default)]
     pub plastic_strain: f64,
-    /// V σ of the instant: xx, yy, zz, xy, yz, zx (J; J/m for discs), where it is asked for (see [`crate::virial`]).
+    /// V σ of the instant: xx, yy, zz, xy, yz, zx (J; J/m for discs), where it is asked for (see [`crate::virial`]). Apart from
+    /// the grain, for few runs ask for it and large ones hold a million grains.
     #[serde(default)]
-    pub virial: Option<[f64; 6]>,
+    pub virial: Option<Box<[f64; 6]>>,
     /// The same, its mean over the time since the snapshot before; none in the first.
     #[serde(default)]
-    pub mean_virial: Option<[f64; 6]>,
+    pub mean_virial: Option<Box<[f64; 6]>>,
 }
 
 impl GrainState {
