@@ -14,7 +14,7 @@ use crate::read::log::{Log, read_log};
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 use crate::read::table::{Table, read_table};
-use crate::run_files::{Kind, RunFile, Snapshots, in_order, kind, shown};
+use crate::run_files::{RunFile, Snapshots, in_order, kind, shown};
 
 /// Most files that are named one by one.
 const MOST_NAMED: usize = 3;
@@ -100,7 +100,7 @@ impl Outputs {
             sources,
         };
         if let [file] = &outputs.sources.files[..]
-            && kind(file)? == Kind::Table
+            && kind(file)?.is_table()
         {
             let table = read_table(file)?;
             outputs.significant = table.digits().significant();
@@ -321,7 +321,7 @@ fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
 /// The first table among several files.
 fn first_table(files: &[PathBuf]) -> Result<Option<&PathBuf>, ReadError> {
     for file in files {
-        if kind(file)? == Kind::Table {
+        if kind(file)?.is_table() {
             return Ok(Some(file));
         }
     }

@@ -1,13 +1,11 @@
 //! The files that a run left, snapshot by snapshot, whatever their format.
 
 use crate::read::decoding::{Decoded, decoded};
-use crate::read::dump::DumpReader;
+use crate::read::format::{Beginning, FORMATS, Format, Holds, Moments, ToldBy, dump};
 use crate::read::line_reader::LineReader;
-use crate::read::npz::{self, Course};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
-use crate::read::vtk;
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -16,61 +14,77 @@ use std::path::{Path, PathBuf};
 const HEAD: u64 = 512;
 
 /// What a file is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Kind {
-    /// A dump of LAMMPS' kind.
-    Dump,
     /// A table.
     Table,
-    /// One of VTK's.
-    Vtk(vtk::Kind),
-    /// One of VTK's in HDF5.
-    VtkHdf,
-    /// Arrays of NumPy's.
-    Npz,
+    /// Grains at moments, in a format.
+    Grains(&'static Format),
+}
+
+impl Kind {
+    /// In words.
+    pub(crate) const fn words(self) -> &'static str {
+        match self {
+            Self::Table => "a table",
+            Self::Grains(format) => format.words,
+        }
+    }
+
+    /// Whether it is a table.
+    pub(crate) const fn is_table(self) -> bool {
+        matches!(self, Self::Table)
+    }
+
+    /// Whether it is a dump of LAMMPS' kind.
+    pub(crate) fn is_dump(self) -> bool {
+        matches!(self, Self::Grains(format) if std::ptr::eq(format, &dump::FORMAT))
+    }
 }
 
 /// What a file is by its beginning; an empty one does not say, and the reader of dumps then will.
 pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     let name = shown(path);
     let opened = || File::open(path).map_err(|error| ReadError::opening(&name, error));
-    let mut mark = Vec::new();
-    let marked = opened()?.take(vtk::MARK.len() as u64).read_to_end(&mut mark);
-    marked.map_err(|error| ReadError::reading(&name, 1, error))?;
-    if mark == vtk::MARK {
-        return Ok(Kind::VtkHdf);
-    }
-    // Other archives are refused where their text is looked for.
-    if mark.starts_with(npz::MARK) && path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz")) {
-        return Ok(Kind::Npz);
-    }
-    if mark.starts_with(parquet::MARK) {
+    let reading = |error| ReadError::reading(&name, 1, error);
+    let (mut bytes, mut unpacked) = (Vec::new(), Vec::new());
+    opened()?.take(HEAD).read_to_end(&mut bytes).map_err(reading)?;
+    if bytes.starts_with(parquet::MARK) {
         return Ok(Kind::Table);
     }
-    let reading = |error| ReadError::reading(&name, 1, error);
-    let mut head = Vec::new();
-    if let Decoded::Text(reader) = decoded(BufReader::new(opened()?)).map_err(reading)? {
-        reader.take(HEAD).read_to_end(&mut head).map_err(reading)?;
+    // What is not packed begins with the same bytes; archives and boxes that are known by them are not unpacked.
+    let told = |unpacked: &[u8]| {
+        let beginning = Beginning { path, bytes: &bytes, unpacked };
+        let is_it = |format: &&&Format| matches!(format.told_by, ToldBy::Beginning(is_it) if is_it(&beginning));
+        FORMATS.iter().find(is_it).map(|format| Kind::Grains(format))
+    };
+    if let Some(kind) = told(&[]) {
+        return Ok(kind);
     }
-    if let Some(kind) = vtk::kind(&head) {
-        return Ok(Kind::Vtk(kind));
+    if let Decoded::Text(reader) = decoded(BufReader::new(opened()?)).map_err(reading)? {
+        reader.take(HEAD).read_to_end(&mut unpacked).map_err(reading)?;
+    }
+    if let Some(kind) = told(&unpacked) {
+        return Ok(kind);
     }
     let mut lines = LineReader::new(BufReader::new(opened()?), &name)?;
     while let Some(line) = lines.next_line()? {
         if !line.text.trim().is_empty() {
-            return Ok(if line.text.starts_with("ITEM:") { Kind::Dump } else { Kind::Table });
+            let is_it =
+                |format: &&&Format| matches!(format.told_by, ToldBy::Line(begins) if line.text.starts_with(begins));
+            return Ok(FORMATS.iter().find(is_it).map_or(Kind::Table, |format| Kind::Grains(format)));
         }
     }
-    Ok(Kind::Dump)
+    Ok(Kind::Grains(&dump::FORMAT))
 }
 
 /// A file, and which moment it is of where it holds one only.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct RunFile {
     pub(crate) path: PathBuf,
-    kind: Kind,
+    format: &'static Format,
     moment: Option<Moment>,
-    /// The first step of a dump, where it can be read.
+    /// The first step of a course, where it can be read.
     begins: Option<u64>,
 }
 
@@ -78,7 +92,7 @@ pub(crate) struct RunFile {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Moment {
     step: u64,
-    /// The time (s), where a collection tells it.
+    /// The time (s), where a list tells it.
     time: Option<f64>,
 }
 
@@ -89,27 +103,23 @@ impl RunFile {
     }
 
     /// Whether its steps are those of the run: what stands in a name may be a number of files.
-    pub(crate) fn tells_steps(&self) -> bool {
-        self.kind == Kind::Dump
+    pub(crate) const fn tells_steps(&self) -> bool {
+        self.format.tells_steps
     }
 }
 
-/// The files that were named: collections as what they list, and all in the order of their steps, which is seldom that of
-/// their names.
+/// The files that were named: lists as what they list, and all in the order of their steps, which is seldom that of their
+/// names.
 pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     let mut files = Vec::new();
     for path in named.iter().filter(|path| !is_box(path)) {
-        match kind(path)? {
-            kind @ (Kind::Dump | Kind::Table | Kind::Npz) => {
-                let begins = if kind == Kind::Dump { first_step(path) } else { None };
-                files.push(RunFile { path: path.clone(), kind, moment: None, begins });
-            }
-            Kind::VtkHdf if vtk::has_steps(path)? => {
-                files.push(RunFile { path: path.clone(), kind: Kind::VtkHdf, moment: None, begins: None });
-            }
-            Kind::VtkHdf | Kind::Vtk(vtk::Kind::Points) => files.push(of_moment(path, None)?),
-            Kind::Vtk(vtk::Kind::Collection) => {
-                for (time, path) in vtk::read_collection(path)? {
+        // Whoever looks for grains in a table is told by the reader of dumps.
+        let format = format(path)?;
+        match (format.holds)(path)? {
+            Holds::Course(begins) => files.push(RunFile { path: path.clone(), format, moment: None, begins }),
+            Holds::Moment => files.push(of_moment(path, None)?),
+            Holds::List(listed) => {
+                for (time, path) in listed {
                     files.push(of_moment(&path, Some(time))?);
                 }
             }
@@ -119,20 +129,12 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     Ok(files)
 }
 
-/// The first step of a dump; none of one that is damaged, which whoever reads it is told.
-fn first_step(path: &Path) -> Option<u64> {
-    /// Lines of units and time may stand in front of it.
-    const MOST_LINES: usize = 8;
-    let mut lines = LineReader::new(BufReader::new(File::open(path).ok()?), &shown(path)).ok()?;
-    let mut is_next = false;
-    for _ in 0..MOST_LINES {
-        let line = lines.next_line().ok()??;
-        if is_next {
-            return line.text.trim().parse().ok();
-        }
-        is_next = line.text.trim() == "ITEM: TIMESTEP";
-    }
-    None
+/// The format of a file of grains.
+fn format(path: &Path) -> Result<&'static Format, ReadError> {
+    Ok(match kind(path)? {
+        Kind::Grains(format) => format,
+        Kind::Table => &dump::FORMAT,
+    })
 }
 
 /// LIGGGHTS leaves the box beside each file of grains, under a name that a pattern of theirs catches too.
@@ -149,85 +151,39 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     let step = step.map_err(|_| {
         ReadError::at(&shown(path), 1, "the step in the file's name, as in `dump_5000.vtk`", quoted(&stem))
     })?;
-    Ok(RunFile { path: path.to_owned(), kind: kind(path)?, moment: Some(Moment { step, time }), begins: None })
+    Ok(RunFile { path: path.to_owned(), format: format(path)?, moment: Some(Moment { step, time }), begins: None })
 }
 
 /// Snapshot after snapshot of a file.
-pub(crate) enum Snapshots {
-    Dump(Box<DumpReader<'static>>),
-    /// Of a file that holds one, until it was read.
-    One(Option<RunFile>),
-    /// Of arrays, and the moment that comes next.
-    Arrays(Box<Course>, usize),
-    /// Of a file of VTK's in HDF5, and the moment that comes next.
-    Moments(Box<vtk::Moments>, usize),
+pub(crate) struct Snapshots {
+    moments: Box<dyn Moments>,
+    /// The moment that the file is of and its name, where it holds one only.
+    only: Option<(Moment, String)>,
+    read: usize,
 }
 
 impl Snapshots {
     /// Of a file, whose snapshots may have so many rows.
     pub(crate) fn open(file: &RunFile, most_rows: u64) -> Result<Self, ReadError> {
-        Ok(match file.moment {
-            None if file.kind == Kind::Npz => {
-                let course = npz::read_course(&file.path)?;
-                check_grains(course.name(), course.grains(), most_rows)?;
-                Self::Arrays(Box::new(course), 0)
-            }
-            None if file.kind == Kind::VtkHdf => {
-                let moments = vtk::read_moments(&file.path)?;
-                check_grains(moments.name(), moments.grains(), most_rows)?;
-                Self::Moments(Box::new(moments), 0)
-            }
-            None => Self::Dump(Box::new(DumpReader::open(&file.path)?.at_most(most_rows))),
-            Some(_) => Self::One(Some(file.clone())),
-        })
+        let only = file.moment.map(|moment| (moment, shown(&file.path)));
+        Ok(Self { moments: (file.format.open)(&file.path, most_rows)?, only, read: 0 })
     }
 
     /// Reads the next snapshot in the place of the last; false at the end of the file.
     pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        match self {
-            Self::Dump(reader) => reader.read(snapshot),
-            Self::Arrays(course, moment) => {
-                let Some(next) = course.snapshot(*moment) else { return Ok(false) };
-                *snapshot = next;
-                *moment += 1;
-                Ok(true)
-            }
-            Self::Moments(moments, moment) => {
-                let Some(next) = moments.snapshot(*moment)? else { return Ok(false) };
-                *snapshot = next;
-                *moment += 1;
-                Ok(true)
-            }
-            Self::One(file) => {
-                let Some(file) = file.take() else { return Ok(false) };
-                let Some(moment) = file.moment else { return Ok(false) };
-                let read =
-                    if file.kind == Kind::VtkHdf { only_moment(&file.path)? } else { vtk::read_points(&file.path)? };
-                *snapshot = DumpSnapshot { step: moment.step, time: read.time.or(moment.time), ..read };
-                Ok(true)
-            }
+        let Some((moment, name)) = &self.only else { return self.moments.read(snapshot) };
+        let mut next = DumpSnapshot::default();
+        let is_there = self.moments.read(&mut next)?;
+        if is_there != (self.read == 0) {
+            let found = if is_there { "several" } else { "none" };
+            return Err(ReadError::at(name, 1, "one moment, as a list of files or its name tells its time", found));
         }
-    }
-}
-
-/// The grains of a file that may hold one moment alone.
-fn only_moment(path: &Path) -> Result<DumpSnapshot, ReadError> {
-    let moments = vtk::read_moments(path)?;
-    match (moments.count(), moments.snapshot(0)?) {
-        (1, Some(snapshot)) => Ok(snapshot),
-        (count, _) => {
-            Err(ReadError::at(&shown(path), 1, "one moment, as a list of files tells its time", count.to_string()))
+        self.read += 1;
+        if is_there {
+            *snapshot = DumpSnapshot { step: moment.step, time: next.time.or(moment.time), ..next };
         }
+        Ok(is_there)
     }
-}
-
-/// Refuses more grains than a scene has.
-fn check_grains(name: &str, grains: usize, most_rows: u64) -> Result<(), ReadError> {
-    if grains as u64 <= most_rows {
-        return Ok(());
-    }
-    let expected = format!("at most {most_rows} grains, for no more can belong to the scene");
-    Err(ReadError::at(name, 1, expected, grains.to_string()))
 }
 
 pub(crate) fn shown(path: &Path) -> String {

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use crate::observer::Names;
 use crate::read::read_error::{ReadError, quoted};
-use crate::run_files::{Kind, kind};
+use crate::run_files::kind;
 use column::Column;
 use frames::{Frame, Frames, Place};
 
@@ -88,20 +88,15 @@ const ONE_TIME: f64 = 1e-6;
 pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Comparison, ReadError> {
     let name = second.to_string_lossy().into_owned();
     let kinds = [kind(first)?, kind(second)?];
-    let word = |kind: Kind| match kind {
-        Kind::Dump => "a dump",
-        Kind::Table => "a table",
-        Kind::Vtk(_) | Kind::VtkHdf => "a file of VTK's",
-        Kind::Npz => "arrays of NumPy's",
-    };
-    if let Some(which) = kinds.iter().position(|kind| matches!(kind, Kind::Vtk(_) | Kind::VtkHdf | Kind::Npz)) {
+    if let Some(which) = kinds.iter().position(|kind| !kind.is_table() && !kind.is_dump()) {
         let name = [first, second][which].to_string_lossy();
-        return Err(ReadError::at(&name, 1, "a dump or a table", word(kinds[which])));
+        return Err(ReadError::at(&name, 1, "a dump or a table", kinds[which].words()));
     }
-    if kinds[0] != kinds[1] {
-        return Err(ReadError::at(&name, 1, format!("{}, as the other file is", word(kinds[0])), word(kinds[1])));
+    if kinds[0].is_table() != kinds[1].is_table() {
+        let expected = format!("{}, as the other file is", kinds[0].words());
+        return Err(ReadError::at(&name, 1, expected, kinds[1].words()));
     }
-    let open = |which: usize| Frames::open([first, second][which], kinds[0] == Kind::Dump, which, options);
+    let open = |which: usize| Frames::open([first, second][which], kinds[0].is_dump(), which, options);
     let (columns, places) = survey([open(0)?, open(1)?], options)?;
     let key = key(&places).ok_or_else(|| {
         let expected = format!("{} rows, as in the other file, or a column `step` or `time`", places[0].len());

@@ -13,6 +13,7 @@ pub(crate) mod digits;
 pub(crate) mod dump;
 mod dump_header;
 mod fields;
+pub(crate) mod format;
 pub(crate) mod line_reader;
 pub(crate) mod log;
 pub(crate) mod npz;

@@ -100,11 +100,6 @@ impl Moments {
         &self.name
     }
 
-    /// How many there are.
-    pub(crate) fn count(&self) -> usize {
-        self.moments.len()
-    }
-
     /// Most grains at one of them.
     pub(crate) fn grains(&self) -> usize {
         self.moments.iter().map(|moment| moment.points).max().unwrap_or(0)

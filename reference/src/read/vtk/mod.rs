@@ -11,7 +11,7 @@ mod points;
 mod xml;
 
 pub(crate) use collection::read_collection;
-pub(crate) use hdf::{MARK, Moments, has_steps, read_moments};
+pub(crate) use hdf::{MARK, has_steps, read_moments};
 
 use super::decoding::{Decoded, decoded};
 use super::read_error::ReadError;

@@ -1,0 +1,40 @@
+//! Dumps of LAMMPS and LIGGGHTS.
+
+use crate::read::dump::DumpReader;
+use crate::read::format::{Format, Holds, Moments, ToldBy};
+use crate::read::line_reader::LineReader;
+use crate::read::read_error::ReadError;
+use crate::read::snapshot::DumpSnapshot;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+pub(crate) static FORMAT: Format = Format {
+    words: "a dump",
+    told_by: ToldBy::Line("ITEM:"),
+    tells_steps: true,
+    holds: |path| Ok(Holds::Course(first_step(path))),
+    open: |path, most_rows| Ok(Box::new(DumpReader::open(path)?.at_most(most_rows))),
+};
+
+impl Moments for DumpReader<'_> {
+    fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
+        DumpReader::read(self, snapshot)
+    }
+}
+
+/// The first step; none of one that is damaged, which whoever reads it is told.
+fn first_step(path: &Path) -> Option<u64> {
+    /// Lines of units and time may stand in front of it.
+    const MOST_LINES: usize = 8;
+    let mut lines = LineReader::new(BufReader::new(File::open(path).ok()?), &path.to_string_lossy()).ok()?;
+    let mut is_next = false;
+    for _ in 0..MOST_LINES {
+        let line = lines.next_line().ok()??;
+        if is_next {
+            return line.text.trim().parse().ok();
+        }
+        is_next = line.text.trim() == "ITEM: TIMESTEP";
+    }
+    None
+}

@@ -1,0 +1,19 @@
+//! Arrays of NumPy's.
+
+use crate::read::format::{ByPlace, Format, Holds, ToldBy, check_grains};
+use crate::read::npz::{MARK, read_course};
+
+pub(crate) static FORMAT: Format = Format {
+    words: "arrays of NumPy's",
+    // Other archives are refused where their text is looked for.
+    told_by: ToldBy::Beginning(|of| {
+        of.bytes.starts_with(MARK) && of.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))
+    }),
+    tells_steps: false,
+    holds: |_| Ok(Holds::Course(None)),
+    open: |path, most_rows| {
+        let course = read_course(path)?;
+        check_grains(course.name(), course.grains(), most_rows)?;
+        Ok(ByPlace::boxed(move |place| Ok(course.snapshot(place))))
+    },
+};

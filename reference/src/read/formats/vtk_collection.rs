@@ -1,0 +1,13 @@
+//! Lists of VTK's files with their times.
+
+use crate::read::format::{Format, Holds, ToldBy};
+use crate::read::read_error::ReadError;
+use crate::read::vtk::{self, Kind};
+
+pub(crate) static FORMAT: Format = Format {
+    words: "a file of VTK's",
+    told_by: ToldBy::Beginning(|of| vtk::kind(of.unpacked) == Some(Kind::Collection)),
+    tells_steps: false,
+    holds: |path| vtk::read_collection(path).map(Holds::List),
+    open: |path, _| Err(ReadError::at(&path.to_string_lossy(), 1, "grains", "a list of files that lists another")),
+};

@@ -1,0 +1,15 @@
+//! Points of VTK's, legacy or XML.
+
+use crate::read::format::{ByPlace, Format, Holds, ToldBy};
+use crate::read::vtk::{self, Kind};
+
+pub(crate) static FORMAT: Format = Format {
+    words: "a file of VTK's",
+    told_by: ToldBy::Beginning(|of| vtk::kind(of.unpacked) == Some(Kind::Points)),
+    tells_steps: false,
+    holds: |_| Ok(Holds::Moment),
+    open: |path, _| {
+        let path = path.to_owned();
+        Ok(ByPlace::boxed(move |place| if place == 0 { vtk::read_points(&path).map(Some) } else { Ok(None) }))
+    },
+};
