@@ -177,7 +177,7 @@ fn mobilised() -> Claim {
                 Ok(middle.shear / (friction(&done[0].scene) * middle.normal))
             },
         )
-        .within(exactly("a bound"))
+        .within(exactly("the limit itself"))
         .refuses(Control::misread(TWICE, twice))
 }
 
@@ -227,7 +227,7 @@ fn saturates() -> Claim {
                 Ok(at(0.25) / at(0.5))
             },
         )
-        .within(exactly("a bound"))
+        .within(exactly("the law's number at H = λ is 1.341, and less in a deeper column"))
         .refuses(Control::scene("a smooth side", |scene| side_friction(scene, 0.0)))
 }
 

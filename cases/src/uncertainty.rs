@@ -14,6 +14,9 @@ use std::sync::OnceLock;
 pub struct Stored {
     /// The program that made them, with its version.
     pub program: String,
+    /// The commit that it was built from; unknown of estimates from before it was told.
+    #[serde(default)]
+    pub commit: String,
     /// When (YYYY-MM-DD).
     pub date: String,
     /// How.

@@ -237,6 +237,7 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
         let progress = Progress::new(claims.len() as u64, "estimates");
         let mut stored = Stored {
             program: format!("grainbench {}", env!("CARGO_PKG_VERSION")),
+            commit: env!("GRAINBENCH_COMMIT").to_owned(),
             date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),
             rule: RULE.to_owned(),
             estimate: Vec::new(),

@@ -186,12 +186,14 @@ impl Silo {
         claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
             .of(self.run.clone())
             .at_least(0.95, source, move |done| Ok(share(&steady(&done[0], flow, "sine_of_friction")?, [0.2, 0.6])))
-            .within(exactly("a bound"))
+            .within(exactly("asked for before: the source tells the range and not how many elements are in it"))
             .refuses(no_springs())
     }
 
     /// Correlations, which shuffled elements lose.
     fn correlations(&self, cited: [Cited; 2]) -> Vec<Claim> {
+        let asked = cited.map(|cited| format!("asked for before; the prototype has {}", cited.value));
+        let [for_criteria, for_rates] = asked;
         let [criteria, rates] = cited.map(|cited| cited.source());
         let shuffled = "each element beside the friction of another";
         let elsewhere = "each element beside the rate of another";
@@ -199,12 +201,12 @@ impl Silo {
             claim("correlation of sin φ with Drucker and Prager's ratio", "1")
                 .of(self.run.clone())
                 .at_least(0.92, criteria, |done| ensemble::of_criteria(&done[0]))
-                .within(exactly("a bound"))
+                .within(exactly(for_criteria))
                 .refuses(Control::misread(shuffled, ensemble::friction_elsewhere)),
             claim("correlation of log |D₀| of the instant with that from positions .2 τ apart", "1")
                 .of(self.run.clone())
                 .at_least(0.95, rates, |done| ensemble::of_rates(&done[0]))
-                .within(exactly("a bound"))
+                .within(exactly(for_rates))
                 .refuses(Control::misread(elsewhere, ensemble::rate_elsewhere)),
         ]
     }

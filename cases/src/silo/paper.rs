@@ -117,7 +117,7 @@ impl PaperSize {
                     let range = [paper::LOWEST_SINE.value, paper::HIGHEST_SINE.value];
                     Ok(share(&steady(&done[0], flow, "sine_of_friction")?, range))
                 })
-                .within(exactly("a bound"))
+                .within(exactly("asked for before: the source tells the range and not how many elements are in it"))
                 .refuses(tangent()),
             angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
         ];
