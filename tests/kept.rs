@@ -2,9 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use grainbench::cases::kept::{Provenance, cases};
 use grainbench::kept::{measured, sources};
 use grainbench::reports::study::Study;
 use grainbench::studies::kept::place;
+use std::collections::BTreeMap;
+use std::process::Command;
 
 fn study(name: &str) -> Study {
     serde_json::from_str(&std::fs::read_to_string(place(name)).unwrap()).unwrap()
@@ -36,4 +39,31 @@ fn a_solver_that_changed_is_told() {
     }
     assert!(sources("somebody's").is_none() && sources("dem") != sources("mpm"));
     assert!(cost.lines.iter().any(|line| line.solver == "mpm" && line.factors[1].is_some()));
+}
+
+/// Whoever doubts a row must be able to build what made it: a commit that a tree had while it was written is no source.
+#[test]
+fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
+    let git = |arguments: &[&str]| {
+        let done = Command::new("git").arg("-C").arg(env!("CARGO_MANIFEST_DIR")).args(arguments).output().ok()?;
+        done.status.success().then(|| String::from_utf8_lossy(&done.stdout).trim().to_owned())
+    };
+    // A package and a shallow copy have no history to look in.
+    let has_history = git(&["rev-parse", "--is-shallow-repository"]).as_deref() == Some("false");
+    let mut commits: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for case in cases() {
+        let Ok(folders) = std::fs::read_dir(case.directory().join("kept")) else { continue };
+        for folder in folders {
+            let path = folder.unwrap().path().join("provenance.toml");
+            let provenance: Provenance = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+            commits.entry(provenance.commit).or_default().push(provenance.title);
+        }
+    }
+    assert!(commits.values().map(Vec::len).sum::<usize>() > 50);
+    for (commit, of) in &commits {
+        let is_hash = commit.len() >= 7 && commit.bytes().all(|byte| byte.is_ascii_hexdigit());
+        assert!(is_hash, "{commit}: {of:?}");
+        let is_there = !has_history || git(&["merge-base", "--is-ancestor", commit, "HEAD"]).is_some();
+        assert!(is_there, "{commit} is no commit of this history: {of:?}");
+    }
 }
