@@ -8,6 +8,7 @@ pub mod check;
 pub mod kept;
 pub mod own;
 pub mod peers;
+pub mod resume;
 pub mod verify;
 
 pub use own::{Judgement, conform, judge};

@@ -5,15 +5,19 @@
 mod common;
 
 use common::{files, grainbench};
+use grainbench::cases::kept::{self, Wanted};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::harness::case::Case;
+use grainbench::harness::run::Done;
+use grainbench::resume::{self, Place};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::{Cost, Record};
 use grainbench::scene::scene::{Duration, Sampling, Scene};
 use grainbench::scene::solver::{Resolution, RunError, Watch};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 
 /// Keeps every checkpoint of a run.
 struct Keeper {
@@ -83,6 +87,65 @@ fn every_case_continues_to_the_same_bits() {
         }
     }
     assert!(compared > 100, "{compared}");
+}
+
+/// Wants a run to end after some steps, and asks for no more.
+struct Impatient {
+    until: u64,
+    done: u64,
+}
+
+impl Watch for Impatient {
+    fn progress(&mut self, done: u64, _total: u64) {
+        self.done = done;
+    }
+    fn is_over(&self) -> bool {
+        self.done >= self.until
+    }
+}
+
+/// What is kept of a run that was ended twice is what is kept of one that was not, but for its time.
+#[test]
+fn a_run_that_is_kept_goes_on_to_the_same_files() {
+    let case = CASES.iter().find(|case| case.name == "impact-bed").unwrap();
+    let claim = (case.claims)().into_iter().find(|claim| claim.runs[0].variant == "thousand").unwrap();
+    let run = claim.runs[0].clone();
+    let scene = case.variant(run.variant).unwrap();
+    let solver = solvers::by_name(run.solver).unwrap();
+    let wanted = Wanted { case, claim, run: run.clone(), wrong: false, id: "thousand".to_owned() };
+    let files = |record: Record| {
+        assert!(record.cost.wall_seconds > 0.0);
+        let record = Record { cost: Cost { wall_seconds: 1.0, ..record.cost }, ..record };
+        let done = Done::new(Arc::new(scene.clone()), Arc::new(record));
+        kept::files(&wanted, &done, &scene, ["commit", "2024-01-01"]).unwrap()
+    };
+    let straight = files(solver.run(&scene, &run.resolution, &mut ()).unwrap());
+
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.checkpoint");
+    let place = Place { path: &path, every: 300 };
+    let go = |from: Option<&Checkpoint>, until: u64| {
+        let mut watch = Impatient { until, done: 0 };
+        resume::run(solver.as_ref(), &scene, &run.resolution, from, place, &mut watch)
+    };
+    let stored = || Checkpoint::from_bytes(&std::fs::read(&path).unwrap()).unwrap();
+    let mut from = None;
+    for until in [700, 1400] {
+        let ended = go(from.as_ref(), until);
+        assert!(matches!(ended, Err(RunError::Interrupted { .. })), "{ended:?}");
+        from = Some(stored());
+        assert!(from.as_ref().is_some_and(|from| from.step() <= until && from.step() + 300 >= until));
+    }
+    assert!(files(go(from.as_ref(), u64::MAX).unwrap()) == straight);
+
+    // One that somebody else left: what it took is not known.
+    let theirs = stored().with_output(b"snapshots".to_vec());
+    assert!(go(Some(&theirs), u64::MAX).unwrap().cost.wall_seconds.is_nan());
+    let mut other = scene.clone();
+    other.gravity *= 2.0;
+    let mut watch = Impatient { until: u64::MAX, done: 0 };
+    let refused = resume::run(solver.as_ref(), &other, &run.resolution, Some(&theirs), place, &mut watch);
+    assert!(matches!(refused, Err(RunError::Checkpoint(CheckpointError::OtherRun { .. }))), "{refused:?}");
 }
 
 /// Discs that rattle in a box for long enough to be killed in the middle.

@@ -240,6 +240,7 @@ pub fn files(of: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result
         Some(version) => version.clone(),
         None => format!("grainbench {}", env!("CARGO_PKG_VERSION")),
     };
+    let paper_size = if of.set() == Set::Paper { " --paper-size" } else { "" };
     let control = if of.wrong { format!(", {}", of.claim.control.name) } else { String::new() };
     let provenance = Provenance {
         program,
@@ -248,7 +249,7 @@ pub fn files(of: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result
         title: format!("{}/{}{control}, {}, {}", of.case.name, of.run.scene_words(), of.run.solver, of.run.resolution),
         reading: of.run.reading.map_or("", |reading| reading.name).to_owned(),
         scene: scene_hash_by_bits(given, &Stepping::of(given, &of.run.resolution)?),
-        command: format!("grainbench reference keep {}", of.case.name),
+        command: format!("grainbench reference keep {}{paper_size}", of.case.name),
         blake3: files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect(),
         run: record.provenance.clone(),
         cost: record.cost,

@@ -19,6 +19,7 @@ mod github;
 mod import;
 mod interrupt;
 mod keep;
+mod kept_runs;
 mod list;
 mod pattern;
 mod progress;

@@ -47,6 +47,14 @@ impl Progress {
         }
     }
 
+    /// So many were done before: the time that is left is reckoned from here.
+    pub(crate) fn from(&self, done: u64) {
+        if let Some(bar) = &self.0 {
+            bar.set_position(done);
+            bar.reset_eta();
+        }
+    }
+
     /// How many are done, of how many.
     pub(crate) fn set(&self, done: u64, total: u64) {
         if let Some(bar) = &self.0 {

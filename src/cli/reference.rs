@@ -1,26 +1,22 @@
 //! `grainbench reference`: makes the stored runs of other programs, and sees whether these still give them.
 
 use super::check::rows;
-use super::cores::MOST_THREADS;
 use super::exit::{Fault, Outcome, check_writable, print, say};
 use super::import::{Import, import};
+use super::kept_runs::{Keep, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::run::exit_code;
-use super::value::whole;
-use grainbench::cases::kept::{self, Wanted};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored::{self, Reference};
 use grainbench::cases::uncertainty::{self, Stored};
 use grainbench::cases::{Case, runner};
 use grainbench::harness::run::Set;
-use grainbench::harness::runner::Runner;
 use grainbench::harness::tolerance::Made;
 use grainbench::reference::stored::{folder, make};
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, StagedDir, write_file, write_report};
-use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::RunError;
 use grainbench::verify::verify as compare;
 use std::path::PathBuf;
@@ -41,23 +37,6 @@ pub(crate) enum Command {
     Uncertainty(Uncertainty),
     /// Derive numbers from published data of others that you have, and draw it: the data stays where it is.
     Import(Import),
-}
-
-/// What `keep` takes.
-#[derive(clap::Args)]
-pub(crate) struct Keep {
-    /// Cases; all that keep something when none is named.
-    #[arg(value_name = "CASE")]
-    cases: Vec<String>,
-    /// Runs too that are kept already.
-    #[arg(long)]
-    anew: bool,
-    /// Runs too of scenes as large as those of a paper, which take hours.
-    #[arg(long)]
-    paper_size: bool,
-    /// Threads of a run.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
-    threads: u16,
 }
 
 /// What `uncertainty` takes.
@@ -163,59 +142,6 @@ fn build(arguments: &Build) -> Outcome {
     drop(progress);
     print(&lines)?;
     if failed { Err(Fault::Broken("not every run could be made".to_owned())) } else { Ok(ExitCode::SUCCESS) }
-}
-
-/// Does the runs whose tables are kept with their cases. Each is left whole before the next begins.
-fn keep(arguments: &Keep) -> Outcome {
-    let known = kept::cases();
-    let names = || known.iter().map(|case| case.name);
-    if let Some(unknown) = arguments.cases.iter().find(|name| !names().any(|known| known == name.as_str())) {
-        return Err(Fault::unknown("a case that keeps runs", unknown, names()));
-    }
-    let is_named = |case: &&&Case| arguments.cases.is_empty() || arguments.cases.iter().any(|name| name == case.name);
-    let largest = if arguments.paper_size { Set::Paper } else { Set::Long };
-    let date = jiff::Timestamp::now().strftime("%Y-%m-%d").to_string();
-    let (mut lines, mut failed) = (String::new(), false);
-    for case in known.iter().filter(is_named) {
-        let mut wanted = kept::all(case);
-        wanted.retain(|wanted| wanted.set() <= largest);
-        let progress = Progress::new(wanted.len() as u64, "runs");
-        let runner = runner(case).afresh(Set::Paper).threads(usize::from(arguments.threads));
-        for wanted in &wanted {
-            progress.now(&wanted.id);
-            let given = runner.given(&wanted.claim, &wanted.run, wanted.wrong).map_err(Fault::input)?;
-            let said = if !arguments.anew && wanted.is_there(&given) {
-                "there"
-            } else {
-                match keep_one(&runner, wanted, &given, &date) {
-                    Ok(()) => "done",
-                    Err(Fault::Broken(reason)) => {
-                        failed = true;
-                        say("error", &format!("{}: {reason}", wanted.id));
-                        "failed"
-                    }
-                    Err(fault) => return Err(fault),
-                }
-            };
-            lines.push_str(&format!("{said:6} {}/{}\n", case.name, wanted.id));
-            progress.advance();
-        }
-    }
-    print(&lines)?;
-    if failed { Err(Fault::Broken("not every run could be done".to_owned())) } else { Ok(ExitCode::SUCCESS) }
-}
-
-/// Does one of them.
-fn keep_one(runner: &Runner, wanted: &Wanted, given: &Scene, date: &str) -> Result<(), Fault> {
-    let done = if wanted.wrong { runner.run_wrong(&wanted.claim, &wanted.run) } else { runner.run(&wanted.run) };
-    let done = done.map_err(|error| Fault::Broken(error.to_string()))?;
-    let made = [env!("GRAINBENCH_COMMIT"), date];
-    let files = kept::files(wanted, &done, given, made).map_err(Fault::input)?;
-    let mut out = StagedDir::new(wanted.folder()).map_err(Fault::writing)?.without_manifest();
-    for (name, bytes) in &files {
-        out.write(name, bytes).map_err(Fault::writing)?;
-    }
-    out.commit().map_err(Fault::writing)
 }
 
 /// Estimates anew what is stored of the rows of some cases whose tolerance is an estimate.

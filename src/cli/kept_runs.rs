@@ -1,0 +1,208 @@
+//! `grainbench reference keep`: does the runs whose tables are kept with their cases.
+
+use super::checkpoint::read;
+use super::cores::MOST_THREADS;
+use super::exit::{Fault, Outcome, print, say};
+use super::interrupt::Interrupt;
+use super::progress::Progress;
+use super::value::whole;
+use grainbench::cases::kept::{self, Wanted};
+use grainbench::cases::{Case, runner, solvers};
+use grainbench::harness::run::{Done, Set};
+use grainbench::harness::runner::Runner;
+use grainbench::reports::StagedDir;
+use grainbench::resume::{self, Place};
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Ahead, RunError, Watch};
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// What `keep` takes.
+#[derive(clap::Args)]
+pub(crate) struct Keep {
+    /// Cases; all that keep something when none is named.
+    #[arg(value_name = "CASE")]
+    cases: Vec<String>,
+    /// Runs too that are kept already.
+    #[arg(long)]
+    anew: bool,
+    /// Runs too of scenes as large as those of a paper, which take hours.
+    #[arg(long)]
+    paper_size: bool,
+    /// Only runs in whose names, as the command lists them, these letters stand.
+    #[arg(long, value_name = "LETTERS")]
+    run: Option<String>,
+    /// Threads of a run.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
+    threads: u16,
+    /// Directory for checkpoints: a run that was ended goes on from its own, `CASE-RUN.checkpoint`, which goes when the run is
+    /// kept. One that `simulate --checkpoint` left of the same run may stand there in its place. Of runs whose snapshots are read
+    /// as they come there is none.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-checkpoints")]
+    checkpoints: PathBuf,
+}
+
+/// Steps from one checkpoint to the next.
+const EVERY: u64 = 20_000;
+
+/// Does the runs whose tables are kept with their cases. Each is left whole before the next begins.
+pub(crate) fn keep(arguments: &Keep) -> Outcome {
+    let known = kept::cases();
+    let names = || known.iter().map(|case| case.name);
+    if let Some(unknown) = arguments.cases.iter().find(|name| !names().any(|known| known == name.as_str())) {
+        return Err(Fault::unknown("a case that keeps runs", unknown, names()));
+    }
+    let is_named = |case: &&&Case| arguments.cases.is_empty() || arguments.cases.iter().any(|name| name == case.name);
+    let largest = if arguments.paper_size { Set::Paper } else { Set::Long };
+    let is_meant = |wanted: &Wanted| {
+        wanted.set() <= largest && arguments.run.as_ref().is_none_or(|letters| wanted.id.contains(letters.as_str()))
+    };
+    let interrupt = Interrupt::listen();
+    let (mut lines, mut failed) = (String::new(), false);
+    for case in known.iter().filter(is_named) {
+        let runner = runner(case).afresh(Set::Paper).threads(usize::from(arguments.threads));
+        let wanted: Vec<Wanted> = kept::all(case).into_iter().filter(is_meant).collect();
+        for (place, one) in wanted.iter().enumerate() {
+            let given = runner.given(&one.claim, &one.run, one.wrong).map_err(Fault::input)?;
+            let keeping = Keeping {
+                arguments,
+                runner: &runner,
+                wanted: one,
+                given,
+                words: format!("{} ({} of {} runs)", one.id, place + 1, wanted.len()),
+                interrupt: &interrupt,
+            };
+            let said = if !arguments.anew && one.is_there(&keeping.given) {
+                "there"
+            } else {
+                match keeping.done() {
+                    Ok(()) => "done",
+                    Err(Fault::Broken(reason)) if !interrupt.is_asked() => {
+                        failed = true;
+                        say("error", &format!("{}: {reason}", one.id));
+                        "failed"
+                    }
+                    Err(fault) => {
+                        print(&lines)?;
+                        return Err(fault);
+                    }
+                }
+            };
+            lines.push_str(&format!("{said:6} {}/{}\n", case.name, one.id));
+            if interrupt.is_asked() {
+                print(&lines)?;
+                return Err(Fault::Broken("interrupted: what is done is kept".to_owned()));
+            }
+        }
+    }
+    print(&lines)?;
+    if failed { Err(Fault::Broken("not every run could be done".to_owned())) } else { Ok(ExitCode::SUCCESS) }
+}
+
+/// One run on its way to be kept.
+struct Keeping<'a> {
+    arguments: &'a Keep,
+    runner: &'a Runner,
+    wanted: &'a Wanted,
+    given: Arc<Scene>,
+    /// Which it is, for who watches.
+    words: String,
+    interrupt: &'a Interrupt,
+}
+
+impl Keeping<'_> {
+    /// Does it and keeps it; the checkpoint goes once it is kept.
+    fn done(&self) -> Result<(), Fault> {
+        let Self { wanted, runner, .. } = self;
+        // A reader of snapshots sees each once: what it has seen is in no checkpoint.
+        let is_resumable = wanted.run.reading.is_none() && !solvers::is_program(wanted.run.solver);
+        let done = if is_resumable {
+            self.resumed()?
+        } else {
+            let progress = Progress::new(1, "run");
+            progress.now(&self.words);
+            let done =
+                if wanted.wrong { runner.run_wrong(&wanted.claim, &wanted.run) } else { runner.run(&wanted.run) };
+            done.map_err(|error| Fault::Broken(error.to_string()))?
+        };
+        let date = jiff::Timestamp::now().strftime("%Y-%m-%d").to_string();
+        let made = [env!("GRAINBENCH_COMMIT"), &date];
+        let files = kept::files(wanted, &done, &self.given, made).map_err(Fault::input)?;
+        let mut out = StagedDir::new(wanted.folder()).map_err(Fault::writing)?.without_manifest();
+        for (name, bytes) in &files {
+            out.write(name, bytes).map_err(Fault::writing)?;
+        }
+        out.commit().map_err(Fault::writing)?;
+        if is_resumable {
+            // There is none of a run that was shorter than the way to its first; the folder goes with its last.
+            let _ = fs::remove_file(self.checkpoint());
+            let _ = fs::remove_dir(&self.arguments.checkpoints);
+        }
+        Ok(())
+    }
+
+    fn checkpoint(&self) -> PathBuf {
+        let Wanted { case, id, .. } = self.wanted;
+        self.arguments.checkpoints.join(format!("{}-{id}.checkpoint", case.name))
+    }
+
+    /// The run, from its checkpoint where there is one.
+    fn resumed(&self) -> Result<Done, Fault> {
+        let run = &self.wanted.run;
+        let solver = solvers::by_name(run.solver)
+            .ok_or_else(|| Fault::input(format!("expected a solver, found `{}`", run.solver)))?;
+        let path = self.checkpoint();
+        let folder = &self.arguments.checkpoints;
+        fs::create_dir_all(folder).map_err(|error| Fault::input(format!("{}: {error}", folder.display())))?;
+        let from = if path.exists() { Some(read(&path)?) } else { None };
+        if let Some(from) = &from {
+            say("note", &format!("{}: goes on from step {} of its checkpoint", self.wanted.id, from.step()));
+        }
+        let mut watcher = Watcher { of: self, progress: None, is_new: true };
+        let place = Place { path: &path, every: EVERY };
+        let record = resume::run(solver.as_ref(), &self.given, &run.resolution, from.as_ref(), place, &mut watcher);
+        match record {
+            Ok(record) => Ok(Done::new(Arc::clone(&self.given), Arc::new(record))),
+            Err(error @ RunError::Interrupted { .. }) if path.exists() => {
+                let path = path.display();
+                Err(Fault::Broken(format!("{}: {error}; the same command goes on from {path}", self.wanted.id)))
+            }
+            Err(error @ RunError::Checkpoint(_)) => Err(Fault::input(format!("{}: {error}", path.display()))),
+            Err(error) => Err(Fault::Broken(error.to_string())),
+        }
+    }
+}
+
+/// Tells how far a run is.
+struct Watcher<'a> {
+    of: &'a Keeping<'a>,
+    progress: Option<Progress>,
+    /// Whether nothing has been told yet.
+    is_new: bool,
+}
+
+impl Watch for Watcher<'_> {
+    fn begin(&mut self, ahead: Ahead) {
+        let progress = Progress::new(ahead.steps, "steps");
+        progress.now(&self.of.words);
+        self.progress = Some(progress);
+    }
+
+    fn threads(&self) -> usize {
+        usize::from(self.of.arguments.threads)
+    }
+
+    fn progress(&mut self, done: u64, total: u64) {
+        let Some(progress) = &self.progress else { return };
+        if std::mem::take(&mut self.is_new) {
+            progress.from(done);
+        }
+        progress.set(done, total);
+    }
+
+    fn is_over(&self) -> bool {
+        self.of.interrupt.is_asked()
+    }
+}

@@ -1,0 +1,98 @@
+//! Runs that go on where they were ended: each leaves a checkpoint every so many steps, and begins with the one that it finds.
+
+use crate::reports::write_file;
+use crate::scene::checkpoint::{Checkpoint, CheckpointError};
+use crate::scene::record::{Record, Remains, Snapshot};
+use crate::scene::scene::Scene;
+use crate::scene::solver::{Ahead, NotStored, Resolution, RunError, Solver, Watch};
+use std::path::Path;
+
+/// Where a run leaves its checkpoints, each in the place of the one before.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// The file.
+    pub path: &'a Path,
+    /// Steps from one checkpoint to the next.
+    pub every: u64,
+}
+
+/// Runs a scene, or goes on with it from a checkpoint that the same run left, here or by `simulate --checkpoint`. The record is
+/// that of the whole run in every bit but its time, which is no number where a part of it was done elsewhere.
+///
+/// # Errors
+/// As of the solver; and when the checkpoint is of another run.
+pub fn run(
+    solver: &dyn Solver,
+    scene: &Scene,
+    resolution: &Resolution,
+    from: Option<&Checkpoint>,
+    place: Place<'_>,
+    watch: &mut dyn Watch,
+) -> Result<Record, RunError> {
+    let before = from.map_or(Some(0.0), seconds).unwrap_or(f64::NAN);
+    let mut watcher = Resumable { watch, place, before, begun: std::time::Instant::now() };
+    let mut record = match from {
+        None => solver.run(scene, resolution, &mut watcher)?,
+        Some(checkpoint) => solver.restart(scene, resolution, checkpoint, &mut watcher)?,
+    };
+    record.cost.wall_seconds += before;
+    Ok(record)
+}
+
+/// What the text before the time that a run has taken so far (s) is in its checkpoints.
+const TAKEN: &str = "taken ";
+
+/// The time that a run took before a checkpoint (s), where it was left here.
+fn seconds(checkpoint: &Checkpoint) -> Option<f64> {
+    std::str::from_utf8(checkpoint.output()).ok()?.strip_prefix(TAKEN)?.parse().ok()
+}
+
+/// Stores checkpoints, and hands all else on.
+struct Resumable<'a> {
+    watch: &'a mut dyn Watch,
+    place: Place<'a>,
+    /// Time that the run took before (s).
+    before: f64,
+    begun: std::time::Instant,
+}
+
+impl Watch for Resumable<'_> {
+    fn begin(&mut self, ahead: Ahead) {
+        self.watch.begin(ahead);
+        self.begun = std::time::Instant::now();
+    }
+
+    fn threads(&self) -> usize {
+        self.watch.threads()
+    }
+
+    fn progress(&mut self, done: u64, total: u64) {
+        self.watch.progress(done, total);
+    }
+
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(self.place.every)
+    }
+
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        let taken = format!("{TAKEN}{:?}", self.before + self.begun.elapsed().as_secs_f64());
+        let bytes = checkpoint.with_output(taken.into_bytes()).to_bytes()?;
+        write_file(self.place.path, bytes).map_err(|error| CheckpointError::NotStored(error.to_string()))
+    }
+
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
+        self.watch.snapshot(snapshot)
+    }
+
+    fn keeps_snapshots(&self) -> bool {
+        self.watch.keeps_snapshots()
+    }
+
+    fn is_over(&self) -> bool {
+        self.watch.is_over()
+    }
+
+    fn broke(&mut self, remains: Remains) {
+        self.watch.broke(remains);
+    }
+}
