@@ -16,7 +16,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (exact, rounded, how) = match &arguments[..] {
         [exact, rounded] => (exact, rounded, ""),
-        [exact, rounded, how] if ["without-springs", "at-rest"].contains(&how.as_str()) => (exact, rounded, how.as_str()),
+        [exact, rounded, how] if ["without-springs", "at-rest"].contains(&how.as_str()) => {
+            (exact, rounded, how.as_str())
+        }
         _ => return Err("expected the state to round, and where the rounded one is to be left".into()),
     };
     let mut state = EndState::from_bytes(&std::fs::read(exact)?)?;

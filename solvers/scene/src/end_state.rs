@@ -120,8 +120,13 @@ impl EndState {
     pub fn to_bytes_at_rest(&self) -> Result<Vec<u8>, String> {
         let at_rest = |grain: &StateGrain| StateGrain { velocity: Vector3::zeros(), spin: Vector3::zeros(), ..*grain };
         let grains = self.grains.iter().map(at_rest).collect();
-        let state =
-            Self { of: self.of.clone(), materials: self.materials.clone(), grains, springs: Springs::default(), ..*self };
+        let state = Self {
+            of: self.of.clone(),
+            materials: self.materials.clone(),
+            grains,
+            springs: Springs::default(),
+            ..*self
+        };
         let packed = Packed::of(&state, rounded_state::ROUNDING_AT_REST)?;
         sealed_body(&packed, rounded_state::MAGIC, rounded_state::FORMAT)
     }
