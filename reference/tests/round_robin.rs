@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use grainbench_reference::round_robin::{Kind, Published, of_drum, of_impact, read};
+use grainbench_reference::round_robin::{Kind, Published, of_drum, of_drums, of_impact, read};
 use std::fmt::Write as _;
 
 fn published(name: &str, text: &str) -> Result<Option<Published>, String> {
@@ -52,10 +52,9 @@ fn says_which_ball_was_at_rest_and_which_beds_have_other_numbers() {
     let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &table()).unwrap() else {
         panic!("no courses")
     };
-    let said: Vec<String> =
-        of_impact(&impact).into_iter().map(|said| format!("{}: {}", said.about, said.seen)).collect();
+    let said: Vec<String> = of_impact(&impact).into_iter().map(|said| said.to_string()).collect();
     let has = |words: [&str; 2]| said.iter().any(|line| words.iter().all(|word| line.contains(word)));
-    assert!(has(["C, bed 4:", "begins at 0.00 m/s"]), "{said:#?}");
+    assert!(has(["C, bed 4: velocity at the start: 0.00 m/s", "expected -5 m/s"]), "{said:#?}");
     assert!(has(["D:", "numbers one higher"]), "{said:#?}");
     assert!(has(["D:", "its bed 1 (held up by 400 µm)"]), "{said:#?}");
     // 1.5 mm deeper, and half of what its top is higher by: (4.0 - 1.8)/2 · 10⁻¹ mm.
@@ -89,9 +88,8 @@ fn a_clock_that_is_ahead_is_no_other_release() {
     let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &text).unwrap() else {
         panic!("no courses")
     };
-    let said: Vec<String> =
-        of_impact(&impact).into_iter().map(|said| format!("{}: {}", said.about, said.seen)).collect();
-    let begins = ["R, bed 1: the ball begins at 0.00 m/s", "L: clock ahead by 4.95e-5 s at its first sample"];
+    let said: Vec<String> = of_impact(&impact).into_iter().map(|said| said.to_string()).collect();
+    let begins = ["R, bed 1: velocity at the start: 0.00 m/s", "L: clock ahead at its first sample: 4.95e-5 s"];
     let is_said = |begin: &&str| said.iter().any(|line| line.starts_with(*begin));
     assert!(begins.iter().all(is_said) && said.len() == begins.len(), "{said:#?}");
 }
@@ -104,6 +102,20 @@ fn says_which_frame_is_counted_twice() {
     assert_eq!(said.len(), 1);
     assert_eq!(said[0].about, "t = 2 s");
     assert_eq!(drum.in_zone_2(1.0), Some(33.0));
+}
+
+#[test]
+fn says_which_drum_is_off() {
+    let of = |name: &str, at: [u32; 2]| {
+        let text = format!("t,z1_m1,z1_m2,z2_m1,z2_m2\n0,1,2,30,41\n0.5,1,3,{},41\n1,4,6,{},81\n", at[0], at[1]);
+        match published(name, &text).unwrap() {
+            Some(Published { kind: Kind::Drum(drum), .. }) => drum,
+            _ => panic!("no zones"),
+        }
+    };
+    let said = of_drums(&of("b.csv", [1050, 800]), ("a", &of("a.csv", [1000, 1000])));
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert_eq!(said[0].to_string(), "t = 1 s: M1 in zone 2: 800, -20.0 % of a's 1000; expected within 10 %");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use super::exit::{Fault, Outcome, check_writable, print};
 use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench::reference::round_robin::{
-    Course, Drum, Impact, Kind, Published, Said, Silo, Spread, of_drum, of_impact, read, read_start,
+    Course, Drum, Impact, Kind, Published, Silo, Spread, of_all, read, read_start, table_of,
 };
 use grainbench::reports::StagedDir;
 use grainbench::reports::plot::draw;
@@ -37,6 +37,8 @@ const ENDINGS: [&str; 4] = [".csv", ".csv.gz", ".csv.zst", ".parquet"];
 const LEFT_OUT: [(&str, Option<usize>); 3] = [("Yade", None), ("MUSEN", Some(1)), ("LIGGGHTS", Some(10))];
 /// Times at which heights are derived (ms).
 const TIMES: [u32; 7] = [25, 28, 30, 32, 35, 40, 50];
+/// When heights are derived of runs that are alone in their file (ms): past the first impact, and at rest in a deep bed.
+const TIMES_ALONE: [u32; 2] = [30, 60];
 /// When the ball rebounds (s).
 const REBOUND: [f64; 2] = [0.038, 0.050];
 /// When the flow out of the silo is steady (s).
@@ -51,26 +53,28 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
     let mut derived =
         format!("# Derived by `grainbench reference import {}` from tables of the user's own.\n", arguments.work);
     for Published { name, kind } in &tables {
-        let (of, figure) = match kind {
+        let figure = match kind {
             Kind::Impact(impact) => {
                 if impact.courses.len() > 1 {
                     derived += &values(impact);
                     out.write(format!("{name}-derived.csv"), course(impact).as_bytes()).map_err(Fault::writing)?;
+                } else {
+                    derived += &alone(name, impact);
                 }
-                (of_impact(impact), heights(name, impact))
+                heights(name, impact)
             }
-            Kind::Drum(drum) => (of_drum(drum), zones(name, drum)),
-            Kind::Silo(silo) => (leaving(silo), left(name, silo)),
+            Kind::Drum(drum) => zones(name, drum),
+            Kind::Silo(silo) => {
+                said += &leaving(name, silo);
+                left(name, silo)
+            }
         };
-        for Said { about, seen } in of {
-            // A course that is alone in its file has no other name.
-            let about = if about == *name { String::new() } else { format!("{about}: ") };
-            let _ = writeln!(said, "{name}: {about}{seen}");
-        }
         let svg = draw(&figure).map_err(Fault::input)?;
         out.write(format!("{name}.svg"), svg.as_bytes()).map_err(Fault::writing)?;
     }
-    said += &beside(&tables);
+    let rows = of_all(&tables);
+    rows.iter().for_each(|row| said += &format!("{row}\n"));
+    out.write("said.md", table_of(&rows).as_bytes()).map_err(Fault::writing)?;
     if let Some(start) = &start {
         for (name, kind, diameter, density) in [("drum-m2", 0, 0.004, 2000.0), ("drum-m1", 1, 0.002, 2500.0)] {
             out.write(format!("{name}.data"), start.data(kind, diameter, density).as_bytes())
@@ -200,29 +204,21 @@ fn left(name: &str, silo: &Silo) -> Figure {
     Figure::graph(name, "Silo", "", axes, vec![Curve::new(name, Stroke::Line, points)])
 }
 
-fn leaving(silo: &Silo) -> Vec<Said> {
-    let rate = silo.rate(STEADY).map(|rate| Said {
-        about: "from .5 to 3.5 s".to_owned(),
-        seen: format!("{:.2} thousand grains leave in a second", rate / 1e3),
-    });
-    rate.into_iter().collect()
+fn leaving(name: &str, silo: &Silo) -> String {
+    silo.rate(STEADY).map_or_else(String::new, |rate| {
+        format!("{name}: from .5 to 3.5 s {:.2} thousand grains leave in a second\n", rate / 1e3)
+    })
 }
 
-/// What several tables of the drum say of one another.
-fn beside(tables: &[Published]) -> String {
-    let drums: Vec<(&str, &Drum)> = tables
-        .iter()
-        .filter_map(|table| if let Kind::Drum(drum) = &table.kind { Some((table.name.as_str(), drum)) } else { None })
-        .collect();
-    let mut lines = String::new();
-    let Some(((first, drum), rest)) = drums.split_first() else { return lines };
-    for (name, other) in rest {
-        for time in [0.5, 1.0, 2.0] {
-            if let (Some(of), Some(against)) = (other.in_zone_2(time), drum.in_zone_2(time)) {
-                let off = 100.0 * (of / against - 1.0);
-                let _ = writeln!(lines, "{name}: M1 in zone 2 at {time} s: {of}, {off:+.1} % of {first}'s {against}");
-            }
-        }
-    }
-    lines
+/// Heights of a run that is alone in its file, by its own clock less what that is ahead by in its first sample.
+fn alone(name: &str, impact: &Impact) -> String {
+    let [course] = &impact.courses[..] else { return String::new() };
+    let key = name.replace('-', "_");
+    let of = |time: u32| {
+        let height = impact.height(course, f64::from(time) * 1e-3 - impact.ahead(course))? * 1e3;
+        Some(format!(
+            "\n[[value]]\nkey = \"{key}_height_{time}\"\nwhat = \"height of the ball at {time} ms, {name} (mm)\"\nvalue = {height:.4}\n"
+        ))
+    };
+    TIMES_ALONE.into_iter().filter_map(of).collect()
 }

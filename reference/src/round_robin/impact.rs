@@ -78,6 +78,13 @@ impl Impact {
         Some(self.height(course, time)? - (START + RELEASED * time - 0.5 * GRAVITY * time * time))
     }
 
+    /// How far a course's clock is ahead in its first sample (s): the ball has fallen there already.
+    #[must_use]
+    pub fn ahead(&self, course: &Course) -> f64 {
+        let fallen = self.times.first().and_then(|&first| self.held_up(course, first));
+        fallen.map_or(0.0, |up| up / RELEASED)
+    }
+
     /// The mean velocity between two times (m/s).
     #[must_use]
     pub fn velocity(&self, course: &Course, [from, to]: [f64; 2]) -> Option<f64> {

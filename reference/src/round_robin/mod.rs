@@ -10,7 +10,7 @@ mod start;
 mod tables;
 
 pub use impact::{Course, Impact};
-pub use said::{Said, of_drum, of_impact};
+pub use said::{Said, of_all, of_drum, of_drums, of_impact, table_of};
 pub use spread::Spread;
 pub use start::{Start, read_start};
 pub use tables::{Drum, Kind, Published, Silo, read};
@@ -18,3 +18,7 @@ pub use tables::{Drum, Kind, Published, Silo, read};
 /// Heights of the ball over time, derived: t (s), mean between codes and deviations between codes and between beds (mm), 25
 /// thousand grains.
 pub const IMPACT: &str = include_str!("../../literature/dosta-2024/impact-25k.csv");
+
+/// What the published data says of itself, as `grainbench reference import dosta-2024` told it of the copies that were read: a
+/// heading and a table.
+pub const SAID: &str = include_str!("../../literature/dosta-2024/said.md");

@@ -57,11 +57,12 @@ pub(crate) fn pieces(
             Part::text(Rank::Costs, &title, format!("tables/{anchor}-costs.html"), table),
         );
     }
-    if !section.derivation.is_empty() {
-        let text = html! { div.prose { (prose::render(&section.derivation)) } }.into_string();
-        let title = format!("{}: derivation", section.name);
-        let part = Part::text(Rank::Derivations, &title, format!("tables/{anchor}-derivation.html"), text);
-        folded(&mut pieces, None, "aside", &html! { "Derivation" }, part);
+    for (heading, text) in headed(&section.derivation) {
+        let text = html! { div.prose { (prose::render(text)) } }.into_string();
+        let title = format!("{}: {}", section.name, heading.to_lowercase());
+        let part =
+            Part::text(Rank::Derivations, &title, format!("tables/{anchor}-{}.html", super::slug(heading)), text);
+        folded(&mut pieces, None, "aside", &html! { (heading) }, part);
     }
     if !section.weak.is_empty() {
         let text = html! {
@@ -71,6 +72,15 @@ pub(crate) fn pieces(
     }
     pieces.push(Piece::Fixed("</section>".to_owned()));
     Ok(pieces)
+}
+
+/// The derivation, and each part of it that has a heading of its own (`## …`), with its heading.
+fn headed(derivation: &str) -> impl Iterator<Item = (&str, &str)> {
+    const HEADING: &str = "\n## ";
+    let (first, rest) = derivation.split_once(HEADING).unwrap_or((derivation, ""));
+    let parts = rest.split(HEADING).filter(|part| !part.is_empty());
+    let parts = parts.map(|part| part.split_once('\n').unwrap_or((part, "")));
+    Some(("Derivation", first)).filter(|(_, text)| !text.trim().is_empty()).into_iter().chain(parts)
 }
 
 /// A part to be opened.

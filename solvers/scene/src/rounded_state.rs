@@ -14,6 +14,10 @@
 //! The heap comes to rest anew within a few contact times, and the springs of its contacts, which hold it, stay what they were
 //! within 6·10⁻⁸ of themselves.
 //!
+//! A bed at rest that is to be kept without its springs needs less yet: positions to multiples of 2⁻²⁰ of that power of two, and
+//! neither velocities nor spins. For spheres M1 of 1 mm, E = 1 GPa, that is 9·10⁻¹⁰ m, where a grain's weight alone makes an
+//! overlap of 3.5·10⁻⁸ m.
+//!
 //! On disk: the line `grainbench rounded state <format>`, length and hash (see `sealed`), and a zlib stream of a [`Packed`] in
 //! postcard's format. A column has the lowest bytes of all its numbers first, then all the next ones: high bytes hardly differ,
 //! and what does not differ takes no room.
@@ -28,7 +32,9 @@ pub(crate) const MAGIC: &[u8] = b"grainbench rounded state ";
 /// The format that this program writes.
 pub(crate) const FORMAT: u32 = 1;
 /// What positions are rounded to, in units of the power of two at or below the smallest radius: 2⁻³⁶.
-const ROUNDING: f64 = 1.0 / (1_u64 << 36) as f64;
+pub(crate) const ROUNDING: f64 = 1.0 / (1_u64 << 36) as f64;
+/// What those of a bed at rest are rounded to: 2⁻²⁰.
+pub(crate) const ROUNDING_AT_REST: f64 = 1.0 / (1_u64 << 20) as f64;
 /// Multiples of the step that a position may be: as far as they are exact.
 const FARTHEST: f64 = (1_u64 << 53) as f64;
 
@@ -111,10 +117,10 @@ fn after(places: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
 }
 
 impl Packed {
-    /// Rounds a state.
-    pub(crate) fn of(state: &EndState) -> Result<Self, String> {
+    /// Rounds a state, its positions to this part of the power of two at or below the smallest radius.
+    pub(crate) fn of(state: &EndState, rounding: f64) -> Result<Self, String> {
         let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);
-        let step = if smallest.is_finite() { power_of_two(smallest) * ROUNDING } else { 1.0 };
+        let step = if smallest.is_finite() { power_of_two(smallest) * rounding } else { 1.0 };
         let far = |grain: &StateGrain| !grain.position.iter().all(|&along| (along / step).abs() < FARTHEST);
         if step <= 0.0 || state.grains.iter().any(far) {
             return Err("a grain that is too far away or too small to be rounded".to_owned());
