@@ -3,6 +3,7 @@
 use grainbench_harness::case::{Case, Home, Made};
 use grainbench_harness::runner::Runner;
 use grainbench_harness::subject::{Subject, from_claims};
+use grainbench_reference::DataFile;
 use grainbench_scene::resolve::FileGrain;
 use nalgebra::Vector3;
 use std::path::Path;
@@ -43,17 +44,18 @@ pub fn subjects(case: &'static Case) -> Vec<Subject> {
 /// # Errors
 /// Says file, line, what was expected and what was found.
 pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, String> {
-    let data = grainbench_reference::read_data_file(path).map_err(|error| error.to_string())?;
-    Ok(data
-        .atoms
-        .iter()
-        .map(|atom| FileGrain {
-            type_number: atom.type_,
-            radius: atom.radius(),
-            mass: atom.mass(),
-            position: Vector3::from(atom.position),
-            velocity: Vector3::from(atom.velocity),
-            spin: Vector3::from(atom.angular_velocity),
-        })
-        .collect())
+    Ok(grains_of(&grainbench_reference::read_data_file(path).map_err(|error| error.to_string())?))
+}
+
+/// The grains of a data file.
+pub(crate) fn grains_of(data: &DataFile) -> Vec<FileGrain> {
+    let grain = |atom: &grainbench_reference::Atom| FileGrain {
+        type_number: atom.type_,
+        radius: atom.radius(),
+        mass: atom.mass(),
+        position: Vector3::from(atom.position),
+        velocity: Vector3::from(atom.velocity),
+        spin: Vector3::from(atom.angular_velocity),
+    };
+    data.atoms.iter().map(grain).collect()
 }

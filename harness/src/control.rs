@@ -21,6 +21,8 @@ pub enum Wrong {
     OtherSolver(&'static str),
     /// Another solver takes its place, at a resolution of its own.
     OtherRun(&'static str, Resolution),
+    /// Another variant of the scene takes its place, whose run other claims read.
+    OtherVariant(&'static str),
     /// What was read of snapshots is made wrong.
     Misread(fn(&mut [Table])),
 }
@@ -110,6 +112,12 @@ impl Control {
     #[must_use]
     pub const fn without_the_error(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self::run(name, solver, resolution)
+    }
+
+    /// Another variant of the scene.
+    #[must_use]
+    pub const fn variant(name: &'static str, variant: &'static str) -> Self {
+        Self::new(name, Wrong::OtherVariant(variant))
     }
 
     /// Another solver, at a resolution of its own.

@@ -11,6 +11,7 @@ pub mod compare;
 pub mod conformance;
 pub mod control;
 pub mod course;
+pub mod data;
 pub mod evidence;
 pub mod expect;
 pub mod figure;

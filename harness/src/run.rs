@@ -1,5 +1,6 @@
 //! The runs that a claim reads: which scene, which solver, how finely.
 
+use crate::data::Data;
 use crate::reading::{Reading, Table};
 use grainbench_scene::record::{Record, Series};
 use grainbench_scene::scene::Scene;
@@ -15,6 +16,8 @@ pub type Change = Arc<dyn Fn(&mut Scene) + Send + Sync>;
 pub struct Run {
     /// Variant of the scene.
     pub variant: &'static str,
+    /// Data of others that the scene is made from in place of a variant.
+    pub data: Option<&'static Data>,
     /// Solver, by name.
     pub solver: &'static str,
     /// Resolution.
@@ -67,6 +70,7 @@ impl Run {
     pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self {
             variant,
+            data: None,
             solver,
             resolution,
             adjustment: None,
@@ -76,6 +80,12 @@ impl Run {
             reading: None,
             kept: false,
         }
+    }
+
+    /// The run of a scene that is made from data of others: only where the user gives it.
+    #[must_use]
+    pub fn from_data(self, data: &'static Data) -> Self {
+        Self { data: Some(data), ..self }
     }
 
     /// The run with a change of the scene.
@@ -139,20 +149,20 @@ impl Run {
         Self { resolution, ..self.clone() }
     }
 
-    /// Variant and adjustment in words.
+    /// Variant, or data, and adjustment in words.
     #[must_use]
     pub fn scene_words(&self) -> String {
+        let scene = self.data.map_or(self.variant, |data| data.name);
         match &self.adjustment {
-            Some((name, _)) => format!("{}, {name}", self.variant),
-            None => self.variant.to_owned(),
+            Some((name, _)) => format!("{scene}, {name}"),
+            None => scene.to_owned(),
         }
     }
 
     /// What tells this run from others of its case.
     #[must_use]
     pub fn key(&self) -> String {
-        let adjustment = self.adjustment.as_ref().map(|(name, _)| name.as_str()).unwrap_or_default();
-        format!("{}|{}|{:?}|{:?}|{adjustment}", self.variant, self.solver, self.resolution, self.reading)
+        format!("{}|{}|{}|{:?}|{:?}", self.variant, self.scene_words(), self.solver, self.resolution, self.reading)
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::claim::Claim;
 use crate::control::{self, Wrong};
+use crate::data::Data;
 use crate::expect::Measured;
 use crate::reading::{self, Table};
 use crate::run::{Done, Run, Set, Standing};
@@ -14,6 +15,7 @@ use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, Method, Resolution, RunError, Solver};
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
@@ -44,6 +46,8 @@ pub struct Runner {
     threads: usize,
     /// The largest set of which runs are done now though they are kept.
     afresh: Option<Set>,
+    /// Where the user has data of others.
+    data: Option<PathBuf>,
     /// Runs of scenes as the case means them, by [`Run::key`].
     runs: Mutex<Runs>,
     /// Scenes as the case means them, by [`Run::scene_words`].
@@ -76,6 +80,7 @@ impl Runner {
             controlled: true,
             threads: 1,
             afresh: None,
+            data: None,
             runs,
             scenes,
             done,
@@ -117,6 +122,12 @@ impl Runner {
     #[must_use]
     pub fn afresh(self, set: Set) -> Self {
         Self { afresh: Some(set), ..self }
+    }
+
+    /// The runner with the folder in which the user has data of others.
+    #[must_use]
+    pub fn with_data(self, folder: Option<&Path>) -> Self {
+        Self { data: folder.map(Path::to_owned), ..self }
     }
 
     /// Whether figures may take as long as the finest levels do.
@@ -168,7 +179,8 @@ impl Runner {
     pub fn is_available(&self, claim: &Claim) -> bool {
         let is_stored = |run: &Run| !self.live && self.solvers.is_stored(self.case, run);
         let can_run = |run: &Run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok());
-        claim.runs.iter().all(|run| self.is_read_back(run, None) || is_stored(run) || can_run(run))
+        let has_data = |run: &Run| run.data.is_none() || self.data.is_some();
+        claim.runs.iter().all(|run| has_data(run) && (self.is_read_back(run, None) || is_stored(run) || can_run(run)))
     }
 
     /// Judges a claim. What a stranger passes and cannot be fed with the wrong physics of, it has not earned.
@@ -240,6 +252,10 @@ impl Runner {
             Wrong::OtherRun(solver, resolution) => {
                 (by.solver, by.resolution) = (solver, resolution);
                 self.done_by(run, by, None)
+            }
+            Wrong::OtherVariant(variant) => {
+                let done = self.run(&Run { variant, ..run.clone() })?;
+                Ok(Done { scene: self.scene(run)?, ..done })
             }
             Wrong::Misread(change) => self.run(run).map(|done| misread(done, *change)),
         }
@@ -327,14 +343,23 @@ impl Runner {
             Arc::clone(scenes.entry(run.scene_words()).or_default())
         };
         slot.get_or_init(|| {
-            let variant = self.case.variant(run.variant);
-            let mut scene = variant.map_err(|error| self.unusable(run, error.to_string()))?;
+            let mut scene = match run.data {
+                None => self.case.variant(run.variant).map_err(|error| self.unusable(run, error.to_string()))?,
+                Some(data) => self.made_from(data, run)?,
+            };
             if let Some((_, change)) = &run.adjustment {
                 change(&mut scene);
             }
             Ok(Arc::new(scene))
         })
         .clone()
+    }
+
+    /// The scene that is made from data of others.
+    fn made_from(&self, data: &Data, run: &Run) -> Result<Scene, RunError> {
+        let folder = self.data.as_deref().ok_or_else(|| data.needs.to_owned());
+        let made = folder.and_then(|folder| (data.scene)(folder));
+        made.map_err(|reason| RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
 
     /// The scene that the solver of a run is given: as the case means it, or, where it is `wrong`, as the claim's control has it.

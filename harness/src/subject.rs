@@ -75,7 +75,11 @@ fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<Subject>) {
     let [run] = claim.runs.as_slice() else { return };
     let Some(method) = Method::of(run.solver) else { return };
     // What is read of many snapshots takes long runs.
-    if claim.evidence() != Evidence::Analytic || run.standing == Standing::Refused || run.reading.is_some() {
+    if claim.evidence() != Evidence::Analytic
+        || run.standing == Standing::Refused
+        || run.reading.is_some()
+        || run.data.is_some()
+    {
         return;
     }
     // Rows of one quantity, word for word, have one expectation: what follows a comma may be what is expected.

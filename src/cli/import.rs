@@ -4,7 +4,8 @@
 use super::exit::{Fault, Outcome, check_writable, print};
 use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench::reference::round_robin::{
-    Course, Drum, Impact, Kind, Published, Silo, Spread, of_all, read, read_start, table_of,
+    Course, DRUM_SCENE, Drum, Impact, Kind, Published, Quantity, STEADY, Silo, Spread, Start, of_all, pairs, read,
+    read_start, start_in, table_of,
 };
 use grainbench::reports::StagedDir;
 use grainbench::reports::plot::draw;
@@ -28,8 +29,6 @@ pub(crate) struct Import {
     out: PathBuf,
 }
 
-/// The scene that begins with the drum's shared start.
-const DRUM: &str = include_str!("../../examples/round-robin/drum.toml");
 /// Endings of tables.
 const ENDINGS: [&str; 4] = [".csv", ".csv.gz", ".csv.zst", ".parquet"];
 /// The codes and beds that stand for no draw of the others: a code that lies far off, a bed that is another, and one whose ball
@@ -41,8 +40,6 @@ const TIMES: [u32; 7] = [25, 28, 30, 32, 35, 40, 50];
 const TIMES_ALONE: [u32; 2] = [30, 60];
 /// When the ball rebounds (s).
 const REBOUND: [f64; 2] = [0.038, 0.050];
-/// When the flow out of the silo is steady (s).
-const STEADY: [f64; 2] = [0.5, 3.5];
 
 pub(crate) fn import(arguments: &Import) -> Outcome {
     let tables = tables(&arguments.directory)?;
@@ -75,12 +72,20 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
     let rows = of_all(&tables);
     rows.iter().for_each(|row| said += &format!("{row}\n"));
     out.write("said.md", table_of(&rows).as_bytes()).map_err(Fault::writing)?;
-    if let Some(start) = &start {
-        for (name, kind, diameter, density) in [("drum-m2", 0, 0.004, 2000.0), ("drum-m1", 1, 0.002, 2500.0)] {
-            out.write(format!("{name}.data"), start.data(kind, diameter, density).as_bytes())
+    let pairs = pairs(&tables);
+    derived += &numbers(&pairs);
+    for name in ["silo-large", "drum-zone-2"] {
+        let course = over_time(&pairs, name);
+        if !course.is_empty() {
+            out.write(format!("{name}-derived.csv"), format!("t,mean,half\n{course}").as_bytes())
                 .map_err(Fault::writing)?;
         }
-        out.write("drum.toml", DRUM.as_bytes()).map_err(Fault::writing)?;
+    }
+    if let Some(start) = &start {
+        for (name, text) in start.files() {
+            out.write(name, text.as_bytes()).map_err(Fault::writing)?;
+        }
+        out.write("drum.toml", DRUM_SCENE.as_bytes()).map_err(Fault::writing)?;
     }
     out.write("derived.toml", derived.as_bytes()).map_err(Fault::writing)?;
     out.write("said.txt", said.as_bytes()).map_err(Fault::writing)?;
@@ -114,13 +119,9 @@ fn tables(directory: &Path) -> Result<Vec<Published>, Fault> {
 }
 
 /// The drum's shared start, where the directory has one file of that kind.
-fn start(directory: &Path) -> Result<Option<grainbench::reference::round_robin::Start>, Fault> {
-    let entries =
-        std::fs::read_dir(directory).map_err(|error| Fault::input(format!("{}: {error}", directory.display())))?;
-    let is_start = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "xyz");
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(is_start).collect();
-    paths.sort();
-    paths.first().map(|path| read_start(path).map_err(Fault::input)).transpose()
+fn start(directory: &Path) -> Result<Option<Start>, Fault> {
+    let path = start_in(directory).map_err(|error| Fault::input(format!("{}: {error}", directory.display())))?;
+    path.map(|path| read_start(&path).map_err(Fault::input)).transpose()
 }
 
 fn is_kept(course: &Course) -> bool {
@@ -157,6 +158,29 @@ fn values(impact: &Impact) -> String {
     let speed = impact.spread(is_kept, |impact, course| impact.velocity(course, REBOUND));
     add("rebound", "mean velocity of the ball from 38 to 50 ms, 25 thousand grains", "m/s", speed);
     lines
+}
+
+/// Numbers of silo and drum as the provenance of the work has them.
+fn numbers(pairs: &[Quantity]) -> String {
+    let mut lines = String::new();
+    for Quantity { key, what, pair, .. } in pairs.iter().filter(|quantity| quantity.time.is_none()) {
+        let of = if pair.half.is_some() { "mean of LIGGGHTS and MUSEN" } else { "MUSEN alone" };
+        let _ = write!(lines, "\n[[value]]\nkey = \"{key}\"\nwhat = \"{what}: {of}\"\nvalue = {:.4}\n", pair.mean);
+        if let Some(half) = pair.half {
+            let _ = write!(
+                lines,
+                "\n[[value]]\nkey = \"{key}_half\"\nwhat = \"{what}: half the difference of LIGGGHTS and MUSEN\"\nvalue = {half:.4}\n"
+            );
+        }
+    }
+    lines
+}
+
+/// A course of silo or drum: mean and half the difference at every time.
+fn over_time(pairs: &[Quantity], name: &str) -> String {
+    let of = pairs.iter().filter(|quantity| quantity.key == name);
+    of.filter_map(|quantity| Some(format!("{:.1},{},{}\n", quantity.time?, quantity.pair.mean, quantity.pair.half?)))
+        .collect()
 }
 
 /// Mean and deviations at every time.

@@ -34,6 +34,9 @@ pub(crate) struct Keep {
     /// Only runs in whose names, as the command lists them, these letters stand.
     #[arg(long, value_name = "LETTERS")]
     run: Option<String>,
+    /// Directory in which you have data of others that runs begin with, as `import` reads it; without it those are left out.
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
     /// Threads of a run.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
     threads: u16,
@@ -61,11 +64,24 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
     };
     let interrupt = Interrupt::listen();
     let (mut lines, mut failed) = (String::new(), false);
+    if let Some(letters) = &arguments.run
+        && !known.iter().filter(is_named).flat_map(|case| kept::all(case)).any(|wanted| is_meant(&wanted))
+    {
+        return Err(Fault::input(format!("--run: expected letters of the name of a run that is kept, found `{letters}`")));
+    }
     for case in known.iter().filter(is_named) {
         let runner = runner(case).afresh(Set::Paper).threads(usize::from(arguments.threads));
+        let runner = runner.with_data(arguments.data.as_deref());
         let wanted: Vec<Wanted> = kept::all(case).into_iter().filter(is_meant).collect();
         for (place, one) in wanted.iter().enumerate() {
-            let given = runner.given(&one.claim, &one.run, one.wrong).map_err(Fault::input)?;
+            let given = match runner.given(&one.claim, &one.run, one.wrong) {
+                Err(RunError::NotAvailable { reason, .. }) if arguments.data.is_none() => {
+                    say("note", &format!("{}: left out: {reason}", one.id));
+                    lines.push_str(&format!("{:6} {}/{}\n", "absent", case.name, one.id));
+                    continue;
+                }
+                given => given.map_err(Fault::input)?,
+            };
             let keeping = Keeping {
                 arguments,
                 runner: &runner,

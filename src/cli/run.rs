@@ -16,6 +16,7 @@ use super::value::whole;
 use grainbench::cases::solvers;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
+use grainbench::harness::data::Data;
 use grainbench::harness::figure::Figure;
 use grainbench::harness::run::{Done, Run, Set};
 use grainbench::harness::runner::Runner;
@@ -31,7 +32,7 @@ use grainbench::reports::{
 use grainbench::scene::solver::RunError;
 use grainbench::studies::run_cache::RunCache;
 use std::collections::HashSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -79,6 +80,10 @@ pub(crate) struct Options {
     /// Run `lammps` and `liggghts` even where a run of theirs is stored.
     #[arg(long)]
     pub(crate) live: bool,
+    /// Directory in which you have data of others that rows begin with, as `reference import` reads it; without it these rows are
+    /// `not-available`, and say where it is to be had.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) data: Option<PathBuf>,
     /// Everything that is not green is red: amber rows, and programs that are not installed.
     #[arg(long)]
     pub(crate) strict: bool,
@@ -114,6 +119,9 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let earlier = options.against.as_deref().map(|path| Earlier::read("--against", path)).transpose()?;
     let mut selected = select::select(cases, &options.solver, &options.levels)?;
     narrow(&mut selected, options, &filters)?;
+    if let Some(folder) = &options.data {
+        refuse_without_use(&selected, folder)?;
+    }
     check_writable(&options.out)?;
     let kept = if options.as_kept { Some(keep::read(keep::program(&selected)?)?) } else { None };
     if let Some(part) = cases.iter().chain(&options.filter).next().filter(|_| options.keep) {
@@ -180,6 +188,21 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         return Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS });
     }
     Ok(if left > 0 || is_mute { ExitCode::from(RED) } else { code })
+}
+
+/// Refuses data that no row begins with, or that is not what a row needs.
+fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault> {
+    let runs = selected.iter().flat_map(|of| &of.claims).flat_map(|claim| &claim.runs);
+    let mut needed: Vec<&Data> = runs.filter_map(|run| run.data).collect();
+    needed.sort_by_key(|data| data.name);
+    needed.dedup_by_key(|data| data.name);
+    if needed.is_empty() {
+        return Err(Fault::input(
+            "--data: expected rows that begin with data of others, found none among those asked for",
+        ));
+    }
+    let unusable = |data: &&Data| (data.scene)(folder).err();
+    needed.iter().find_map(unusable).map_or(Ok(()), |reason| Err(Fault::input(format!("--data: {reason}"))))
 }
 
 /// A report; beside the whole registry stands what is kept of programs and of costs, and not beside a case of it.
@@ -277,6 +300,9 @@ pub(crate) fn words(cases: &[String], options: &Options) -> Vec<String> {
     }
     if options.no_controls {
         words.push("--no-controls".to_owned());
+    }
+    if options.data.is_some() {
+        words.push("--data".to_owned());
     }
     words.extend(options.filter.iter().map(|filter| format!("--filter {filter}")));
     if options.rerun_failed {
@@ -409,7 +435,7 @@ impl<'a> Work<'a> {
 /// A runner of a case as it was selected.
 pub(crate) fn runner(selected: &Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Runner {
     let runner = Runner::new(selected.case, solvers).live(options.live).thorough(thorough);
-    let runner = runner.controlled(!options.no_controls);
+    let runner = runner.controlled(!options.no_controls).with_data(options.data.as_deref());
     // All levels are asked for: what is kept of runs is done anew too.
     let runner = if thorough { runner.afresh(Set::Paper) } else { runner };
     let runner = match &selected.stranger {

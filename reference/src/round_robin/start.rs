@@ -4,7 +4,7 @@ use crate::read::read_error::{ReadError, quoted};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The middle of the drum in the file's coordinates (m).
 const MIDDLE: [f64; 3] = [0.102, 0.032, 0.102];
@@ -18,6 +18,16 @@ const LONGEST: u64 = 4096;
 pub struct Start {
     /// Of M2, type 0, and of M1, type 1.
     pub kinds: [Vec<[f64; 3]>; 2],
+}
+
+/// The shared start in a folder: the first of its files whose names end in `.xyz`.
+///
+/// # Errors
+/// When the folder cannot be read.
+pub fn start_in(folder: &Path) -> std::io::Result<Option<PathBuf>> {
+    let entries: Vec<PathBuf> =
+        std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
+    Ok(entries.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "xyz")).min())
 }
 
 /// Reads the start: a line with the number of grains, a line with the box, and for each grain its type, 0 or 1, and three
@@ -63,6 +73,12 @@ pub fn read_start(path: &Path) -> Result<Start, ReadError> {
 }
 
 impl Start {
+    /// Both kinds as the data files that the scene of the drum begins with: name and text of each.
+    #[must_use]
+    pub fn files(&self) -> [(&'static str, String); 2] {
+        [("drum-m2.data", self.data(0, 0.004, 2000.0)), ("drum-m1.data", self.data(1, 0.002, 2500.0))]
+    }
+
     /// One kind as a data file of LAMMPS, with these diameter (m) and density (kg/m³).
     #[must_use]
     pub fn data(&self, kind: usize, diameter: f64, density: f64) -> String {

@@ -108,18 +108,21 @@ impl Drum {
 }
 
 impl Silo {
+    /// Grains left at a time, between samples in proportion; none beyond them.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Option<f64> {
+        let after = self.times.iter().position(|&sampled| sampled >= time - 1e-9)?;
+        let (next, left) = (self.times[after], self.left[after]);
+        if (next - time).abs() < 1e-9 || after == 0 {
+            return Some(left);
+        }
+        let part = (time - self.times[after - 1]) / (next - self.times[after - 1]);
+        Some(self.left[after - 1] + part * (left - self.left[after - 1]))
+    }
+
     /// Grains that leave in a second, between two times.
     #[must_use]
     pub fn rate(&self, [from, to]: [f64; 2]) -> Option<f64> {
-        let at = |time: f64| {
-            let after = self.times.iter().position(|&sampled| sampled >= time - 1e-9)?;
-            let (next, left) = (self.times[after], self.left[after]);
-            if (next - time).abs() < 1e-9 || after == 0 {
-                return Some(left);
-            }
-            let part = (time - self.times[after - 1]) / (next - self.times[after - 1]);
-            Some(self.left[after - 1] + part * (left - self.left[after - 1]))
-        };
-        Some((at(from)? - at(to)?) / (to - from))
+        Some((self.at(from)? - self.at(to)?) / (to - from))
     }
 }

@@ -1,0 +1,216 @@
+//! Two kinds of spheres in a rotating drum: from the published start, where the user has it, and from a small one of our own.
+
+#[path = "zones.rs"]
+mod zones;
+
+use crate::registry::grains_of;
+use crate::rows::programs::row;
+use crate::sources::literature::dosta_2024 as dosta;
+use grainbench_harness::claim::Tolerated;
+use grainbench_harness::compare::pointwise::{together, worst};
+use grainbench_harness::data::Data;
+use grainbench_harness::prelude::*;
+use grainbench_harness::statistics::{BLOCKS, difference};
+use grainbench_reference::parse_data;
+use grainbench_reference::round_robin::{DRUM, DRUM_SCENE, course, read_start, start_in};
+use grainbench_scene::scene::Duration;
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+use zones::{COUNTED, ZONES};
+
+const LEVELS: &[Level] = &[Level { name: "dt=3e-6 s", resolution: Resolution::TimeStep(3e-6) }];
+
+pub(crate) static CASE: Case = Case {
+    name: "drum-mixing",
+    title: "Mixing in a rotating drum",
+    claim: "From the published start as many small spheres are in the lower quarter of the drum, at every tenth of a second up to a \
+            second, as LIGGGHTS and MUSEN count there; and a small drum turns its bed as LIGGGHTS does.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "The published start is not ours to keep: without it the rows that begin with it are `not-available`, and what is \
+               judged is a tenth of a second of a small drum, in which little mixes. Past a second, where the codes differ by \
+               more than a part in a hundred, nothing is judged.",
+    levels: LEVELS,
+    default_level: LEVELS[0],
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+/// Our solver in LIGGGHTS' convention, and LIGGGHTS.
+const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
+
+/// The drum of the paper with its shared start.
+static PUBLISHED: Data = Data {
+    name: "published",
+    needs: "it begins with the shared start of Dosta et al. 2024 (doi 10.5281/zenodo.8252892), an `xyz` file of 38,000 grains; \
+            `grainbench run drum-mixing --data DIR` takes it from the folder that `grainbench reference import dosta-2024 DIR` reads",
+    scene: published,
+};
+
+/// The scene of the drum with the start that a folder holds.
+fn published(folder: &Path) -> Result<Scene, String> {
+    let start = start_in(folder).map_err(|error| format!("{}: {error}", folder.display()))?.ok_or_else(|| {
+        format!("{}: expected the start of the drum, a file whose name ends in `.xyz`, found none", folder.display())
+    })?;
+    let files = read_start(&start).map_err(|error| error.to_string())?.files();
+    let read = |path: &Path| {
+        let named = files.iter().find(|(name, _)| path.ends_with(name));
+        let (name, text) = named.ok_or_else(|| format!("{}: expected a file of the start", path.display()))?;
+        Ok(grains_of(&parse_data(text.as_bytes(), name).map_err(|error| error.to_string())?))
+    };
+    SceneSource::from_text("drum.toml", Path::new("."), DRUM_SCENE).scene(&read).map_err(|error| error.to_string())
+}
+
+/// What was asked for before, and until when.
+const EARLY: (f64, &str) = (0.005, "asked for before: .5 % of either code to .5 s");
+const LATE: (f64, &str) = (0.01, "asked for before: 1 % of either code to 1 s");
+
+fn claims() -> Vec<Claim> {
+    let mut claims = vec![
+        zone("M1 in zone 2 at .1 s", [0.1, 0.1], EARLY).refuses(Control::scene(BACKWARDS, |scene| {
+            backwards(scene);
+            scene.duration = Duration::Seconds(0.1);
+        })),
+        zone("M1 in zone 2 from .2 to .5 s, worst", [0.2, 0.5], EARLY).refuses(Control::scene(SLIPPERY, |scene| {
+            slippery(scene);
+            scene.duration = Duration::Seconds(0.5);
+        })),
+        zone("M1 in zone 2 from .6 to 1 s, worst", [0.6, 1.0], LATE)
+            .refuses(Control::misread("counted on the other side, x > 0", zones::on_the_other_side)),
+        beginning(),
+    ];
+    let both = || SIDES.map(|solver| Run::new(PLAIN, solver, LEVELS[0].resolution));
+    claims.push(mean(
+        "angular momentum",
+        "kg m²/s",
+        "all.angular_momentum_y",
+        both(),
+        Control::ours(SLIPPERY, slippery),
+    ));
+    claims.push(mean("momentum along x", "kg m/s", "all.momentum_x", both(), Control::ours(BACKWARDS, backwards)));
+    claims
+}
+
+const BACKWARDS: &str = "the other sense of rotation";
+const SLIPPERY: &str = "half the friction of the drum";
+
+fn backwards(scene: &mut Scene) {
+    for phase in scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases) {
+        phase.spin = -phase.spin;
+    }
+}
+
+fn slippery(scene: &mut Scene) {
+    let Some(steel) = scene.materials.iter().position(|name| name == "steel") else { return };
+    let count = scene.materials.len();
+    for (place, law) in scene.laws.iter_mut().enumerate() {
+        if let Some(law) = law.as_mut().filter(|_| place / count == steel || place % count == steel) {
+            law.friction *= 0.5;
+        }
+    }
+}
+
+/// The run from the published start.
+fn of_paper() -> Run {
+    Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
+}
+
+/// Counts of M1 in zone 2 between two times, the worst of them beside the code that is farther off.
+fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -> Tolerated {
+    claim(quantity, "1")
+        .of(of_paper())
+        .equals(Source::Printed(&dosta::WORK, "derived: LIGGGHTS and MUSEN, run again"), move |done| {
+            let rows = course(DRUM).into_iter().filter(|[time, ..]| (from - 1e-9..=to + 1e-9).contains(time));
+            let found: Result<Vec<Measured>, Missing> = rows
+                .map(|[time, mean, half]| {
+                    let count = counted(&done[0], time)?;
+                    let code = if count > mean { mean - half } else { mean + half };
+                    Ok(Measured::new(count, code, code))
+                })
+                .collect();
+            Measured::worst_among(found?).ok_or_else(|| Missing("time to compare at".to_owned()))
+        })
+        .within(required(allowed, because))
+}
+
+/// M1 in zone 2 at a time.
+fn counted(done: &Done, time: f64) -> Result<f64, Missing> {
+    let table = done.table(zones::NAME)?;
+    let column = |name: &str| table.column(name).ok_or_else(|| Missing(format!("column `{name}`")));
+    let times = column("time")?;
+    // A snapshot is taken at the step that is nearest.
+    let place = times.iter().position(|at| (at - time).abs() < 1e-5);
+    place
+        .map(|place| column(COUNTED).map(|counts| counts[place]))
+        .unwrap_or_else(|| Err(Missing(format!("count at {time} s"))))
+}
+
+/// A grain beside LIGGGHTS, before rounding has grown: from then on tenfold in about a hundred steps.
+fn beginning() -> Claim {
+    let runs = SIDES.map(|solver| Run::new("beginning", solver, LEVELS[0].resolution));
+    let allowed = judged(1e-11, "the same cycle: order of sums; in units of its radius");
+    let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
+    row("position of a grain of the bed over .3 ms, worst", "m", allowed, runs, control, |done| {
+        worst(done, &["one.x", "one.y", "one.z"], done[0].scene.grains[0].radius)
+    })
+}
+
+/// A mean from when the bed turns with the drum, in units of half the confidence interval of the difference.
+fn mean(words: &str, unit: &'static str, column: &'static str, runs: [Run; 2], control: Control) -> Claim {
+    const FROM: f64 = 0.03;
+    let allowed = one_interval(
+        "in units of half the 99 % confidence interval of the difference, from the means over 8 blocks of time",
+    );
+    row(&format!("mean {words} from .03 to .1 s"), unit, allowed, runs, control, |done| {
+        let (ours, theirs) = together(&done[0], &done[1], column)?;
+        let from = done[1].series().time.partition_point(|&time| time < FROM);
+        let estimate = difference(&theirs[from..], &ours[from..], BLOCKS);
+        let estimate = estimate.ok_or_else(|| Missing(format!("{BLOCKS} samples after {FROM} s")))?;
+        Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
+    })
+}
+
+/// Counts in zone 2 over time beside the codes', where the published start is given; and how the small drum takes its bed along.
+fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    let mut figures = Vec::new();
+    match runner.run(&of_paper()) {
+        Ok(done) => figures.push(of_zone(&done)),
+        Err(RunError::NotAvailable { .. }) => {}
+        Err(error) => return Err(error),
+    }
+    let mut curves = Vec::new();
+    for (solver, stroke) in SIDES.into_iter().zip([Stroke::Line, Stroke::Dashed]) {
+        // Without the program and without its stored run there is nothing to draw.
+        if let Ok(done) = runner.run(&Run::new(PLAIN, solver, LEVELS[0].resolution)) {
+            let values = done.column("all.angular_momentum_y").unwrap_or_default();
+            let points = done.series().time.iter().zip(values).map(|(time, value)| (time * 1e3, -value * 1e6));
+            curves.push(Curve::new(solver, stroke, points.collect()));
+        }
+    }
+    figures.push(Figure::graph(
+        "taken-along",
+        "A bed that is taken along",
+        "Angular momentum of the grains about the axis of the small drum, which turns from the first step on.",
+        [Axis::linear("time (ms)"), Axis::linear("angular momentum (10⁻⁶ kg m²/s)")],
+        curves,
+    ));
+    Ok(figures)
+}
+
+fn of_zone(done: &Done) -> Figure {
+    let of = |name: &str| done.table(zones::NAME).ok().and_then(|table| table.column(name)).unwrap_or_default();
+    let ours = of("time").iter().copied().zip(of(COUNTED).iter().map(|count| count / 1e3)).collect();
+    let codes = course(DRUM).into_iter().map(|[time, mean, _]| (time, mean / 1e3)).collect();
+    Figure::graph(
+        "zone-2",
+        "M1 in zone 2",
+        "M1 in zone 2 (x < 0, z < 0) over time, from the published start, and the mean of LIGGGHTS and MUSEN (derived from runs \
+         again of Dosta et al. 2024), which are at most .9 % apart.",
+        [Axis::linear("time (s)"), Axis::linear("M1 in zone 2 (thousands)")],
+        vec![
+            Curve::new("dem:liggghts", Stroke::MarkedLine, ours),
+            Curve::new("LIGGGHTS and MUSEN", Stroke::Markers, codes),
+        ],
+    )
+}

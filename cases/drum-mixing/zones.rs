@@ -1,0 +1,46 @@
+//! Counts the small spheres in the lower quarters of the drum.
+
+use grainbench_harness::reading::{Reader, Reading, Table};
+use grainbench_scene::record::Snapshot;
+use grainbench_scene::scene::Scene;
+
+/// The reading of every snapshot.
+pub(super) const ZONES: Reading = Reading { name: "zones of the drum", begin };
+/// Name of its table.
+pub(super) const NAME: &str = "zones";
+/// Column of M1 in zone 2: x < 0 and z < 0.
+pub(super) const COUNTED: &str = "zone_2";
+/// Columns: beside it M1 with x > 0 and z < 0.
+const COLUMNS: [&str; 3] = ["time", COUNTED, "beside"];
+
+struct Zones {
+    m1: Option<u16>,
+    counts: Table,
+}
+
+fn begin(scene: &Scene) -> Box<dyn Reader> {
+    let m1 = scene.materials.iter().position(|name| name == "m1").map(|place| place as u16);
+    Box::new(Zones { m1, counts: Table::new(NAME, &COLUMNS) })
+}
+
+impl Reader for Zones {
+    fn see(&mut self, snapshot: Snapshot) {
+        let mut counts = [0_u32; 2];
+        let below = snapshot.grains.iter().filter(|grain| Some(grain.material) == self.m1 && grain.position.z < 0.0);
+        for grain in below {
+            counts[usize::from(grain.position.x >= 0.0)] += 1;
+        }
+        self.counts.push(&[Some(snapshot.time), Some(f64::from(counts[0])), Some(f64::from(counts[1]))]);
+    }
+
+    fn end(self: Box<Self>) -> Vec<Table> {
+        vec![self.counts]
+    }
+}
+
+/// Takes the quarter beside zone 2 for it.
+pub(super) fn on_the_other_side(tables: &mut [Table]) {
+    for table in tables.iter_mut().filter(|table| table.name == NAME) {
+        table.values.swap(1, 2);
+    }
+}

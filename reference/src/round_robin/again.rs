@@ -1,0 +1,122 @@
+//! Silo and drum: what LIGGGHTS and MUSEN, run again from the shared starts, have in common. Of two codes the spread is half their
+//! difference.
+
+use super::tables::{Kind, Published, Silo};
+
+/// When the flow out of the silo is steady (s).
+pub const STEADY: [f64; 2] = [0.5, 3.5];
+/// When it has begun (s).
+pub const EARLY: [f64; 2] = [0.2, 0.8];
+/// The codes that count, by how names of tables end.
+const CODES: [&str; 2] = ["liggghts", "musen"];
+/// When grains left in the silo are counted (s).
+const LEFT: [f64; 9] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.3];
+/// Until when, and how often, M1 are counted in zone 2 of the drum (s).
+const MIXED: (usize, f64) = (10, 0.1);
+
+/// Something that two codes, or one, have found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// Mean of the codes.
+    pub mean: f64,
+    /// Half their difference; none of one code.
+    pub half: Option<f64>,
+}
+
+impl Pair {
+    fn of(values: &[f64]) -> Option<Self> {
+        match values {
+            [one] => Some(Self { mean: *one, half: None }),
+            [a, b] => Some(Self { mean: 0.5 * (a + b), half: Some(0.5 * (a - b).abs()) }),
+            _ => None,
+        }
+    }
+}
+
+/// A derived number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Its key in the provenance of the work; of a course the name of its table.
+    pub key: &'static str,
+    /// What it is.
+    pub what: String,
+    /// When (s), of a course; none of a number.
+    pub time: Option<f64>,
+    /// The number.
+    pub pair: Pair,
+}
+
+/// What the tables of silo and drum tell together.
+#[must_use]
+pub fn pairs(tables: &[Published]) -> Vec<Quantity> {
+    let codes = |words: &str| -> Vec<&Published> {
+        let named = |code: &&str| tables.iter().find(|table| is_of(&table.name, words, code));
+        CODES.iter().filter_map(named).collect()
+    };
+    let (large, small, drum) = (codes("large"), codes("small"), codes("case2"));
+    let mut all = Vec::new();
+    let mut add = |key, what: String, time, of: &[&Published], read: &dyn Fn(&Kind) -> Option<f64>| {
+        let values: Option<Vec<f64>> = of.iter().map(|table| read(&table.kind)).collect();
+        if let Some(pair) = values.as_deref().and_then(Pair::of) {
+            all.push(Quantity { key, what, time, pair });
+        }
+    };
+    let rate = |between: [f64; 2]| move |kind: &Kind| silo(kind)?.rate(between).map(|rate| rate / 1e3);
+    let between = |orifice: &str, [from, to]: [f64; 2]| {
+        format!("grains out of the {orifice} orifice between {from} and {to} s of flow (thousands a second)")
+    };
+    add("silo_large_rate", between("large", STEADY), None, &large, &rate(STEADY));
+    add("silo_large_early", between("large", EARLY), None, &large, &rate(EARLY));
+    add("silo_small_rate", between("small", STEADY), None, &small, &rate(STEADY));
+    let out = "grains out of the large orifice in 2 s (thousands)".to_owned();
+    add("silo_large_out_2", out, None, &large, &|kind| Some(1e-3 * (silo(kind)?.at(0.0)? - silo(kind)?.at(2.0)?)));
+    for time in LEFT {
+        add("silo-large", String::new(), Some(time), &large, &|kind| silo(kind)?.at(time));
+    }
+    for step in 1..=MIXED.0 {
+        let time = step as f64 * MIXED.1;
+        let zone = |kind: &Kind| if let Kind::Drum(drum) = kind { drum.in_zone_2(time) } else { None };
+        add("drum-zone-2", String::new(), Some(time), &drum, &zone);
+    }
+    all
+}
+
+/// Whether a name of a table has these words in it and ends with a code.
+fn is_of(name: &str, words: &str, code: &str) -> bool {
+    name.contains(words) && name.ends_with(&format!("_{code}"))
+}
+
+fn silo(kind: &Kind) -> Option<&Silo> {
+    if let Kind::Silo(silo) = kind { Some(silo) } else { None }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    fn table(name: &str, left: [f64; 3]) -> Published {
+        Published { name: name.to_owned(), kind: Kind::Silo(Silo { times: vec![0.0, 2.0, 4.0], left: left.to_vec() }) }
+    }
+
+    #[test]
+    fn two_codes_have_a_mean_and_others_do_not_count() {
+        let tables = [
+            table("case1_large_M1_liggghts", [100e3, 50e3, 0.0]),
+            table("case1_large_M1_musen", [100e3, 52e3, 4e3]),
+            table("case1_large_M1_other", [100e3, 0.0, 0.0]),
+            table("case1_small_M1_musen", [100e3, 84e3, 68e3]),
+        ];
+        let all = pairs(&tables);
+        let of = |key: &str| all.iter().find(|quantity| quantity.key == key && quantity.time.is_none()).unwrap();
+        let rate = &of("silo_large_rate").pair;
+        assert!((rate.mean - 24.5).abs() < 1e-12 && (rate.half.unwrap() - 0.5).abs() < 1e-12, "{rate:?}");
+        assert_eq!(of("silo_small_rate").pair, Pair { mean: 8.0, half: None });
+        assert_eq!(of("silo_large_out_2").pair, Pair { mean: 49.0, half: Some(1.0) });
+        let left: Vec<f64> = all.iter().filter(|of| of.key == "silo-large").map(|of| of.pair.mean).collect();
+        assert_eq!(left[3], 51e3);
+        // The table ends before.
+        assert_eq!(left.len(), 8);
+    }
+}

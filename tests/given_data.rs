@@ -1,0 +1,67 @@
+//! Rows that begin with data of others: where the user gives it, where not, and where something else is given.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::grainbench;
+use serde_json::Value;
+use std::path::Path;
+
+const ROWS: [&str; 4] = ["run", "drum-mixing", "--filter", "quantity=zone 2"];
+
+/// Outcome and reason of each row of a report.
+fn rows(directory: &Path) -> Vec<(String, String)> {
+    let results = std::fs::read_to_string(directory.join("grainbench-out/results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    let word = |row: &Value, key: &str| row[key].as_str().unwrap_or_default().to_owned();
+    results["verdicts"].as_array().unwrap().iter().map(|row| (word(row, "verdict"), row.to_string())).collect()
+}
+
+#[test]
+fn without_it_rows_say_where_it_is_to_be_had() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &ROWS);
+    // Nothing was judged.
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let rows = rows(directory.path());
+    assert_eq!(rows.len(), 3);
+    for (outcome, row) in rows {
+        assert_eq!(outcome, "not-available");
+        assert!(row.contains("10.5281/zenodo.8252892") && row.contains("--data DIR"), "{row}");
+    }
+}
+
+#[test]
+fn what_is_no_start_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::create_dir(path.join("data")).unwrap();
+    let with_data = [&ROWS[..], &["--data", "data"]].concat();
+    let refused = |words: &str| {
+        let answer = grainbench(path, &with_data);
+        assert_eq!(answer.code, Some(2), "{}", answer.err);
+        assert!(answer.err.contains(words) && !path.join("grainbench-out").exists(), "{}", answer.err);
+    };
+    refused("data: expected the start of the drum, a file whose name ends in `.xyz`, found none");
+    std::fs::write(path.join("data/start.xyz"), "1\nbox\n1 0 0\n").unwrap();
+    refused("start.xyz:3: expected a type, 0 or 1, and three coordinates");
+    std::fs::remove_dir_all(path.join("data")).unwrap();
+    refused("data: ");
+    let answer = grainbench(path, &["run", "squash", "--data", "."]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("--data: expected rows that begin with data of others"), "{}", answer.err);
+}
+
+/// What is kept is of the published start, and judges no other.
+#[test]
+fn another_start_is_told_from_the_published_one() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::create_dir(path.join("data")).unwrap();
+    std::fs::write(path.join("data/start.xyz"), "2\nbox\n0 0.102 0.032 0.05\n1 0.122 0.032 0.05\n").unwrap();
+    let answer = grainbench(path, &[&ROWS[..], &["--data", "data"]].concat());
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let rows = rows(path);
+    assert!(rows.len() == 3 && rows.iter().all(|(outcome, _)| outcome == "stale"), "{rows:?}");
+}
