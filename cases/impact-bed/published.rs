@@ -33,6 +33,35 @@ impl Spread {
     }
 }
 
+/// How many deviations the mean of our beds is off the codes' mean, at every published time (ms) at which codes and beds differ.
+pub(super) fn scores(done: &[Done], published: &[[f64; 4]]) -> Result<Vec<(f64, f64)>, Missing> {
+    let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
+    let told = |row: &&[f64; 4]| row[0] <= last + 1e-9 && row[2] > 0.01 && row[3] > 0.01;
+    let score = |&[time, mean, code, bed]: &[f64; 4]| {
+        let own: Vec<f64> = done.iter().map(|done| super::height(done, time)).collect::<Result<_, _>>()?;
+        let of = grainbench_reference::round_robin::Spread { mean, code, bed };
+        let off = own.iter().sum::<f64>() / own.len() as f64 - mean;
+        Ok((time * 1e3, off / of.deviation(own.len(), PUBLISHED)))
+    };
+    published.iter().filter(told).map(score).collect()
+}
+
+/// A text, a line end and another text.
+pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N] {
+    let (first, second) = (first.as_bytes(), second.as_bytes());
+    let mut both = [b'\n'; N];
+    let mut at = 0;
+    while at < N {
+        if at < first.len() {
+            both[at] = first[at];
+        } else if at > first.len() {
+            both[at] = second[at - first.len() - 1];
+        }
+        at += 1;
+    }
+    both
+}
+
 /// Heights of our beds beside the codes' mean, and our code as a whole in the spread: how many of its deviations it is off.
 pub(super) fn figures(done: &[Done], published: &[[f64; 4]]) -> Vec<Figure> {
     let course = |done: &Done| -> Vec<(f64, f64)> {
@@ -54,19 +83,7 @@ pub(super) fn figures(done: &[Done], published: &[[f64; 4]]) -> Vec<Figure> {
     for (number, of) in done.iter().enumerate() {
         curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, course(of)));
     }
-    let scores =
-        within.iter().filter(|[.., code, bed]| *code > 0.01 && *bed > 0.01).filter_map(|[time, mean, code, bed]| {
-            let at = |done: &Done| {
-                let heights = done.column("ball.z").ok()?;
-                let place = done.series().time.iter().position(|sampled| (sampled - time).abs() < 1e-9)?;
-                Some(heights[place] * 1e3)
-            };
-            let own: Vec<f64> = done.iter().filter_map(at).collect();
-            let deviation = code.hypot(bed * (1.0 / own.len() as f64 + 1.0 / PUBLISHED as f64).sqrt());
-            (own.len() == done.len())
-                .then(|| (time * 1e3, (own.iter().sum::<f64>() / own.len() as f64 - mean) / deviation))
-        });
-    let scores: Vec<(f64, f64)> = scores.collect();
+    let scores = scores(done, published).unwrap_or_default();
     let ends = [scores.first().map_or(0.0, |first| first.0), scores.last().map_or(1.0, |last| last.0)];
     let bound = |at: f64| Curve::new(format!("{at:+}"), Stroke::Dashed, ends.map(|end| (end, at)).to_vec());
     vec![

@@ -16,8 +16,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Scenes that are run where none is named: dense in the plane and in space, sparse, with Hertz contacts, and few grains.
-const TRACKS: [&str; 6] = ["plane-shear", "cooling-gas", "nine-discs/kappa-1", "discs-400", "spheres", "hertz"];
+/// Scenes that are run where none is named: dense in the plane and in space, sparse, with Hertz contacts, few grains, and a bed
+/// of 25,000 that a ball falls into.
+const TRACKS: [&str; 7] =
+    ["plane-shear", "cooling-gas", "nine-discs/kappa-1", "discs-400", "spheres", "hertz", "impact-bed/late"];
 /// Those that are no case.
 const SCENES: [(&str, &str); 3] = [
     ("discs-400", include_str!("../../benches/race/discs-400.toml")),
@@ -39,8 +41,8 @@ const MOST_TO_COMPARE: u64 = 1000;
 pub(crate) struct Arguments {
     /// Scenes of grains, by case or file.
     ///
-    /// Where none is named: plane-shear, cooling-gas, nine-discs/kappa-1, and three that are no case, discs-400, spheres and
-    /// hertz.
+    /// Where none is named: plane-shear, cooling-gas, nine-discs/kappa-1, impact-bed/late, and three that are no case, discs-400,
+    /// spheres and hertz.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     tracks: Vec<String>,
     /// Laps of each racer on each scene.
