@@ -40,7 +40,7 @@ pub(crate) static CASE: Case = Case {
                and what grain is caught between ball and floor: with the step of the paper, 5·10⁻⁷ s, \
                our first bed lies outside of the spread, deepest at −79.37 mm and at .90 m/s in the rebound, and of the beds \
                that were tried with it two lie within. Restitution is not told: e = .9 moves the ball by .2 mm at \
-               30 ms, and friction does nearly all.",
+               30 ms, for friction does nearly all, and what is published is the ball's height and no energy.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
