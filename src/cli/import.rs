@@ -241,7 +241,8 @@ fn alone(name: &str, impact: &Impact) -> String {
     let of = |time: u32| {
         let height = impact.height(course, f64::from(time) * 1e-3 - impact.ahead(course))? * 1e3;
         Some(format!(
-            "\n[[value]]\nkey = \"{key}_height_{time}\"\nwhat = \"height of the ball at {time} ms, {name} (mm)\"\nvalue = {height:.4}\n"
+            "\n[[value]]\nkey = \"{key}_height_{time}\"\nwhat = \"height of the ball at {time} ms, {name} (mm)\"\n\
+             value = {height:.4}\n"
         ))
     };
     TIMES_ALONE.into_iter().filter_map(of).collect()

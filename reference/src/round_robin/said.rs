@@ -73,10 +73,11 @@ pub fn of_all(tables: &[Published]) -> Vec<Said> {
 /// What the data says of itself as a heading and a table in Markdown.
 #[must_use]
 pub fn table_of(rows: &[Said]) -> String {
-    let mut text = "## What the published data says of itself\n\nComputed by `grainbench reference import dosta-2024 DIR` from the \
-                    tables in DIR. Where these are copies: to be confirmed against the source.\n\n\
+    let mut text =
+        "## What the published data says of itself\n\nComputed by `grainbench reference import dosta-2024 DIR` from \
+                    the tables in DIR. Where these are copies: to be confirmed against the source.\n\n\
                     | table | of | quantity | found | expected |\n|---|---|---|---|---|\n"
-        .to_owned();
+            .to_owned();
     for Said { table, about, quantity, found, expected } in rows {
         text += &format!("| {table} | {about} | {quantity} | {found} | {expected} |\n");
     }
