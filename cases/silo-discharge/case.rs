@@ -13,8 +13,8 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "silo-discharge",
     title: "Discharge of a silo",
-    claim: "A silo of 100,000 spheres empties at the rate that LIGGGHTS and MUSEN find from the shared start of the round robin of \
-            2024, and through the smaller orifice at its part of it.",
+    claim: "A silo of 100,000 spheres empties at the rate that LIGGGHTS and MUSEN find from the shared start of the round robin \
+            of 2024, and through the smaller orifice at its part of it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The filling is our own, a single one, and spread between fillings is not in the data. Of the paper's eight codes \
@@ -158,8 +158,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "left",
         "Grains in the silo",
-        "Grains left over time since the plug was taken away, of 40,000 as if 60,000 more lay over them. Of the large orifice the \
-         mean of LIGGGHTS and MUSEN (derived from runs again of Dosta et al. 2024); of the small one a line at the rate that \
+        "Grains left over time since the plug was taken away, of 40,000 as if 60,000 more lay over them. Of the large orifice \
+         the mean of LIGGGHTS and MUSEN (derived from runs again of Dosta et al. 2024); of the small one a line at the rate that \
          MUSEN has from .5 to 2 s.",
         [Axis::linear("time of flow (s)"), Axis::linear("grains left (thousands)")],
         curves,

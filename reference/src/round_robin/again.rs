@@ -1,5 +1,5 @@
-//! Silo and drum: what LIGGGHTS and MUSEN, run again from the shared starts, have in common. Of two codes the spread is half their
-//! difference.
+//! Silo and drum: what LIGGGHTS and MUSEN, run again from the shared starts, have in common. Of two codes the spread is half
+//! their difference.
 
 use super::tables::{Kind, Published, Silo};
 
