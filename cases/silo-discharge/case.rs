@@ -13,8 +13,8 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "silo-discharge",
     title: "Discharge of a silo",
-    claim: "A silo of 100,000 spheres empties at the rate that LIGGGHTS and MUSEN find from the shared start of the round robin of \
-            2024, and through the smaller orifice at its part of it.",
+    claim: "A silo of 100,000 spheres empties at the rate that LIGGGHTS and MUSEN find from the shared start of the round robin \
+            of 2024, and through the smaller orifice at its part of it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The filling is our own, a single one, and spread between fillings is not in the data. Of the paper's eight codes \
@@ -49,11 +49,14 @@ fn begins(scene: &Scene) -> Option<f64> {
     scene.walls.iter().find_map(|wall| wall.until)
 }
 
+/// A sample may be so much before the time that is meant (s): a step and more, and nothing to a rate.
+const SLACK: f64 = 1e-5;
+
 /// Grains left at a time of flow, which begins when the plug is taken away; between samples in proportion.
 fn left(done: &Done, time: f64) -> Result<f64, Missing> {
     let begun = begins(&done.scene).ok_or_else(|| Missing("plug".to_owned()))?;
     let (times, counts) = (&done.series().time, done.column("grains.present")?);
-    let after = times.partition_point(|sampled| sampled - begun < time - 1e-9);
+    let after = times.partition_point(|sampled| sampled - begun < time - SLACK);
     if after == 0 || after == times.len() {
         return Err(Missing(format!("count at {time} s of flow")));
     }
@@ -66,13 +69,19 @@ fn rate(done: &Done, [from, to]: [f64; 2]) -> Result<f64, Missing> {
     Ok((left(done, from)? - left(done, to)?) / (to - from) / 1e3)
 }
 
+/// The rate of steady flow, of a run that is shorter until its end.
+fn steady(done: &Done) -> Result<f64, Missing> {
+    let end = done.series().time.last().copied().unwrap_or_default() - begins(&done.scene).unwrap_or_default();
+    rate(done, [STEADY[0], STEADY[1].min(end)])
+}
+
 fn claims() -> Vec<Claim> {
     let other = || Control::variant("the other orifice", SMALL);
     vec![
         near(
             claim("rate from .5 to 3.5 s, large orifice", "1000/s").of(of_paper(PLAIN)),
             dosta::SILO_LARGE_RATE,
-            |done| rate(&done[0], STEADY),
+            |done| steady(&done[0]),
         )
         .refuses(other()),
         near(claim("grains out in 2 s, large orifice", "1000").of(of_paper(PLAIN)), dosta::SILO_LARGE_OUT_2, |done| {
@@ -80,14 +89,14 @@ fn claims() -> Vec<Claim> {
         })
         .refuses(other()),
         near(
-            claim("rate from .5 to 3.5 s, small orifice", "1000/s").of(of_paper(SMALL)),
+            claim("rate from .5 to 2 s, small orifice", "1000/s").of(of_paper(SMALL)),
             dosta::SILO_SMALL_RATE,
-            |done| rate(&done[0], STEADY),
+            |done| steady(&done[0]),
         )
         .refuses(Control::variant("the other orifice", PLAIN)),
         claim("rate of the large orifice over that of the small one", "1")
             .of_all([of_paper(PLAIN), of_paper(SMALL)])
-            .equals_cited(dosta::SILO_QUOTED_RATIO, 1.0, |done| Ok(rate(&done[0], STEADY)? / rate(&done[1], STEADY)?))
+            .equals_cited(dosta::SILO_QUOTED_RATIO, 1.0, |done| Ok(steady(&done[0])? / steady(&done[1])?))
             .within(required(0.1, "asked for before"))
             .refuses(Control::variant("the large orifice for both", PLAIN)),
         near(
@@ -133,7 +142,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let small = |time: f64| (time, FILLED - dosta::SILO_SMALL_RATE.value * time);
     let mut curves = vec![
         Curve::new("large, LIGGGHTS and MUSEN", Stroke::Markers, published),
-        Curve::new("small, rate of MUSEN", Stroke::Dashed, vec![small(0.0), small(3.5)]),
+        Curve::new("small, rate of MUSEN", Stroke::Dashed, vec![small(0.0), small(2.0)]),
     ];
     let runs =
         [("large orifice", of_paper(PLAIN)), ("small orifice", of_paper(SMALL)), ("40,000 spheres", low(LEVELS[0]))];
@@ -149,9 +158,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "left",
         "Grains in the silo",
-        "Grains left over time since the plug was taken away, of 40,000 as if 60,000 more lay over them. Of the large orifice the \
-         mean of LIGGGHTS and MUSEN (derived from runs again of Dosta et al. 2024); of the small one a line at the rate that \
-         MUSEN has from .5 to 3.5 s.",
+        "Grains left over time since the plug was taken away, of 40,000 as if 60,000 more lay over them. Of the large orifice \
+         the mean of LIGGGHTS and MUSEN (derived from runs again of Dosta et al. 2024); of the small one a line at the rate that \
+         MUSEN has from .5 to 2 s.",
         [Axis::linear("time of flow (s)"), Axis::linear("grains left (thousands)")],
         curves,
     )])

@@ -162,7 +162,9 @@ impl Run {
     /// What tells this run from others of its case.
     #[must_use]
     pub fn key(&self) -> String {
-        format!("{}|{}|{}|{:?}|{:?}", self.variant, self.scene_words(), self.solver, self.resolution, self.reading)
+        let adjustment = self.adjustment.as_ref().map(|(name, _)| name.as_str()).unwrap_or_default();
+        let scene = self.data.map_or(self.variant, |data| data.name);
+        format!("{scene}|{}|{:?}|{:?}|{adjustment}", self.solver, self.resolution, self.reading)
     }
 }
 

@@ -169,7 +169,8 @@ fn numbers(pairs: &[Quantity]) -> String {
         if let Some(half) = pair.half {
             let _ = write!(
                 lines,
-                "\n[[value]]\nkey = \"{key}_half\"\nwhat = \"{what}: half the difference of LIGGGHTS and MUSEN\"\nvalue = {half:.4}\n"
+                "\n[[value]]\nkey = \"{key}_half\"\nwhat = \"{what}: half the difference of LIGGGHTS and MUSEN\"\n\
+                 value = {half:.4}\n"
             );
         }
     }

@@ -67,7 +67,9 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
     if let Some(letters) = &arguments.run
         && !known.iter().filter(is_named).flat_map(|case| kept::all(case)).any(|wanted| is_meant(&wanted))
     {
-        return Err(Fault::input(format!("--run: expected letters of the name of a run that is kept, found `{letters}`")));
+        return Err(Fault::input(format!(
+            "--run: expected letters of the name of a run that is kept, found `{letters}`"
+        )));
     }
     for case in known.iter().filter(is_named) {
         let runner = runner(case).afresh(Set::Paper).threads(usize::from(arguments.threads));

@@ -1,10 +1,12 @@
-//! Silo and drum: what LIGGGHTS and MUSEN, run again from the shared starts, have in common. Of two codes the spread is half their
-//! difference.
+//! Silo and drum: what LIGGGHTS and MUSEN, run again from the shared starts, have in common. Of two codes the spread is half
+//! their difference.
 
 use super::tables::{Kind, Published, Silo};
 
 /// When the flow out of the silo is steady (s).
 pub const STEADY: [f64; 2] = [0.5, 3.5];
+/// The same of the small orifice, which is looked at for a shorter time (s).
+pub const STEADY_SMALL: [f64; 2] = [0.5, 2.0];
 /// When it has begun (s).
 pub const EARLY: [f64; 2] = [0.2, 0.8];
 /// The codes that count, by how names of tables end.
@@ -67,7 +69,7 @@ pub fn pairs(tables: &[Published]) -> Vec<Quantity> {
     };
     add("silo_large_rate", between("large", STEADY), None, &large, &rate(STEADY));
     add("silo_large_early", between("large", EARLY), None, &large, &rate(EARLY));
-    add("silo_small_rate", between("small", STEADY), None, &small, &rate(STEADY));
+    add("silo_small_rate", between("small", STEADY_SMALL), None, &small, &rate(STEADY_SMALL));
     let out = "grains out of the large orifice in 2 s (thousands)".to_owned();
     add("silo_large_out_2", out, None, &large, &|kind| Some(1e-3 * (silo(kind)?.at(0.0)? - silo(kind)?.at(2.0)?)));
     for time in LEFT {

@@ -10,7 +10,7 @@ mod spread;
 mod start;
 mod tables;
 
-pub use again::{EARLY, Pair, Quantity, STEADY, pairs};
+pub use again::{EARLY, Pair, Quantity, STEADY, STEADY_SMALL, pairs};
 pub use impact::{Course, Impact};
 pub use said::{Said, of_all, of_drum, of_drums, of_impact, table_of};
 pub use spread::Spread;

@@ -71,7 +71,11 @@ pub(crate) fn costs(runs: &[RunCost]) -> Markup {
                         td.n data-v=(run.steps) { (number::count(run.steps)) }
                         td.n data-v=(run.particle_steps) { (number::count(run.particle_steps)) }
                         td.n { (run.contact_evaluations.map_or("—".to_owned(), number::count)) }
-                        td.n data-v=(run.wall_seconds) { (number::seconds(run.wall_seconds)) }
+                        @if run.wall_seconds.is_finite() {
+                            td.n data-v=(run.wall_seconds) { (number::seconds(run.wall_seconds)) }
+                        } @else {
+                            td.n { "—" }
+                        }
                     }
                 }
             }
