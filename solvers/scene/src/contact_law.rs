@@ -1,7 +1,7 @@
 //! The law of a contact between two materials, from the keys that a user writes to the numbers that act.
 //!
-//! A new law is a variant of [`Springs`] with its word, what it takes from the scene, and how stiff it is. Decks and programs that
-//! were not written for it refuse it by its kind.
+//! A new law is a variant of [`Springs`] with its word, what it takes from the scene, and how stiff it is. Decks and programs
+//! that were not written for it refuse it by its kind.
 
 use crate::check::Checker;
 use crate::error::SceneError;
