@@ -4,6 +4,9 @@ use super::read_error::ReadError;
 use super::snapshot::DumpSnapshot;
 use std::path::{Path, PathBuf};
 
+/// The moments of a file that was opened.
+pub(crate) type Opened = Result<Box<dyn Moments>, ReadError>;
+
 /// A format.
 #[derive(Debug)]
 pub(crate) struct Format {
@@ -16,7 +19,7 @@ pub(crate) struct Format {
     /// What a file of it holds.
     pub(crate) holds: fn(&Path) -> Result<Holds, ReadError>,
     /// Opens a file of it, whose snapshots may have so many rows.
-    pub(crate) open: fn(&Path, u64) -> Result<Box<dyn Moments>, ReadError>,
+    pub(crate) open: fn(&Path, u64) -> Opened,
 }
 
 /// What tells that a file is of a format.
