@@ -19,7 +19,8 @@ pub(crate) static CASE: Case = Case {
     derivation: include_str!("derivation.md"),
     weakness: "The filling is our own, a single one, and spread between fillings is not in the data. Of the paper's eight codes \
                only two are known here by their courses; the mean over all, as others quote it, is 4.7 % below these two. \
-               Rolling friction, which changes rates most, is not in the law.",
+               Rolling friction, which changes rates most, is not in the law. Rows of kept runs refuse the other orifice by \
+               value; that wrong physics is refused, grains without friction, is left to rows of the long set.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
