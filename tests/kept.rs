@@ -42,10 +42,6 @@ fn a_solver_that_changed_is_told() {
     assert!(cost.lines.iter().any(|line| line.solver == "mpm" && line.factors[1].is_some()));
 }
 
-/// Cases whose kept runs were made while their rows were written: their commit is told with `+changes`, and they are to be done
-/// again. A case that was done again leaves this list.
-const TO_BE_DONE_AGAIN: [&str; 2] = ["drum-mixing", "impact-bed"];
-
 /// Whoever doubts a row must be able to build what made it: a commit that a tree had while it was written is no source.
 #[test]
 fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
@@ -55,11 +51,7 @@ fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
         for folder in folders {
             let path = folder.unwrap().path().join("provenance.toml");
             let provenance: Provenance = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
-            let is_to_be_done_again = TO_BE_DONE_AGAIN.contains(&case.name);
-            assert_eq!(provenance.commit.contains("changes"), is_to_be_done_again, "{}", provenance.title);
-            if !is_to_be_done_again {
-                commits.entry(provenance.commit).or_default().push(provenance.title);
-            }
+            commits.entry(provenance.commit).or_default().push(provenance.title);
         }
     }
     assert!(commits.values().map(Vec::len).sum::<usize>() > 50);
