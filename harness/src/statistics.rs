@@ -89,17 +89,6 @@ pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// Student's t of the two-sided interval.
-/// Half of the confidence interval of the difference of two draws, from so many
-/// others of their kind, t s √2. None of fewer than two.
-#[must_use]
-pub fn of_two_draws(others: &[f64]) -> Option<f64> {
-    let count = others.len() as f64;
-    let mean = others.iter().sum::<f64>() / count;
-    let variance = others.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    (others.len() > 1).then_some(())?;
-    Some(quantile(count - 1.0)? * (2.0 * variance).sqrt())
-}
-
 fn quantile(degrees_of_freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
 }
@@ -113,9 +102,9 @@ mod tests {
     /// Student's t of one degree of freedom is 63.66 at 99 %; two draws that are 2 apart have s = √2.
     #[test]
     fn two_draws_are_told_apart_by_their_kind() {
-        let half = of_two_draws(&[1.0, 3.0]).unwrap();
+        let half = spread(&[1.0, 3.0]).unwrap();
         assert!((half - 2.0 * 63.656_741).abs() < 1e-3, "{half}");
-        assert_eq!(of_two_draws(&[1.0]), None);
+        assert_eq!((spread(&[1.0]), spread(&[1.0, 1.0])), (None, None));
     }
 
     #[test]
