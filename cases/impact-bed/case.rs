@@ -1,5 +1,9 @@
 //! A ball of steel falls into a bed: the impact of the round robin of bulk processes, on five beds of our own.
 
+#[path = "hundred_thousand.rs"]
+mod hundred_thousand;
+#[path = "ladders.rs"]
+mod ladders;
 #[path = "programs.rs"]
 mod programs;
 #[path = "published.rs"]
@@ -48,6 +52,9 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
+/// The step that is judged, and the paper's.
+const STEP: Resolution = LEVELS[0].resolution;
+const FINE: Resolution = LEVELS[1].resolution;
 /// The beds: variants.
 const OWN: [&str; 5] = [PLAIN, "bed-2", "bed-3", "bed-4", "bed-5"];
 /// Times of the rebound (s).
@@ -63,6 +70,12 @@ const BECAUSE: &str =
     "our packing is one more draw: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 1 bed of ours, n = 10 published";
 const BECAUSE_FIVE: &str =
     "our packings are five more draws: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 5 beds of ours, n = 10 published";
+
+/// How far two beds of one code may be apart at 30 ms (mm), and why.
+fn of_two_beds() -> (f64, &'static str) {
+    let apart = 2.0 * std::f64::consts::SQRT_2 * dosta::HEIGHT_30_BED.value;
+    (apart, "two draws among beds, 2 √2 s_bed: what a change moves is told from another bed only above it")
+}
 
 fn on(variant: &'static str) -> Run {
     Run::new(variant, "dem:liggghts", LEVELS[0].resolution).long().kept()
@@ -136,8 +149,10 @@ fn claims() -> Vec<Claim> {
             ))
             .refuses(half_the_density()),
     ];
-    all_claims.extend([early()]);
-    all_claims.push(programs::beside());
+    all_claims.extend([early("dem:liggghts", Run::slow), early("dem", |run| run.long().kept())]);
+    all_claims.extend(programs::claims());
+    all_claims.extend(ladders::claims());
+    all_claims.extend(hundred_thousand::claims());
     all_claims
 }
 
@@ -162,12 +177,14 @@ fn of_beds(
         .within(tolerance(spread))
 }
 
-/// The default part: one bed from 20 ms on, before the ball meets anything.
-fn early() -> Claim {
+/// When runs of one bed begin (s), before the ball meets anything.
+const MET: f64 = 0.020;
+
+/// One bed from 20 ms on, the default part in LIGGGHTS' convention.
+fn early(solver: &'static str, of_set: fn(Run) -> Run) -> Claim {
     let spread = Spread::of(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
-    const MET: f64 = 0.020;
     claim("height of the ball at 30 ms, one bed, from 20 ms on", "mm")
-        .of(Run::new("late", "dem:liggghts", LEVELS[0].resolution).slow())
+        .of(of_set(Run::new("late", solver, STEP)))
         .equals_cited(dosta::HEIGHT_30, 1.0, |done| height(&done[0], DEEP - MET))
         .within(computed(spread.allowed(1), BECAUSE))
         .refuses(half_the_density())
@@ -203,5 +220,8 @@ fn pair_of_m1() -> Control {
 /// The height over time and the deviation from the codes' mean.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done: Vec<Done> = OWN.iter().map(|variant| runner.run(&on(variant))).collect::<Result<_, _>>()?;
-    Ok(published::figures(&done, &BEDS))
+    let mut figures = published::figures(&done, &BEDS);
+    figures.extend(ladders::figures(runner)?);
+    figures.push(hundred_thousand::figure(runner)?);
+    Ok(figures)
 }

@@ -1,15 +1,22 @@
-//! LIGGGHTS on the same bed as ours.
+//! LIGGGHTS on the same beds as ours.
 
-use super::LEVELS;
+use super::{DEEP, FINE, MET, STEP, half_the_density, height, of_two_beds};
 use crate::rows::programs::row;
+use grainbench_harness::compare::perturbed::{self, PERTURBED, Parting, Sum};
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
+use grainbench_scene::perturbed::move_one;
 
-/// LIGGGHTS on a thousand grains, until what it keeps of contacts that open and close again is felt: the ball meets the bed at
-/// .24 ms.
-pub(super) fn beside() -> Claim {
+const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
+
+pub(super) fn claims() -> Vec<Claim> {
+    vec![beginning(), after_the_horizon(), on_the_bed()]
+}
+
+/// A thousand grains, until what LIGGGHTS keeps of contacts that open and close again is felt: the ball meets the bed at .24 ms.
+fn beginning() -> Claim {
     const UNTIL: f64 = 2.5e-4;
-    let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new("thousand", solver, LEVELS[1].resolution));
+    let runs = SIDES.map(|solver| Run::new("thousand", solver, FINE));
     let allowed = judged(1e-11, "the same cycle: order of sums; in units of its radius");
     let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
     row("height of the ball on a thousand grains until .25 ms, worst", "m", allowed, runs, control, |done| {
@@ -17,5 +24,29 @@ pub(super) fn beside() -> Claim {
         let until = done[1].series().time.partition_point(|time| *time < UNTIL + 1e-9);
         let radius = done[0].scene.grains[0].radius;
         Ok(Measured::worst_of(&done[1].series().time[..until], &ours[..until], &theirs[..until], radius))
+    })
+}
+
+/// The same thousand when no run can be foretold any more, which is so from 3.7 ms on, while grains fly and fall back.
+fn after_the_horizon() -> Claim {
+    const MOTION: Sum = Sum {
+        column: "all.kinetic_energy",
+        words: "logarithm of the kinetic energy of a thousand grains and the ball",
+        unit: "1",
+        logarithm: true,
+    };
+    const PARTING: Parting = Parting { columns: &[MOTION.column] };
+    let on = |solver| Run::new("thousand-deep", solver, STEP).slow();
+    let perturbed = [on(SIDES[0]).aside(), on(SIDES[0]).adjusted(PERTURBED, move_one).aside()];
+    let control = Control::ours("no friction in ours", |scene| scene.change_laws(|law| law.friction = 0.0));
+    perturbed::statistics(PARTING, MOTION, [SIDES.map(on), perturbed].concat(), control)
+}
+
+/// Twenty-five thousand grains, from just before the ball meets them.
+fn on_the_bed() -> Claim {
+    let runs = SIDES.map(|solver| Run::new("down", solver, STEP).slow());
+    let (allowed, because) = of_two_beds();
+    row("height of the ball at 30 ms, one bed", "mm", computed(allowed, because), runs, half_the_density(), |done| {
+        Ok(Measured::new(height(&done[0], DEEP - MET)?, height(&done[1], DEEP - MET)?, 1.0))
     })
 }

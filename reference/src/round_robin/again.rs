@@ -1,6 +1,7 @@
-//! Silo and drum: what LIGGGHTS and MUSEN, run again from the shared starts, have in common. Of two codes the spread is half
-//! their difference.
+//! Silo, drum and deeper beds: what LIGGGHTS and MUSEN, run again from the shared starts, have in common. Of two codes the spread
+//! is half their difference.
 
+use super::impact::Impact;
 use super::tables::{Kind, Published, Silo};
 
 /// When the flow out of the silo is steady (s).
@@ -15,6 +16,14 @@ const CODES: [&str; 2] = ["liggghts", "musen"];
 const LEFT: [f64; 9] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.3];
 /// Until when, and how often, M1 are counted in zone 2 of the drum (s).
 const MIXED: (usize, f64) = (10, 0.1);
+
+/// Beds of one draw: their thousands of grains, their word in names of tables, and when the ball's height is asked for (s), with the
+/// key of the number.
+const BEDS: [(usize, &str, f64, &str); 3] = [
+    (50, "case3_50k", 0.03, "height_30_50k"),
+    (100, "case3_100k", 0.03, "height_30_100k"),
+    (100, "case3_100k", 0.06, "height_60_100k"),
+];
 
 /// Something that two codes, or one, have found.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,6 +81,10 @@ pub fn pairs(tables: &[Published]) -> Vec<Quantity> {
     add("silo_small_rate", between("small", STEADY_SMALL), None, &small, &rate(STEADY_SMALL));
     let out = "grains out of the large orifice in 2 s (thousands)".to_owned();
     add("silo_large_out_2", out, None, &large, &|kind| Some(1e-3 * (silo(kind)?.at(0.0)? - silo(kind)?.at(2.0)?)));
+    for (thousands, words, time, key) in BEDS {
+        let what = format!("height of the ball at {} ms, {thousands} thousand grains, one bed (mm)", time * 1e3);
+        add(key, what, None, &codes(words), &|kind| impact(kind).and_then(|impact| height(impact, time)));
+    }
     for time in LEFT {
         add("silo-large", String::new(), Some(time), &large, &|kind| silo(kind)?.at(time));
     }
@@ -90,6 +103,16 @@ fn is_of(name: &str, words: &str, code: &str) -> bool {
 
 fn silo(kind: &Kind) -> Option<&Silo> {
     if let Kind::Silo(silo) = kind { Some(silo) } else { None }
+}
+
+fn impact(kind: &Kind) -> Option<&Impact> {
+    if let Kind::Impact(impact) = kind { Some(impact) } else { None }
+}
+
+/// The height of a table's one ball (mm) at a time (s) since it was released, whatever its clock says.
+fn height(impact: &Impact, time: f64) -> Option<f64> {
+    let [course] = &impact.courses[..] else { return None };
+    impact.height(course, time - impact.ahead(course)).map(|height| height * 1e3)
 }
 
 #[cfg(test)]
