@@ -354,10 +354,14 @@ fn variant_tables(table: &toml::Table) -> Option<&toml::Table> {
     table.get("variants").and_then(toml::Value::as_table)
 }
 
+/// Lays one table over another; an empty text takes a key away.
 fn merge(base: &mut toml::Table, overlay: toml::Table) {
     for (key, value) in overlay {
         match (base.get_mut(&key), value) {
             (Some(toml::Value::Table(below)), toml::Value::Table(above)) => merge(below, above),
+            (Some(_), toml::Value::String(text)) if text.is_empty() => {
+                base.remove(&key);
+            }
             (_, value) => {
                 base.insert(key, value);
             }

@@ -82,3 +82,19 @@ fn grains_at_random_have_their_radii_and_their_region() {
         assert!(said.contains(key), "{words}: {said}");
     }
 }
+
+/// An empty text takes a key away, in a variant as with `--set`.
+#[test]
+fn a_variant_takes_keys_away() {
+    const VARIANTS: &str = "[walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+        [variants.open]\nwalls.floor = ''\ndomain.periodic = ''\n[variants.nothing]\nwalls.roof = ''\n";
+    let text = SCENE.replace("PERIODIC", "['x']") + LATTICE + VARIANTS;
+    let source = || SceneSource::from_text("s.toml", Path::new(""), &text);
+    let resolve = |source: SceneSource| source.scene(&|_| Err("none".to_owned()));
+    let (plain, open) = (resolve(source()).unwrap(), resolve(source().variant("open")).unwrap());
+    assert_eq!((plain.walls.len(), open.walls.len()), (1, 0));
+    assert_eq!((plain.domain.unwrap().periodic[0], open.domain.unwrap().periodic[0]), (true, false));
+    assert_eq!(open, resolve(source().set("walls.floor", "").set("domain.periodic", "")).unwrap());
+    let said = resolve(source().variant("nothing")).unwrap_err().to_string();
+    assert!(said.contains("walls.roof"), "{said}");
+}
