@@ -4,13 +4,11 @@
 mod zones;
 
 use crate::registry::grains_of;
-use crate::rows::programs::row;
+use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::claim::Tolerated;
-use grainbench_harness::compare::pointwise::{together, worst};
 use grainbench_harness::data::Data;
 use grainbench_harness::prelude::*;
-use grainbench_harness::statistics::{BLOCKS, difference};
 use grainbench_reference::parse_data;
 use grainbench_reference::round_robin::{DRUM, DRUM_SCENE, course, read_start, start_in};
 use grainbench_scene::scene::Duration;
@@ -157,26 +155,12 @@ fn counted(done: &Done, time: f64) -> Result<f64, Missing> {
 /// A grain beside LIGGGHTS, before rounding has grown: from then on tenfold in about a hundred steps.
 fn beginning() -> Claim {
     let runs = SIDES.map(|solver| Run::new("beginning", solver, LEVELS[0].resolution));
-    let allowed = judged(1e-11, "the same cycle: order of sums; in units of its radius");
-    let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
-    row("position of a grain of the bed over .3 ms, worst", "m", allowed, runs, control, |done| {
-        worst(done, &["one.x", "one.y", "one.z"], done[0].scene.grains[0].radius)
-    })
+    bulk::beginning("position of a grain of the bed over .3 ms, worst", runs)
 }
 
-/// A mean from when the bed turns with the drum, in units of half the confidence interval of the difference.
+/// A mean from when the bed turns with the drum.
 fn mean(words: &str, unit: &'static str, column: &'static str, runs: [Run; 2], control: Control) -> Claim {
-    const FROM: f64 = 0.03;
-    let allowed = one_interval(
-        "in units of half the 99 % confidence interval of the difference, from the means over 8 blocks of time",
-    );
-    row(&format!("mean {words} from .03 to .1 s"), unit, allowed, runs, control, |done| {
-        let (ours, theirs) = together(&done[0], &done[1], column)?;
-        let from = done[1].series().time.partition_point(|&time| time < FROM);
-        let estimate = difference(&theirs[from..], &ours[from..], BLOCKS);
-        let estimate = estimate.ok_or_else(|| Missing(format!("{BLOCKS} samples after {FROM} s")))?;
-        Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
-    })
+    bulk::mean(&format!("mean {words} from .03 to .1 s"), unit, (column, 0.03), runs, control)
 }
 
 /// Counts in zone 2 over time beside the codes', where the published start is given; and how the small drum takes its bed along.

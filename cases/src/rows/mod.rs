@@ -1,5 +1,6 @@
 //! Rows that several cases have: each file a family of claims over one kind of run.
 
+pub(crate) mod bulk;
 pub mod draws;
 pub mod elastic;
 pub(crate) mod elastic_backspin;
