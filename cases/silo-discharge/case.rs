@@ -1,5 +1,6 @@
 //! A silo empties through two orifices: the rates of the round robin of bulk processes.
 
+use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
@@ -118,7 +119,20 @@ fn claims() -> Vec<Claim> {
             })
             .within(judged(0.01, "a fifth of what rates may be off"))
             .refuses(smooth()),
+        bulk::beginning("position of a grain of a small silo over .6 ms, worst", in_the_funnel("funnel-beginning")),
+        bulk::mean(
+            "mean momentum of a small silo from .03 to .12 s",
+            "kg m/s",
+            ("all.momentum_z", 0.03),
+            in_the_funnel("funnel").map(Run::slow),
+            Control::ours("no friction in ours", |scene| scene.change_laws(|law| law.friction = 0.0)),
+        ),
     ]
+}
+
+/// The small silo, ours and LIGGGHTS'.
+fn in_the_funnel(variant: &'static str) -> [Run; 2] {
+    ["dem:liggghts", "liggghts"].map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
 }
 
 /// Is what a work says, within what rates may be off.
