@@ -77,6 +77,7 @@ fn claims() -> Vec<Claim> {
         })),
         zone("M1 in zone 2 from .3 to .5 s, worst", [0.3, 0.5], EARLY).refuses(beside()),
         zone("M1 in zone 2 from .6 to 1 s, worst", [0.6, 1.0], LATE).refuses(beside()),
+        step(),
         beginning(),
     ];
     let both = || SIDES.map(|solver| Run::new(PLAIN, solver, LEVELS[0].resolution));
@@ -120,6 +121,25 @@ fn rub(scene: &mut Scene, factor: f64) {
 /// The run from the published start.
 fn of_paper() -> Run {
     Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
+}
+
+/// Twice the step, to .5 s, which the codes' agreement allows for.
+fn step() -> Claim {
+    const TWICE: Resolution = Resolution::TimeStep(6e-6);
+    let twice = of_paper().at(TWICE).adjusted("until .5 s", |scene| scene.duration = Duration::Seconds(0.5));
+    claim("M1 in zone 2 from .1 to .5 s with a step of 6e-6 s for 3e-6 s, worst", "1")
+        .of_all([twice, of_paper().aside()])
+        .agrees(Source::Ourselves("half the time step"), |done| {
+            let at = |tenths: u32| {
+                let time = 0.1 * f64::from(tenths);
+                let fine = counted(&done[1], time)?;
+                Ok(Measured::new(counted(&done[0], time)?, fine, fine))
+            };
+            let found: Result<Vec<Measured>, Missing> = (1..=5).map(at).collect();
+            Measured::worst_among(found?).ok_or_else(|| Missing("time to compare at".to_owned()))
+        })
+        .within(required(EARLY.0, "as much as it may be off the codes to .5 s"))
+        .refuses(beside())
 }
 
 /// Counts of M1 in zone 2 between two times, the worst of them beside the code that is farther off.
