@@ -121,10 +121,15 @@ fn of_paper() -> Run {
     Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
 }
 
-/// Twice the step, to .5 s, which the codes' agreement allows for.
+/// Why twice the step is too much.
+const TOO_LONG: &str = "with 6e-6 s the count at .5 s, when it rises by a hundredth in 4 ms, is \
+                        .6 % lower than with 3e-6 s: until .4 s .2 % at most";
+
+/// Twice the step, to .5 s.
 fn step() -> Claim {
     const TWICE: Resolution = Resolution::TimeStep(6e-6);
-    let twice = of_paper().at(TWICE).adjusted("until .5 s", |scene| scene.duration = Duration::Seconds(0.5));
+    let until = |scene: &mut Scene| scene.duration = Duration::Seconds(0.5);
+    let twice = of_paper().at(TWICE).adjusted("until .5 s", until).known(TOO_LONG);
     claim("M1 in zone 2 from .1 to .5 s with a step of 6e-6 s for 3e-6 s, worst", "1")
         .of_all([twice, of_paper().aside()])
         .agrees(Source::Ourselves("half the time step"), |done| {
