@@ -1,7 +1,5 @@
 //! A ball of steel falls into a bed: the impact of the round robin of bulk processes, on five beds of our own.
 
-#[path = "hundred_thousand.rs"]
-mod hundred_thousand;
 #[path = "ladders.rs"]
 mod ladders;
 #[path = "programs.rs"]
@@ -44,7 +42,8 @@ pub(crate) static CASE: Case = Case {
                and what grain is caught between ball and floor: with the step of the paper, 5·10⁻⁷ s, \
                our first bed lies outside of the spread, deepest at −79.37 mm and at .90 m/s in the rebound, and of the beds \
                that were tried with it two lie within. Restitution is not told: e = .9 moves the ball by .2 mm at \
-               30 ms, for friction does nearly all, and what is published is the ball's height and no energy.",
+               30 ms, for friction does nearly all, and what is published is the ball's height and no energy. Beds of 50,000 and \
+               100,000 are not judged: the published ones are looser than any of ours.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -153,7 +152,6 @@ fn claims() -> Vec<Claim> {
     all_claims.push(early("down", "dem").fair_to_any_springs());
     all_claims.extend(programs::claims());
     all_claims.extend(ladders::claims());
-    all_claims.extend(hundred_thousand::claims());
     all_claims
 }
 
@@ -191,14 +189,12 @@ fn early(variant: &'static str, solver: &'static str) -> Claim {
         .refuses(half_the_density())
 }
 
+/// The lighter ball has half the mass and half the moment of inertia.
 fn half_the_density() -> Control {
-    Control::scene("half the density of the ball", lighten)
-}
-
-/// Half the mass and half the moment of inertia.
-fn lighten(scene: &mut Scene) {
-    let (mass, inertia) = (0.5 * scene.grains[0].mass, 0.5 * scene.grains[0].inertia);
-    (scene.grains[0].mass, scene.grains[0].inertia) = (mass, inertia);
+    Control::scene("half the density of the ball", |scene| {
+        let (mass, inertia) = (0.5 * scene.grains[0].mass, 0.5 * scene.grains[0].inertia);
+        (scene.grains[0].mass, scene.grains[0].inertia) = (mass, inertia);
+    })
 }
 
 fn at_rest() -> Control {
@@ -225,6 +221,5 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done: Vec<Done> = OWN.iter().map(|variant| runner.run(&on(variant))).collect::<Result<_, _>>()?;
     let mut figures = published::figures(&done, &BEDS);
     figures.extend(ladders::figures(runner)?);
-    figures.push(hundred_thousand::figure(runner)?);
     Ok(figures)
 }

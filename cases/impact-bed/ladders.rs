@@ -66,7 +66,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         Figure::graph(
             "steps",
             "What a longer step moves",
-            "Height of the ball at 30 ms over the time step on three beds of our own; the paper's step is .5 µs, 6 % of Rayleigh's. \
+            "Height of the ball at 30 ms over the time step on three beds of our own; the paper's step is .5 µs, \
+             6 % of Rayleigh's. \
              Two beds differ by up to .39 mm with 19 of 20 (from the published spread between beds).",
             [Axis::log("time step (µs)"), Axis::linear("height at 30 ms (mm)")],
             curves,

@@ -21,8 +21,8 @@ pub(crate) static CASE: Case = Case {
     weakness: "The filling is our own, a single one, and spread between fillings is not in the data. Of the paper's eight codes \
                only two are known here by their courses; the mean over all, as others quote it, is 4.7 % below these two. \
                Rolling friction, which changes rates most, is not in the law. \
-               Wrong physics, grains that slide without friction, is tried with 40,000 spheres alone; the large fillings refuse the other \
-               orifice.",
+               Wrong physics, grains that slide without friction, is tried with 40,000 spheres alone; the large fillings \
+               refuse the other orifice.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

@@ -17,8 +17,8 @@ const LEFT: [f64; 9] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.3];
 /// Until when, and how often, M1 are counted in zone 2 of the drum (s).
 const MIXED: (usize, f64) = (10, 0.1);
 
-/// Beds of one draw: their thousands of grains, their word in names of tables, and when the ball's height is asked for (s), with the
-/// key of the number.
+/// Beds of one draw: their thousands of grains, their word in names of tables, and when the ball's height is asked for (s), with
+/// the key of the number.
 const BEDS: [(usize, &str, f64, &str); 3] = [
     (50, "case3_50k", 0.03, "height_30_50k"),
     (100, "case3_100k", 0.03, "height_30_100k"),
