@@ -189,12 +189,14 @@ fn early(variant: &'static str, solver: &'static str) -> Claim {
         .refuses(half_the_density())
 }
 
-/// The lighter ball has half the mass and half the moment of inertia.
 fn half_the_density() -> Control {
-    Control::scene("half the density of the ball", |scene| {
-        let (mass, inertia) = (0.5 * scene.grains[0].mass, 0.5 * scene.grains[0].inertia);
-        (scene.grains[0].mass, scene.grains[0].inertia) = (mass, inertia);
-    })
+    Control::scene("half the density of the ball", lighten)
+}
+
+/// Half the mass and half the moment of inertia of the ball.
+fn lighten(scene: &mut Scene) {
+    let (mass, inertia) = (0.5 * scene.grains[0].mass, 0.5 * scene.grains[0].inertia);
+    (scene.grains[0].mass, scene.grains[0].inertia) = (mass, inertia);
 }
 
 fn at_rest() -> Control {

@@ -1,6 +1,6 @@
 //! LIGGGHTS on the same beds as ours.
 
-use super::{DEEP, FINE, MET, STEP, half_the_density, height, of_two_beds};
+use super::{DEEP, FINE, MET, STEP, height, lighten, of_two_beds};
 use crate::rows::programs::row;
 use grainbench_harness::compare::perturbed::{self, PERTURBED, Parting, Sum};
 use grainbench_harness::compare::pointwise::together;
@@ -46,7 +46,8 @@ fn after_the_horizon() -> Claim {
 fn on_the_bed() -> Claim {
     let runs = SIDES.map(|solver| Run::new("down", solver, STEP).slow());
     let (allowed, because) = of_two_beds();
-    row("height of the ball at 30 ms, one bed", "mm", computed(allowed, because), runs, half_the_density(), |done| {
+    let control = Control::ours("half the density of the ball in ours", lighten);
+    row("height of the ball at 30 ms, one bed", "mm", computed(allowed, because), runs, control, |done| {
         Ok(Measured::new(height(&done[0], DEEP - MET)?, height(&done[1], DEEP - MET)?, 1.0))
     })
 }
