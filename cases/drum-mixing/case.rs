@@ -77,7 +77,6 @@ fn claims() -> Vec<Claim> {
         })),
         zone("M1 in zone 2 from .3 to .5 s, worst", [0.3, 0.5], EARLY).refuses(beside()),
         zone("M1 in zone 2 from .6 to 1 s, worst", [0.6, 1.0], LATE).refuses(beside()),
-        step(),
         beginning(),
     ];
     for ours in [SIDES[0], "dem"] {
@@ -119,30 +118,6 @@ fn rub(scene: &mut Scene, factor: f64) {
 /// The run from the published start.
 fn of_paper() -> Run {
     Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
-}
-
-/// Why twice the step is too much.
-const TOO_LONG: &str = "with 6e-6 s the count at .5 s, when it rises by a hundredth in 4 ms, is \
-                        .6 % lower than with 3e-6 s: until .4 s .2 % at most";
-
-/// Twice the step, to .5 s.
-fn step() -> Claim {
-    const TWICE: Resolution = Resolution::TimeStep(6e-6);
-    let until = |scene: &mut Scene| scene.duration = Duration::Seconds(0.5);
-    let twice = of_paper().at(TWICE).adjusted("until .5 s", until).known(TOO_LONG);
-    claim("M1 in zone 2 from .1 to .5 s with a step of 6e-6 s for 3e-6 s, worst", "1")
-        .of_all([twice, of_paper().aside()])
-        .agrees(Source::Ourselves("half the time step"), |done| {
-            let at = |tenths: u32| {
-                let time = 0.1 * f64::from(tenths);
-                let fine = counted(&done[1], time)?;
-                Ok(Measured::new(counted(&done[0], time)?, fine, fine))
-            };
-            let found: Result<Vec<Measured>, Missing> = (1..=5).map(at).collect();
-            Measured::worst_among(found?).ok_or_else(|| Missing("time to compare at".to_owned()))
-        })
-        .within(required(EARLY.0, "as much as it may be off the codes to .5 s"))
-        .refuses(beside())
 }
 
 /// Counts of M1 in zone 2 between two times, the worst of them beside the code that is farther off.
