@@ -119,6 +119,7 @@ fn height(impact: &Impact, time: f64) -> Option<f64> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+    use super::super::impact::Course;
     use super::*;
 
     fn table(name: &str, left: [f64; 3]) -> Published {
@@ -143,5 +144,29 @@ mod tests {
         assert_eq!(left[3], 51e3);
         // The table ends before.
         assert_eq!(left.len(), 8);
+    }
+
+    /// A clock that is ahead is set back, and two courses in one table are no bed of one draw.
+    #[test]
+    fn a_ball_is_where_it_is_since_its_release() {
+        let flight = |time: f64| 0.06 - 5.0 * time - 0.5 * 9.81 * time * time;
+        let fallen = |name: &str, ahead: f64, lower: f64, courses: u32| {
+            let times: Vec<f64> = (0..=100).map(|step| 1e-3 * f64::from(step)).collect();
+            let heights: Vec<f64> = times.iter().map(|time| flight(time + ahead) - lower * (time + ahead)).collect();
+            let course = |bed| Course { code: name.to_owned(), bed, heights: heights.clone() };
+            let courses = (1..=courses as usize).map(course).collect();
+            Published { name: name.to_owned(), kind: Kind::Impact(Impact { times, courses, repeated: 0 }) }
+        };
+        let tables = [
+            fallen("case3_100k_liggghts", 5e-5, 0.0, 1),
+            fallen("case3_100k_musen", 0.0, 0.1, 1),
+            fallen("case3_50k_musen", 0.0, 0.0, 2),
+        ];
+        let all = pairs(&tables);
+        let of = |key: &str| all.iter().find(|quantity| quantity.key == key).map(|quantity| quantity.pair.clone());
+        let found = of("height_30_100k").unwrap();
+        // 3 mm lower in the second; proportion between samples of a parabola is good to g/8 of a millisecond squared.
+        assert!((found.mean - (1e3 * flight(0.03) - 1.5)).abs() < 2e-3 && (found.half.unwrap() - 1.5).abs() < 2e-3);
+        assert_eq!(of("height_30_50k"), None);
     }
 }
