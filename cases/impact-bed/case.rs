@@ -42,8 +42,8 @@ pub(crate) static CASE: Case = Case {
                and what grain is caught between ball and floor: with the step of the paper, 5·10⁻⁷ s, \
                our first bed lies outside of the spread, deepest at −79.37 mm and at .90 m/s in the rebound, and of the beds \
                that were tried with it two lie within. Restitution is not told: e = .9 moves the ball by .2 mm at \
-               30 ms, for friction does nearly all, and what is published is the ball's height and no energy. Beds of 50,000 and \
-               100,000 are not judged: the published ones are looser than any of ours.",
+               30 ms, for friction does nearly all, and what is published is the ball's height and no energy. Beds of 50,000 \
+               and 100,000 are not judged: the published ones are looser than those that we fill in the same way.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
