@@ -54,7 +54,8 @@ impl<S: Geometry> Simulated<S> {
                 let slot = grains.slot[grain] as usize;
                 let position = grains.position(slot) + (velocity - grains.velocity(slot)) * drifted;
                 S::put(position, &mut grains.place[slot]);
-                S::put(velocity, &mut grains.movement[slot]);
+                let at = grains.first_quad(slot);
+                S::put(velocity, &mut grains.movement[at]);
                 grains.set_spin(slot, driven.spin);
             }
         }

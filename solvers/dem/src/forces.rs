@@ -18,7 +18,7 @@ use crate::pairs::OfPairs;
 use crate::seen::Seen;
 use crate::touching::Touching;
 use crate::walls::{Facing, MovingWall};
-use grainbench_lanes::{Kernel, Processor, Quad, Single};
+use grainbench_lanes::{Processor, Quad};
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
 
@@ -95,9 +95,10 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     };
     let answer = at_wall.respond::<N, T, R>(terms.evaluation(seen.is_some()), memory);
     let [load, torque] = S::load(answer.force, answer.torques[0], 0.0);
-    grains.load[slot].add(&Quad(load));
-    if let Some(sum) = grains.torque.get_mut(slot) {
-        sum.add(&Quad(torque));
+    let at = grains.first_quad(slot);
+    grains.load[at].add(&Quad(load));
+    if S::DIMENSION == 3 && T::ACTIVE {
+        grains.load[at + 1].add(&Quad(torque));
     }
     let force = S::whole(answer.force, 0.0);
     (0..3).for_each(|axis| wall.force[axis] -= force[axis]);
@@ -147,12 +148,10 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         touching: &Touching,
         seen: Option<&mut Seen>,
     ) {
-        let one_by_one = seen.is_some();
-        let of_pairs = OfPairs::<S, N, T, R>::new(terms, grains, pairs, touching, seen);
-        if one_by_one {
-            of_pairs.run(Single);
+        if T::ACTIVE && S::DIMENSION == 3 {
+            OfPairs::<S, N, T, R, 2>::new(terms, grains, pairs, touching, seen).run_on(processor);
         } else {
-            processor.run(of_pairs);
+            OfPairs::<S, N, T, R, 1>::new(terms, grains, pairs, touching, seen).run_on(processor);
         }
     }
 

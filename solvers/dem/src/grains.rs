@@ -20,14 +20,12 @@ pub(crate) const ABSENT: u32 = u32::MAX;
 pub(crate) struct Grains<S: Geometry> {
     /// Position (m) and radius (m); in the plane x, y, the angle θ (rad) and the radius.
     pub(crate) place: Vec<Quad>,
-    /// Velocity (m/s) and inverse mass (1/kg); in the plane vx, vy, the spin ω (rad/s) and the inverse mass.
+    /// Velocity (m/s) and inverse mass (1/kg); in the plane vx, vy, the spin ω (rad/s) and the inverse mass. In space, where
+    /// grains rotate, each is followed by the angular velocity ω (rad/s).
     pub(crate) movement: Vec<Quad>,
-    /// Angular velocity ω (rad/s) in space; empty in the plane and where grains do not rotate.
-    pub(crate) turning: Vec<Quad>,
-    /// Force F (N), the sum over contacts, without the weight; in the plane Fx, Fy and the torque M (N m).
+    /// Force F (N), the sum over contacts, without the weight; in the plane Fx, Fy and the torque M (N m). In space, where
+    /// grains rotate, each is followed by the torque M (N m).
     pub(crate) load: Vec<Quad>,
-    /// Torque M (N m) in space, the sum over contacts; empty like the spins.
-    pub(crate) torque: Vec<Quad>,
     /// Inverse moment of inertia 1/I (1/(kg m²)); empty where grains do not rotate.
     pub(crate) inverse_inertia: Vec<f64>,
     /// Number of the material.
@@ -42,15 +40,14 @@ pub(crate) struct Grains<S: Geometry> {
 impl<S: Geometry> Grains<S> {
     /// Whether these can be grains of a scene that are there, sorted somehow.
     pub(crate) fn is_of(&self, scene: &Scene, rotate: bool) -> bool {
-        let Self { place, movement, turning, load, torque, inverse_inertia, material, id, slot, space: _ } = self;
+        let Self { place, movement, load, inverse_inertia, material, id, slot, space: _ } = self;
         let count = place.len();
-        let only_if = |turns: bool| if turns { count } else { 0 };
-        let spatial = only_if(rotate && S::DIMENSION == 3);
-        let lengths = [movement.len(), load.len(), material.len(), id.len()];
-        let turning = [turning.len(), torque.len(), inverse_inertia.len()];
+        let quads = count * quads::<S>(rotate);
+        let lengths = [material.len(), id.len()];
+        let turning = if rotate { count } else { 0 };
         let placed = slot.iter().filter(|&&slot| slot != ABSENT).count();
         lengths.iter().all(|&length| length == count)
-            && turning == [spatial, spatial, only_if(rotate)]
+            && [movement.len(), load.len(), inverse_inertia.len()] == [quads, quads, turning]
             && slot.len() == scene.grains.len()
             && placed == count
             && (placed == slot.len() || !scene.stays.is_always())
@@ -66,10 +63,8 @@ impl<S: Geometry> Grains<S> {
         scene.stays.entries[entered..].iter().for_each(|entry| later[entry.grain] = true);
         let mut grains = Self {
             place: Vec::with_capacity(count),
-            movement: Vec::with_capacity(count),
-            turning: Vec::new(),
-            load: Vec::with_capacity(count),
-            torque: Vec::new(),
+            movement: Vec::with_capacity(count * quads::<S>(rotate)),
+            load: Vec::with_capacity(count * quads::<S>(rotate)),
             inverse_inertia: Vec::new(),
             material: Vec::with_capacity(count),
             id: Vec::with_capacity(count),
@@ -91,7 +86,9 @@ impl<S: Geometry> Grains<S> {
     pub(crate) fn weigh(&mut self, scene: &Scene, driven: &Driven, is_moved: bool) {
         for &grain in &driven.grains {
             let slot = self.slot[grain] as usize;
-            self.movement[slot].0[3] = if is_moved { 0.0 } else { 1.0 / scene.grains[grain].mass };
+            let inverse_mass = if is_moved { 0.0 } else { 1.0 / scene.grains[grain].mass };
+            let at = self.first_quad(slot);
+            self.movement[at].0[3] = inverse_mass;
         }
     }
 
@@ -112,8 +109,8 @@ impl<S: Geometry> Grains<S> {
         if rotate {
             self.inverse_inertia.push(1.0 / grain.inertia);
             if S::DIMENSION == 3 {
-                self.turning.push(Quad::default());
-                self.torque.push(Quad::default());
+                self.movement.push(Quad::default());
+                self.load.push(Quad::default());
             }
         }
         self.set_spin(slot, grain.spin);
@@ -128,6 +125,16 @@ impl<S: Geometry> Grains<S> {
     /// Number of grains.
     pub(crate) fn len(&self) -> usize {
         self.place.len()
+    }
+
+    /// Quads of a grain's velocity and spin, and of its force and torque.
+    pub(crate) fn quads(&self) -> usize {
+        quads::<S>(self.rotate())
+    }
+
+    /// Where those of a slot begin.
+    pub(crate) fn first_quad(&self, slot: usize) -> usize {
+        slot * self.quads()
     }
 
     /// Whether the grains rotate. (Where there is none it is all one.)
@@ -147,17 +154,17 @@ impl<S: Geometry> Grains<S> {
 
     /// Velocity (m/s).
     pub(crate) fn velocity(&self, slot: usize) -> Vector3<f64> {
-        S::vector_in_space(&self.movement[slot])
+        S::vector_in_space(&self.movement[self.first_quad(slot)])
     }
 
     /// Inverse mass (1/kg).
     pub(crate) fn inverse_mass(&self, slot: usize) -> f64 {
-        self.movement[slot].0[3]
+        self.movement[self.first_quad(slot)].0[3]
     }
 
     /// Angular velocity ω (rad/s); `None` where grains do not rotate.
     pub(crate) fn spin(&self, slot: usize) -> Option<Vector3<f64>> {
-        self.rotate().then(|| turned::<S>(&self.movement, &self.turning, slot))
+        self.rotate().then(|| turned::<S>(&self.movement[self.first_quad(slot)..]))
     }
 
     /// Angle θ about the z axis by which the grain has turned since the start (rad); zero in space.
@@ -167,29 +174,29 @@ impl<S: Geometry> Grains<S> {
 
     /// Sum of the forces of its contacts (N).
     pub(crate) fn force(&self, slot: usize) -> Vector3<f64> {
-        S::vector_in_space(&self.load[slot])
+        S::vector_in_space(&self.load[self.first_quad(slot)])
     }
 
     /// Sum of the torques of its contacts (N m).
     pub(crate) fn torque(&self, slot: usize) -> Vector3<f64> {
-        if self.rotate() { turned::<S>(&self.load, &self.torque, slot) } else { Vector3::zeros() }
+        if self.rotate() { turned::<S>(&self.load[self.first_quad(slot)..]) } else { Vector3::zeros() }
     }
 
     /// Replaces the angular velocity ω (rad/s), if grains rotate.
     pub(crate) fn set_spin(&mut self, slot: usize, spin: Vector3<f64>) {
+        let at = self.first_quad(slot);
         match (self.rotate(), S::DIMENSION) {
             (false, _) => {}
-            (true, 2) => self.movement[slot].0[2] = spin.z,
-            (true, _) => S::put(spin, &mut self.turning[slot]),
+            (true, 2) => self.movement[at].0[2] = spin.z,
+            (true, _) => S::put(spin, &mut self.movement[at + 1]),
         }
     }
 
     /// Sets the force and the torque to zero.
     pub(crate) fn unload(&mut self, slot: usize) {
-        self.load[slot] = Quad::default();
-        if let Some(torque) = self.torque.get_mut(slot) {
-            *torque = Quad::default();
-        }
+        let at = self.first_quad(slot);
+        let end = at + self.quads();
+        self.load[at..end].fill(Quad::default());
     }
 
     /// Force on a group of grains together (N); `group` holds their places in the scene.
@@ -204,11 +211,11 @@ impl<S: Geometry> Grains<S> {
                 *values = order.iter().map(|&from| values[from as usize]).collect();
             }
         }
+        let quads = self.quads();
+        for values in [&mut self.movement, &mut self.load] {
+            *values = order.iter().flat_map(|&from| &values[from as usize * quads..][..quads]).copied().collect();
+        }
         gather(&mut self.place, order);
-        gather(&mut self.movement, order);
-        gather(&mut self.turning, order);
-        gather(&mut self.load, order);
-        gather(&mut self.torque, order);
         gather(&mut self.inverse_inertia, order);
         gather(&mut self.material, order);
         gather(&mut self.id, order);
@@ -223,7 +230,6 @@ impl<S: Geometry> Grains<S> {
 pub(crate) struct Read<'a> {
     pub(crate) place: &'a [Quad],
     pub(crate) movement: &'a [Quad],
-    pub(crate) turning: &'a [Quad],
     pub(crate) inverse_inertia: &'a [f64],
     pub(crate) material: &'a [u16],
     pub(crate) id: &'a [u32],
@@ -233,65 +239,55 @@ pub(crate) struct Read<'a> {
 pub(crate) struct Sums<'a> {
     /// The first of the slots.
     pub(crate) first: usize,
+    /// How many.
+    pub(crate) count: usize,
     pub(crate) load: &'a mut [Quad],
-    pub(crate) torque: &'a mut [Quad],
 }
 
 impl<'a> Sums<'a> {
     /// The same, for a while.
     pub(crate) fn lent(&mut self) -> Sums<'_> {
-        Sums { first: self.first, load: self.load, torque: self.torque }
+        Sums { first: self.first, count: self.count, load: self.load }
     }
 
     /// Whether a slot is one of these.
     #[inline(always)]
     pub(crate) fn holds(&self, slot: usize) -> bool {
-        slot.wrapping_sub(self.first) < self.load.len()
+        slot.wrapping_sub(self.first) < self.count
     }
 
-    /// Adds to the force on a grain, if its slot is one of these.
+    /// The force and torque of a grain, if its slot is one of these.
     #[inline(always)]
-    pub(crate) fn add_load(&mut self, slot: usize, load: &Quad) {
-        if let Some(sum) = self.load.get_mut(slot.wrapping_sub(self.first)) {
-            sum.add(load);
-        }
-    }
-
-    /// Subtracts from the force on a grain, if its slot is one of these.
-    #[inline(always)]
-    pub(crate) fn subtract_load(&mut self, slot: usize, load: &Quad) {
-        if let Some(sum) = self.load.get_mut(slot.wrapping_sub(self.first)) {
-            sum.subtract(load);
-        }
-    }
-
-    /// Adds to the torque on a grain, if its slot is one of these.
-    #[inline(always)]
-    pub(crate) fn add_torque(&mut self, slot: usize, torque: &Quad) {
-        if let Some(sum) = self.torque.get_mut(slot.wrapping_sub(self.first)) {
-            sum.add(torque);
-        }
+    pub(crate) fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
+        self.load.as_chunks_mut::<Q>().0.get_mut(slot.wrapping_sub(self.first))
     }
 
     /// Takes off the sums of the first grains, so many.
     pub(crate) fn take_off(&mut self, count: usize) -> Self {
-        let first = self.first;
+        let (first, quads) = (self.first, self.load.len() / self.count.max(1));
         self.first += count;
-        Self { first, load: take_off(&mut self.load, count), torque: take_off(&mut self.torque, count) }
+        self.count -= count;
+        Self { first, count, load: take_off(&mut self.load, count * quads) }
     }
 }
 
 impl<S: Geometry> Grains<S> {
     /// What is read of the grains, and what is added up.
     pub(crate) fn parts(&mut self) -> (Read<'_>, Sums<'_>) {
-        let Self { place, movement, turning, load, torque, inverse_inertia, material, id, .. } = self;
-        (Read { place, movement, turning, inverse_inertia, material, id }, Sums { first: 0, load, torque })
+        let Self { place, movement, load, inverse_inertia, material, id, .. } = self;
+        let count = place.len();
+        (Read { place, movement, inverse_inertia, material, id }, Sums { first: 0, count, load })
     }
 }
 
+/// Quads of a grain's velocity and spin, and of its force and torque.
+fn quads<S: Geometry>(rotate: bool) -> usize {
+    if rotate && S::DIMENSION == 3 { 2 } else { 1 }
+}
+
 /// A spin or torque: the third number of a quad in the plane, a quad of its own in space.
-fn turned<S: Geometry>(planar: &[Quad], spatial: &[Quad], slot: usize) -> Vector3<f64> {
-    if S::DIMENSION == 2 { Vector3::new(0.0, 0.0, planar[slot].0[2]) } else { S::vector_in_space(&spatial[slot]) }
+fn turned<S: Geometry>(quads: &[Quad]) -> Vector3<f64> {
+    if S::DIMENSION == 2 { Vector3::new(0.0, 0.0, quads[0].0[2]) } else { S::vector_in_space(&quads[1]) }
 }
 
 #[cfg(test)]
@@ -307,9 +303,7 @@ impl<S: Geometry> Grains<S> {
         Self {
             place: points.iter().map(place).collect(),
             movement: vec![Quad([0.0, 0.0, 0.0, 1.0]); count],
-            turning: Vec::new(),
             load: vec![Quad::default(); count],
-            torque: Vec::new(),
             inverse_inertia: Vec::new(),
             material: vec![0; count],
             id: (0..count as u32).collect(),

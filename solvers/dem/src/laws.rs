@@ -113,7 +113,18 @@ impl Laws {
 /// The quads of a table at the first places of `at`, in lanes.
 #[inline(always)]
 pub(crate) fn gathered<L: Lanes>(lanes: L, table: &[Quad], at: &[usize; WIDEST]) -> [Wide<L>; 4] {
-    let [a, b, c, d] = lanes.gather(table, at);
+    gathered_of(lanes, table.as_chunks::<1>().0, 0, at)
+}
+
+/// The same of one of several quads that an entry has.
+#[inline(always)]
+pub(crate) fn gathered_of<L: Lanes, const N: usize>(
+    lanes: L,
+    table: &[[Quad; N]],
+    of: usize,
+    at: &[usize; WIDEST],
+) -> [Wide<L>; 4] {
+    let [a, b, c, d] = lanes.gather(table, of, at);
     [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
 }
 

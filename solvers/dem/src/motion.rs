@@ -8,8 +8,9 @@
 
 use crate::geometry::Geometry;
 use crate::grains::Grains;
-use grainbench_lanes::{Quad, take_off};
+use grainbench_lanes::{Kernel, Lanes, Processor, Quad, take_off};
 use nalgebra::Vector3;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Global damping of the equation of motion, or its absence.
@@ -63,22 +64,23 @@ pub(crate) struct Motion {
 pub(crate) struct Moving<'a> {
     place: &'a mut [Quad],
     movement: &'a mut [Quad],
-    turning: &'a mut [Quad],
     load: &'a mut [Quad],
-    torque: &'a mut [Quad],
+    /// Quads of a grain's velocity and spin, and of its force and torque.
+    quads: usize,
     inverse_inertia: &'a [f64],
 }
 
 impl<'a> Moving<'a> {
     /// Of the grains in these slots.
     pub(crate) fn of<S: Geometry>(grains: &'a mut Grains<S>, slots: Range<usize>) -> Self {
-        let Grains { place, movement, turning, load, torque, inverse_inertia, .. } = grains;
+        let quads = grains.quads();
+        let Grains { place, movement, load, inverse_inertia, .. } = grains;
+        let all = slots.start * quads..slots.end * quads;
         Self {
             place: &mut place[slots.clone()],
-            movement: &mut movement[slots.clone()],
-            turning: turning.get_mut(slots.clone()).unwrap_or_default(),
-            load: &mut load[slots.clone()],
-            torque: torque.get_mut(slots.clone()).unwrap_or_default(),
+            movement: &mut movement[all.clone()],
+            load: &mut load[all],
+            quads,
             inverse_inertia: inverse_inertia.get(slots).unwrap_or_default(),
         }
     }
@@ -89,10 +91,9 @@ impl<'a> Moving<'a> {
         self.inverse_inertia = others;
         Self {
             place: take_off(&mut self.place, count),
-            movement: take_off(&mut self.movement, count),
-            turning: take_off(&mut self.turning, count),
-            load: take_off(&mut self.load, count),
-            torque: take_off(&mut self.torque, count),
+            movement: take_off(&mut self.movement, count * self.quads),
+            load: take_off(&mut self.load, count * self.quads),
+            quads: self.quads,
             inverse_inertia: inertia,
         }
     }
@@ -101,69 +102,13 @@ impl<'a> Moving<'a> {
 impl Motion {
     /// Moves grains over one step, by the forces on them, and sets those to zero. Gives the speed of the fastest, squared
     /// (m²/s²), infinite where one is not a number.
-    pub(crate) fn advance<S: Geometry>(&self, grains: Moving<'_>) -> f64 {
+    pub(crate) fn advance<S: Geometry>(&self, processor: Processor, grains: Moving<'_>) -> f64 {
         match (self.global_damping == 0.0, self.gravity == Vector3::zeros()) {
-            (true, true) => self.drift::<S, NoDrag, false>(grains),
-            (true, false) => self.drift::<S, NoDrag, true>(grains),
-            (false, true) => self.drift::<S, MassProportional, false>(grains),
-            (false, false) => self.drift::<S, MassProportional, true>(grains),
+            (true, true) => processor.run(Drift::<S, NoDrag, false>::new(self, grains)),
+            (true, false) => processor.run(Drift::<S, NoDrag, true>::new(self, grains)),
+            (false, true) => processor.run(Drift::<S, MassProportional, false>::new(self, grains)),
+            (false, false) => processor.run(Drift::<S, MassProportional, true>::new(self, grains)),
         }
-    }
-
-    /// The same, compiled for one kind of damping, with gravity or without. In the plane the angle moves with the
-    /// spin as a position does with its velocity.
-    fn drift<S: Geometry, D: Drag, const GRAVITY: bool>(&self, grains: Moving<'_>) -> f64 {
-        let (keep, gain) = D::factors(self.global_damping, self.time_step);
-        let Moving { place, movement, turning, load, torque, inverse_inertia } = grains;
-        let linear = place.iter_mut().zip(movement).zip(load).map(|((place, movement), load)| [place, movement, load]);
-        let fastest = if S::DIMENSION == 2 && !inverse_inertia.is_empty() {
-            self.drift_along::<S, D, GRAVITY>(linear, inverse_inertia.iter().copied())
-        } else {
-            self.drift_along::<S, D, GRAVITY>(linear, std::iter::repeat(0.0))
-        };
-        // Nothing is left of this loop in the plane, and where grains do not rotate.
-        for ((Quad(spin), torque), inverse_inertia) in turning.iter_mut().zip(torque).zip(inverse_inertia) {
-            for (spin, torque) in spin.iter_mut().take(3).zip(torque.0) {
-                *spin = D::keep(*spin, keep) + torque * inverse_inertia * gain;
-            }
-            *torque = Quad::default();
-        }
-        fastest
-    }
-
-    /// Velocities and positions of it, in the plane spins and angles too, with the inverse moments of inertia (1/(kg m²)).
-    #[inline(always)]
-    fn drift_along<'a, S: Geometry, D: Drag, const GRAVITY: bool>(
-        &self,
-        grains: impl Iterator<Item = [&'a mut Quad; 3]>,
-        inverse_inertia: impl Iterator<Item = f64>,
-    ) -> f64 {
-        let (keep, gain) = D::factors(self.global_damping, self.time_step);
-        let (gravity, time_step) = ([self.gravity.x, self.gravity.y, self.gravity.z], self.time_step);
-        let (mut fastest, mut total) = (0.0, 0.0);
-        for ([Quad(place), Quad(movement), load], inverse_inertia) in grains.zip(inverse_inertia) {
-            let mut inverse = [movement[3]; 3];
-            if S::DIMENSION == 2 {
-                inverse[2] = inverse_inertia;
-            }
-            let mut squared = 0.0;
-            for axis in 0..3 {
-                let mut acceleration = load.0[axis] * inverse[axis];
-                if GRAVITY {
-                    acceleration += gravity[axis];
-                }
-                movement[axis] = D::keep(movement[axis], keep) + acceleration * gain;
-                place[axis] += movement[axis] * time_step;
-                if axis < S::DIMENSION {
-                    squared += movement[axis] * movement[axis];
-                }
-            }
-            *load = Quad::default();
-            fastest = if squared > fastest { squared } else { fastest };
-            total += squared;
-        }
-        // What is not a number is no larger than another, but it stays in a sum.
-        if f64::is_finite(total) { fastest } else { f64::INFINITY }
     }
 
     /// The velocity half a step before (m/s) of a grain that has one (m/s) and that nothing touches.
@@ -180,11 +125,97 @@ impl Motion {
         for slot in slots {
             let acceleration = grains.force(slot) * grains.inverse_mass(slot) + self.gravity;
             let velocity = grains.velocity(slot) * drag - acceleration * half;
-            S::put(velocity, &mut grains.movement[slot]);
+            let at = grains.first_quad(slot);
+            S::put(velocity, &mut grains.movement[at]);
             if let Some(spin) = grains.spin(slot) {
                 let acceleration = grains.torque(slot) * grains.inverse_inertia[slot];
                 grains.set_spin(slot, spin * drag - acceleration * half);
             }
         }
+    }
+}
+
+/// The loop over grains, compiled for one kind of damping, with gravity or without, and for each path of the processor.
+struct Drift<'a, S, D, const GRAVITY: bool> {
+    motion: &'a Motion,
+    grains: Moving<'a>,
+    kind: PhantomData<(S, D)>,
+}
+
+impl<'a, S: Geometry, D: Drag, const GRAVITY: bool> Drift<'a, S, D, GRAVITY> {
+    fn new(motion: &'a Motion, grains: Moving<'a>) -> Self {
+        Self { motion, grains, kind: PhantomData }
+    }
+}
+
+/// What moves grains over a step, in the numbers of a quad.
+struct Step {
+    keep: f64,
+    gain: f64,
+    time_step: f64,
+    gravity: [f64; 3],
+}
+
+impl Step {
+    /// Adds to velocities what forces do to them, of these inverse masses.
+    #[inline(always)]
+    fn push<D: Drag, const GRAVITY: bool>(&self, Quad(velocity): &mut Quad, load: &mut Quad, inverse: [f64; 3]) {
+        for axis in 0..3 {
+            let mut acceleration = load.0[axis] * inverse[axis];
+            if GRAVITY {
+                acceleration += self.gravity[axis];
+            }
+            velocity[axis] = D::keep(velocity[axis], self.keep) + acceleration * self.gain;
+        }
+        *load = Quad::default();
+    }
+
+    /// Moves a grain by its velocity, in the plane also its angle by its spin. Gives its speed, squared.
+    #[inline(always)]
+    fn carry<S: Geometry>(&self, Quad(place): &mut Quad, Quad(velocity): &Quad) -> f64 {
+        for axis in 0..3 {
+            place[axis] += velocity[axis] * self.time_step;
+        }
+        let squares = velocity.map(|component| component * component);
+        let plane = squares[0] + squares[1];
+        if S::DIMENSION == 2 { plane } else { plane + squares[2] }
+    }
+}
+
+impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVITY> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) -> f64 {
+        let Motion { gravity, global_damping, time_step } = *self.motion;
+        let (keep, gain) = D::factors(global_damping, time_step);
+        let step = Step { keep, gain, time_step, gravity: [gravity.x, gravity.y, gravity.z] };
+        let Moving { place, movement, load, quads, inverse_inertia } = self.grains;
+        // No number is negative here, so that as whole numbers they are in the same order, and what is not a number is last.
+        let mut fastest = 0;
+        if quads == 2 {
+            let movement = movement.as_chunks_mut::<2>().0;
+            let load = load.as_chunks_mut::<2>().0;
+            for (((place, [velocity, spin]), [load, torque]), inertia) in
+                place.iter_mut().zip(movement).zip(load).zip(inverse_inertia)
+            {
+                let inverse = velocity.0[3];
+                step.push::<D, GRAVITY>(velocity, load, [inverse; 3]);
+                step.push::<D, false>(spin, torque, [*inertia; 3]);
+                fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
+            }
+        } else {
+            let turns = S::DIMENSION == 2 && !inverse_inertia.is_empty();
+            for (slot, ((place, velocity), load)) in place.iter_mut().zip(movement).zip(load).enumerate() {
+                let mut inverse = [velocity.0[3]; 3];
+                if S::DIMENSION == 2 {
+                    inverse[2] = if turns { inverse_inertia[slot] } else { 0.0 };
+                }
+                step.push::<D, GRAVITY>(velocity, load, inverse);
+                fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
+            }
+        }
+        let fastest = f64::from_bits(fastest);
+        if fastest.is_finite() { fastest } else { f64::INFINITY }
     }
 }

@@ -9,16 +9,16 @@ use crate::contact::{MEMORY, Memory};
 use crate::forces::Terms;
 use crate::geometry::Geometry;
 use crate::grains::{Read, Sums};
-use crate::laws::{Constants, gathered, places};
+use crate::laws::{Constants, gathered, gathered_of, places};
 use crate::listed::Pairs;
 use crate::seen::Seen;
 use crate::touching::Touching;
-use grainbench_lanes::{Kernel, Lanes, Quad, WIDEST, Wide};
+use grainbench_lanes::{Kernel, Lanes, Processor, Quad, Single, WIDEST, Wide};
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
 
-/// The loop over pairs that touch.
-pub(crate) struct OfPairs<'a, S: Geometry, N, T, R> {
+/// The loop over pairs that touch, of grains whose velocity and spin are `Q` quads.
+pub(crate) struct OfPairs<'a, S: Geometry, N, T, R, const Q: usize> {
     terms: Terms<'a>,
     touching: &'a Touching,
     grains: Read<'a>,
@@ -41,7 +41,7 @@ struct Slots {
     second: [usize; WIDEST],
 }
 
-impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S, N, T, R> {
+impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> OfPairs<'a, S, N, T, R, Q> {
     /// Numbers that are remembered.
     const NUMBERS: usize = T::NUMBERS + R::NUMBERS;
 
@@ -53,7 +53,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         touching: &'a Touching,
         seen: Option<&'a mut Seen>,
     ) -> Self {
-        let kept = touching.kept_from()..touching.kept_from() + touching.count;
+        let kept = touching.kept_from()..touching.kept_from() + touching.count + WIDEST;
         pairs.make_room(kept.end);
         let Pairs { shift, memory: [low, high], next: [low_next, high_next], .. } = pairs;
         let remembered = |last: &'a [Quad], next: &'a mut [Quad]| Remembered {
@@ -72,6 +72,15 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         }
     }
 
+    /// Runs it; contacts that are recorded are taken one by one.
+    pub(crate) fn run_on(self, processor: Processor) {
+        if self.seen.is_some() {
+            self.run(Single);
+        } else {
+            processor.run(self);
+        }
+    }
+
     /// The grains of some pairs, made ready for the chain of stages.
     #[inline(always)]
     fn pair<'l, L: Lanes>(
@@ -82,9 +91,10 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         law: &'l Constants<Wide<L>>,
     ) -> Pair<'l, S, Wide<L>> {
         let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
-        let (Read { place, movement, turning, inverse_inertia: inertia, .. }, shift) = (self.grains, self.shift);
+        let (Read { place, movement, inverse_inertia: inertia, .. }, shift) = (self.grains, self.shift);
         let at = [gathered(lanes, place, first), gathered(lanes, place, second)];
-        let moves = [gathered(lanes, movement, first), gathered(lanes, movement, second)];
+        let movement = &movement.as_chunks::<Q>().0[..place.len()];
+        let moves = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
         let mut between = S::vector(at[1]) - S::vector(at[0]);
         if !shift.is_empty() {
             let pair = places(lanes, &self.touching.pair[from..], shift.len());
@@ -93,8 +103,8 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         let mut spins = None;
         if T::ACTIVE {
             let mut turns = [[zero; 4]; 2];
-            if S::DIMENSION == 3 {
-                turns = [gathered(lanes, turning, first), gathered(lanes, turning, second)];
+            if Q == 2 {
+                turns = [gathered_of(lanes, movement, 1, first), gathered_of(lanes, movement, 1, second)];
             }
             spins = Some([S::spin(moves[0], turns[0]), S::spin(moves[1], turns[1])]);
         }
@@ -132,14 +142,14 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         memory
     }
 
-    /// Keeps what so many contacts remember from now on.
+    /// Keeps what contacts remember from now on.
     #[inline(always)]
-    fn remember<L: Lanes>(&mut self, lanes: L, memory: &Memory<Wide<L>>, from: usize, count: usize) {
+    fn remember<L: Lanes>(&mut self, lanes: L, memory: &Memory<Wide<L>>, from: usize) {
         for (quad, Remembered { next, .. }) in self.memory.iter_mut().enumerate() {
             if Self::NUMBERS > 4 * quad {
                 let of = 4 * quad;
                 let quads = spread(lanes, [memory[of], memory[of + 1], memory[of + 2], memory[of + 3]]);
-                next[from..from + count].copy_from_slice(&quads[..count]);
+                next[from..from + L::WIDTH].copy_from_slice(&quads[..L::WIDTH]);
             }
         }
     }
@@ -152,39 +162,50 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> OfPairs<'a, S,
         let [one, on_one] = S::load(answer.force, answer.torques[0], zero);
         let [other, on_other] = S::load(-answer.force, answer.torques[1], zero);
         let one = spread(lanes, one);
-        if S::DIMENSION == 2 && T::ACTIVE {
+        if Q == 2 {
+            let [on_one, on_other] = [spread(lanes, on_one), spread(lanes, on_other)];
+            for lane in 0..count {
+                if let Some([force, torque]) = sums.of(first[lane]) {
+                    force.add(&one[lane]);
+                    torque.add(&on_one[lane]);
+                }
+                if let Some([force, torque]) = sums.of(second[lane]) {
+                    force.subtract(&one[lane]);
+                    torque.add(&on_other[lane]);
+                }
+            }
+        } else if T::ACTIVE {
             let other = spread(lanes, other);
             for lane in 0..count {
-                sums.add_load(first[lane], &one[lane]);
-                sums.add_load(second[lane], &other[lane]);
+                if let Some([load]) = sums.of(first[lane]) {
+                    load.add(&one[lane]);
+                }
+                if let Some([load]) = sums.of(second[lane]) {
+                    load.add(&other[lane]);
+                }
             }
         } else {
             for lane in 0..count {
-                sums.add_load(first[lane], &one[lane]);
-                sums.subtract_load(second[lane], &one[lane]);
-            }
-        }
-        if S::DIMENSION == 3 && T::ACTIVE {
-            let [on_one, on_other] = [spread(lanes, on_one), spread(lanes, on_other)];
-            for lane in 0..count {
-                sums.add_torque(first[lane], &on_one[lane]);
-                sums.add_torque(second[lane], &on_other[lane]);
+                if let Some([force]) = sums.of(first[lane]) {
+                    force.add(&one[lane]);
+                }
+                if let Some([force]) = sums.of(second[lane]) {
+                    force.subtract(&one[lane]);
+                }
             }
         }
     }
 }
 
-impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel for OfPairs<'_, S, N, T, R> {
+impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Kernel for OfPairs<'_, S, N, T, R, Q> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
         let grains = self.grains.place.len();
-        let turning = if T::ACTIVE && S::DIMENSION == 3 { grains } else { 0 };
         // Said here, so that it is looked at once and not for every contact.
-        self.grains.movement = &self.grains.movement[..grains];
+        self.grains.movement = &self.grains.movement[..grains * Q];
         self.grains.material = &self.grains.material[..grains];
-        self.grains.turning = &self.grains.turning[..turning];
         let (laws, touching) = (self.terms.laws, self.touching);
         let evaluation = self.terms.evaluation(L::WIDTH == 1 && self.seen.is_some());
         let mut law = laws.gather(lanes, &[0; WIDEST]);
@@ -204,7 +225,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Kernel for OfPairs
             let answer = self.pair(lanes, &slots, from, &law).respond::<N, T, R>(evaluation, &mut memory);
             let count = (touching.count - from).min(L::WIDTH);
             self.add(lanes, &answer, &slots, count);
-            self.remember(lanes, &memory, from, count);
+            self.remember(lanes, &memory, from);
             if evaluation.record
                 && let Some(seen) = &mut self.seen
                 && self.sums.holds(slots.first[0])

@@ -55,12 +55,12 @@ impl Lanes for V3 {
         self.avx._mm256_movemask_pd(mask).cast_unsigned()
     }
     #[inline(always)]
-    fn gather(self, table: &[Quad], at: &[usize; WIDEST]) -> [__m256d; 4] {
+    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m256d; 4] {
         self.turned([
-            pulp::cast(table[at[0]].0),
-            pulp::cast(table[at[1]].0),
-            pulp::cast(table[at[2]].0),
-            pulp::cast(table[at[3]].0),
+            pulp::cast(table[at[0]][of].0),
+            pulp::cast(table[at[1]][of].0),
+            pulp::cast(table[at[2]][of].0),
+            pulp::cast(table[at[3]][of].0),
         ])
     }
     #[inline(always)]

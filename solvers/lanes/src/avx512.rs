@@ -68,13 +68,13 @@ impl Lanes for V4 {
         u32::from(mask)
     }
     #[inline(always)]
-    fn gather(self, table: &[Quad], at: &[usize; WIDEST]) -> [__m512d; 4] {
+    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
         let avx = self.avx512f;
         // The lanes of quads 0 and 2, 1 and 3, 4 and 6, 5 and 7 side by side, so that the last step leaves them in order.
-        let a = both(self, table[at[0]], table[at[2]]);
-        let b = both(self, table[at[1]], table[at[3]]);
-        let c = both(self, table[at[4]], table[at[6]]);
-        let d = both(self, table[at[5]], table[at[7]]);
+        let a = both(self, table[at[0]][of], table[at[2]][of]);
+        let b = both(self, table[at[1]][of], table[at[3]][of]);
+        let c = both(self, table[at[4]][of], table[at[6]][of]);
+        let d = both(self, table[at[5]][of], table[at[7]][of]);
         let [even_ab, odd_ab] = [avx._mm512_unpacklo_pd(a, b), avx._mm512_unpackhi_pd(a, b)];
         let [even_cd, odd_cd] = [avx._mm512_unpacklo_pd(c, d), avx._mm512_unpackhi_pd(c, d)];
         [

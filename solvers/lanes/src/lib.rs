@@ -87,8 +87,9 @@ pub trait Lanes: Copy + 'static {
     fn choose(self, mask: Self::Mask, yes: Self::Register, no: Self::Register) -> Self::Register;
     /// The answers as bits, that of the first lane lowest.
     fn bits(self, mask: Self::Mask) -> u32;
-    /// The quads of a table at the first places of `at`, turned: the first numbers of all in one register, and so on.
-    fn gather(self, table: &[Quad], at: &[usize; WIDEST]) -> [Self::Register; 4];
+    /// The quads of a table whose entries have several, those of a number at the first places of `at`, turned: the first
+    /// numbers of all in one register, and so on.
+    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [Self::Register; 4];
     /// The whole numbers whose bit is set, first, in their order; what follows them is not said. The first bit is lowest.
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST];
     /// The opposite of [`gather`](Self::gather): a quad for each lane, in the first of a row.

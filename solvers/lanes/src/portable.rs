@@ -63,8 +63,8 @@ impl Lanes for Portable {
         u32::from(a) | u32::from(b) << 1 | u32::from(c) << 2 | u32::from(d) << 3
     }
     #[inline(always)]
-    fn gather(self, table: &[Quad], at: &[usize; WIDEST]) -> [[f64; LANES]; 4] {
-        turned([table[at[0]].0, table[at[1]].0, table[at[2]].0, table[at[3]].0])
+    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [[f64; LANES]; 4] {
+        turned([table[at[0]][of].0, table[at[1]][of].0, table[at[2]][of].0, table[at[3]][of].0])
     }
     #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {

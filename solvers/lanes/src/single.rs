@@ -56,8 +56,8 @@ impl Lanes for Single {
         u32::from(mask)
     }
     #[inline(always)]
-    fn gather(self, table: &[Quad], at: &[usize; WIDEST]) -> [f64; 4] {
-        table[at[0]].0
+    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [f64; 4] {
+        table[at[0]][of].0
     }
     #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {

@@ -72,7 +72,7 @@ impl Kernel for There<'_> {
         for at in self.1.chunks(L::WIDTH) {
             let mut places = [0; WIDEST];
             places[..at.len()].copy_from_slice(at);
-            let registers = lanes.gather(self.0, &places);
+            let registers = lanes.gather(self.0.as_chunks::<1>().0, 0, &places);
             let columns = registers.map(|register| lanes.store(register));
             let back = lanes.quads(registers);
             all.extend((0..L::WIDTH).map(|lane| (Quad(columns.map(|column| column[lane])), back[lane])));
