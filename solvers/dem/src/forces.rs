@@ -42,13 +42,13 @@ impl<'a> Terms<'a> {
 /// The loops over contacts, whatever laws they were compiled for.
 pub(crate) trait Forces<S: Geometry>: Send + Sync {
     /// Adds the forces and torques of the pairs that touch to the sums that are there. Where `seen` is given every contact in
-    /// whose first grain's row they are is kept in it.
+    /// whose first grain's row they are is kept in it. The pairs come with the number of the block.
     fn of_pairs(
         &self,
         processor: Processor,
         terms: Terms<'_>,
         grains: (Read<'_>, Sums<'_>),
-        pairs: &mut Pairs,
+        pairs: (&mut Pairs, usize),
         touching: &Touching,
         seen: Option<&mut Seen>,
     );
@@ -144,7 +144,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         processor: Processor,
         terms: Terms<'_>,
         grains: (Read<'_>, Sums<'_>),
-        pairs: &mut Pairs,
+        pairs: (&mut Pairs, usize),
         touching: &Touching,
         seen: Option<&mut Seen>,
     ) {

@@ -6,6 +6,14 @@ use grainbench_lanes::{Quad, WIDEST};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
+/// Listed pairs that are looked at before the forces of those that touch are found: so few that their grains are still at
+/// hand, and so many that little is lost at the end. A multiple of eight.
+pub(crate) const BLOCK: usize = 2048;
+
+/// What the contacts of a block of pairs remember: of those that touched when they were looked at last, in their order, after
+/// nothing, four numbers and four more. Empty where so many are not remembered.
+pub(crate) type Remembered = [Vec<Quad>; 2];
+
 /// Pairs of grains, in rows: a row holds the partners of one grain. Partners, rows and shifts are filled up beyond the last
 /// pair, so that registers can be.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -24,12 +32,8 @@ pub(crate) struct Pairs {
     /// Whether each pair touched when it was looked at last, as bits, the first of eight lowest. Empty where nothing is
     /// remembered.
     pub(crate) touches: Vec<u8>,
-    /// What the contacts of those that touched remember, in their order, after nothing: four numbers and four more. Empty
-    /// where so many are not remembered.
-    pub(crate) memory: [Vec<Quad>; 2],
-    /// Room for what they remember next, with no more in it than that.
-    #[serde(skip)]
-    pub(crate) next: [Vec<Quad>; 2],
+    /// What contacts remember, by blocks of pairs. Empty where nothing is.
+    pub(crate) memory: Vec<Remembered>,
 }
 
 impl Pairs {
@@ -41,8 +45,7 @@ impl Pairs {
             partner: vec![0; WIDEST],
             shift: Vec::new(),
             touches: Vec::new(),
-            memory: Default::default(),
-            next: Default::default(),
+            memory: Vec::new(),
         }
     }
 
@@ -63,9 +66,11 @@ impl Pairs {
             pairs.row.resize(pairs.partner.len(), row as u32);
             pairs.start.push(pairs.partner.len() as u32);
         }
-        let count = pairs.partner.len();
-        pairs.touches = vec![0; if layout.numbers > 0 { count.div_ceil(WIDEST) } else { 0 }];
-        pairs.memory = [0, 4].map(|from| vec![Quad::default(); usize::from(layout.numbers > from)]);
+        if layout.numbers > 0 {
+            let count = pairs.partner.len();
+            pairs.touches = vec![0; count.div_ceil(WIDEST)];
+            pairs.memory = vec![nothing(layout); count.div_ceil(BLOCK)];
+        }
         pairs.fill_up();
         pairs
     }
@@ -82,7 +87,7 @@ impl Pairs {
         });
         for (at, (.., memory)) in sorted.iter().enumerate() {
             pairs.touches[at / WIDEST] |= 1 << (at % WIDEST);
-            for (number, of) in pairs.memory.iter_mut().enumerate().filter(|(_, of)| !of.is_empty()) {
+            for (number, of) in pairs.memory[at / BLOCK].iter_mut().enumerate().filter(|(_, of)| !of.is_empty()) {
                 of.push(Quad(std::array::from_fn(|part| memory[4 * number + part])));
             }
         }
@@ -91,12 +96,13 @@ impl Pairs {
 
     /// Row, partner and what is remembered, of each pair in rows of its own that touches.
     pub(crate) fn remembered(&self) -> impl Iterator<Item = (u32, u32, Memory<f64>)> {
-        let (own, mut place) = (self.own(), 0);
-        (0..own.end).filter_map(move |at| {
-            let touches = self.touches_at(at);
-            place += usize::from(touches);
-            let number = |number: usize| self.memory[number / 4].get(place).map_or(0.0, |quad| quad.0[number % 4]);
-            (touches && at >= own.start).then(|| (self.row[at], self.partner[at], std::array::from_fn(number)))
+        let own = self.own();
+        self.places().into_iter().enumerate().filter_map(move |(at, place)| {
+            let number = |number: usize| {
+                self.memory[at / BLOCK][number / 4].get(place as usize).map_or(0.0, |quad| quad.0[number % 4])
+            };
+            let told = place > 0 && own.contains(&at);
+            told.then(|| (self.row[at], self.partner[at], std::array::from_fn(number)))
         })
     }
 
@@ -118,14 +124,13 @@ impl Pairs {
         }
         let mut chosen = Self { partner: Vec::new(), row: Vec::new(), start: Vec::new(), ..Self::empty() };
         chosen.first_row = rows.start;
-        chosen.memory = lists[0].memory.each_ref().map(|of| of.iter().take(1).copied().collect());
-        let remembers = lists.iter().any(|list| !list.touches.is_empty());
+        let nothing = lists
+            .iter()
+            .find_map(|list| list.memory.first())
+            .map(|of| of.each_ref().map(|of| of[..of.len().min(1)].to_vec()));
         for list in lists {
-            let mut place = 0;
             let own = list.own();
-            for at in 0..own.end {
-                let touches = list.touches_at(at);
-                place += u32::from(touches);
+            for (at, place) in list.places().into_iter().enumerate().take(own.end) {
                 let (row, partner) = (list.row[at] as usize, list.partner[at] as usize);
                 if at < own.start || !(rows.contains(&row) || keep(partner)) {
                     continue;
@@ -134,11 +139,16 @@ impl Pairs {
                 chosen.row.push(list.row[at]);
                 chosen.partner.push(list.partner[at]);
                 chosen.shift.extend(list.shift.get(at));
-                if remembers && number.is_multiple_of(WIDEST) {
-                    chosen.touches.push(0);
+                if let Some(nothing) = &nothing {
+                    if number.is_multiple_of(WIDEST) {
+                        chosen.touches.push(0);
+                    }
+                    if number.is_multiple_of(BLOCK) {
+                        chosen.memory.push(nothing.clone());
+                    }
                 }
-                if touches {
-                    chosen.take(number, list, place, None);
+                if place > 0 {
+                    chosen.take(number, list, (at, place), None);
                 }
             }
         }
@@ -165,12 +175,15 @@ impl Pairs {
 
     /// Whether these are pairs of so many grains: rows that follow one another, and for each pair what it must have.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
-        let Self { start, row, partner, shift, touches, memory, first_row: _, next: _ } = self;
+        let Self { start, row, partner, shift, touches, memory, first_row: _ } = self;
         let Some(count) = partner.len().checked_sub(WIDEST) else { return false };
         let rows = start.len() == grains + 1 || start == &[0];
         let in_order = start.first() == Some(&0) && start.is_sorted();
-        let touched = touches.iter().map(|bits| bits.count_ones() as usize).sum::<usize>();
-        let remembers = |from: usize, count: usize| if layout.numbers > from && *start != [0] { count } else { 0 };
+        let remembers = |count: usize| if layout.numbers > 0 && *start != [0] { count } else { 0 };
+        let told = |(bits, of): (&[u8], &Remembered)| {
+            let touched = bits.iter().map(|bits| bits.count_ones() as usize).sum::<usize>();
+            [0, 4].map(|from| if layout.numbers > from { 1 + touched } else { 0 }) == of.each_ref().map(Vec::len)
+        };
         rows && in_order
             && start.last().is_some_and(|&last| last as usize == count)
             && row.len() == partner.len()
@@ -179,8 +192,9 @@ impl Pairs {
                 .zip(0..)
                 .all(|(ends, number)| row[ends[0] as usize..ends[1] as usize].iter().all(|&row| row == number))
             && (shift.is_empty() || shift.len() == partner.len())
-            && touches.len() == remembers(0, count.div_ceil(WIDEST))
-            && [memory[0].len(), memory[1].len()] == [remembers(0, 1 + touched), remembers(4, 1 + touched)]
+            && touches.len() == remembers(count.div_ceil(WIDEST))
+            && memory.len() == remembers(count.div_ceil(BLOCK))
+            && touches.chunks(BLOCK / WIDEST).zip(memory).all(told)
             // Beyond the last pair stands the first slot, of no grain where none are left.
             && row.iter().chain(partner).all(|&slot| (slot as usize) < grains.max(1))
     }
@@ -193,10 +207,13 @@ impl Pairs {
         Some(range.start + at)
     }
 
-    /// Place in the memory of every pair that touched when it was looked at last, zero of the others.
+    /// Place in the memory of its block of every pair that touched when it was looked at last, zero of the others.
     pub(crate) fn places(&self) -> Vec<u32> {
         let mut touched = 0;
         let place = |pair: usize| {
+            if pair.is_multiple_of(BLOCK) {
+                touched = 0;
+            }
             let touches = self.touches_at(pair);
             touched += u32::from(touches);
             if touches { touched } else { 0 }
@@ -204,11 +221,12 @@ impl Pairs {
         (0..self.len()).map(place).collect()
     }
 
-    /// Remembers of the next pair `at` what another list does in a place of its memory; with the roles of first and second
-    /// grain exchanged if `exchanged` is given.
-    pub(crate) fn take(&mut self, at: usize, other: &Self, place: u32, exchanged: Option<&Layout>) {
+    /// Remembers of the next pair `at` what another list does of a pair, in a place of its block's memory; with the roles of
+    /// first and second grain exchanged if `exchanged` is given.
+    pub(crate) fn take(&mut self, at: usize, other: &Self, (from, place): (usize, u32), exchanged: Option<&Layout>) {
         self.touches[at / WIDEST] |= 1 << (at % WIDEST);
-        for (number, (mine, other)) in self.memory.iter_mut().zip(&other.memory).enumerate() {
+        let memories = self.memory[at / BLOCK].iter_mut().zip(&other.memory[from / BLOCK]);
+        for (number, (mine, other)) in memories.enumerate() {
             if let Some(mut quad) = other.get(place as usize).copied() {
                 if let Some(layout) = exchanged {
                     (0..4).for_each(|part| quad.0[part] *= layout.exchanged[4 * number + part]);
@@ -218,28 +236,39 @@ impl Pairs {
         }
     }
 
-    /// Room for what a block of pairs remembers from a place on.
-    pub(crate) fn make_room(&mut self, places: usize) {
-        for (memory, next) in self.memory.iter().zip(&mut self.next) {
-            if !memory.is_empty() && next.len() < places {
-                reserve(next, places - next.len());
-                next.resize(places, Quad::default());
+    /// Makes the memory of a block ready for so many contacts: in place where they are those that touched before, else it is
+    /// made anew, and what was remembered lies in `before`. Room follows the last, so that registers can be filled.
+    pub(crate) fn make_room(&mut self, block: usize, count: usize, before: Option<&mut Remembered>) {
+        let Some(memory) = self.memory.get_mut(block) else { return };
+        if let Some(before) = before {
+            std::mem::swap(memory, before);
+            for (of, before) in memory.iter_mut().zip(before) {
+                // What stands there will be written over, but for the first, which is nothing.
+                of.resize(if before.is_empty() { 0 } else { of.len().max(1) }, Quad::default());
             }
+        }
+        for of in memory.iter_mut().filter(|of| !of.is_empty()) {
+            let room = 1 + count + WIDEST;
+            reserve(of, room.saturating_sub(of.len()));
+            of.resize(room, Quad::default());
         }
     }
 
-    /// What was written as next, of so many contacts, is what is remembered.
-    pub(crate) fn remember(&mut self, contacts: usize) {
-        for (memory, next) in self.memory.iter_mut().zip(&mut self.next).filter(|(memory, _)| !memory.is_empty()) {
-            std::mem::swap(memory, next);
-            memory.truncate(1 + contacts);
-            memory.resize(1 + contacts, Quad::default());
+    /// What the contacts of a block remember is what was written, of so many.
+    pub(crate) fn remember(&mut self, block: usize, count: usize) {
+        if let Some(memory) = self.memory.get_mut(block) {
+            memory.iter_mut().for_each(|of| of.truncate(1 + count));
         }
     }
 
     pub(crate) fn forget(&mut self) {
-        self.memory.iter_mut().for_each(|memory| memory.fill(Quad::default()));
+        self.memory.iter_mut().flatten().for_each(|memory| memory.fill(Quad::default()));
     }
+}
+
+/// The memory of a block without contacts.
+fn nothing(layout: Layout) -> Remembered {
+    [0, 4].map(|from| vec![Quad::default(); usize::from(layout.numbers > from)])
 }
 
 /// Makes room for more: where it must grow, by an eighth at least, for there may be millions.

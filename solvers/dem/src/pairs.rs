@@ -24,15 +24,9 @@ pub(crate) struct OfPairs<'a, S: Geometry, N, T, R, const Q: usize> {
     grains: Read<'a>,
     sums: Sums<'a>,
     shift: &'a [Quad],
-    memory: [Remembered<'a>; 2],
+    memory: [&'a mut [Quad]; 2],
     seen: Option<&'a mut Seen>,
     chain: PhantomData<(S, N, T, R)>,
-}
-
-/// Four numbers that contacts remember, and where the next are kept.
-struct Remembered<'a> {
-    last: &'a [Quad],
-    next: &'a mut [Quad],
 }
 
 /// Slots of the grains of as many pairs as a register holds.
@@ -49,27 +43,16 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     pub(crate) fn new(
         terms: Terms<'a>,
         (grains, sums): (Read<'a>, Sums<'a>),
-        pairs: &'a mut Pairs,
+        (pairs, block): (&'a mut Pairs, usize),
         touching: &'a Touching,
         seen: Option<&'a mut Seen>,
     ) -> Self {
-        let kept = touching.kept_from()..touching.kept_from() + touching.count + WIDEST;
-        pairs.make_room(kept.end);
-        let Pairs { shift, memory: [low, high], next: [low_next, high_next], .. } = pairs;
-        let remembered = |last: &'a [Quad], next: &'a mut [Quad]| Remembered {
-            last,
-            next: next.get_mut(kept.clone()).unwrap_or_default(),
+        let Pairs { shift, memory, .. } = pairs;
+        let memory = match memory.get_mut(block) {
+            Some(memory) => memory.each_mut().map(|of| of.get_mut(1..).unwrap_or_default()),
+            None => Default::default(),
         };
-        Self {
-            terms,
-            touching,
-            grains,
-            sums,
-            shift,
-            memory: [remembered(low, low_next), remembered(high, high_next)],
-            seen,
-            chain: PhantomData,
-        }
+        Self { terms, touching, grains, sums, shift, memory, seen, chain: PhantomData }
     }
 
     /// Runs it; contacts that are recorded are taken one by one.
@@ -133,10 +116,15 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     #[inline(always)]
     fn remembered<L: Lanes>(&self, lanes: L, from: usize) -> Memory<Wide<L>> {
         let mut memory = [Wide::splat(lanes, 0.0); MEMORY];
-        for (quad, Remembered { last, .. }) in self.memory.iter().enumerate() {
+        let Touching { steady, remembered, before, .. } = self.touching;
+        for (quad, (now, before)) in self.memory.iter().zip(before).enumerate() {
             if Self::NUMBERS > 4 * quad {
-                let at = places(lanes, &self.touching.remembered[from..], last.len());
-                memory[4 * quad..4 * quad + 4].copy_from_slice(&gathered(lanes, last, &at));
+                let quads = if *steady {
+                    gathered(lanes, &now[from..from + L::WIDTH], &IN_ORDER)
+                } else {
+                    gathered(lanes, before, &places(lanes, &remembered[from..], before.len()))
+                };
+                memory[4 * quad..4 * quad + 4].copy_from_slice(&quads);
             }
         }
         memory
@@ -145,11 +133,11 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     /// Keeps what contacts remember from now on.
     #[inline(always)]
     fn remember<L: Lanes>(&mut self, lanes: L, memory: &Memory<Wide<L>>, from: usize) {
-        for (quad, Remembered { next, .. }) in self.memory.iter_mut().enumerate() {
+        for (quad, now) in self.memory.iter_mut().enumerate() {
             if Self::NUMBERS > 4 * quad {
                 let of = 4 * quad;
                 let quads = spread(lanes, [memory[of], memory[of + 1], memory[of + 2], memory[of + 3]]);
-                next[from..from + L::WIDTH].copy_from_slice(&quads[..L::WIDTH]);
+                now[from..from + L::WIDTH].copy_from_slice(&quads[..L::WIDTH]);
             }
         }
     }
@@ -237,6 +225,9 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
         }
     }
 }
+
+/// Places one after the other.
+const IN_ORDER: [usize; WIDEST] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /// A quad for each lane.
 #[inline(always)]

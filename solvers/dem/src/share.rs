@@ -7,7 +7,7 @@ use crate::contact::chain::Layout;
 use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
 use crate::grains::{Read, Sums};
-use crate::listed::Pairs;
+use crate::listed::{BLOCK, Pairs};
 use crate::seen::Seen;
 use crate::touching::{Touching, blocks};
 use grainbench_lanes::Processor;
@@ -102,7 +102,7 @@ impl Share {
             // A grain that has come since has no row.
             let share = old.get(old.partition_point(|share| share.rows.end <= a as usize))?;
             let mut lists = [&share.near, &share.across].into_iter().zip(share.work.places.iter().rev());
-            lists.find_map(|(list, places)| list.find(a, b).map(|from| (list, places[from])))
+            lists.find_map(|(list, places)| list.find(a, b).map(|from| (list, (from, places[from]))))
         };
         for pairs in [&mut self.near, &mut self.across] {
             for at in 0..pairs.len() {
@@ -111,7 +111,7 @@ impl Share {
                     Some(found) => (Some(found), None),
                     None => (found(b, a), Some(layout)),
                 };
-                if let Some((list, place)) = found.filter(|&(_, place)| place > 0) {
+                if let Some((list, place)) = found.filter(|&(_, (_, place))| place > 0) {
                     pairs.take(at, list, place, exchanged);
                 }
             }
@@ -144,8 +144,8 @@ impl Share {
         let Self { rows, near, across, work: Work { touching, seen: [seen_across, seen_near], .. } } = self;
         let [touching_across, touching_near] = touching;
         [
-            List { rows: rows.clone(), pairs: across, touching: touching_across, seen: seen_across, touch: 0, own: 0 },
-            List { rows: rows.clone(), pairs: near, touching: touching_near, seen: seen_near, touch: 0, own: 0 },
+            List { rows: rows.clone(), pairs: across, touching: touching_across, seen: seen_across, own: 0 },
+            List { rows: rows.clone(), pairs: near, touching: touching_near, seen: seen_near, own: 0 },
         ]
     }
 
@@ -161,7 +161,7 @@ impl Share {
             for block in list.blocks() {
                 list.evaluate(evaluation, grains, sums.lent(), block);
             }
-            contacts += list.end();
+            contacts += list.own();
         }
         contacts
     }
@@ -173,8 +173,7 @@ pub(crate) struct List<'a> {
     pairs: &'a mut Pairs,
     touching: &'a mut Touching,
     seen: &'a mut Seen,
-    /// Contacts so far, and those in rows of its own.
-    touch: usize,
+    /// Contacts in rows of its own, so far.
     own: u64,
 }
 
@@ -193,10 +192,10 @@ impl List<'_> {
         sums: Sums<'_>,
         block: Range<usize>,
     ) {
-        let Self { rows, pairs, touching, seen, touch, own } = self;
+        let Self { rows, pairs, touching, seen, own } = self;
+        let number = block.start / BLOCK;
         let (whole, own_pairs) = (0..pairs.len(), pairs.own());
         touching.find::<S>(evaluation.processor, grains.place, pairs, block);
-        *touch += touching.count;
         *own += if own_pairs == whole {
             touching.count as u64
         } else {
@@ -206,7 +205,15 @@ impl List<'_> {
             seen.make_room(touching.count);
         }
         let seen = evaluation.record.then_some(&mut **seen);
-        evaluation.forces.of_pairs(evaluation.processor, evaluation.terms, (grains, sums), pairs, touching, seen);
+        evaluation.forces.of_pairs(
+            evaluation.processor,
+            evaluation.terms,
+            (grains, sums),
+            (pairs, number),
+            touching,
+            seen,
+        );
+        pairs.remember(number, touching.count);
     }
 
     /// The row of the pair that comes after a block, where one does: all pairs of the grains in the rows before have been
@@ -215,9 +222,8 @@ impl List<'_> {
         (block.end < self.pairs.len()).then(|| self.pairs.row[block.end] as usize)
     }
 
-    /// Ends an evaluation. Gives the number of contacts in rows of its own.
-    pub(crate) fn end(self) -> u64 {
-        self.pairs.remember(self.touch);
+    /// Number of contacts in rows of its own.
+    pub(crate) fn own(self) -> u64 {
         self.own
     }
 }

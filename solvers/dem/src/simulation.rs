@@ -527,5 +527,5 @@ fn evaluate_and_move<S: Geometry>(
         let left = moved..grains.len();
         fastest = fastest.max(motion.advance::<S>(evaluation.processor, Moving::of(grains, left)));
     }
-    (across.end() + near.end(), fastest)
+    (across.own() + near.own(), fastest)
 }

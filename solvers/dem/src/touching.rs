@@ -3,14 +3,10 @@
 
 use crate::geometry::{Geometry, Linear};
 use crate::laws::{gathered, places};
-use crate::listed::Pairs;
+use crate::listed::{BLOCK, Pairs, Remembered};
 use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, WIDEST};
 use std::marker::PhantomData;
 use std::ops::Range;
-
-/// Listed pairs that are looked at before the forces of those that touch are found: so few that their grains are still at
-/// hand, and so many that little is lost at the end. A multiple of eight.
-const BLOCK: usize = 2048;
 
 /// The blocks of so many listed pairs.
 pub(crate) fn blocks(pairs: usize) -> impl Iterator<Item = Range<usize>> {
@@ -28,10 +24,13 @@ pub(crate) struct Touching {
     pub(crate) second: Vec<u32>,
     /// Number of each in the list, only where the list has shifts.
     pub(crate) pair: Vec<u32>,
-    /// What each remembers: its place in the memory of the list, the first, which is nothing, for a new contact.
+    /// Whether they are those that touched when they were looked at last.
+    pub(crate) steady: bool,
+    /// What each remembers: its place in the memory of the block as it was before, the first, which is nothing, for a new
+    /// contact.
     pub(crate) remembered: Vec<u32>,
-    /// Contacts of the blocks before that touched when they were looked at last, and that touch now.
-    before: [usize; 2],
+    /// The memory of the block as it was before, where it is made anew.
+    pub(crate) before: Remembered,
 }
 
 impl Touching {
@@ -46,21 +45,13 @@ impl Touching {
         for all in [&mut self.first, &mut self.second, &mut self.pair, &mut self.remembered] {
             all.resize(BLOCK + 2 * WIDEST, 0);
         }
-        if block.start == 0 {
-            self.before = [0, 0];
-        } else {
-            self.before[1] += self.count;
-        }
+        let number = block.start / BLOCK;
         processor.run(Find::<S> { place, pairs, block, touching: self, space: PhantomData });
+        pairs.make_room(number, self.count, (!self.steady).then_some(&mut self.before));
         for all in [&mut self.first, &mut self.second, &mut self.pair, &mut self.remembered] {
             let last = self.count.checked_sub(1).map_or(0, |last| all[last]);
             all[self.count..self.count + WIDEST].fill(last);
         }
-    }
-
-    /// Place in the memory of the list where what the first of the block remembers is kept.
-    pub(crate) fn kept_from(&self) -> usize {
-        1 + self.before[1]
     }
 }
 
@@ -80,8 +71,8 @@ impl<S: Geometry> Kernel for Find<'_, S> {
     fn run<L: Lanes>(self, lanes: L) {
         let Self { place, pairs, block, touching, space: _ } = self;
         let Pairs { row, partner, shift, touches, .. } = pairs;
-        let Touching { count, first, second, pair, remembered, before } = touching;
-        let mut had = before[0];
+        let Touching { count, first, second, pair, steady, remembered, before: _ } = touching;
+        let (mut had, mut changed) = (0, 0);
         *count = 0;
         for from in block.clone().step_by(WIDEST) {
             let (ones, others) = (eight(row, from), eight(partner, from));
@@ -107,6 +98,7 @@ impl<S: Geometry> Kernel for Find<'_, S> {
             }
             if let Some(touches) = touches.get_mut(from / WIDEST) {
                 let touched = u32::from(std::mem::replace(touches, near as u8));
+                changed |= touched ^ near;
                 let remembered = &mut remembered[*count..*count + WIDEST];
                 if touched == near {
                     count_up(remembered, 1 + had);
@@ -125,7 +117,7 @@ impl<S: Geometry> Kernel for Find<'_, S> {
             }
             *count += near.count_ones() as usize;
         }
-        before[0] = had;
+        *steady = changed == 0;
     }
 }
 
