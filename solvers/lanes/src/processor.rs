@@ -107,8 +107,9 @@ impl Processor {
             Self::Portable => kernel.run(Portable),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: features, kernel }),
+            // Four lanes as well, but with the more registers that this processor has.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(features) => pulp::Simd::vectorize(*features, CompiledByFour { lanes: *features, kernel }),
+            Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: *features, kernel }),
         }
     }
 }

@@ -6,14 +6,15 @@ use crate::failure::Failure;
 use crate::gradients::Gradients;
 use crate::grid::Node;
 use crate::ledger::Flow;
-use crate::material::{Law, PlasticStrain, with_law};
+use crate::material::{Law, PlasticStrain, VolumeRatio, with_law};
 use crate::nodes::{Grid, Velocities};
 use crate::options::Transfer;
 use crate::points::Lent;
-use crate::runs::{self, Ground};
+use crate::runs::{self, Ground, LONGEST};
 use crate::scheme::Scheme;
 use crate::share::{Share, Way};
 use crate::state::State;
+use grainbench_lanes::logarithm::ln;
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
@@ -163,38 +164,59 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
         let deformations = &mut points.deformation[range.clone()];
         let stresses = &mut points.stress[range.clone()];
         let plastic_strains = L::PlasticStrain::those_of(points.plastic_strain, range.clone());
-        let volumes = points.volume[range.clone()].iter_mut().zip(&points.reference_volume[range.clone()]);
-        let states = deformations.iter_mut().zip(stresses).zip(volumes);
-        for (place, ((at, gradient), ((deformation, stress), (volume, reference)))) in
-            range.zip(gradients).zip(states).enumerate()
-        {
-            let increment = *gradient * time_step;
-            if COUNT {
-                let strain = S::symmetric_part(increment);
-                flow.viscous +=
-                    0.5 * *volume * law.viscous_work::<S>(strain, *volume / reference, *deformation, *stress);
+        let (volumes, references) = (&mut points.volume[range.clone()], &points.reference_volume[range.clone()]);
+        let (mut ratios, mut logarithms) = ([0.0; LONGEST], [0.0; LONGEST]);
+        // Work against viscosity is added up point by point, before the step and after it.
+        let at_once = if COUNT && L::VISCOUS { 1 } else { LONGEST };
+        for from in (0..gradients.len()).step_by(at_once) {
+            let some = from..gradients.len().min(from + at_once);
+            let states = deformations[some.clone()].iter_mut().zip(&stresses[some.clone()]);
+            let sizes = volumes[some.clone()].iter().zip(&references[some.clone()]);
+            for (((deformation, stress), gradient), ((volume, reference), ratio)) in
+                states.zip(&gradients[some.clone()]).zip(sizes.zip(&mut ratios))
+            {
+                let increment = *gradient * time_step;
+                if COUNT {
+                    let strain = S::symmetric_part(increment);
+                    flow.viscous +=
+                        0.5 * volume * law.viscous_work::<S>(strain, volume / reference, *deformation, *stress);
+                }
+                *deformation = *deformation + increment * *deformation;
+                *ratio = S::determinant(*deformation);
             }
-            *deformation = *deformation + increment * *deformation;
-            let volume_ratio = S::determinant(*deformation);
-            if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
-                *failure = Some(BrokenPoint { point: first + at, cause: cause::<S>(increment, volume_ratio) });
+            if L::LOGARITHM {
+                for (logarithm, &ratio) in logarithms.iter_mut().zip(&ratios).take(some.len()) {
+                    *logarithm = ln(ratio);
+                }
             }
-            let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
-            let before = (*volume, plastic_strain.value());
-            *volume = reference * volume_ratio;
-            *stress = law.follow::<S>(increment, volume_ratio, *deformation, *stress, &mut plastic_strain);
-            let flown = plastic_strain.value() - before.1;
-            plastic_strain.write(plastic_strains, place);
-            if spins && flown > 0.0 {
-                let strain_rate = S::embed_symmetric(S::symmetric_part(*gradient));
-                affines[at] = S::restrict_gradient(S::embed_gradient(*gradient) - strain_rate);
-            }
-            if COUNT {
-                let strain = S::symmetric_part(increment);
-                flow.taken += *volume * S::double_dot(*stress, strain);
-                flow.viscous += 0.5 * *volume * law.viscous_work::<S>(strain, volume_ratio, *deformation, *stress);
-                if flown > 0.0 {
-                    flow.plastic += 0.5 * (before.0 + *volume) * law.flow_stress(plastic_strain) * flown;
+            let ratios = ratios.iter().zip(&logarithms).map(|(&ratio, &logarithm)| VolumeRatio { ratio, logarithm });
+            let states = deformations[some.clone()].iter().zip(&mut stresses[some.clone()]);
+            let sizes = volumes[some.clone()].iter_mut().zip(&references[some.clone()]);
+            for ((place, gradient), ((deformation, stress), ((volume, reference), ratio))) in
+                some.clone().zip(&gradients[some.clone()]).zip(states.zip(sizes.zip(ratios)))
+            {
+                let increment = *gradient * time_step;
+                let (at, volume_ratio) = (range.start + place, ratio.ratio);
+                if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
+                    *failure = Some(BrokenPoint { point: first + at, cause: cause::<S>(increment, volume_ratio) });
+                }
+                let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
+                let before = (*volume, plastic_strain.value());
+                *volume = reference * volume_ratio;
+                *stress = law.follow::<S>(increment, ratio, *deformation, *stress, &mut plastic_strain);
+                let flown = plastic_strain.value() - before.1;
+                plastic_strain.write(plastic_strains, place);
+                if spins && flown > 0.0 {
+                    let strain_rate = S::embed_symmetric(S::symmetric_part(*gradient));
+                    affines[at] = S::restrict_gradient(S::embed_gradient(*gradient) - strain_rate);
+                }
+                if COUNT {
+                    let strain = S::symmetric_part(increment);
+                    flow.taken += *volume * S::double_dot(*stress, strain);
+                    flow.viscous += 0.5 * *volume * law.viscous_work::<S>(strain, volume_ratio, *deformation, *stress);
+                    if flown > 0.0 {
+                        flow.plastic += 0.5 * (before.0 + *volume) * law.flow_stress(plastic_strain) * flown;
+                    }
                 }
             }
         }

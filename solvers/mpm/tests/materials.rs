@@ -1,7 +1,7 @@
 //! Constitutive laws at a point.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, State, VonMises};
+use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, State, VolumeRatio, VonMises};
 use grainbench_mpm::off::Off;
 use grainbench_scene::space::{Plane, Solid, Space};
 use nalgebra::Matrix3;
@@ -95,7 +95,7 @@ fn a_quarter_turn_carries_the_stress_along() {
         let increment = S::restrict_gradient(gradient);
         let mut stress = S::restrict_symmetric(STRESS);
         for _ in 0..steps {
-            stress = law.follow::<S>(increment, 1.0, increment, stress, &mut Off);
+            stress = law.follow::<S>(increment, VolumeRatio::of(1.0), increment, stress, &mut Off);
         }
         S::embed_symmetric(stress)
     }

@@ -1,7 +1,7 @@
 //! The laws between deformation and stress, and which of them a material has. A new one is a variant of [`Material`], a line of
 //! [`with_law`], and its stress.
 
-use super::{Law, State, symmetric_root};
+use super::{Law, State, VolumeRatio, symmetric_root};
 use crate::off::Off;
 use grainbench_lanes::logarithm::ln;
 use grainbench_scene::material::{Constitutive, Deformable};
@@ -63,26 +63,27 @@ pub struct NeoHookean {
 
 impl NeoHookean {
     #[inline(always)]
-    fn stress<S: Space>(&self, deformation: S::Matrix, volume_ratio: f64) -> S::Symmetric {
-        let inverse = 1.0 / volume_ratio;
-        let part = (self.lame * ln(volume_ratio) - self.shear_modulus) * inverse;
+    fn stress<S: Space>(&self, deformation: S::Matrix, volume: VolumeRatio) -> S::Symmetric {
+        let inverse = 1.0 / volume.ratio;
+        let part = (self.lame * volume.logarithm - self.shear_modulus) * inverse;
         S::scaled_sum(S::finger(deformation), self.shear_modulus * inverse, S::isotropic(part))
     }
 }
 
 impl Law for NeoHookean {
     type PlasticStrain = Off;
+    const LOGARITHM: bool = true;
 
     #[inline(always)]
     fn follow<S: Space>(
         &self,
         _increment: S::Matrix,
-        volume_ratio: f64,
+        volume: VolumeRatio,
         deformation: S::Matrix,
         _stress: S::Symmetric,
         _plastic_strain: &mut Off,
     ) -> S::Symmetric {
-        self.stress::<S>(deformation, volume_ratio)
+        self.stress::<S>(deformation, volume)
     }
 
     /// W = λ/2 ln²J + G/2 (tr b − 3 − 2 ln J).
@@ -117,7 +118,7 @@ impl Law for NeoHookean {
         }
         let is_found = now > 0.0 && excess(now).abs() <= 1e-12 * now * now;
         let deformation = symmetric_root(&finger(now)).filter(|_| is_found)?;
-        let stress = Solid::embed_symmetric(self.stress::<Solid>(deformation, now));
+        let stress = Solid::embed_symmetric(self.stress::<Solid>(deformation, VolumeRatio::of(now)));
         Some(State { deformation, stress, plastic_strain: 0.0 })
     }
 }
@@ -137,19 +138,21 @@ pub struct KelvinVoigt {
 
 impl Law for KelvinVoigt {
     type PlasticStrain = Off;
+    const LOGARITHM: bool = true;
+    const VISCOUS: bool = true;
 
     #[inline(always)]
     fn follow<S: Space>(
         &self,
         increment: S::Matrix,
-        volume_ratio: f64,
+        volume: VolumeRatio,
         deformation: S::Matrix,
         _stress: S::Symmetric,
         _plastic_strain: &mut Off,
     ) -> S::Symmetric {
         let strain = S::symmetric_part(increment);
         let mean = (self.bulk_viscosity - 2.0 / 3.0 * self.shear_viscosity) * S::trace(strain);
-        let elastic = self.elastic.stress::<S>(deformation, volume_ratio);
+        let elastic = self.elastic.stress::<S>(deformation, volume);
         S::scaled_sum(strain, 2.0 * self.shear_viscosity, S::scaled_sum(S::isotropic(mean), 1.0, elastic))
     }
 
@@ -161,7 +164,7 @@ impl Law for KelvinVoigt {
         deformation: S::Matrix,
         stress: S::Symmetric,
     ) -> f64 {
-        let elastic = self.elastic.stress::<S>(deformation, volume_ratio);
+        let elastic = self.elastic.stress::<S>(deformation, VolumeRatio::of(volume_ratio));
         S::double_dot(S::scaled_sum(elastic, -1.0, stress), strain)
     }
 
@@ -193,7 +196,7 @@ impl Law for Hypoelastic {
     fn follow<S: Space>(
         &self,
         increment: S::Matrix,
-        _volume_ratio: f64,
+        _volume: VolumeRatio,
         _deformation: S::Matrix,
         stress: S::Symmetric,
         _plastic_strain: &mut Off,
@@ -236,12 +239,12 @@ impl Law for VonMises {
     fn follow<S: Space>(
         &self,
         increment: S::Matrix,
-        volume_ratio: f64,
+        volume: VolumeRatio,
         deformation: S::Matrix,
         stress: S::Symmetric,
         plastic_strain: &mut f64,
     ) -> S::Symmetric {
-        let stress = self.elastic.follow::<S>(increment, volume_ratio, deformation, stress, &mut Off);
+        let stress = self.elastic.follow::<S>(increment, volume, deformation, stress, &mut Off);
         let mean = S::trace(stress) / 3.0;
         let deviator = S::scaled_sum(stress, 1.0, S::isotropic(-mean));
         let squared = 1.5 * S::norm_squared(deviator);

@@ -7,6 +7,7 @@ pub use laws::{Hypoelastic, KelvinVoigt, NeoHookean, VonMises};
 pub(crate) use laws::{Material, with_law};
 pub use plastic_strain::PlasticStrain;
 
+use grainbench_lanes::logarithm::ln;
 use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;
 
@@ -27,16 +28,38 @@ impl Default for State {
     }
 }
 
+/// The volume of a point over that at the start.
+#[derive(Clone, Copy, Debug)]
+pub struct VolumeRatio {
+    /// The ratio J.
+    pub ratio: f64,
+    /// ln J, of laws that take it: it is found for many points at once.
+    pub logarithm: f64,
+}
+
+impl VolumeRatio {
+    /// A ratio with its logarithm.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(ratio: f64) -> Self {
+        Self { ratio, logarithm: ln(ratio) }
+    }
+}
+
 /// A law between deformation and stress.
 pub trait Law: Copy + Send + Sync + 'static {
     /// The plastic strain that it reads and changes: [`crate::off::Off`] for laws that never yield.
     type PlasticStrain: PlasticStrain;
+    /// Whether its stress takes the logarithm of the volume ratio.
+    const LOGARITHM: bool = false;
+    /// Whether a part of its stress is viscous.
+    const VISCOUS: bool = false;
     /// The stress after a step with the displacement gradient `increment` = Δt ∇v, from the stress before it and the
-    /// deformation after it, of which `volume_ratio` is the determinant.
+    /// deformation after it, of which `volume` is the determinant.
     fn follow<S: Space>(
         &self,
         increment: S::Matrix,
-        volume_ratio: f64,
+        volume: VolumeRatio,
         deformation: S::Matrix,
         stress: S::Symmetric,
         plastic_strain: &mut Self::PlasticStrain,
@@ -46,7 +69,8 @@ pub trait Law: Copy + Send + Sync + 'static {
         let stress = Solid::restrict_symmetric(state.stress);
         let own = std::slice::from_mut(&mut state.plastic_strain);
         let mut plastic_strain = Self::PlasticStrain::read(own, 0);
-        let stress = self.follow::<Solid>(*increment, volume_ratio, state.deformation, stress, &mut plastic_strain);
+        let volume = VolumeRatio::of(volume_ratio);
+        let stress = self.follow::<Solid>(*increment, volume, state.deformation, stress, &mut plastic_strain);
         plastic_strain.write(own, 0);
         state.stress = Solid::embed_symmetric(stress);
     }
