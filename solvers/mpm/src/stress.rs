@@ -170,39 +170,39 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
         let at_once = if COUNT && L::VISCOUS { 1 } else { LONGEST };
         for from in (0..gradients.len()).step_by(at_once) {
             let some = from..gradients.len().min(from + at_once);
-            let states = deformations[some.clone()].iter_mut().zip(&stresses[some.clone()]);
-            let sizes = volumes[some.clone()].iter().zip(&references[some.clone()]);
-            for (((deformation, stress), gradient), ((volume, reference), ratio)) in
-                states.zip(&gradients[some.clone()]).zip(sizes.zip(&mut ratios))
-            {
-                let increment = *gradient * time_step;
-                if COUNT {
-                    let strain = S::symmetric_part(increment);
-                    flow.viscous +=
-                        0.5 * volume * law.viscous_work::<S>(strain, volume / reference, *deformation, *stress);
-                }
-                *deformation = *deformation + increment * *deformation;
-                *ratio = S::determinant(*deformation);
-            }
             if L::LOGARITHM {
+                let states = deformations[some.clone()].iter_mut().zip(&stresses[some.clone()]);
+                let sizes = volumes[some.clone()].iter().zip(&references[some.clone()]);
+                for (((deformation, stress), gradient), ((volume, reference), ratio)) in
+                    states.zip(&gradients[some.clone()]).zip(sizes.zip(&mut ratios))
+                {
+                    let increment = *gradient * time_step;
+                    if COUNT && L::VISCOUS {
+                        let strain = S::symmetric_part(increment);
+                        flow.viscous +=
+                            0.5 * volume * law.viscous_work::<S>(strain, volume / reference, *deformation, *stress);
+                    }
+                    *ratio = deformed::<S>(deformation, increment);
+                }
                 for (logarithm, &ratio) in logarithms.iter_mut().zip(&ratios).take(some.len()) {
                     *logarithm = ln(ratio);
                 }
             }
-            let ratios = ratios.iter().zip(&logarithms).map(|(&ratio, &logarithm)| VolumeRatio { ratio, logarithm });
-            let states = deformations[some.clone()].iter().zip(&mut stresses[some.clone()]);
+            let found = ratios.iter().zip(&logarithms);
+            let states = deformations[some.clone()].iter_mut().zip(&mut stresses[some.clone()]);
             let sizes = volumes[some.clone()].iter_mut().zip(&references[some.clone()]);
-            for ((place, gradient), ((deformation, stress), ((volume, reference), ratio))) in
-                some.clone().zip(&gradients[some.clone()]).zip(states.zip(sizes.zip(ratios)))
+            for ((place, gradient), ((deformation, stress), ((volume, reference), (&ratio, &logarithm)))) in
+                some.clone().zip(&gradients[some.clone()]).zip(states.zip(sizes.zip(found)))
             {
-                let increment = *gradient * time_step;
-                let (at, volume_ratio) = (range.start + place, ratio.ratio);
+                let (at, increment) = (range.start + place, *gradient * time_step);
+                let volume_ratio = if L::LOGARITHM { ratio } else { deformed::<S>(deformation, increment) };
                 if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
                     *failure = Some(BrokenPoint { point: first + at, cause: cause::<S>(increment, volume_ratio) });
                 }
                 let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
                 let before = (*volume, plastic_strain.value());
                 *volume = reference * volume_ratio;
+                let ratio = VolumeRatio { ratio: volume_ratio, logarithm };
                 *stress = law.follow::<S>(increment, ratio, *deformation, *stress, &mut plastic_strain);
                 let flown = plastic_strain.value() - before.1;
                 plastic_strain.write(plastic_strains, place);
@@ -213,7 +213,10 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
                 if COUNT {
                     let strain = S::symmetric_part(increment);
                     flow.taken += *volume * S::double_dot(*stress, strain);
-                    flow.viscous += 0.5 * *volume * law.viscous_work::<S>(strain, volume_ratio, *deformation, *stress);
+                    if L::VISCOUS {
+                        flow.viscous +=
+                            0.5 * *volume * law.viscous_work::<S>(strain, volume_ratio, *deformation, *stress);
+                    }
                     if flown > 0.0 {
                         flow.plastic += 0.5 * (before.0 + *volume) * law.flow_stress(plastic_strain) * flown;
                     }
@@ -221,6 +224,13 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
             }
         }
     }
+}
+
+/// Deforms what a point is by F ← (1 + Δt ∇v) F. Gives its volume over that at the start.
+#[inline(always)]
+fn deformed<S: Space>(deformation: &mut S::Matrix, increment: S::Matrix) -> f64 {
+    *deformation = *deformation + increment * *deformation;
+    S::determinant(*deformation)
 }
 
 fn cause<S: Space>(increment: S::Matrix, volume_ratio: f64) -> Cause {
