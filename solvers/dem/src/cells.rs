@@ -12,13 +12,13 @@ pub(crate) struct Cells {
     width: Vector3<f64>,
     reach: f64,
     pub(crate) count: [usize; 3],
-    /// First slot of every cell, and the number of grains that have one at the end.
+    /// First slot of every cell, and the number of grains at the end. Before the first are the grains without a cell.
     pub(crate) start: Vec<u32>,
 }
 
 impl Cells {
     /// Lays the grid and gives the order that sorts the grains by cell (a stable sort). Grains with radii above `limit` have no
-    /// cell and come last.
+    /// cell and come first, so that what they touch comes after them.
     pub(crate) fn sort<S: Geometry>(place: &[Quad], reach: f64, limit: f64) -> (Self, Vec<u32>) {
         let mut low = Vector3::repeat(f64::INFINITY);
         let mut high = Vector3::repeat(f64::NEG_INFINITY);
@@ -44,9 +44,9 @@ impl Cells {
         }
         let width = Vector3::from_fn(|axis, _| (extent[axis] / count[axis] as f64).max(reach));
         let mut cells = Self { low, width, reach, count, start: Vec::new() };
-        // Those without a cell are sorted as if they had one more.
+        // Those without a cell are sorted as if they had one more, before the others.
         let last = count.iter().product::<usize>();
-        let cell = |grain: &Quad| if has_cell(&grain) { cells.index(S::vector_in_space(grain)) } else { last };
+        let cell = |grain: &Quad| if has_cell(&grain) { 1 + cells.index(S::vector_in_space(grain)) } else { 0 };
         let cell_of: Vec<u32> = place.iter().map(|grain| cell(grain) as u32).collect();
         let mut start = vec![0_u32; last + 2];
         cell_of.iter().for_each(|&cell| start[cell as usize + 1] += 1);
@@ -59,7 +59,7 @@ impl Cells {
             order[next[cell as usize] as usize] = slot as u32;
             next[cell as usize] += 1;
         }
-        start.truncate(last + 1);
+        start.remove(0);
         cells.start = start;
         (cells, order)
     }
@@ -91,9 +91,9 @@ impl Cells {
         self.reach
     }
 
-    /// Slots of grains that have a cell.
-    pub(crate) fn sorted(&self) -> usize {
-        self.start.last().map_or(0, |&end| end as usize)
+    /// How many grains have no cell: theirs are the first slots.
+    pub(crate) fn without(&self) -> usize {
+        self.start.first().map_or(0, |&first| first as usize)
     }
 
     fn index(&self, position: Vector3<f64>) -> usize {

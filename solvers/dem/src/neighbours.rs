@@ -135,15 +135,16 @@ fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
     between.dot(between) < reach * reach
 }
 
-/// Every pair of some rows that is near in the domain itself, once: each grain with those after it in its own cells and in
+/// Every pair of some rows that is near in the domain itself, once, in the row of the grain that comes first: once its row has
+/// been gone through a grain may move. Each grain with those after it in its own cells and in
 /// the next.
 fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range<usize>, layout: Layout) -> Pairs {
-    let sorted = cells.sorted();
-    let mut cell = cells.of(rows.start.min(sorted.saturating_sub(1)));
+    let without = cells.without();
+    let mut cell = if without < place.len() { cells.of(rows.start.clamp(without, place.len() - 1)) } else { 0 };
     let mut at = cells.place(cell);
     Pairs::list(rows, layout, |slot, partners, _| {
         let grain = &place[slot];
-        if slot >= sorted {
+        if slot < without {
             return beside_a_large_one::<S>(place, cells, skin, slot, partners);
         }
         while cells.start[cell + 1] as usize <= slot {
@@ -177,21 +178,21 @@ fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range
 /// What is near to a grain that is far larger than others and has no cell: of those in cells all that it reaches, and of those
 /// without the ones after it.
 fn beside_a_large_one<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, slot: usize, partners: &mut Vec<u32>) {
-    let (grain, sorted) = (&place[slot], cells.sorted());
+    let (grain, without) = (&place[slot], cells.without());
     let mut take = |range: Range<usize>| {
         partners.extend(range.filter(|&other| is_near::<S>(grain, &place[other], skin)).map(|other| other as u32));
     };
     let reach = Vector3::repeat(grain.0[3] + cells.reach());
     let middle = S::vector_in_space(grain);
     let (low, high) = (cells.coordinates(middle - reach), cells.coordinates(middle + reach));
-    if sorted > 0 {
+    take(slot + 1..without);
+    if without < place.len() {
         for k in low[2]..=high[2] {
             for j in low[1]..=high[1] {
                 take(cells.row(low[0], high[0], j, k));
             }
         }
     }
-    take(slot + 1..place.len());
 }
 
 /// One of each pair of opposite periodic shifts (m).
@@ -335,6 +336,7 @@ mod tests {
             let mut listed = BTreeSet::new();
             for share in &neighbours.shares {
                 for at in share.near.own() {
+                    assert!(share.near.row[at] < share.near.partner[at], "a grain moves before its row is reached");
                     let (a, b) = (grains.id[share.near.row[at] as usize], grains.id[share.near.partner[at] as usize]);
                     assert!(listed.insert((a.min(b), a.max(b))), "pair {a} {b} listed twice");
                 }

@@ -149,3 +149,32 @@ fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
         assert!(end(60) == end(1), "{name}");
     }
 }
+
+/// A ball that comes from below to beads, far larger than they are, so that it has no cell of the grid. Their pairs fill more
+/// than a block, and those that it touches stand in the first.
+fn ball_under_beads() -> Scene {
+    let text = "title = 'ball'\ndimension = 3\nduration = 1.0\nlargest_initial_overlap = 0.5\nmaterials.m.density = 1000.0\n\
+         [contacts.all]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\ntangential_stiffness = 6.0e5\nfriction = 0.3\n\
+         [grains.ball]\nmaterial = 'm'\nradius = 3.0\nposition = [6.4, 6.4, -3.4]\nvelocity = [0.0, 0.0, 2.0]\n\
+         [grains.beads]\nmaterial = 'm'\nradius = 0.5\n\
+         lattice = { origin = [0.0, 0.0, 0.0], spacing = [0.99, 0.99, 0.99], count = [14, 14, 8] }\n";
+    let source = SceneSource::from_text("ball", Path::new(""), text);
+    source.scene(&|_| Err("no data files here".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What a ball touches has not moved before the ball is reached, however many cycles are taken together and by whom.
+#[test]
+fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
+    let scene = ball_under_beads();
+    let end = |at_once: u64, team: Team| {
+        let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene), team);
+        simulation.fewest_in_a_share = 5;
+        (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
+        let ball = simulation.grains.slot[0] as usize;
+        assert!(simulation.grains.force(ball).z < -1e3, "the ball is held back");
+        format!("{:?}", simulation.grains)
+    };
+    let alone = end(1, Team::default());
+    assert!(end(60, Team::default()) == alone, "sixty cycles together");
+    assert!(end(60, Team::new(3)) == alone, "three threads");
+}
