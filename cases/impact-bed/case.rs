@@ -41,11 +41,10 @@ pub(crate) static CASE: Case = Case {
     weakness: "How the published beds were made is not in the data: ours are filled with a friction of .1, which leaves the \
                packing fraction of theirs, about .60, and a looser bed lets the \
                ball deeper. Past 35 ms beds tell more than codes do, \
-               and what grain is caught between ball and floor: with the step of the paper, 5·10⁻⁷ s, \
-               our first bed lies outside of the spread, deepest at −79.37 mm and at .90 m/s in the rebound, and of the beds \
-               that were tried with it two lie within. Restitution is not told: e = .9 moves the ball by .2 mm at \
-               30 ms, for friction does nearly all, and what is published is the ball's height and no energy. Beds of 50,000 \
-               and 100,000 are not judged: the published ones are looser than those that we fill in the same way.",
+               and what grain is caught between ball and floor: two of five beds rebound more slowly than the spread allows. Restitution is not told: e = .9 moves the ball by .2 mm at \
+               30 ms, for friction does nearly all, and what is published is the ball's height and no energy. A bed of \
+               100,000 is told at 30 ms alone: at rest the ball lies 1 to 2 mm deeper in ours, which are filled in another way than \
+               the published one; 50,000 are not judged.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -119,7 +118,8 @@ fn claims() -> Vec<Claim> {
     let depth = Spread::of(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
     let lowest = Spread::of(dosta::DEEPEST, dosta::DEEPEST_CODE, dosta::DEEPEST_BED);
     let speed = Spread::of(dosta::REBOUND, dosta::REBOUND_CODE, dosta::REBOUND_BED);
-    let mut all_claims = vec![
+    let mut all_claims =
+        vec![
         of_beds(("height of the ball at 30 ms, mean of five beds", "mm"), MEAN, dosta::HEIGHT_30, depth, |done| {
             height(done, DEEP)
         })
@@ -136,8 +136,8 @@ fn claims() -> Vec<Claim> {
             .refuses(smooth()),
         of_beds(("mean velocity from 38 to 50 ms, mean of five beds", "m/s"), MEAN, dosta::REBOUND, speed, rebound)
             .refuses(at_rest()),
-        of_beds(("mean velocity from 38 to 50 ms, farthest of five beds", "m/s"), EACH, dosta::REBOUND, speed, rebound)
-            .refuses(at_rest()),
+        of_known(("mean velocity from 38 to 50 ms, farthest of five beds", "m/s"), EACH, dosta::REBOUND, speed, rebound)
+            .refuses(smooth()),
         claim("deviations that the mean of five beds is off the codes' mean, largest from 25 to 50 ms", "1")
             .of_all(on_all())
             .at_most(2.0, dosta::HEIGHT_30.source(), |done| {
@@ -167,6 +167,33 @@ const MEAN: Together = (|values, _| mean(values), |spread| computed(spread.allow
 const EACH: Together = (farthest, |spread| computed(spread.allowed(1), BECAUSE));
 
 fn of_beds(
+    what: (&str, &'static str),
+    together: Together,
+    cited: Cited,
+    spread: Spread,
+    of: fn(&Done) -> Result<f64, Missing>,
+) -> Tolerated {
+    of_runs(on_all(), what, together, cited, spread, of)
+}
+
+/// Why single beds send the ball back more slowly than the codes' do.
+const CAUGHT: &str = "two of five beds send the ball back at 1.11 and 1.19 m/s, more slowly than one bed of one more code may; of the \
+                      published beds one goes down to 1.14. A grain that is caught between ball and floor holds it: without \
+                      friction, where none is held, all five lie within";
+
+/// The same of what is known to be off.
+fn of_known(
+    what: (&str, &'static str),
+    together: Together,
+    cited: Cited,
+    spread: Spread,
+    of: fn(&Done) -> Result<f64, Missing>,
+) -> Tolerated {
+    of_runs(on_all().map(|run| run.known(CAUGHT)), what, together, cited, spread, of)
+}
+
+fn of_runs(
+    runs: [Run; 5],
     (quantity, unit): (&str, &'static str),
     (together, tolerance): Together,
     cited: Cited,
@@ -174,7 +201,7 @@ fn of_beds(
     of: fn(&Done) -> Result<f64, Missing>,
 ) -> Tolerated {
     claim(quantity, unit)
-        .of_all(on_all())
+        .of_all(runs)
         .equals_cited(cited, 1.0, move |done| Ok(together(&all(done, of)?, cited.value)))
         .within(tolerance(spread))
 }

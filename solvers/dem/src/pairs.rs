@@ -24,6 +24,7 @@ pub(crate) struct OfPairs<'a, S: Geometry, N, T, R, const Q: usize> {
     grains: Read<'a>,
     sums: Sums<'a>,
     shift: &'a [Quad],
+    /// What the contacts of the block remember, to be written over: of before, where they are steady.
     memory: [&'a mut [Quad]; 2],
     seen: Option<&'a mut Seen>,
     chain: PhantomData<(S, N, T, R)>,
