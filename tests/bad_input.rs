@@ -476,7 +476,7 @@ fn checkpoints() {
     let stored = |name: &str, bytes: &[u8]| std::fs::write(path.join(name), bytes).unwrap();
     stored("cut.checkpoint", &whole[..whole.len() / 2]);
     stored("empty.checkpoint", b"");
-    stored("newer.checkpoint", &[b"grainbench checkpoint 7\n", &whole[24..]].concat());
+    stored("newer.checkpoint", &[b"grainbench checkpoint 99\n", &whole[24..]].concat());
     let mut changed = whole.clone();
     changed[whole.len() - 9] ^= 64;
     stored("changed.checkpoint", &changed);

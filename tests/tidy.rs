@@ -192,7 +192,9 @@ fn no_hash_map_string_or_allocation_in_hot_loops() {
     };
     for (file, function) in [
         ("simulation.rs", "evaluate_forces"),
-        ("motion.rs", "drift<"),
+        ("motion.rs", "run<"),
+        ("motion.rs", "push<"),
+        ("motion.rs", "carry<"),
         ("touching.rs", "run<"),
         ("pairs.rs", "run<"),
         ("pairs.rs", "pair<"),

@@ -41,10 +41,11 @@ pub(crate) static CASE: Case = Case {
     weakness: "How the published beds were made is not in the data: ours are filled with a friction of .1, which leaves the \
                packing fraction of theirs, about .60, and a looser bed lets the \
                ball deeper. Past 35 ms beds tell more than codes do, \
-               and what grain is caught between ball and floor: two of five beds rebound more slowly than the spread allows. Restitution is not told: e = .9 moves the ball by .2 mm at \
+               and what grain is caught between ball and floor: two of five beds rebound more slowly \
+               than the spread allows. Restitution is not told: e = .9 moves the ball by .2 mm at \
                30 ms, for friction does nearly all, and what is published is the ball's height and no energy. A bed of \
-               100,000 is told at 30 ms alone: at rest the ball lies 1 to 2 mm deeper in ours, which are filled in another way than \
-               the published one; 50,000 are not judged.",
+               100,000 is told at 30 ms alone: at rest the ball lies 1 to 2 mm deeper in ours, which are filled in another \
+               way than the published one; 50,000 are not judged.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -177,9 +178,9 @@ fn of_beds(
 }
 
 /// Why single beds send the ball back more slowly than the codes' do.
-const CAUGHT: &str = "two of five beds send the ball back at 1.11 and 1.19 m/s, more slowly than one bed of one more code may; of the \
-                      published beds one goes down to 1.14. A grain that is caught between ball and floor holds it: without \
-                      friction, where none is held, all five lie within";
+const CAUGHT: &str = "two of five beds send the ball back at 1.11 and 1.19 m/s, more slowly than one bed of one more code \
+                      may; of the published beds one goes down to 1.14. A grain that is caught between ball and floor holds \
+                      it: without friction, where none is held, all five lie within";
 
 /// The same of what is known to be off.
 fn of_known(
