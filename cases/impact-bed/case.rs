@@ -1,9 +1,9 @@
 //! A ball of steel falls into a bed: the impact of the round robin of bulk processes, on five beds of our own.
 
-#[path = "hundred_thousand.rs"]
-mod hundred_thousand;
 #[path = "ladders.rs"]
 mod ladders;
+#[path = "larger.rs"]
+mod larger;
 #[path = "programs.rs"]
 mod programs;
 #[path = "published.rs"]
@@ -174,7 +174,7 @@ fn claims() -> Vec<Claim> {
     all_claims.push(early("down", "dem").fair_to_any_springs());
     all_claims.extend(programs::claims());
     all_claims.extend(ladders::claims());
-    all_claims.extend(hundred_thousand::claims());
+    all_claims.extend(larger::claims());
     all_claims
 }
 
@@ -251,6 +251,6 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done: Vec<Done> = OWN.iter().map(|variant| runner.run(&on(variant))).collect::<Result<_, _>>()?;
     let mut figures = published::figures(&done, &BEDS);
     figures.extend(ladders::figures(runner)?);
-    figures.push(hundred_thousand::figure(runner)?);
+    figures.push(larger::figure(runner)?);
     Ok(figures)
 }
