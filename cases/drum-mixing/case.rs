@@ -1,5 +1,7 @@
 //! Two kinds of spheres in a rotating drum: from the published start, where the user has it, and from a small one of our own.
 
+#[path = "ladder.rs"]
+mod ladder;
 #[path = "zones.rs"]
 mod zones;
 
@@ -79,6 +81,7 @@ fn claims() -> Vec<Claim> {
         zone("M1 in zone 2 from .6 to 1 s, worst", [0.6, 1.0], LATE).refuses(beside()),
         beginning(),
     ];
+    claims.extend(ladder::claims());
     for ours in [SIDES[0], "dem"] {
         let both = || [ours, SIDES[1]].map(|solver| Run::new(PLAIN, solver, LEVELS[0].resolution));
         let smooth = Control::ours(SMOOTH, |scene| rub(scene, 0.0));

@@ -1,0 +1,55 @@
+//! What half the step and twice the step move the count by, beside what rounding does.
+
+use super::{DRUM, EARLY, ZONES, beside, counted, course, of_paper, published};
+use grainbench_harness::claim::Tolerated;
+use grainbench_harness::data::Data;
+use grainbench_harness::prelude::*;
+use grainbench_scene::scene::Duration;
+use std::path::Path;
+
+/// Until when steps are compared (s).
+const UNTIL: f64 = 0.5;
+/// Steps (s): half that of the case, one that differs from it in its last places, and twice that.
+const HALF: f64 = 1.5e-6;
+const ROUNDED: f64 = 3.000_003e-6;
+const TWICE: f64 = 6e-6;
+/// What is known of twice the step.
+const LATE: &str =
+    "with twice the step .6 % fewer M1 are in zone 2 at .5 s, when the count rises by a hundredth in 4 ms";
+
+/// The drum of the paper until then.
+static SHORTER: Data = Data { name: "published-half", needs: super::PUBLISHED.needs, scene: shorter };
+
+fn shorter(folder: &Path) -> Result<Scene, String> {
+    Ok(Scene { duration: Duration::Seconds(UNTIL), ..published(folder)? })
+}
+
+fn with(step: f64) -> Run {
+    Run::new(PLAIN, "dem:liggghts", Resolution::TimeStep(step)).from_data(&SHORTER).read_by(ZONES).long().kept()
+}
+
+/// Counts with other steps beside those with that of the case.
+pub(super) fn claims() -> Vec<Claim> {
+    let half = Control::without_the_error("half the step", "dem:liggghts", Resolution::TimeStep(HALF));
+    vec![
+        worst("half the step", with(HALF)).refuses(beside()),
+        worst("a step longer by a millionth", with(ROUNDED)).refuses(beside()),
+        worst("twice the step", with(TWICE).known(LATE)).refuses(half),
+    ]
+}
+
+fn worst(step: &str, run: Run) -> Tolerated {
+    claim(format!("M1 in zone 2 to .5 s with {step}, worst"), "1")
+        .of_all([run, of_paper().aside()])
+        .agrees(Source::Ourselves("the same with the step of the case"), |done| {
+            let times = course(DRUM).into_iter().map(|[time, ..]| time).filter(|&time| time < UNTIL + 1e-9);
+            let found: Result<Vec<Measured>, Missing> = times
+                .map(|time| {
+                    let expected = counted(&done[1], time)?;
+                    Ok(Measured::new(counted(&done[0], time)?, expected, expected))
+                })
+                .collect();
+            Measured::worst_among(found?).ok_or_else(|| Missing("time to compare at".to_owned()))
+        })
+        .within(required(EARLY.0, "what a count may be off either code to .5 s"))
+}
