@@ -39,6 +39,7 @@ mod processors;
 mod seen;
 mod share;
 mod simulation;
+mod skin;
 pub mod solver;
 pub mod stability;
 mod state;

@@ -25,6 +25,8 @@ pub(crate) struct Neighbours {
     pub(crate) reference: Vec<Quad>,
     /// Skin: pairs are listed whose surfaces are nearer than this (m).
     pub(crate) skin: f64,
+    /// Step at which the list was built.
+    pub(crate) built_at: u64,
     /// How often the list was built.
     pub(crate) builds: u64,
 }
@@ -37,15 +39,15 @@ impl Neighbours {
 
     /// No list yet.
     pub(crate) fn new(skin: f64) -> Self {
-        Self { shares: Vec::new(), reference: Vec::new(), skin, builds: 0 }
+        Self { shares: Vec::new(), reference: Vec::new(), skin, built_at: 0, builds: 0 }
     }
 
     /// The same list in so many shares.
     pub(crate) fn in_shares(&self, count: usize) -> Self {
-        let Self { reference, skin, builds, .. } = self;
+        let Self { reference, skin, built_at, builds, .. } = self;
         let rows = rows_of(reference.len(), count);
         let shares = rows.into_iter().map(|rows| Share::reaching(&self.shares, rows)).collect();
-        Self { shares, reference: reference.clone(), skin: *skin, builds: *builds }
+        Self { shares, reference: reference.clone(), skin: *skin, built_at: *built_at, builds: *builds }
     }
 
     /// Wraps the positions into the domain, sorts the grains and lists the pairs anew, in so many shares. Contacts go on

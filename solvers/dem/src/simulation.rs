@@ -14,6 +14,7 @@ use crate::motion::{Motion, Moving};
 use crate::neighbours::Neighbours;
 use crate::seen::{Energies, Seen};
 use crate::share::{Evaluation, FEWEST, Share};
+use crate::skin;
 use crate::stability::stable_fraction;
 use crate::walls::{MovingWall, NearWall};
 use grainbench_lanes::{Processor, Team};
@@ -23,10 +24,6 @@ use grainbench_scene::record::{ContactState, Counts};
 use grainbench_scene::scene::{Driven, Scene};
 use grainbench_scene::solver::{Broken, Cause, LARGEST_ENTRY_OVERLAP, Subject};
 use nalgebra::Vector3;
-
-/// Skin of the neighbour list as a fraction of the mean radius: a tenth of a diameter, as in the stored LAMMPS run. A
-/// wider skin tests more pairs in vain and builds fewer lists anew.
-const SKIN: f64 = 0.2;
 
 /// Radius from which on a grain is far larger than others, in mean radii: cells as wide as it would hold hundreds of those.
 const FAR_LARGER: f64 = 4.0;
@@ -55,6 +52,8 @@ pub(crate) struct Simulated<S: Geometry> {
     seen_at: Option<u64>,
     /// Largest radius of a grain (m).
     largest_radius: f64,
+    /// Mean radius of the grains (m).
+    mean_radius: f64,
     /// Critical time step 2√(m_min/k_max) of the scene (s).
     critical: f64,
     /// Cycles taken.
@@ -93,7 +92,7 @@ impl<S: Geometry> Simulated<S> {
             laws: Laws::new(scene),
             options,
             grains: Grains::new(scene, forces.turn()),
-            neighbours: Neighbours::new(SKIN * mean_radius),
+            neighbours: Neighbours::new(skin::first(mean_radius)),
             walls: scene.walls.iter().map(MovingWall::new).collect(),
             forces,
             processor: Processor::new(),
@@ -103,6 +102,7 @@ impl<S: Geometry> Simulated<S> {
             seen_at: None,
             motion: Motion { gravity, global_damping: scene.global_damping, time_step },
             largest_radius,
+            mean_radius,
             critical: scene.critical_time_step(),
             step: 0,
             travelled: 0.0,
@@ -226,7 +226,11 @@ impl<S: Geometry> Simulated<S> {
         if self.travelled > half_skin {
             self.travelled = self.neighbours.farthest(&self.grains);
         }
-        if changed || self.travelled.max(walls_moved) > half_skin {
+        let worn_out = self.travelled.max(walls_moved) > half_skin;
+        if worn_out {
+            self.fit_skin();
+        }
+        if changed || worn_out {
             self.rebuild()?;
         }
         self.evaluate_forces(record, self.motion.time_step, move_on);
@@ -369,6 +373,15 @@ impl<S: Geometry> Simulated<S> {
         Some(slots)
     }
 
+    /// Fits the skin to how long the list has lasted.
+    fn fit_skin(&mut self) {
+        let Self { neighbours, grains, mean_radius, step, .. } = self;
+        let pairs: usize = neighbours.shares.iter().map(Share::pairs).sum();
+        let steps = (*step - neighbours.built_at).max(1);
+        let of = [pairs as f64, grains.len() as f64, steps as f64];
+        neighbours.skin = skin::next(neighbours.skin, *mean_radius, of, S::DIMENSION);
+    }
+
     /// Lists the neighbours anew, after a look at every grain.
     fn rebuild(&mut self) -> Result<(), Box<Broken>> {
         self.refuse_broken_state()?;
@@ -414,13 +427,14 @@ impl<S: Geometry> Simulated<S> {
         }
         self.extent += self.largest_radius + self.neighbours.skin;
         self.travelled = 0.0;
+        self.neighbours.built_at = self.step;
         self.cost.neighbour_builds = self.neighbours.builds;
         Ok(())
     }
 
     /// The largest radius of a grain that has a cell of the grid, and the radius above which none has (m).
     fn radii_of_cells(&self) -> [f64; 2] {
-        let limit = if self.scene.is_periodic() { f64::MAX } else { FAR_LARGER / SKIN * self.neighbours.skin };
+        let limit = if self.scene.is_periodic() { f64::MAX } else { FAR_LARGER * self.mean_radius };
         if self.largest_radius <= limit {
             return [self.largest_radius, f64::MAX];
         }
