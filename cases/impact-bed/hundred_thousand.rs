@@ -1,0 +1,58 @@
+//! A hundred thousand grains: the ball on its way down.
+
+use super::{half_the_density, height, mean};
+use crate::sources::literature::dosta_2024 as dosta;
+use grainbench_harness::prelude::*;
+use grainbench_reference::round_robin::Spread;
+
+/// Beds of our own, of another seed each.
+const OWN: [&str; 5] =
+    ["hundred-thousand", "hundred-thousand-2", "hundred-thousand-3", "hundred-thousand-4", "hundred-thousand-5"];
+/// When the ball is looked at (s): while it goes down.
+const DOWN: f64 = 0.03;
+
+fn on_all() -> [Run; 5] {
+    OWN.map(|variant| Run::new(variant, "dem:liggghts", super::STEP).paper_size().kept())
+}
+
+/// The mean of five beds, in units of what it may be off by: codes' deviation from two of them, |a − b|/√2, beds' from ours.
+pub(super) fn claims() -> Vec<Claim> {
+    let (cited, half) = (dosta::HEIGHT_30_100K, dosta::HEIGHT_30_100K_HALF);
+    let at_30_ms = claim("height of the ball at 30 ms, 100,000 grains, mean of five beds", "mm")
+        .of_all(on_all())
+        .equals(cited.source(), move |done| {
+            let heights: Vec<f64> = done.iter().map(|done| height(done, DOWN)).collect::<Result<_, _>>()?;
+            let own = mean(&heights);
+            let variance = heights.iter().map(|height| (height - own).powi(2)).sum::<f64>() / (heights.len() - 1) as f64;
+            let code = half.value * std::f64::consts::SQRT_2;
+            let allowed = Spread { mean: cited.value, code, bed: variance.sqrt() }.allowed(heights.len(), 1);
+            Ok(Measured::new(own, cited.value, allowed))
+        })
+        .within(computed(
+            1.0,
+            "in units of 2 √(s_code² + s_bed² (1/5 + 1)), s_code from two codes on one bed, s_bed between our beds: decided \
+             before any was hit",
+        ))
+        .refuses(half_the_density());
+    vec![at_30_ms]
+}
+
+/// The ball's course on our beds and where two codes have it, where the runs are kept.
+pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
+    let codes = vec![(DOWN * 1e3, dosta::HEIGHT_30_100K.value)];
+    let mut curves = vec![Curve::new("LIGGGHTS and MUSEN, one bed", Stroke::Markers, codes)];
+    for (number, run) in on_all().iter().enumerate() {
+        let done = runner.run(run)?;
+        let heights = done.column("ball.z").unwrap_or_default();
+        let course = done.series().time.iter().zip(heights).map(|(time, height)| (time * 1e3, height * 1e3)).collect();
+        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, course));
+    }
+    Ok(Figure::graph(
+        "hundred-thousand",
+        "Height of the ball, 100,000 grains",
+        "Height of the ball's centre over time on five beds of 100,000 grains of our own, and where two codes have it at 30 ms \
+         on one bed (Dosta et al. 2024, derived).",
+        [Axis::linear("time (ms)"), Axis::linear("height (mm)")],
+        curves,
+    ))
+}
