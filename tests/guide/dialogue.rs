@@ -101,9 +101,16 @@ pub(crate) struct Place {
 impl Place {
     pub(crate) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        for part in
-            ["guide/scenes", "guide/claims", "examples/cpp", "examples/python", "examples/case", "examples/sweep"]
-        {
+        let parts = [
+            "guide/scenes",
+            "guide/claims",
+            "examples/cpp",
+            "examples/python",
+            "examples/case",
+            "examples/sweep",
+            "cases/drum-mixing",
+        ];
+        for part in parts {
             let to = folder.path().join(part);
             fs::create_dir_all(&to).unwrap();
             for entry in fs::read_dir(crate::common::root(part)).unwrap() {
