@@ -25,7 +25,7 @@ fn without_it_rows_say_where_it_is_to_be_had() {
     // Nothing was judged.
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     let rows = rows(directory.path());
-    assert_eq!(rows.len(), 4);
+    assert_eq!(rows.len(), 7);
     for (outcome, row) in rows {
         assert_eq!(outcome, "not-available");
         assert!(row.contains("10.5281/zenodo.8252892") && row.contains("--data DIR"), "{row}");
@@ -63,5 +63,5 @@ fn another_start_is_told_from_the_published_one() {
     let answer = grainbench(path, &[&ROWS[..], &["--data", "data"]].concat());
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     let rows = rows(path);
-    assert!(rows.len() == 4 && rows.iter().all(|(outcome, _)| outcome == "stale"), "{rows:?}");
+    assert!(rows.len() == 7 && rows.iter().all(|(outcome, _)| outcome == "stale"), "{rows:?}");
 }
