@@ -148,24 +148,36 @@ impl<'a, S: Geometry, D: Drag, const GRAVITY: bool> Drift<'a, S, D, GRAVITY> {
     }
 }
 
-/// What moves grains over a step, in the numbers of a quad.
+/// What moves grains over a step, in the numbers of a quad: the fourth, an inverse mass or a radius, is kept by adding nothing
+/// to it, so that a quad is one register.
 struct Step {
-    keep: f64,
-    gain: f64,
-    time_step: f64,
-    gravity: [f64; 3],
+    keep: [f64; 4],
+    gain: [f64; 4],
+    time_step: [f64; 4],
+    gravity: [f64; 4],
 }
 
 impl Step {
+    fn new<D: Drag>(Motion { gravity, global_damping, time_step }: &Motion) -> Self {
+        let (keep, gain) = D::factors(*global_damping, *time_step);
+        let three = |value: f64, last: f64| [value, value, value, last];
+        Self {
+            keep: three(keep, 1.0),
+            gain: three(gain, 0.0),
+            time_step: three(*time_step, 0.0),
+            gravity: [gravity.x, gravity.y, gravity.z, 0.0],
+        }
+    }
+
     /// Adds to velocities what forces do to them, of these inverse masses.
     #[inline(always)]
-    fn push<D: Drag, const GRAVITY: bool>(&self, Quad(velocity): &mut Quad, load: &mut Quad, inverse: [f64; 3]) {
-        for axis in 0..3 {
+    fn push<D: Drag, const GRAVITY: bool>(&self, Quad(velocity): &mut Quad, load: &mut Quad, inverse: [f64; 4]) {
+        for axis in 0..4 {
             let mut acceleration = load.0[axis] * inverse[axis];
             if GRAVITY {
                 acceleration += self.gravity[axis];
             }
-            velocity[axis] = D::keep(velocity[axis], self.keep) + acceleration * self.gain;
+            velocity[axis] = D::keep(velocity[axis], self.keep[axis]) + acceleration * self.gain[axis];
         }
         *load = Quad::default();
     }
@@ -173,8 +185,8 @@ impl Step {
     /// Moves a grain by its velocity, in the plane also its angle by its spin. Gives its speed, squared.
     #[inline(always)]
     fn carry<S: Geometry>(&self, Quad(place): &mut Quad, Quad(velocity): &Quad) -> f64 {
-        for axis in 0..3 {
-            place[axis] += velocity[axis] * self.time_step;
+        for axis in 0..4 {
+            place[axis] += velocity[axis] * self.time_step[axis];
         }
         let squares = velocity.map(|component| component * component);
         let plane = squares[0] + squares[1];
@@ -187,9 +199,7 @@ impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVI
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) -> f64 {
-        let Motion { gravity, global_damping, time_step } = *self.motion;
-        let (keep, gain) = D::factors(global_damping, time_step);
-        let step = Step { keep, gain, time_step, gravity: [gravity.x, gravity.y, gravity.z] };
+        let step = Step::new::<D>(self.motion);
         let Moving { place, movement, load, quads, inverse_inertia } = self.grains;
         // No number is negative here, so that as whole numbers they are in the same order, and what is not a number is last.
         let mut fastest = 0;
@@ -200,14 +210,14 @@ impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVI
                 place.iter_mut().zip(movement).zip(load).zip(inverse_inertia)
             {
                 let inverse = velocity.0[3];
-                step.push::<D, GRAVITY>(velocity, load, [inverse; 3]);
-                step.push::<D, false>(spin, torque, [*inertia; 3]);
+                step.push::<D, GRAVITY>(velocity, load, [inverse; 4]);
+                step.push::<D, false>(spin, torque, [*inertia; 4]);
                 fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
             }
         } else {
             let turns = S::DIMENSION == 2 && !inverse_inertia.is_empty();
             for (slot, ((place, velocity), load)) in place.iter_mut().zip(movement).zip(load).enumerate() {
-                let mut inverse = [velocity.0[3]; 3];
+                let mut inverse = [velocity.0[3]; 4];
                 if S::DIMENSION == 2 {
                     inverse[2] = if turns { inverse_inertia[slot] } else { 0.0 };
                 }
