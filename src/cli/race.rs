@@ -29,7 +29,7 @@ const SCENES: [(&str, &str); 3] = [
 /// Our solver in the convention of a program, and the program.
 const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];
 /// Particle-steps of a long run, unless steps are asked for: some seconds of any program.
-const WORK: u64 = 20_000_000;
+const WORK: u64 = 30_000_000;
 /// Most steps of one: of few grains what a step costs by itself is felt early.
 const MOST_STEPS: u64 = 600_000;
 
