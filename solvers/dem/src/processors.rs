@@ -178,3 +178,24 @@ fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
     assert!(end(60, Team::default()) == alone, "sixty cycles together");
     assert!(end(60, Team::new(3)) == alone, "three threads");
 }
+
+/// However wide the skin has become, all that touches is listed.
+#[test]
+fn whatever_touches_is_listed_while_the_skin_widens() {
+    let scene = ball_under_beads();
+    let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene), Team::default());
+    let first = simulation.neighbours.skin;
+    for _ in 0..8 {
+        simulation.take_cycles(100).expect("it goes on");
+        let (grains, near) = (&simulation.grains, &simulation.neighbours.shares[0].near);
+        let listed: std::collections::BTreeSet<(u32, u32)> =
+            near.own().map(|at| (near.row[at].min(near.partner[at]), near.row[at].max(near.partner[at]))).collect();
+        for a in 0..grains.len() {
+            for b in a + 1..grains.len() {
+                let touch = (grains.position(b) - grains.position(a)).norm() < grains.radius(a) + grains.radius(b);
+                assert!(!touch || listed.contains(&(a as u32, b as u32)), "{a} and {b} touch");
+            }
+        }
+    }
+    assert!(simulation.neighbours.skin > first, "the skin has widened");
+}
