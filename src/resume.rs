@@ -1,6 +1,7 @@
 //! Runs that go on where they were ended: each leaves a checkpoint every so many steps, and begins with the one that it finds.
 
 use crate::reports::write_file;
+use crate::scene::brief::Brief;
 use crate::scene::checkpoint::{Checkpoint, CheckpointError};
 use crate::scene::record::{Record, Remains, Snapshot};
 use crate::scene::scene::Scene;
@@ -82,6 +83,14 @@ impl Watch for Resumable<'_> {
 
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
         self.watch.snapshot(snapshot)
+    }
+
+    fn most_rows(&self) -> u64 {
+        self.watch.most_rows()
+    }
+
+    fn in_short(&mut self, brief: Brief, rows: u64) {
+        self.watch.in_short(brief, rows);
     }
 
     fn keeps_snapshots(&self) -> bool {

@@ -280,21 +280,6 @@ fn a_run_that_breaks_leaves_what_there_is() {
     }
 }
 
-/// The largest resident memory (kB) of a run, as the system counts it.
-#[cfg(target_os = "linux")]
-fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
-    let mut child = common::program().args(arguments).current_dir(path).stdout(Stdio::null()).spawn().unwrap();
-    let mut peak = 0;
-    while child.try_wait().unwrap().is_none() {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
-        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        peak = line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(peak);
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
-    assert!(child.wait().unwrap().success(), "{arguments:?}");
-    peak
-}
-
 /// Memory is that of a snapshot however many there are: of 10,000 discs at most three times that of a run without. Held
 /// in memory, each would take five megabytes; the short run takes sixty of them and the long one a thousand.
 #[test]
@@ -312,10 +297,10 @@ fn snapshots_and_checkpoints_take_no_memory() {
     let path = directory.path();
     std::fs::write(path.join("none.toml"), scene("0")).unwrap();
     std::fs::write(path.join("many.toml"), scene(snapshots)).unwrap();
-    let none = peak_memory(path, &["simulate", "none.toml", "--solver", "dem", "--out", "none"]);
+    let none = common::peak_memory(path, &["simulate", "none.toml", "--solver", "dem", "--out", "none"]);
     let checkpoints = ["--checkpoint", "run.checkpoint", "--checkpoint-every", "50"];
     let many = [&["simulate", "many.toml", "--solver", "dem", "--out", "many"], &checkpoints[..]].concat();
-    let many = peak_memory(path, &many);
+    let many = common::peak_memory(path, &many);
     assert!(many < 3 * none, "{many} kB with {snapshots} snapshots, {none} kB without");
 }
 

@@ -36,7 +36,7 @@ mod sample;
 
 pub use headline::Headline;
 pub use manifest::refuse_mixed;
-pub use parts::{End, SnapshotStore, each_snapshot};
+pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use scratch::sweep;

@@ -143,8 +143,10 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
     let there = arguments.source.display();
     let Some(course) = course.filter(|course| !course.frames.is_empty()) else {
         let what = if arguments.between { "two snapshots or more" } else { "a snapshot" };
+        let hint =
+            if arguments.source.is_dir() { " (a large run keeps them with `simulate --write parquet`)" } else { "" };
         return Err(Fault::input(format!(
-            "{there}: expected {what} between the times that are asked for, found fewer"
+            "{there}: expected {what} between the times that are asked for, found fewer{hint}"
         )));
     };
     let summary = Summary::of(&course, there.to_string(), usize::from(arguments.blocks));

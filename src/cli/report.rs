@@ -109,7 +109,8 @@ fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     if figures.is_empty() {
         let file = arguments.dir.join(RECORD_FILE);
         return Err(Fault::input(format!(
-            "{}: expected snapshots or samples of probes, found none to show",
+            "{}: expected snapshots or samples of probes, found none to show (a large run keeps snapshots with `simulate --write \
+             parquet`)",
             file.display()
         )));
     }

@@ -10,7 +10,8 @@ use super::step::Step;
 use super::value::{path_and_value, positive, whole};
 use grainbench::cases::registry::read_grains;
 use grainbench::reports::export::{self, Format};
-use grainbench::reports::{End, SnapshotStore, StagedDir, number, write_file};
+use grainbench::reports::{SnapshotStore, StagedDir, number, write_file};
+use grainbench::scene::brief::Brief;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
 use grainbench::scene::end_state::EndState;
@@ -87,7 +88,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
     /// Formats of the snapshots: of runs of up to 200 000 rows of grains, contacts and points dump and vtk, which are text;
-    /// of larger ones Parquet.
+    /// of larger ones Parquet, where the scene asks for snapshots beside the first and the last, and else none.
     #[arg(long, value_name = "FORMAT", value_delimiter = ',')]
     write: Option<Vec<Written>>,
     /// Print provenance, cost and the end of the run as JSON.
@@ -120,9 +121,12 @@ impl Arguments {
         )))
     }
 
-    /// Whether it was said that snapshots are not to be written.
-    fn asks_for_no_snapshots(&self) -> bool {
-        self.write.as_ref().is_some_and(|asked| asked.iter().all(|format| format.format().is_none()))
+    /// Whether neither the command nor the scene asks for snapshots: a large run is then told in short.
+    fn asks_for_no_snapshots(&self, scene: &Scene) -> bool {
+        self.write.as_ref().map_or_else(
+            || scene.snapshots == 0 && scene.snapshot_times.is_empty(),
+            |asked| asked.iter().all(|format| format.format().is_none()),
+        )
     }
 }
 
@@ -186,7 +190,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         None => SnapshotStore::for_output(&arguments.out),
     };
     snapshots = snapshots.holding(&scene.columns);
-    if arguments.asks_for_no_snapshots() {
+    if arguments.asks_for_no_snapshots(&scene) {
         snapshots = snapshots.in_short();
     }
     if let (Some(path), Some(checkpoint)) = (&arguments.restart, &from) {
@@ -367,7 +371,7 @@ fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>
         } else if formats.contains(&Format::Vtk) {
             "in vtk/"
         } else {
-            "not written (--write dump,vtk for text)"
+            "not written (--write parquet, or dump,vtk for text)"
         };
         format!("snapshots  {count} of {rows} rows, {form}\n")
     };
@@ -492,6 +496,14 @@ impl Watch for Watcher {
         self.snapshots.add(snapshot).map(|()| None).map_err(|error| NotStored(error.to_string()))
     }
 
+    fn most_rows(&self) -> u64 {
+        self.snapshots.most_rows()
+    }
+
+    fn in_short(&mut self, brief: Brief, rows: u64) {
+        self.snapshots.pass(brief, rows);
+    }
+
     fn wants_end_state(&self) -> bool {
         self.wants_state
     }
@@ -516,7 +528,7 @@ impl Watch for Watcher {
 struct Summary<'a> {
     provenance: &'a Provenance,
     cost: &'a Cost,
-    end: Option<&'a End>,
+    end: Option<&'a Brief>,
     snapshots: u64,
     out: String,
 }

@@ -46,6 +46,21 @@ fn grainbench_in(directory: &Path, arguments: &[&str], environment: &[(&str, &st
     Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
 }
 
+/// The largest resident memory (kB) of a run, as the system counts it.
+#[cfg(target_os = "linux")]
+pub(crate) fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
+    let mut child = program().args(arguments).current_dir(path).stdout(Stdio::null()).spawn().unwrap();
+    let mut peak = 0;
+    while child.try_wait().unwrap().is_none() {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        peak = line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(peak);
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert!(child.wait().unwrap().success(), "{arguments:?}");
+    peak
+}
+
 /// Every file below a directory, as sorted relative paths; an empty directory as its path and `/`.
 pub(crate) fn files(directory: &Path) -> Vec<String> {
     let mut found = Vec::new();

@@ -31,10 +31,15 @@ pub enum Format {
 }
 
 impl Format {
-    /// What is written where nobody says: text of a run that a person can read, Parquet of any larger one.
+    /// What is written where nobody says: text of a run that a person can read, Parquet of any larger one whose snapshots were
+    /// kept.
     #[must_use]
     pub fn usual(snapshots: &SnapshotStore) -> BTreeSet<Self> {
-        if snapshots.rows() <= READABLE { [Self::Dump, Self::Vtk].into() } else { [Self::Parquet].into() }
+        match (snapshots.rows() <= READABLE, snapshots.has_left_out()) {
+            (true, _) => [Self::Dump, Self::Vtk].into(),
+            (false, false) => [Self::Parquet].into(),
+            (false, true) => BTreeSet::new(),
+        }
     }
 }
 

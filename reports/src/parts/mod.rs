@@ -4,7 +4,6 @@
 //! and what was not told is null.
 
 mod columns;
-mod end;
 mod folder;
 mod part;
 mod rows;
@@ -12,7 +11,6 @@ mod store;
 mod table;
 
 pub(crate) use columns::Values;
-pub use end::End;
 pub use folder::each_snapshot;
 pub use store::{READABLE, SnapshotStore, StoreError};
 pub(crate) use table::{Grouped, whole};

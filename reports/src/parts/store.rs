@@ -7,13 +7,13 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use grainbench_scene::brief::Brief;
 use grainbench_scene::columns::Columns;
 use grainbench_scene::record::Snapshot;
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 use thiserror::Error;
 
-use super::end::End;
 use super::part::{OpenPart, PartReader, Seal, files, rows_of};
 use super::rows::left_out;
 use crate::scratch::{sweep, temporary_in};
@@ -44,7 +44,8 @@ pub enum StoreError {
     },
     /// The run that left the checkpoint was to keep no snapshots.
     #[error(
-        "expected a checkpoint with the snapshots before it, found that of a run that wrote none: continue with none"
+        "expected a checkpoint with the snapshots before it, found that of a run that kept none: continue without --write, or \
+         with --write none"
     )]
     LeftOut,
     /// What the checkpoint says of snapshots cannot be read.
@@ -72,7 +73,7 @@ pub struct SnapshotStore {
     /// Rows of grains, contacts and points, those on disk too.
     rows: u64,
     /// The last one, and its rows.
-    end: Option<(End, u64)>,
+    end: Option<(Brief, u64)>,
     /// Whether nobody wants more of a run that is not [`READABLE`] than its last state, and that only if it is.
     in_short: bool,
     /// Whether snapshots were left out for that.
@@ -87,7 +88,7 @@ struct Kept<'s> {
     waiting: Cow<'s, [Snapshot]>,
     closed: Cow<'s, [Seal]>,
     snapshots: u64,
-    end: Cow<'s, Option<(End, u64)>>,
+    end: Cow<'s, Option<(Brief, u64)>>,
     rows: u64,
     left_out: bool,
 }
@@ -179,7 +180,7 @@ impl SnapshotStore {
         let rows = rows_of(&snapshot);
         self.rows += rows;
         self.snapshots += 1;
-        self.end = Some((End::of(&snapshot), rows));
+        self.end = Some((Brief::of(&snapshot), rows));
         if self.in_short && self.rows > READABLE {
             self.waiting.clear();
             (self.waiting_bytes, self.left_out) = (0, true);
@@ -193,6 +194,27 @@ impl SnapshotStore {
             return Ok(());
         }
         self.spill().map_err(|source| WriteError::new(self.shown(), source))
+    }
+
+    /// Whether snapshots were left out, of a run that is told in short.
+    #[must_use]
+    pub const fn has_left_out(&self) -> bool {
+        self.left_out
+    }
+
+    /// Rows up to which a snapshot is wanted row by row.
+    #[must_use]
+    pub const fn most_rows(&self) -> u64 {
+        if self.in_short { READABLE } else { u64::MAX }
+    }
+
+    /// Takes note of a snapshot that is not wanted row by row, and of the rows it would have.
+    pub fn pass(&mut self, brief: Brief, rows: u64) {
+        self.rows += rows;
+        self.snapshots += 1;
+        self.end = Some((brief, rows));
+        self.waiting.clear();
+        (self.waiting_bytes, self.left_out) = (0, true);
     }
 
     /// What a checkpoint keeps of the snapshots so far. Those on disk are closed off, and it names them.
@@ -274,7 +296,7 @@ impl SnapshotStore {
 
     /// The last snapshot in short.
     #[must_use]
-    pub fn end(&self) -> Option<&End> {
+    pub fn end(&self) -> Option<&Brief> {
         self.end.as_ref().map(|(end, _)| end)
     }
 

@@ -2,6 +2,7 @@
 
 use crate::geometry::Geometry;
 use crate::simulation::Simulated;
+use grainbench_scene::brief::Brief;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::end_state::EndState;
 use grainbench_scene::record::{Counts, Look};
@@ -40,6 +41,12 @@ pub trait Simulation: Send {
     fn look(&mut self) -> Look;
     /// The same for a snapshot, with means over the time since the last one.
     fn look_for_snapshot(&mut self) -> Look;
+    /// Rows of grains and contacts that a snapshot has now.
+    fn rows(&self) -> u64;
+    /// Whether a snapshot can be shown now that has at most so many rows.
+    fn shows(&self, most_rows: u64) -> bool;
+    /// The state at this step in short. No contacts are taken away.
+    fn brief(&self) -> Brief;
 }
 
 impl<S: Geometry> Simulation for Simulated<S> {
@@ -77,6 +84,18 @@ impl<S: Geometry> Simulation for Simulated<S> {
 
     fn look(&mut self) -> Look {
         crate::observe::look(self)
+    }
+
+    fn rows(&self) -> u64 {
+        Self::rows(self)
+    }
+
+    fn shows(&self, most_rows: u64) -> bool {
+        Self::shows(self, most_rows)
+    }
+
+    fn brief(&self) -> Brief {
+        crate::observe::brief(self)
     }
 
     fn look_for_snapshot(&mut self) -> Look {

@@ -23,7 +23,7 @@ impl<S: Geometry> Simulated<S> {
     /// The state after the last step, of what the named solver made. Grains that are not there have no place in it.
     pub(crate) fn end_state(&self, solver: &str) -> EndState {
         let scene = &self.scene;
-        let states = grain_states(self);
+        let states: Vec<_> = grain_states(self).collect();
         let place: BTreeMap<u32, u32> = states.iter().map(|grain| grain.id - 1).zip(0..).collect();
         let of_slot = |slot: u32| place[&self.grains.id[slot as usize]];
         let numbers = self.forces.layout().numbers;

@@ -37,6 +37,11 @@ impl Neighbours {
         self.reference.len() == grains && matches!(&self.shares[..], [whole] if whole.is_of(grains, layout))
     }
 
+    /// Number of listed pairs.
+    pub(crate) fn pairs(&self) -> usize {
+        self.shares.iter().map(Share::pairs).sum()
+    }
+
     /// No list yet.
     pub(crate) fn new(skin: f64) -> Self {
         Self { shares: Vec::new(), reference: Vec::new(), skin, built_at: 0, builds: 0 }

@@ -5,16 +5,18 @@ use crate::geometry::Geometry;
 use crate::grains::ABSENT;
 use crate::neighbours::wrapped;
 use crate::simulation::Simulated;
+use grainbench_scene::brief::Brief;
 use grainbench_scene::record::{self, GrainState, Look, Snapshot, WallState};
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Driven, Scene};
 use nalgebra::Vector3;
 
 /// The state at this step: grains, contacts, walls and energies. The contacts are taken away: whoever looks again at the same
 /// step is told none.
 pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
+    let touching = simulation.touching();
     let contacts = simulation.take_contacts();
     let (simulation, scene) = (&*simulation, &simulation.scene);
-    let grains = grain_states(simulation);
+    let grains: Vec<GrainState> = grain_states(simulation).collect();
     let elastic_energy = simulation.energies().map(|of| of.elastic).sum();
     let budget = simulation.accounting.then(|| simulation.accounts.budget(scene, &grains, elastic_energy));
     let walls = simulation
@@ -36,22 +38,31 @@ pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
         bodies: Vec::new(),
         points: Vec::new(),
     };
-    Look { driven: simulation.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
+    Look { touching, driven: simulation.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
+}
+
+/// The state at this step in short.
+pub(crate) fn brief<S: Geometry>(simulation: &Simulated<S>) -> Brief {
+    Brief::of_grains((simulation.step, simulation.time()), grain_states(simulation), simulation.touching())
 }
 
 /// The grains that are there, in order of id.
-pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> Vec<GrainState> {
-    let scene = &simulation.scene;
+pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> impl Iterator<Item = GrainState> {
+    let (scene, time) = (&simulation.scene, simulation.time());
     let is_there = |id: &usize| simulation.grains.slot[*id] != ABSENT;
-    let mut grains: Vec<GrainState> = Vec::with_capacity(simulation.grains.len());
-    grains.extend((0..scene.grains.len()).filter(is_there).map(|id| grain_state(simulation, id)));
-    for driven in scene.driven.iter().filter(|driven| driven.is_moved_at(simulation.time())) {
-        for &grain in &driven.grains {
-            let velocity = driven.velocity_at(simulation.time(), simulation.motion.time_step);
-            (grains[grain].velocity, grains[grain].spin) = (velocity, driven.spin);
+    let motion = |driven: &Driven| {
+        let velocity = || driven.velocity_at(time, simulation.motion.time_step);
+        driven.is_moved_at(time).then(|| (velocity(), driven.spin))
+    };
+    let motions: Vec<_> = scene.driven.iter().map(motion).collect();
+    let groups = if motions.is_empty() { Vec::new() } else { scene.driven_group_of_grains() };
+    (0..scene.grains.len()).filter(is_there).map(move |id| {
+        let mut state = grain_state(simulation, id);
+        if let Some(moved) = groups.get(id).copied().flatten().and_then(|group| motions[usize::from(group)]) {
+            (state.velocity, state.spin) = moved;
         }
-    }
-    grains
+        state
+    })
 }
 
 /// A grain, with its velocity (m/s) and spin (rad/s) brought from half a step before to the time of the positions.

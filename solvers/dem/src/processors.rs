@@ -122,7 +122,7 @@ fn simulated<S: Geometry>(
     team: Team,
 ) -> Simulated<S> {
     let options = crate::contact::Options::of(convention);
-    Simulated::new(scene, forces, options, 2e-4, team).unwrap_or_else(|error| panic!("{error:?}"))
+    Simulated::new(scene, forces, options, 2e-4, (team, u64::MAX)).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 #[test]

@@ -10,8 +10,12 @@ use nalgebra::Vector3;
 /// Contacts as the last force evaluation that was recorded saw them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
-    /// As a snapshot shows them. Whoever looks takes them away.
+    /// As a snapshot shows them, where they are kept one by one. Whoever looks takes them away.
     pub(crate) contacts: Vec<ContactState>,
+    /// Whether they are.
+    one_by_one: bool,
+    /// How many slip.
+    pub(crate) slipping: usize,
     /// What each does to the energy.
     pub(crate) energies: Vec<Energies>,
 }
@@ -26,14 +30,22 @@ pub(crate) struct Energies {
 }
 
 impl Seen {
-    pub(crate) fn clear(&mut self) {
-        self.contacts.clear();
+    /// Begins anew; contacts are kept `one_by_one`, or what they come to.
+    pub(crate) fn begin(&mut self, one_by_one: bool) {
+        (self.one_by_one, self.slipping) = (one_by_one, 0);
+        if one_by_one {
+            self.contacts.clear();
+        } else {
+            self.contacts = Vec::new();
+        }
         self.energies.clear();
     }
 
     /// Makes room for more contacts.
     pub(crate) fn make_room(&mut self, more: usize) {
-        reserve(&mut self.contacts, more);
+        if self.one_by_one {
+            reserve(&mut self.contacts, more);
+        }
         reserve(&mut self.energies, more);
     }
 
@@ -48,6 +60,12 @@ impl Seen {
         radius: f64,
     ) {
         let zero = answer.overlap.like(0.0);
+        let slipping = X::choose(answer.slipping, zero.like(1.0), zero).first() > 0.0;
+        self.slipping += usize::from(slipping);
+        self.energies.push(Energies { elastic: answer.elastic_energy.first(), rubbed: answer.rubbed.first() });
+        if !self.one_by_one {
+            return;
+        }
         let vector = |of: S::Vectors<X>| Vector3::from(S::whole(of, zero).map(X::first));
         let (normal, overlap) = (vector(answer.normal), answer.overlap.first());
         self.contacts.push(ContactState {
@@ -58,8 +76,7 @@ impl Seen {
             overlap,
             normal_force: answer.normal_force.first(),
             shear_force: vector(S::along(answer.shear, answer.normal)),
-            slipping: X::choose(answer.slipping, zero.like(1.0), zero).first() > 0.0,
+            slipping,
         });
-        self.energies.push(Energies { elastic: answer.elastic_energy.first(), rubbed: answer.rubbed.first() });
     }
 }

@@ -52,6 +52,8 @@ pub(crate) struct Evaluation<'a, S: Geometry> {
     pub(crate) terms: Terms<'a>,
     /// Whether contacts are recorded.
     pub(crate) record: bool,
+    /// Whether they are recorded one by one.
+    pub(crate) one_by_one: bool,
 }
 
 /// Shares of so many rows, as equal as can be.
@@ -158,7 +160,7 @@ impl Share {
     ) -> u64 {
         let mut contacts = 0;
         for mut list in self.lists() {
-            for block in list.blocks() {
+            for block in list.blocks(evaluation.one_by_one) {
                 list.evaluate(evaluation, grains, sums.lent(), block);
             }
             contacts += list.own();
@@ -178,9 +180,9 @@ pub(crate) struct List<'a> {
 }
 
 impl List<'_> {
-    /// Blocks of pairs, to be taken one after the other.
-    pub(crate) fn blocks(&mut self) -> impl Iterator<Item = Range<usize>> + use<> {
-        self.seen.clear();
+    /// Blocks of pairs, to be taken one after the other; contacts that are recorded are so `one_by_one`.
+    pub(crate) fn blocks(&mut self, one_by_one: bool) -> impl Iterator<Item = Range<usize>> + use<> {
+        self.seen.begin(one_by_one);
         blocks(self.pairs.len())
     }
 

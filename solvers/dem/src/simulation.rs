@@ -21,7 +21,7 @@ use grainbench_lanes::{Processor, Team};
 use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::overlap::nearest_image;
 use grainbench_scene::record::{ContactState, Counts};
-use grainbench_scene::scene::{Driven, Scene};
+use grainbench_scene::scene::{Driven, Probe, Scene};
 use grainbench_scene::solver::{Broken, Cause, LARGEST_ENTRY_OVERLAP, Subject};
 use nalgebra::Vector3;
 
@@ -50,6 +50,14 @@ pub(crate) struct Simulated<S: Geometry> {
     seen_at_walls: Seen,
     /// Step of which contacts were recorded, if nobody has taken them away.
     seen_at: Option<u64>,
+    /// Rows of grains and contacts up to which a snapshot is wanted.
+    most_rows: u64,
+    /// Whether contacts are looked at one by one in every step that is recorded.
+    looks_at_contacts: bool,
+    /// Whether the contacts that were recorded last were so one by one.
+    one_by_one: bool,
+    /// Contacts in the last force evaluation.
+    contacts: u64,
     /// Largest radius of a grain (m).
     largest_radius: f64,
     /// Mean radius of the grains (m).
@@ -83,7 +91,7 @@ impl<S: Geometry> Simulated<S> {
         forces: Box<dyn Forces<S>>,
         options: Options,
         time_step: f64,
-        team: Team,
+        (team, most_rows): (Team, u64),
     ) -> Result<Self, Box<Broken>> {
         let largest_radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
         let mean_radius = scene.grains.iter().map(|grain| grain.radius).sum::<f64>() / scene.grains.len() as f64;
@@ -100,6 +108,12 @@ impl<S: Geometry> Simulated<S> {
             fewest_in_a_share: FEWEST,
             seen_at_walls: Seen::default(),
             seen_at: None,
+            most_rows,
+            looks_at_contacts: {
+                scene.columns.has(Chosen::MeanVirial) || scene.probes.iter().any(Probe::looks_at_contacts)
+            },
+            one_by_one: false,
+            contacts: 0,
             motion: Motion { gravity, global_damping: scene.global_damping, time_step },
             largest_radius,
             mean_radius,
@@ -127,6 +141,8 @@ impl<S: Geometry> Simulated<S> {
             simulation.begin_with(springs);
         }
         simulation.rebuild()?;
+        // No contact has been found yet, and no more touch than are listed.
+        simulation.contacts = simulation.neighbours.pairs() as u64;
         simulation.evaluate_forces(true, 0.0, false);
         let all = 0..simulation.grains.len();
         simulation.motion.step_back_half(&mut simulation.grains, all);
@@ -149,10 +165,27 @@ impl<S: Geometry> Simulated<S> {
         self.seen_at_walls.energies.iter().chain(of(0)).chain(of(1))
     }
 
+    /// Rows of grains and contacts.
+    pub(crate) fn rows(&self) -> u64 {
+        self.grains.len() as u64 + self.contacts
+    }
+
+    /// Whether a snapshot can be shown that has at most so many rows.
+    pub(crate) fn shows(&self, most_rows: u64) -> bool {
+        self.one_by_one && self.rows() <= most_rows
+    }
+
+    /// Number of contacts of this step, and how many of them slip; none where they were not recorded or have been taken.
+    pub(crate) fn touching(&self) -> Option<[usize; 2]> {
+        self.seen_at.filter(|&at| at == self.step)?;
+        let lists = self.neighbours.shares.iter().flat_map(Share::seen).chain([&self.seen_at_walls]);
+        Some(lists.fold([0, 0], |[count, slipping], seen| [count + seen.energies.len(), slipping + seen.slipping]))
+    }
+
     /// Takes away the contacts of this step, in order of the id of their first grain; none where they were not recorded or
     /// have been taken. Contacts of a grain with walls come first, then those across periodic faces.
     pub(crate) fn take_contacts(&mut self) -> Option<Vec<ContactState>> {
-        self.seen_at.take().filter(|&at| at == self.step)?;
+        self.seen_at.take().filter(|&at| at == self.step && self.one_by_one)?;
         let [mut before, mut contacts] = [std::mem::take(&mut self.seen_at_walls.contacts), Vec::new()];
         for share in &mut self.neighbours.shares {
             before.append(&mut share.seen_mut()[0].contacts);
@@ -272,23 +305,30 @@ impl<S: Geometry> Simulated<S> {
             step,
             cost,
             team,
+            most_rows,
+            looks_at_contacts,
+            one_by_one,
+            contacts,
             ..
         } = self;
         let terms = Terms { laws, options, elapsed };
         if record {
-            seen_at_walls.clear();
+            *one_by_one = *looks_at_contacts || grains.len() as u64 + *contacts <= *most_rows;
+            seen_at_walls.begin(*one_by_one);
             *seen_at = Some(*step);
         }
+        let (one_by_one, before) = (*one_by_one, cost.contact_evaluations);
         for (number, wall) in walls.iter_mut().enumerate() {
             cost.pair_tests += wall.pairs() as u64;
             let seen = record.then_some(&mut *seen_at_walls);
             cost.contact_evaluations += forces.at_wall(terms, grains, wall, number as u16, seen);
         }
         cost.pair_tests += neighbours.shares.iter().map(|share| share.pairs() as u64).sum::<u64>();
-        let evaluation = Evaluation { forces: &**forces, processor: *processor, terms, record };
+        let evaluation = Evaluation { forces: &**forces, processor: *processor, terms, record, one_by_one };
         if let [whole] = &mut neighbours.shares[..] {
-            let (contacts, fastest) = evaluate_and_move(whole, &evaluation, grains, move_on.then_some(&*motion));
-            cost.contact_evaluations += contacts;
+            let (found, fastest) = evaluate_and_move(whole, &evaluation, grains, move_on.then_some(&*motion));
+            cost.contact_evaluations += found;
+            *contacts = cost.contact_evaluations - before;
             if move_on {
                 self.travel(fastest);
             }
@@ -297,7 +337,8 @@ impl<S: Geometry> Simulated<S> {
         let (read, mut left) = grains.parts();
         let parts = neighbours.shares.iter_mut().map(|share| (left.take_off(share.rows.len()), share));
         let evaluate = |_, (sums, share): (_, &mut Share)| share.evaluate(&evaluation, read, sums);
-        cost.contact_evaluations += team.fold(parts, evaluate, 0, |sum, contacts| sum + contacts);
+        cost.contact_evaluations += team.fold(parts, evaluate, 0, |sum, found| sum + found);
+        *contacts = cost.contact_evaluations - before;
         if move_on {
             self.move_grains();
         }
@@ -376,7 +417,7 @@ impl<S: Geometry> Simulated<S> {
     /// Fits the skin to how long the list has lasted.
     fn fit_skin(&mut self) {
         let Self { neighbours, grains, mean_radius, step, .. } = self;
-        let pairs: usize = neighbours.shares.iter().map(Share::pairs).sum();
+        let pairs = neighbours.pairs();
         let steps = (*step - neighbours.built_at).max(1);
         let of = [pairs as f64, grains.len() as f64, steps as f64];
         neighbours.skin = skin::next(neighbours.skin, *mean_radius, of, S::DIMENSION);
@@ -524,12 +565,12 @@ fn evaluate_and_move<S: Geometry>(
     motion: Option<&Motion>,
 ) -> (u64, f64) {
     let [mut across, mut near] = whole.lists();
-    for block in across.blocks() {
+    for block in across.blocks(evaluation.one_by_one) {
         let (read, sums) = grains.parts();
         across.evaluate(evaluation, read, sums, block);
     }
     let (mut moved, mut fastest) = (0, 0.0_f64);
-    for block in near.blocks() {
+    for block in near.blocks(evaluation.one_by_one) {
         let (read, sums) = grains.parts();
         near.evaluate(evaluation, read, sums, block.clone());
         if let (Some(motion), Some(row)) = (motion, near.row_after(&block)) {

@@ -13,6 +13,7 @@ use crate::share::FEWEST;
 use crate::simulation::Simulated;
 use crate::stability::damped_step;
 use grainbench_lanes::Team;
+use grainbench_scene::brief::Brief;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::drive::{Course, Driven, Stepper};
@@ -55,19 +56,25 @@ impl Dem {
     /// # Errors
     /// When the scene cannot be expressed or is broken from the start.
     pub fn start(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, RunError> {
-        self.start_on(scene, time_step, 1)
+        self.start_on(scene, time_step, 1, u64::MAX)
     }
 
-    /// The same, on so many threads at most.
+    /// The same, on so many threads at most, for who wants snapshots of so many rows of grains and contacts at most.
     ///
     /// # Errors
     /// When the scene cannot be expressed or is broken from the start.
-    pub fn start_on(&self, scene: &Scene, time_step: f64, threads: usize) -> Result<Box<dyn Simulation>, RunError> {
+    pub fn start_on(
+        &self,
+        scene: &Scene,
+        time_step: f64,
+        threads: usize,
+        most_rows: u64,
+    ) -> Result<Box<dyn Simulation>, RunError> {
         self.refuse(scene)?;
         let team = Team::new(threads.min(scene.grains.len() / FEWEST));
         match scene.dimension {
-            Dimension::Two => self.start_with(scene, plane(scene, &self.convention), time_step, team),
-            Dimension::Three => self.start_with(scene, solid(scene), time_step, team),
+            Dimension::Two => self.start_with(scene, plane(scene, &self.convention), time_step, (team, most_rows)),
+            Dimension::Three => self.start_with(scene, solid(scene), time_step, (team, most_rows)),
         }
     }
 
@@ -76,7 +83,7 @@ impl Dem {
         scene: &Scene,
         forces: Box<dyn Forces<S>>,
         time_step: f64,
-        team: Team,
+        team: (Team, u64),
     ) -> Result<Box<dyn Simulation>, RunError> {
         let own = words(forces.springs());
         if let Some(springs) = scene.springs.as_ref().filter(|springs| springs.layout != own) {
@@ -166,7 +173,7 @@ impl Dem {
         self.refuse(scene)?;
         let (time_step, steps) = self.steps(scene, resolution)?;
         self.refuse_lagging_dashpots(scene, time_step)?;
-        let mut simulation = self.start_on(scene, time_step, watch.threads())?;
+        let mut simulation = self.start_on(scene, time_step, watch.threads(), watch.most_rows())?;
         let run = self.run_of(scene, time_step, steps, simulation.layout());
         let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
         let mut running = Running { simulation, run, defect: self.defect };
@@ -244,6 +251,18 @@ impl Stepper for Running<'_> {
 
     fn look(&mut self, snapshot: bool) -> Look {
         if snapshot { self.simulation.look_for_snapshot() } else { self.simulation.look() }
+    }
+
+    fn rows(&self, _: &Scene) -> u64 {
+        self.simulation.rows()
+    }
+
+    fn shows(&self, _: &Scene, most_rows: u64) -> bool {
+        self.simulation.shows(most_rows)
+    }
+
+    fn brief(&mut self) -> Brief {
+        self.simulation.brief()
     }
 
     fn counts(&self) -> Counts {

@@ -72,7 +72,10 @@ impl<S: Space> Simulation<S> {
         } else {
             Vec::new()
         };
+        let contacts = self.contacts();
+        let slipping = contacts.iter().filter(|contact| contact.slipping).count();
         Look {
+            touching: Some([contacts.len(), slipping]),
             elastic_energy: elastic_energy + self.spring_energy(),
             inner_kinetic_energy,
             spots: self.spots(),
@@ -83,7 +86,7 @@ impl<S: Space> Simulation<S> {
                 time: self.step as f64 * self.scheme.time_step,
                 bounds: record::bounds(&self.scene, &grains),
                 periodic: self.scene.domain.map_or([false; 3], |domain| domain.periodic),
-                contacts: Some(self.contacts()),
+                contacts: Some(contacts),
                 walls: self.wall_states(),
                 grains,
                 bodies,

@@ -227,6 +227,10 @@ impl<S: Space> Stepper for Running<'_, S> {
         self.simulation.state.points.len() as u64
     }
 
+    fn rows(&self, scene: &Scene) -> u64 {
+        self.particles(scene) + scene.grains.len() as u64
+    }
+
     fn step(&self) -> u64 {
         self.simulation.step
     }

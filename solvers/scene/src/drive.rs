@@ -1,6 +1,7 @@
 //! The one loop by which every solver goes through a run: what is due is taken down, who watches hears of it,
 //! checkpoints are left. And the one clock: it runs from the first step of any kind, settling included, to the last.
 
+use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::end_state::EndState;
 use crate::record::{Cost, Counts, Look, Remains, Series, Snapshot};
@@ -36,6 +37,21 @@ pub trait Stepper {
     /// The state after the last step; with all that a snapshot holds where one is due. It is looked at once a step: who looks
     /// again may be told no contacts.
     fn look(&mut self, snapshot: bool) -> Look;
+
+    /// Rows of grains, contacts and points that a snapshot has now.
+    fn rows(&self, scene: &Scene) -> u64 {
+        self.particles(scene)
+    }
+
+    /// Whether a snapshot can be shown now that has at most so many rows.
+    fn shows(&self, scene: &Scene, most_rows: u64) -> bool {
+        self.rows(scene) <= most_rows
+    }
+
+    /// The state after the last step in short, where nobody looks at it.
+    fn brief(&mut self) -> Brief {
+        Brief::of_look(&self.look(false))
+    }
 
     /// Counts so far; no times.
     fn counts(&self) -> Counts;
@@ -151,7 +167,7 @@ impl Course<'_> {
                 return Err(RunError::Interrupted { time: now as f64 * self.time_step, step: now });
             }
             if (begins || now > first) && recorder.is_due(now) {
-                self.take_down(stepper.look(recorder.is_snapshot(now)), recorder, watch)?;
+                self.take_down(now, recorder, stepper, watch)?;
             }
             watch.progress(now, self.steps);
             if now == self.steps {
@@ -169,10 +185,28 @@ impl Course<'_> {
         }
     }
 
-    /// Takes down what is due. A sample that is no number ends the run before its snapshot is taken for a good one.
-    fn take_down(&self, look: Look, recorder: &mut Recorder, watch: &mut dyn Watch) -> Result<(), RunError> {
-        let step = look.snapshot.step;
-        let snapshot = recorder.take(self.scene, look);
+    /// Takes down what is due at a step. A sample that is no number ends the run before its snapshot is taken for a good one.
+    fn take_down(
+        &self,
+        step: u64,
+        recorder: &mut Recorder,
+        stepper: &mut dyn Stepper,
+        watch: &mut dyn Watch,
+    ) -> Result<(), RunError> {
+        let is_snapshot = recorder.is_snapshot(step);
+        let shown = is_snapshot && stepper.shows(self.scene, watch.most_rows());
+        let rows = stepper.rows(self.scene);
+        let sampled = recorder.is_sample(step) && !self.scene.probes.is_empty();
+        let look = (shown || sampled).then(|| stepper.look(shown));
+        if is_snapshot && !shown {
+            let brief = look.as_ref().map_or_else(|| stepper.brief(), Brief::of_look);
+            watch.in_short(brief, rows);
+        }
+        let Some(look) = look else {
+            recorder.sample_nothing(step, step as f64 * self.time_step);
+            return Ok(());
+        };
+        let snapshot = recorder.take(self.scene, look).filter(|_| shown);
         if let Some((column, value)) = recorder.not_finite() {
             let (column, time) = (column.to_owned(), step as f64 * self.time_step);
             return Err(RunError::NotFinite { time, step, column, value });

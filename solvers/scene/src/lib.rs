@@ -4,6 +4,7 @@
 //! given to a [`solver::Solver`], which leaves a [`record::Record`].
 
 pub mod body;
+pub mod brief;
 pub mod budget;
 mod check;
 pub mod checkpoint;

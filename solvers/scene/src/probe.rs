@@ -64,6 +64,14 @@ pub(crate) fn sample(series: &mut Series, scene: &Scene, look: &Look) {
     }
 }
 
+impl Probe {
+    /// Whether it looks at contacts one by one.
+    #[must_use]
+    pub const fn looks_at_contacts(&self) -> bool {
+        matches!(self.target, ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) | ProbeTarget::Stress)
+    }
+}
+
 /// Components of the mean stress of grains.
 const fn mean_stresses(dimension: Dimension) -> &'static [(usize, usize)] {
     match dimension {
@@ -240,12 +248,9 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
             let mut all = vec![kinetic, rotational, look.elastic_energy, gravitational, total];
             all.extend(vector(&momentum));
             all.extend(spin(&angular));
-            let count = |of: &dyn Fn(&ContactState) -> bool| match &snapshot.contacts {
-                Some(contacts) => contacts.iter().filter(|contact| of(contact)).count() as f64,
-                None => f64::NAN,
-            };
+            let [contacts, slipping] = look.touching.map_or([f64::NAN; 2], |counts| counts.map(|count| count as f64));
             let fastest = snapshot.grains.iter().map(|grain| grain.spin.norm()).fold(0.0, f64::max);
-            all.extend([count(&|_| true), count(&|contact| contact.slipping), fastest]);
+            all.extend([contacts, slipping, fastest]);
             all
         }
     }

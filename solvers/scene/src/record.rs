@@ -229,6 +229,13 @@ impl Snapshot {
         self.contacts.as_deref().unwrap_or_default()
     }
 
+    /// Number of contacts, and how many of them slip; none where nobody has told them.
+    #[must_use]
+    pub fn touching(&self) -> Option<[usize; 2]> {
+        let contacts = self.contacts.as_ref()?;
+        Some([contacts.len(), contacts.iter().filter(|contact| contact.slipping).count()])
+    }
+
     /// Place of the grain of an id in the list of grains; none where it is not there.
     #[must_use]
     pub fn place_of(&self, id: u32) -> Option<usize> {
@@ -301,6 +308,8 @@ pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f6
 pub struct Look {
     /// Grains in order of id, contacts, walls.
     pub snapshot: Snapshot,
+    /// Number of contacts, and how many of them slip, where they are known; they may be where none is shown.
+    pub touching: Option<[usize; 2]>,
     /// Energy in the springs of contacts and in deformed material (J).
     pub elastic_energy: f64,
     /// Kinetic energy beyond that of the rigid motion of grains and bodies (J).
@@ -317,8 +326,9 @@ pub struct Look {
 impl Look {
     /// Of rigid grains.
     #[must_use]
-    pub const fn of_rigid(snapshot: Snapshot, elastic_energy: f64) -> Self {
+    pub fn of_rigid(snapshot: Snapshot, elastic_energy: f64) -> Self {
         Self {
+            touching: snapshot.touching(),
             snapshot,
             elastic_energy,
             inner_kinetic_energy: 0.0,

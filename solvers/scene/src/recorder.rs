@@ -59,7 +59,8 @@ impl Recorder {
     }
 
     /// Whether probes are sampled at a step: every interval, and at the end.
-    fn is_sample(&self, step: u64) -> bool {
+    #[must_use]
+    pub fn is_sample(&self, step: u64) -> bool {
         step.is_multiple_of(self.interval) || step == self.steps
     }
 
@@ -94,6 +95,14 @@ impl Recorder {
     pub fn sample(&mut self, scene: &Scene, look: &Look) {
         if self.is_sample(look.snapshot.step) {
             probe::sample(&mut self.series, scene, look);
+        }
+    }
+
+    /// Takes down the sample of a step at a time (s), if one is due, of a scene without probes.
+    pub fn sample_nothing(&mut self, step: u64, time: f64) {
+        if self.is_sample(step) {
+            self.series.step.push(step);
+            self.series.time.push(time);
         }
     }
 

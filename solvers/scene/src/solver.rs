@@ -1,5 +1,6 @@
 //! What a solver is: something that takes a scene and a resolution and leaves a record.
 
+use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::end_state::EndState;
 use crate::record::{Record, Remains, Snapshot};
@@ -507,6 +508,13 @@ pub trait Watch {
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
         Ok(Some(snapshot))
     }
+    /// Rows of grains, contacts and points up to which a snapshot is wanted; asked for before the first step. Of one with more
+    /// [`Watch::in_short`] is called, and what it would take in memory is not taken.
+    fn most_rows(&self) -> u64 {
+        u64::MAX
+    }
+    /// Called in place of [`Watch::snapshot`] with one that is not wanted, and the rows it would have.
+    fn in_short(&mut self, _brief: Brief, _rows: u64) {}
     /// Whether every snapshot stays in the record.
     fn keeps_snapshots(&self) -> bool {
         true

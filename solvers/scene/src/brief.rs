@@ -1,0 +1,56 @@
+//! A snapshot in short: what is told of one that nobody wants row by row.
+
+use crate::record::{GrainState, Look, Snapshot};
+use serde::{Deserialize, Serialize};
+
+/// A snapshot in short.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Brief {
+    /// Step.
+    pub step: u64,
+    /// Time (s).
+    pub time: f64,
+    /// Number of grains.
+    pub grains: usize,
+    /// Number of contacts; absent where nobody told them.
+    pub contacts: Option<usize>,
+    /// How many of them slip.
+    pub slipping_contacts: Option<usize>,
+    /// Sum of ½mv² over the grains (J).
+    pub kinetic_energy: f64,
+    /// Largest speed of a grain (m/s).
+    pub fastest: f64,
+}
+
+impl Brief {
+    /// Of grains at a step and its time (s), with the number of contacts and that of those that slip, where they are known.
+    #[must_use]
+    pub fn of_grains(
+        (step, time): (u64, f64),
+        grains: impl Iterator<Item = GrainState>,
+        touching: Option<[usize; 2]>,
+    ) -> Self {
+        let [contacts, slipping_contacts] = [0, 1].map(|at| touching.map(|counts| counts[at]));
+        let start = Self { step, time, grains: 0, contacts, slipping_contacts, kinetic_energy: 0.0, fastest: 0.0 };
+        grains.fold(start, |sum, grain| Self {
+            grains: sum.grains + 1,
+            kinetic_energy: sum.kinetic_energy + 0.5 * grain.mass * grain.velocity.norm_squared(),
+            fastest: sum.fastest.max(grain.velocity.norm()),
+            ..sum
+        })
+    }
+
+    /// Of a look.
+    #[must_use]
+    pub fn of_look(look: &Look) -> Self {
+        let Snapshot { step, time, grains, .. } = &look.snapshot;
+        Self::of_grains((*step, *time), grains.iter().cloned(), look.touching)
+    }
+
+    /// Of a snapshot.
+    #[must_use]
+    pub fn of(snapshot: &Snapshot) -> Self {
+        let Snapshot { step, time, grains, .. } = snapshot;
+        Self::of_grains((*step, *time), grains.iter().cloned(), snapshot.touching())
+    }
+}
