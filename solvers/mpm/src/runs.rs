@@ -21,32 +21,53 @@ pub(crate) struct Run {
     pub(crate) end: usize,
     /// The first of the nodes.
     pub(crate) base: [i32; 3],
+    /// Whether all of its points, where they are now, are known to reach these nodes.
+    pub(crate) is_known: bool,
 }
 
-/// Finds the runs of a range of points; which they are among all.
+impl Run {
+    /// Whether it holds what is in a box (m), the lowest and the highest along each axis.
+    pub(crate) fn holds<S: Space>(&self, lattice: &Lattice, start: f64, box_around: [[f64; 3]; 2]) -> bool {
+        box_around.iter().all(|&[x, y, z]| self.reaches::<S>(lattice, start, S::restrict(Vector3::new(x, y, z))))
+    }
+
+    /// Whether a position (m) reaches the nodes of the run, of a basis that reaches from `start` on ([`Basis::START`]).
+    #[inline(always)]
+    fn reaches<S: Space>(&self, lattice: &Lattice, start: f64, position: S::Vector) -> bool {
+        let beyond = |axis: usize| lattice.cells::<S>(position, axis) - (f64::from(self.base[axis]) + start);
+        (0..S::DIMENSION).all(|axis| (0.0..1.0).contains(&beyond(axis)))
+    }
+}
+
+/// Finds the runs of a range of points; which they are among all. Of a run that was found `before`, is known yet and starts where
+/// one starts now, the points need not be looked at.
 pub(crate) fn find<S: Space, B: Basis>(
     lattice: &Lattice,
     range: Range<usize>,
     points: &Points<S>,
+    before: &mut &[Run],
     runs: &mut Vec<Run>,
 ) -> Range<usize> {
     let first = runs.len();
-    let mut run = Run { start: range.start, end: range.start, base: [0; 3] };
-    // Where the points of the run at hand can be (cells); no point is within an empty run.
-    let mut start = [f64::NAN; 3];
-    for (at, &position) in range.clone().zip(&points.position[range]) {
-        let within =
-            (0..S::DIMENSION).all(|axis| (0.0..1.0).contains(&(lattice.cells::<S>(position, axis) - start[axis])));
-        if !within || at - run.start == LONGEST {
-            if run.start < at {
-                runs.push(run);
+    let mut start = range.start;
+    while start < range.end {
+        *before = &before[before.iter().take_while(|run| run.start < start).count()..];
+        let (same, next) = (before.first(), before.get(1));
+        let mut run = match same.filter(|run| run.start == start && run.is_known && run.end <= range.end) {
+            Some(same) => *same,
+            None => {
+                let base = lattice.first::<S, B>(points.position[start]);
+                Run { start, end: start + 1, base, is_known: false }
             }
-            run = Run { start: at, end: at, base: lattice.first::<S, B>(position) };
-            start = run.base.map(|base| f64::from(base) + B::START);
-        }
-        run.end = at + 1;
-    }
-    if run.start < run.end {
+        };
+        // Where the next run is known as well, to be elsewhere, none of its points have come.
+        let is_whole =
+            run.is_known && next.is_some_and(|next| next.start == run.end && next.is_known && next.base != run.base);
+        let more = if is_whole { run.end..run.end } else { run.end..range.end.min(start + LONGEST) };
+        let reach = |at: &usize| run.reaches::<S>(lattice, B::START, points.position[*at]);
+        run.end += more.take_while(reach).count();
+        run.is_known = true;
+        start = run.end;
         runs.push(run);
     }
     first..runs.len()

@@ -29,6 +29,8 @@ pub(crate) struct Share<S: Space> {
     reach: usize,
     /// The runs of its points in the step under way.
     pub(crate) runs: Vec<Run>,
+    /// Those that were found before.
+    pub(crate) before: Vec<Run>,
     /// Which of them are of which body.
     pub(crate) pieces: Vec<Piece>,
     /// Velocity gradients of the points at hand (1/s).
@@ -78,6 +80,7 @@ impl<S: Space> Share<S> {
             alone_from: 0,
             reach: 0,
             runs: Vec::new(),
+            before: Vec::new(),
             pieces: Vec::new(),
             gradients: vec![S::NO_GRADIENT; LONGEST],
             flows: Vec::new(),
@@ -90,8 +93,9 @@ impl<S: Space> Share<S> {
         self.pieces.iter().map(|piece| (&bodies[piece.body], &self.runs[piece.runs.clone()]))
     }
 
-    /// Puts its points where they are next, and boxes around those of each body.
-    pub(crate) fn move_points(&mut self, points: &mut Lent<'_, S>) -> Way {
+    /// Puts its points where they are next, and boxes around those of each body; and which runs are known yet, for a basis
+    /// that reaches from `start` on ([`Basis::START`]).
+    pub(crate) fn move_points(&mut self, points: &mut Lent<'_, S>, lattice: &Lattice, start: f64) -> Way {
         let mut way = Way::default();
         for (position, next) in points.position.iter_mut().zip(&*points.next) {
             let along = *next - *position;
@@ -101,23 +105,33 @@ impl<S: Space> Share<S> {
             *position = *next;
         }
         for piece in &mut self.pieces {
-            let runs = &self.runs[piece.runs.clone()];
-            let range = runs[0].start - points.first..runs[runs.len() - 1].end - points.first;
-            piece.bounds = enclose::<S>(NO_BOX, &points.position[range]);
+            piece.bounds = NO_BOX;
+            for run in &mut self.runs[piece.runs.clone()] {
+                let range = run.start - points.first..run.end - points.first;
+                let around = enclose::<S>(NO_BOX, &points.position[range]);
+                run.is_known = run.holds::<S>(lattice, start, around);
+                for axis in 0..S::DIMENSION {
+                    let [low, high] = &mut piece.bounds;
+                    low[axis] = low[axis].min(around[0][axis]);
+                    high[axis] = high[axis].max(around[1][axis]);
+                }
+            }
         }
         way
     }
 
     /// Finds the runs of its points.
     pub(crate) fn find_runs<B: Basis>(&mut self, lattice: &Lattice, bodies: &[Body], points: &Points<S>) {
+        std::mem::swap(&mut self.runs, &mut self.before);
         self.runs.clear();
         self.pieces.clear();
         self.reach = 0;
+        let mut before = &self.before[..];
         for (body, of) in bodies.iter().enumerate() {
             let all = &of.part.points;
             let range = all.start.max(self.points.start)..all.end.min(self.points.end);
             if !range.is_empty() {
-                let runs = runs::find::<S, B>(lattice, range, points, &mut self.runs);
+                let runs = runs::find::<S, B>(lattice, range, points, &mut before, &mut self.runs);
                 let ends = self.runs[runs.clone()].iter().map(|run| of.part.window.end_of::<S, B>(run.base));
                 self.reach = ends.fold(self.reach, usize::max);
                 self.pieces.push(Piece { body, runs, bounds: NO_BOX });

@@ -5,7 +5,7 @@
 //! over points and nodes stand in [`crate::scatter`] and [`crate::gather`].
 
 use crate::accounts::Accounts;
-use crate::basis::with_basis;
+use crate::basis::{Basis, with_basis};
 use crate::bodies::seed;
 use crate::boundary::Boundary;
 use crate::contacts::{Asked, Contacts};
@@ -270,11 +270,14 @@ impl<S: Space> Simulation<S> {
         for place in 0..state.bodies.len() {
             contacts.move_tracers(scheme, state, place, grid, velocities);
         }
+        let start = with_basis!(scheme.setting.basis, B => B::START);
         let way = if scheme.has_stress_first() {
-            state.move_points()
+            state.move_points(&grid.lattice, start)
         } else {
             let counts = accounts.is_some();
-            let (flow, way) = stress::follow(scheme, state, (grid, velocities), counts, Share::move_points)?;
+            let lattice = &grid.lattice;
+            let go = |share: &mut Share<S>, points: &mut Lent<'_, S>| share.move_points(points, lattice, start);
+            let (flow, way) = stress::follow(scheme, state, (grid, velocities), counts, go)?;
             if let Some(accounts) = accounts {
                 accounts.add_flow(flow);
             }

@@ -45,7 +45,8 @@ impl<S: Space> State<S> {
 
     /// Memory that is in use (B).
     pub(crate) fn bytes(&self) -> usize {
-        let runs: usize = self.shares.iter().map(|share| size_of_val(&*share.runs)).sum();
+        let runs: usize =
+            self.shares.iter().map(|share| size_of_val(&*share.runs) + size_of_val(&*share.before)).sum();
         self.points.bytes() + size_of_val(&*self.before) + runs + size_of_val(&*self.bodies)
     }
 
@@ -69,6 +70,7 @@ impl<S: Space> State<S> {
                 points.sort(part.points.clone(), |position| part.window.slot(lattice.first::<S, B>(position)));
             }
             if !out_of_order.is_empty() {
+                self.forget_runs(&out_of_order);
                 self.share_points::<B>(lattice);
             }
             for &place in &out_of_order {
@@ -77,6 +79,15 @@ impl<S: Space> State<S> {
                 self.bodies[place].part.runs_in_order = runs;
             }
         });
+    }
+
+    /// The runs of these bodies are known no more.
+    fn forget_runs(&mut self, places: &[usize]) {
+        for Share { pieces, runs, .. } in &mut self.shares {
+            for piece in pieces.iter().filter(|piece| places.contains(&piece.body)) {
+                runs[piece.runs.clone()].iter_mut().for_each(|run| run.is_known = false);
+            }
+        }
     }
 
     fn share_points<B: crate::basis::Basis>(&mut self, lattice: &Lattice) {
@@ -98,11 +109,12 @@ impl<S: Space> State<S> {
     }
 
     /// Puts the points where they are next.
-    pub(crate) fn move_points(&mut self) -> Way {
+    pub(crate) fn move_points(&mut self, lattice: &Lattice, start: f64) -> Way {
         let Self { points, shares, team, .. } = self;
         let mut left = points.lent();
         let parts = shares.iter_mut().map(|share| (left.take_off(share.points.len()), share));
-        team.fold(parts, |_, (mut points, share)| share.move_points(&mut points), Way::default(), Way::farther)
+        let go = |_, (mut points, share): (_, &mut Share<S>)| share.move_points(&mut points, lattice, start);
+        team.fold(parts, go, Way::default(), Way::farther)
     }
 
     /// The box around a body, of whose tracers the positions are given.
