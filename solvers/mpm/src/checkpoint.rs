@@ -71,6 +71,7 @@ impl<S: Space> Simulation<S> {
         }
         state.before.clone_from(&kept.points.velocity);
         state.points = kept.points;
+        state.shares.iter_mut().for_each(|share| share.runs.clear());
         (contacts.tracers.position, contacts.tracers.area) = kept.tracers.into_iter().unzip();
         contacts.springs.friction = kept.friction;
         for ((body, angle), runs) in state.bodies.iter_mut().zip(kept.angles).zip(kept.runs_in_order) {

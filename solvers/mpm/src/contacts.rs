@@ -7,6 +7,7 @@ use crate::contact::friction::Friction;
 use crate::contact::nodal::{self, Felt};
 use crate::contact::pairs::Pairs;
 use crate::contact::penalty::{Push, Rules, Springs, Told};
+use crate::contact::search::{Found, Search};
 use crate::contact::shared::{Projected, Shared, Stepped};
 use crate::contact::{FrictionTable, Touch};
 use crate::grid::Node;
@@ -142,23 +143,31 @@ impl<S: Space> Contacts<S> {
         touches.clear();
         springs.begin();
         pairs.find(bodies, lattice, 0.0);
+        if !pairs.found.is_empty() {
+            tracers.find_boxes();
+        }
+        let (cell, shares) = (lattice.shortest(S::DIMENSION), state.team.members());
+        springs.found.resize(shares, Found::new());
+        let (all, tracers) = (&pairs.found[..], &*tracers);
+        state.team.each(springs.found.iter_mut(), |number, found| {
+            let pairs = &all[number * all.len() / shares..(number + 1) * all.len() / shares];
+            processor.run_by_four(Search { cell, bodies, pairs, tracers, found });
+        });
         let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
-        let Springs { friction, near, touched } = springs;
-        let found = &pairs.found;
+        let Springs { friction, found, touched } = springs;
         macro_rules! push {
             ($B:ty, $friction:expr, $ledger:expr) => {{
-                let (pairs, friction, basis) = (found, $friction, PhantomData::<$B>);
+                let (found, friction, basis) = (&found[..], $friction, PhantomData::<$B>);
                 let told = Told { ledger: $ledger, touches: record.then_some(touches), touched };
                 processor.run_by_four(Push {
                     rules,
                     bodies,
-                    pairs,
+                    found,
                     tracers,
                     friction,
                     walls,
                     nodes,
                     most,
-                    near,
                     told,
                     basis,
                 });
@@ -218,30 +227,35 @@ impl<S: Space> Contacts<S> {
         nodal::meet(&rules, &state.bodies, shared, &mut felt, &mut Projected(projected));
     }
 
-    /// Carries the tracers of a body with it.
-    pub(crate) fn move_tracers(
-        &mut self,
-        scheme: &Scheme,
-        state: &State<S>,
-        place: usize,
-        grid: &Grid<S>,
-        velocities: Velocities,
-    ) {
+    /// Carries the tracers of all bodies with them; each thread those of some bodies.
+    pub(crate) fn move_tracers(&mut self, scheme: &Scheme, state: &State<S>, grid: &Grid<S>, velocities: Velocities) {
         let Scheme { setting, time_step: elapsed, processor } = *scheme;
         let Grid { lattice, nodes, projected, most, .. } = grid;
-        let (body, tracers) = (&state.bodies[place], &mut self.tracers);
-        let (part, of) = (&body.part, body.tracers.clone());
-        with_basis!(setting.basis, B => {
-            let basis = PhantomData::<B>;
-            match velocities {
-                Velocities::Stepped => {
-                    let velocity = |node: &Node<S>| node.velocity;
-                    processor.run_by_four(Carry { lattice, part, of, tracers, nodes, most, velocity, elapsed, basis });
-                }
-                Velocities::Projected => {
-                    let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
-                    processor.run_by_four(Carry { lattice, part, of, tracers, nodes, most, velocity, elapsed, basis });
-                }
+        let (count, members) = (self.tracers.len(), state.team.members());
+        let mut left = self.tracers.lent();
+        let mut bodies = &state.bodies[..];
+        let parts = (1..=members).map(|member| {
+            let some = bodies.iter().take_while(|body| body.tracers.end <= member * count / members).count();
+            let (own, others) = bodies.split_at(if member == members { bodies.len() } else { some });
+            bodies = others;
+            (own, left.take_off(own.iter().map(|body| body.tracers.len()).sum()))
+        });
+        state.team.each(parts, |_, (bodies, mut tracers)| {
+            for body in bodies {
+                let (part, of) = (&body.part, tracers.take_off(body.tracers.len()));
+                with_basis!(setting.basis, B => {
+                    let basis = PhantomData::<B>;
+                    match velocities {
+                        Velocities::Stepped => {
+                            let velocity = |node: &Node<S>| node.velocity;
+                            processor.run_by_four(Carry { lattice, part, of, nodes, most, velocity, elapsed, basis });
+                        }
+                        Velocities::Projected => {
+                            let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
+                            processor.run_by_four(Carry { lattice, part, of, nodes, most, velocity, elapsed, basis });
+                        }
+                    }
+                });
             }
         });
     }

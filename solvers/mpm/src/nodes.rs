@@ -39,15 +39,21 @@ pub(crate) struct Grid<S: Space> {
 pub(crate) struct Own<'a, S: Space> {
     pub(crate) nodes: &'a mut [Node<S>],
     pub(crate) projected: &'a mut [S::Vector],
+    pub(crate) most: &'a mut [f64],
 }
 
 impl<S: Space> Grid<S> {
     /// What each share has of it.
     pub(crate) fn parts(&mut self, shares: &[Share<S>]) -> impl Iterator<Item = Own<'_, S>> {
-        let (mut nodes, mut projected) = (&mut self.nodes[..], &mut self.projected[..]);
+        let Self { nodes, projected, most, .. } = self;
+        let (mut nodes, mut projected, mut most) = (&mut nodes[..], &mut projected[..], &mut most[..]);
         shares.iter().map(move |share| {
             let count = share.nodes.len();
-            Own { nodes: take_off(&mut nodes, count), projected: take_off(&mut projected, count) }
+            Own {
+                nodes: take_off(&mut nodes, count),
+                projected: take_off(&mut projected, count),
+                most: take_off(&mut most, count),
+            }
         })
     }
 

@@ -30,10 +30,11 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
     let Scheme { setting, processor, .. } = scheme;
     let State { bodies, points, shares, team, .. } = state;
     let lattice = grid.lattice;
-    team.each(grid.parts(shares), |number, Own { nodes, projected }| {
-        nodes.fill(Node::EMPTY);
+    team.each(grid.parts(shares), |number, Own { nodes: own, projected, most }| {
+        own.fill(Node::EMPTY);
         projected.fill(S::ORIGIN);
-        let mut nodes = Summed::new(shares[number].nodes.start, nodes);
+        let start = shares[number].nodes.start;
+        let mut nodes = Summed::new(start, own);
         for (_, body, runs) in state.reaching(&shares[number].nodes) {
             let ground = Ground::new(&lattice, &body.part, runs, points);
             let nodes = nodes.lent();
@@ -43,13 +44,16 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
                 options::Transfer::Spin => processor.run_by_four(Scatter::<S, B, Spin>::new(ground, points, nodes)),
             });
         }
-    });
-    if grips {
-        for body in bodies {
-            let window = body.part.window.slots();
-            grip::bear(&grid.nodes[window.clone()], body.part.cell_mass, &mut grid.most[window]);
+        if grips {
+            for body in bodies {
+                let window = body.part.window.slots();
+                let here = window.start.max(start) - start..window.end.clamp(start, start + own.len()) - start;
+                if !here.is_empty() {
+                    grip::bear(&own[here.clone()], body.part.cell_mass, &mut most[here]);
+                }
+            }
         }
-    }
+    });
 }
 
 /// The sum over the nodes of a row.

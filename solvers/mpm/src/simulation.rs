@@ -267,9 +267,7 @@ impl<S: Space> Simulation<S> {
     fn move_on(&mut self, velocities: Velocities) -> Result<(), Failure> {
         let Self { scheme, state, grid, contacts, accounts, .. } = self;
         let cell = grid.lattice.shortest(S::DIMENSION);
-        for place in 0..state.bodies.len() {
-            contacts.move_tracers(scheme, state, place, grid, velocities);
-        }
+        contacts.move_tracers(scheme, state, grid, velocities);
         let start = with_basis!(scheme.setting.basis, B => B::START);
         let way = if scheme.has_stress_first() {
             state.move_points(&grid.lattice, start)

@@ -45,8 +45,7 @@ impl<S: Space> State<S> {
 
     /// Memory that is in use (B).
     pub(crate) fn bytes(&self) -> usize {
-        let runs: usize =
-            self.shares.iter().map(|share| size_of_val(&*share.runs) + size_of_val(&*share.before)).sum();
+        let runs: usize = self.shares.iter().map(|share| size_of_val(&*share.runs) + size_of_val(&*share.before)).sum();
         self.points.bytes() + size_of_val(&*self.before) + runs + size_of_val(&*self.bodies)
     }
 

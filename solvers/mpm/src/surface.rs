@@ -6,7 +6,7 @@ use crate::patch::{Copies, Patch};
 use crate::runs;
 use crate::seed;
 use crate::transfer::Part;
-use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, Wide};
+use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, Wide, take_off};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -91,6 +91,11 @@ impl<S: Space> Tracers<S> {
 
     pub(crate) fn len(&self) -> usize {
         self.position.len()
+    }
+
+    /// All of them, lent.
+    pub(crate) fn lent(&mut self) -> TracersOf<'_, S> {
+        TracersOf { first: 0, position: &mut self.position, area: &mut self.area, neighbours: &self.neighbours }
     }
 
     /// Adds a closed surface; in the plane its patches follow each other with the body on their left.
@@ -291,14 +296,33 @@ impl<S: Space> Chord<S> {
     }
 }
 
+/// Tracers that follow each other, lent to a thread: those of whole bodies.
+pub(crate) struct TracersOf<'a, S: Space> {
+    /// Number of the first.
+    first: usize,
+    position: &'a mut [S::Vector],
+    area: &'a mut [S::Vector],
+    neighbours: &'a [[u32; 2]],
+}
+
+impl<S: Space> TracersOf<'_, S> {
+    /// Takes off the first, so many.
+    pub(crate) fn take_off(&mut self, count: usize) -> Self {
+        let first = self.first;
+        self.first += count;
+        let (neighbours, others) = self.neighbours.split_at(count);
+        self.neighbours = others;
+        Self { first, position: take_off(&mut self.position, count), area: take_off(&mut self.area, count), neighbours }
+    }
+}
+
 /// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that
 /// carry mass.
 pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
     /// Which tracers.
-    pub(crate) of: Range<usize>,
-    pub(crate) tracers: &'a mut Tracers<S>,
+    pub(crate) of: TracersOf<'a, S>,
     pub(crate) nodes: &'a [N],
     /// What each node counts for at most.
     pub(crate) most: &'a [f64],
@@ -310,13 +334,13 @@ pub(crate) struct Carry<'a, S: Space, B, N, V> {
 impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'_, S, B, N, V> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { lattice, part, of, tracers, nodes, most, velocity, elapsed, .. } = self;
-        let Tracers { position, area, neighbours, .. } = tracers;
+        let Self { lattice, part, of, nodes, most, velocity, elapsed, .. } = self;
+        let TracersOf { first, position, area, neighbours } = of;
         let zero = Wide::splat(lanes, 0.0);
         // Never read unless copied to.
         let Some(&any) = nodes.first() else { return };
         let (mut copies, mut most_copies): (Copies<N>, Copies<f64>) = ([any; _], [0.0; _]);
-        let mut range = of.clone();
+        let mut range = 0..position.len();
         while !range.is_empty() {
             let (batch, base) = runs::first_batch::<S, B>(lattice, range.clone(), position);
             range.start += batch.count;
@@ -380,10 +404,10 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
             }
         }
         if S::DIMENSION == 2 {
-            for at in of {
-                let [before, after] = neighbours[at].map(|neighbour| position[neighbour as usize]);
+            for (area, neighbours) in area.iter_mut().zip(neighbours) {
+                let [before, after] = neighbours.map(|neighbour| position[neighbour as usize - first]);
                 let half = S::embed(after - before) * 0.5;
-                area[at] = S::restrict(Vector3::new(half.y, -half.x, 0.0));
+                *area = S::restrict(Vector3::new(half.y, -half.x, 0.0));
             }
         }
     }

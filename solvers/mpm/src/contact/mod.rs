@@ -5,6 +5,7 @@ pub(crate) mod grip;
 pub(crate) mod nodal;
 pub(crate) mod pairs;
 pub(crate) mod penalty;
+pub(crate) mod search;
 pub(crate) mod shared;
 
 use grainbench_scene::space::Space;

@@ -5,7 +5,7 @@
 
 use super::friction::{Friction, Overlap, Tangential};
 use super::grip::Grip;
-use super::pairs::Pair;
+use super::search::{Found, Gone};
 use super::{FrictionTable, Other, Touch};
 use crate::basis::Basis;
 use crate::bodies::Body;
@@ -17,19 +17,13 @@ use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
-/// How far a surface can bulge beyond the box around its tracers (cells).
-const BULGE: f64 = 0.25;
-
-/// Depth at which surfaces are taken to have passed through each other, and are let go (cells).
-const DEEPEST: f64 = 0.8;
-
 /// What is kept of springs from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Springs<S: Space> {
     /// Springs along surfaces, or their absence.
     pub(crate) friction: Friction<S>,
-    /// Runs of the other surface that are near the tracers at hand.
-    pub(crate) near: Vec<usize>,
+    /// What each share of the pairs has found.
+    pub(crate) found: Vec<Found<S>>,
     /// How many tracers have touched since the evaluation began.
     pub(crate) touched: u64,
 }
@@ -37,7 +31,7 @@ pub(crate) struct Springs<S: Space> {
 impl<S: Space> Springs<S> {
     /// Those of so many tracers, with friction if it `acts`.
     pub(crate) fn new(acts: bool, tracers: usize) -> Self {
-        Self { friction: Friction::new(acts, tracers), near: Vec::new(), touched: 0 }
+        Self { friction: Friction::new(acts, tracers), found: Vec::new(), touched: 0 }
     }
 
     /// Begins an evaluation.
@@ -71,15 +65,13 @@ pub(crate) struct Told<'a, S: Space, A> {
 pub(crate) struct Push<'a, S: Space, B, F, A> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
-    pub(crate) pairs: &'a [Pair<S>],
-    pub(crate) tracers: &'a mut Tracers<S>,
+    pub(crate) found: &'a [Found<S>],
+    pub(crate) tracers: &'a Tracers<S>,
     pub(crate) friction: F,
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) nodes: &'a mut [Node<S>],
     /// What each node counts for at most at a surface.
     pub(crate) most: &'a [f64],
-    /// Runs of the other surface that are near the tracers at hand.
-    pub(crate) near: &'a mut Vec<usize>,
     pub(crate) told: Told<'a, S, A>,
     pub(crate) basis: PhantomData<B>,
 }
@@ -88,13 +80,8 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> FourKernel for Push<'_, S,
     #[inline(always)]
     fn run<L: FourLanes>(mut self, _: L) {
         self.at_walls();
-        if !self.pairs.is_empty() {
-            self.tracers.find_boxes();
-        }
-        for pair in self.pairs {
-            for pair in [*pair, pair.exchanged()] {
-                self.between(&pair);
-            }
+        for gone in self.found.iter().flat_map(|found| &found.gone) {
+            self.between(gone);
         }
     }
 }
@@ -144,58 +131,39 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
         }
     }
 
-    /// Springs between two bodies, from the tracers of `first` that have gone through the surface of `second`: half of
-    /// the stiffness, since the tracers of the second do the same.
+    /// The spring between two bodies at a tracer of the first that has gone through the surface of the second: with half of the
+    /// stiffness, since the tracers of the second do the same.
     #[inline(always)]
-    fn between(&mut self, pair: &Pair<S>) {
-        let Self { rules, bodies, tracers, friction, nodes, most, near: chunks, told, .. } = self;
+    fn between(&mut self, &Gone { pair, tracer: at, near }: &Gone<S>) {
+        let Self { rules, bodies, tracers, friction, nodes, most, told, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
+        let Some(coefficient) = rules.friction.between(first.material, second.material) else { return };
         let cell = rules.lattice.shortest(S::DIMENSION);
         let moduli = [first, second].map(|body| body.deformable.plane_modulus());
         let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
         let per_area = 0.5 * rules.penalty * harmonic / cell;
-        let Some(coefficient) = rules.friction.between(first.material, second.material) else { return };
-        let reach = DEEPEST * cell;
-        let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
-        for chunk in &tracers.chunks[first.chunks.clone()] {
-            if !chunk.meets(low, high) {
-                continue;
-            }
-            tracers.find_near(chunk, -pair.shift, &second.chunks, reach, chunks);
-            if chunks.is_empty() {
-                continue;
-            }
-            for at in chunk.tracers.clone() {
-                if beyond::<S>(tracers.position[at], low, high) > BULGE * cell {
-                    continue;
-                }
-                let position = tracers.position[at] - pair.shift;
-                let near = tracers.gone_through(chunks.iter().copied(), position, tracers.area[at], reach);
-                let Some(near) = near.filter(|near| near.gap < 0.0) else { continue };
-                let normal = tracers.normal(at);
-                let depth = -near.gap;
-                // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
-                let out = near.normal - normal;
-                let out = out * (1.0 / S::dot(out, out).sqrt());
-                let middle = position + near.normal * (0.5 * depth);
-                let there = middle + pair.shift;
-                let Some(one) = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most) else { continue };
-                let Some(two) = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most) else { continue };
-                let overlap = Overlap {
-                    depth,
-                    normal: out,
-                    stiffness: per_area * S::dot(tracers.area[at], tracers.area[at]).sqrt(),
-                    slip: (one.velocity - two.velocity) * rules.time_step,
-                    friction: coefficient,
-                };
-                let place = Place { body: pair.first, other: Other::Body(pair.second), point: there };
-                let force = told.force(friction, at, &overlap, place);
-                one.push::<B>(&first.part, force, nodes, most);
-                two.push::<B>(&second.part, -force, nodes, most);
-                if let Some(tally) = told.ledger.tally() {
-                    tally.taken -= 0.5 * S::dot(force, overlap.slip);
-                }
-            }
+        let position = tracers.position[at] - pair.shift;
+        let depth = -near.gap;
+        // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
+        let out = near.normal - tracers.normal(at);
+        let out = out * (1.0 / S::dot(out, out).sqrt());
+        let middle = position + near.normal * (0.5 * depth);
+        let there = middle + pair.shift;
+        let Some(one) = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most) else { return };
+        let Some(two) = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most) else { return };
+        let overlap = Overlap {
+            depth,
+            normal: out,
+            stiffness: per_area * S::dot(tracers.area[at], tracers.area[at]).sqrt(),
+            slip: (one.velocity - two.velocity) * rules.time_step,
+            friction: coefficient,
+        };
+        let place = Place { body: pair.first, other: Other::Body(pair.second), point: there };
+        let force = told.force(friction, at, &overlap, place);
+        one.push::<B>(&first.part, force, nodes, most);
+        two.push::<B>(&second.part, -force, nodes, most);
+        if let Some(tally) = told.ledger.tally() {
+            tally.taken -= 0.5 * S::dot(force, overlap.slip);
         }
     }
 }
@@ -243,14 +211,4 @@ fn lowest<S: Space>(body: &Body, wall: &RigidPlane<S>) -> f64 {
     let [low, high] = &body.bounds;
     let corner = normal.zip_zip_map(low, high, |n, low, high| if n > 0.0 { low } else { high });
     (corner - S::embed(wall.point)).dot(&normal)
-}
-
-/// How far beyond a box a position is, along the axis along which it is farthest (m); negative inside.
-#[inline(always)]
-fn beyond<S: Space>(position: S::Vector, low: S::Vector, high: S::Vector) -> f64 {
-    let beyond = |axis: usize| {
-        let at = |vector: S::Vector| S::component(vector, axis);
-        (at(low) - at(position)).max(at(position) - at(high))
-    };
-    (0..S::DIMENSION).map(beyond).fold(f64::NEG_INFINITY, f64::max)
 }
