@@ -30,12 +30,14 @@ use crate::nodes::Grid;
 use crate::options::{Basis, Contact, Setting};
 use crate::scheme::{Scheme, Surroundings};
 use crate::state::State;
+use grainbench_lanes::Team;
 use grainbench_scene::body::Hold;
 use grainbench_scene::budget::Budget;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Sums since the start (J, N s).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -110,6 +112,73 @@ fn work_of<S: Space>(driven: &Driven<S>, time_step: f64) -> f64 {
     work.sum::<f64>() * time_step
 }
 
+/// Nodes that are added up at a time, whatever the number of threads.
+const BLOCK: usize = 4096;
+
+/// Sums over nodes in a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct OfNodes {
+    /// Mass (kg).
+    mass: f64,
+    /// What internal forces give to the velocities before the step (J).
+    given: f64,
+    /// Kinetic energy before the step (J).
+    seen: f64,
+    /// Kinetic energy that is gained (J).
+    stepped: f64,
+    /// Work of gravity (J).
+    pulled: f64,
+    /// Work of damping (J).
+    dragged: f64,
+}
+
+impl OfNodes {
+    /// Of a block of nodes. Of `forces` (N) and internal forces become impulses (N s): all that changed the momentum, but
+    /// gravity (m/s²) and drag; and that without internal forces.
+    fn add<S: Space>(
+        nodes: &[Node<S>],
+        forces: &mut [S::Vector],
+        impulses: &mut [S::Vector],
+        gravity: S::Vector,
+        Damping { keep, gain }: Damping,
+        time_step: f64,
+    ) -> Self {
+        let mut sums = Self::default();
+        for ((node, force), impulse) in nodes.iter().zip(forces).zip(impulses) {
+            if node.mass <= 0.0 {
+                (*impulse, *force) = (S::ORIGIN, S::ORIGIN);
+                continue;
+            }
+            sums.mass += node.mass;
+            let before = before(node, keep);
+            let mean = (before + node.velocity) * 0.5;
+            let pull = gravity * node.mass;
+            sums.given += S::dot(*impulse, before) * time_step;
+            let dragged = before * (keep - 1.0) + (*force * (1.0 / node.mass) + gravity) * (gain - time_step);
+            let drag = dragged * node.mass;
+            *force = (node.velocity - before) * node.mass - pull * time_step - drag;
+            *impulse = *force - *impulse * time_step;
+            sums.seen += 0.5 * node.mass * S::dot(before, before);
+            sums.stepped += 0.5 * node.mass * (S::dot(node.velocity, node.velocity) - S::dot(before, before));
+            sums.pulled += S::dot(pull, mean) * time_step;
+            sums.dragged += S::dot(drag, mean);
+        }
+        sums
+    }
+
+    /// The sums of both.
+    fn and(self, other: Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            given: self.given + other.given,
+            seen: self.seen + other.seen,
+            stepped: self.stepped + other.stepped,
+            pulled: self.pulled + other.pulled,
+            dragged: self.dragged + other.dragged,
+        }
+    }
+}
+
 impl<S: Space> Accounts<S> {
     /// Begins to add up, with the points as they are.
     pub(crate) fn open(basis: Basis, state: &State<S>, lattice: &Lattice) -> Self {
@@ -130,19 +199,27 @@ impl<S: Space> Accounts<S> {
     }
 
     /// Before springs push: the forces on the nodes are internal.
-    pub(crate) fn note_internal_forces(&mut self, grid: &Grid<S>) {
-        self.impulses.clear();
-        self.impulses.extend(grid.nodes[..grid.used].iter().map(|node| node.change));
+    pub(crate) fn note_internal_forces(&mut self, team: &Team, grid: &Grid<S>) {
+        let nodes = &grid.nodes[..grid.used];
+        self.impulses.resize(nodes.len(), S::ORIGIN);
+        team.each(self.impulses.chunks_mut(BLOCK).zip(nodes.chunks(BLOCK)), |_, (impulses, nodes)| {
+            impulses.iter_mut().zip(nodes).for_each(|(impulse, node)| *impulse = node.change);
+        });
     }
 
     /// Before velocities change.
-    pub(crate) fn note_forces(&mut self, grid: &Grid<S>) {
+    pub(crate) fn note_forces(&mut self, team: &Team, grid: &Grid<S>) {
         let Self { forces, springs, impulses, .. } = self;
         let nodes = &grid.nodes[..grid.used];
-        forces.clear();
-        forces.extend(nodes.iter().map(|node| node.change));
-        springs.clear();
-        springs.extend(nodes.iter().zip(impulses).map(|(node, internal)| node.change - *internal));
+        forces.resize(nodes.len(), S::ORIGIN);
+        springs.resize(nodes.len(), S::ORIGIN);
+        let blocks = forces.chunks_mut(BLOCK).zip(springs.chunks_mut(BLOCK)).zip(impulses.chunks(BLOCK));
+        team.each(blocks.zip(nodes.chunks(BLOCK)), |_, (((forces, springs), impulses), nodes)| {
+            let internal = impulses.iter().zip(nodes);
+            for ((force, spring), (internal, node)) in forces.iter_mut().zip(springs).zip(internal) {
+                (*force, *spring) = (node.change, node.change - *internal);
+            }
+        });
     }
 
     /// Kinetic energy of the points before velocities change (J), where their motion is damped.
@@ -158,6 +235,7 @@ impl<S: Space> Accounts<S> {
     /// After velocities have changed.
     pub(crate) fn add_nodes(
         &mut self,
+        team: &Team,
         scheme: &Scheme,
         &Surroundings { gravity, damping }: &Surroundings<S>,
         grid: &Grid<S>,
@@ -166,33 +244,20 @@ impl<S: Space> Accounts<S> {
         let time_step = scheme.time_step;
         let driven_work = work_of(driven, time_step);
         let Self { sums, tally, impulses, forces, held, brought, .. } = self;
-        let Damping { keep, gain } = Damping::over(damping, time_step);
-        let (mut mass, mut given, mut seen) = (0.0, 0.0, 0.0);
-        for ((node, force), impulse) in grid.nodes[..grid.used].iter().zip(forces.iter_mut()).zip(impulses) {
-            if node.mass <= 0.0 {
-                (*impulse, *force) = (S::ORIGIN, S::ORIGIN);
-                continue;
-            }
-            mass += node.mass;
-            let before = before(node, keep);
-            let mean = (before + node.velocity) * 0.5;
-            let pull = gravity * node.mass;
-            given += S::dot(*impulse, before) * time_step;
-            let dragged = before * (keep - 1.0) + (*force * (1.0 / node.mass) + gravity) * (gain - time_step);
-            let drag = dragged * node.mass;
-            // All that changed the momentum, but gravity and drag; and without internal forces.
-            *force = (node.velocity - before) * node.mass - pull * time_step - drag;
-            *impulse = *force - *impulse * time_step;
-            seen += 0.5 * node.mass * S::dot(before, before);
-            sums.stepped += 0.5 * node.mass * (S::dot(node.velocity, node.velocity) - S::dot(before, before));
-            sums.gravity += S::dot(pull, mean) * time_step;
-            sums.damping -= S::dot(drag, mean);
-        }
+        let damped = Damping::over(damping, time_step);
+        let nodes = &grid.nodes[..grid.used];
+        let blocks = forces.chunks_mut(BLOCK).zip(impulses.chunks_mut(BLOCK)).zip(nodes.chunks(BLOCK));
+        let add = |_, ((forces, impulses), nodes)| OfNodes::add(nodes, forces, impulses, gravity, damped, time_step);
+        let OfNodes { mass, given, seen, stepped, pulled, dragged } =
+            team.fold(blocks, add, OfNodes::default(), OfNodes::and);
+        sums.stepped += stepped;
+        sums.gravity += pulled;
+        sums.damping -= dragged;
         if !scheme.has_stress_first() {
             sums.crossed += 0.5 * (sums.stressed + given);
         }
         if damping > 0.0 {
-            sums.unseen += (1.0 - keep * keep) * (*brought - seen);
+            sums.unseen += (1.0 - damped.keep * damped.keep) * (*brought - seen);
         }
         sums.impulse += S::embed(gravity) * (mass * time_step);
         for group in &driven.groups {
@@ -209,17 +274,28 @@ impl<S: Space> Accounts<S> {
     }
 
     /// After points have brought their new velocities to the nodes, where they do.
-    pub(crate) fn add_contacts(&mut self, scheme: &Scheme, damping: f64, Grid { nodes, projected, .. }: &Grid<S>) {
+    pub(crate) fn add_contacts(&mut self, team: &Team, scheme: &Scheme, damping: f64, grid: &Grid<S>) {
+        let Grid { nodes, projected, .. } = grid;
         let time_step = scheme.time_step;
         let Self { sums, impulses, forces, springs, .. } = self;
         let Damping { keep, .. } = Damping::over(damping, time_step);
-        let after = |slot: usize| if scheme.is_projected() { projected[slot] } else { nodes[slot].velocity };
-        for (slot, ((impulse, all), spring)) in impulses.iter().zip(forces.iter()).zip(springs.iter()).enumerate() {
-            let (node, after) = (&nodes[slot], after(slot));
-            sums.contacts += S::dot(*impulse, (before(node, keep) + after) * 0.5);
-            sums.stray += 0.5 * S::dot(*all, node.velocity - after);
-            sums.taken -= 0.5 * S::dot(*spring, after) * time_step;
-        }
+        let used = grid.used;
+        let blocks = (0..used).step_by(BLOCK).map(|start| start..used.min(start + BLOCK));
+        let add = |_, block: Range<usize>| {
+            let mut sum = [0.0; 3];
+            for slot in block {
+                let node = &nodes[slot];
+                let after = if scheme.is_projected() { projected[slot] } else { node.velocity };
+                sum[0] += S::dot(impulses[slot], (before(node, keep) + after) * 0.5);
+                sum[1] += 0.5 * S::dot(forces[slot], node.velocity - after);
+                sum[2] -= 0.5 * S::dot(springs[slot], after) * time_step;
+            }
+            sum
+        };
+        let [contacts, stray, taken] = team.fold(blocks, add, [0.0; 3], |a, b| std::array::from_fn(|of| a[of] + b[of]));
+        sums.contacts += contacts;
+        sums.stray += stray;
+        sums.taken += taken;
     }
 
     /// After stresses have changed.

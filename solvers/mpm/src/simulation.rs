@@ -218,13 +218,13 @@ impl<S: Space> Simulation<S> {
     fn spring_forces(&mut self, record: bool) {
         let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, cost, .. } = self;
         if let Some(accounts) = accounts {
-            accounts.note_internal_forces(grid);
+            accounts.note_internal_forces(&state.team, grid);
         }
         let asked = Asked { accounts: accounts.as_mut(), touches: record };
         contacts.push(scheme, state, grid, boundary, asked, cost);
         boundary.held.fold(&state.bodies, &mut grid.nodes);
         if let Some(accounts) = accounts {
-            accounts.note_forces(grid);
+            accounts.note_forces(&state.team, grid);
             if surroundings.damping > 0.0 {
                 accounts.note_brought(state.kinetic_energy(scheme.setting.basis, &grid.lattice));
             }
@@ -252,14 +252,14 @@ impl<S: Space> Simulation<S> {
         }
         boundary.driven.carry(&state.bodies, &mut state.points, scheme.time_step);
         if let Some(accounts) = accounts {
-            accounts.add_nodes(scheme, surroundings, grid, boundary);
+            accounts.add_nodes(&state.team, scheme, surroundings, grid, boundary);
         }
         if self.scheme.is_projected() {
             self.finish_projection();
         }
-        let Self { scheme, surroundings, grid, accounts, .. } = self;
+        let Self { scheme, surroundings, state, grid, accounts, .. } = self;
         if let Some(accounts) = accounts {
-            accounts.add_contacts(scheme, surroundings.damping, grid);
+            accounts.add_contacts(&state.team, scheme, surroundings.damping, grid);
         }
     }
 
