@@ -1,6 +1,6 @@
 //! Material points: structure of arrays, grouped by body and kept in cell order within a body.
 
-use grainbench_lanes::take_off;
+use grainbench_lanes::{Team, take_off};
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -135,9 +135,9 @@ impl<S: Space> Points<S> {
         .all(|&length| length == count)
     }
 
-    /// Puts the points of a body in the order of the places that `place` says they are at, of equal ones in the order
-    /// they have.
-    pub(crate) fn sort(&mut self, range: Range<usize>, place: impl Fn(S::Vector) -> usize) {
+    /// The order of a body's points by the places that `place` says they are at, of equal ones that which they have: the number
+    /// of the first, then of the next.
+    pub(crate) fn order(&self, range: Range<usize>, place: impl Fn(S::Vector) -> usize) -> Order {
         let places: Vec<usize> = self.position[range.clone()].iter().map(|&position| place(position)).collect();
         let low = places.iter().copied().min().unwrap_or(0);
         let high = places.iter().copied().max().unwrap_or(0);
@@ -145,29 +145,55 @@ impl<S: Space> Points<S> {
         let mut before = vec![0; high - low + 2];
         places.iter().for_each(|place| before[place - low + 1] += 1);
         (1..before.len()).for_each(|place| before[place] += before[place - 1]);
-        let mut order = vec![0; places.len()];
+        let mut numbers = vec![0; places.len()];
         for (place, at) in places.iter().zip(range.clone()) {
             let next = &mut before[place - low];
-            order[*next] = at;
+            numbers[*next] = at;
             *next += 1;
         }
-        let start = range.start;
-        reorder(&mut self.id[range.clone()], &order, start);
-        reorder(&mut self.start[range.clone()], &order, start);
-        reorder(&mut self.position[range.clone()], &order, start);
-        reorder(&mut self.velocity[range.clone()], &order, start);
-        reorder(&mut self.mass[range.clone()], &order, start);
-        reorder(&mut self.reference_volume[range.clone()], &order, start);
-        reorder(&mut self.volume[range.clone()], &order, start);
-        reorder(&mut self.deformation[range.clone()], &order, start);
-        reorder(&mut self.stress[range.clone()], &order, start);
-        if !self.affine.is_empty() {
-            reorder(&mut self.affine[range.clone()], &order, start);
-        }
-        if !self.plastic_strain.is_empty() {
-            reorder(&mut self.plastic_strain[range], &order, start);
-        }
+        Order { range, numbers }
     }
+
+    /// Puts the points of bodies in these orders; each thread does so with some of what points have.
+    pub(crate) fn put_in(&mut self, orders: &[Order], team: &Team) {
+        let tasks = [
+            put_in(&mut self.deformation, orders),
+            put_in(&mut self.stress, orders),
+            put_in(&mut self.affine, orders),
+            put_in(&mut self.start, orders),
+            put_in(&mut self.position, orders),
+            put_in(&mut self.velocity, orders),
+            put_in(&mut self.mass, orders),
+            put_in(&mut self.reference_volume, orders),
+            put_in(&mut self.volume, orders),
+            put_in(&mut self.plastic_strain, orders),
+            put_in(&mut self.id, orders),
+        ];
+        team.each(tasks.into_iter(), |_, task| task());
+    }
+}
+
+/// An order of points that follow each other.
+#[derive(Clone, Debug)]
+pub(crate) struct Order {
+    range: Range<usize>,
+    /// Which comes first, which next.
+    numbers: Vec<usize>,
+}
+
+/// What puts values of points in some orders; of none where no point has them.
+fn put_in<'a, T: Copy + Send>(values: &'a mut [T], orders: &'a [Order]) -> Box<dyn FnOnce() + Send + 'a> {
+    Box::new(move || {
+        if values.is_empty() {
+            return;
+        }
+        for Order { range, numbers } in orders {
+            let old = values[range.clone()].to_vec();
+            for (value, &from) in values[range.clone()].iter_mut().zip(numbers) {
+                *value = old[from - range.start];
+            }
+        }
+    })
 }
 
 /// Points that follow each other, lent to a thread.
@@ -227,12 +253,5 @@ impl<S: Space> Points<S> {
             stress: &mut self.stress,
             plastic_strain: &mut self.plastic_strain,
         }
-    }
-}
-
-fn reorder<T: Copy>(values: &mut [T], order: &[usize], start: usize) {
-    let old = values.to_vec();
-    for (value, &from) in values.iter_mut().zip(order) {
-        *value = old[from - start];
     }
 }
