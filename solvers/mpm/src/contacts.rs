@@ -7,7 +7,7 @@ use crate::contact::friction::Friction;
 use crate::contact::nodal::{self, Felt};
 use crate::contact::pairs::Pairs;
 use crate::contact::penalty::{Push, Rules, Springs, Told};
-use crate::contact::search::{Found, Search};
+use crate::contact::search::{Around, Found, Search};
 use crate::contact::shared::{Projected, Shared, Stepped};
 use crate::contact::{FrictionTable, Touch};
 use crate::grid::Node;
@@ -146,14 +146,17 @@ impl<S: Space> Contacts<S> {
         if !pairs.found.is_empty() {
             tracers.find_boxes();
         }
-        let (cell, shares) = (lattice.shortest(S::DIMENSION), state.team.members());
+        let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
+        let shares = state.team.members();
         springs.found.resize(shares, Found::new());
         let (all, tracers) = (&pairs.found[..], &*tracers);
         state.team.each(springs.found.iter_mut(), |number, found| {
             let pairs = &all[number * all.len() / shares..(number + 1) * all.len() / shares];
-            processor.run_by_four(Search { cell, bodies, pairs, tracers, found });
+            with_basis!(setting.basis, B => {
+                let around = Around { rules, bodies, tracers, nodes, most, basis: PhantomData::<B> };
+                processor.run_by_four(Search { around, pairs, found });
+            });
         });
-        let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
         let Springs { friction, found, touched } = springs;
         macro_rules! push {
             ($B:ty, $friction:expr, $ledger:expr) => {{

@@ -26,6 +26,7 @@ pub(crate) fn bear<S: Space>(nodes: &[Node<S>], cell_mass: f64, most: &mut [f64]
 }
 
 /// A body held at a point on its surface.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Grip<S: Space> {
     stencil: Stencil<f64>,
     /// Sum of the weights.

@@ -42,6 +42,7 @@ impl<S: Space> Springs<S> {
 }
 
 /// What all springs need to know.
+#[derive(Clone, Copy)]
 pub(crate) struct Rules<'a> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) friction: &'a FrictionTable,
@@ -131,35 +132,13 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
         }
     }
 
-    /// The spring between two bodies at a tracer of the first that has gone through the surface of the second: with half of the
-    /// stiffness, since the tracers of the second do the same.
+    /// The spring between two bodies at a tracer of the first that has gone through the surface of the second.
     #[inline(always)]
-    fn between(&mut self, &Gone { pair, tracer: at, near }: &Gone<S>) {
-        let Self { rules, bodies, tracers, friction, nodes, most, told, .. } = self;
+    fn between(&mut self, Gone { pair, tracer, overlap, there, grips: [one, two] }: &Gone<S>) {
+        let Self { bodies, friction, nodes, most, told, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
-        let Some(coefficient) = rules.friction.between(first.material, second.material) else { return };
-        let cell = rules.lattice.shortest(S::DIMENSION);
-        let moduli = [first, second].map(|body| body.deformable.plane_modulus());
-        let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
-        let per_area = 0.5 * rules.penalty * harmonic / cell;
-        let position = tracers.position[at] - pair.shift;
-        let depth = -near.gap;
-        // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
-        let out = near.normal - tracers.normal(at);
-        let out = out * (1.0 / S::dot(out, out).sqrt());
-        let middle = position + near.normal * (0.5 * depth);
-        let there = middle + pair.shift;
-        let Some(one) = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most) else { return };
-        let Some(two) = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most) else { return };
-        let overlap = Overlap {
-            depth,
-            normal: out,
-            stiffness: per_area * S::dot(tracers.area[at], tracers.area[at]).sqrt(),
-            slip: (one.velocity - two.velocity) * rules.time_step,
-            friction: coefficient,
-        };
-        let place = Place { body: pair.first, other: Other::Body(pair.second), point: there };
-        let force = told.force(friction, at, &overlap, place);
+        let place = Place { body: pair.first, other: Other::Body(pair.second), point: *there };
+        let force = told.force(friction, *tracer, overlap, place);
         one.push::<B>(&first.part, force, nodes, most);
         two.push::<B>(&second.part, -force, nodes, most);
         if let Some(tally) = told.ledger.tally() {

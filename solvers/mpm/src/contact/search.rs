@@ -1,10 +1,16 @@
-//! Which tracers have gone through the surface of another body.
+//! Which tracers have gone through the surface of another body, and how both bodies are held there.
 
+use super::friction::Overlap;
+use super::grip::Grip;
 use super::pairs::Pair;
+use super::penalty::Rules;
+use crate::basis::Basis;
 use crate::bodies::Body;
+use crate::grid::Node;
 use crate::surface::{Near, Tracers};
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::space::Space;
+use std::marker::PhantomData;
 
 /// How far a surface can bulge beyond the box around its tracers (cells).
 const BULGE: f64 = 0.25;
@@ -18,8 +24,12 @@ pub(crate) struct Gone<S: Space> {
     /// The bodies, that of the tracer first.
     pub(crate) pair: Pair<S>,
     pub(crate) tracer: usize,
-    /// The surface of the second body there.
-    pub(crate) near: Near<S>,
+    /// The spring between them, with half of the stiffness, since the tracers of the second do the same.
+    pub(crate) overlap: Overlap<S>,
+    /// Where the surfaces meet, by the first body (m).
+    pub(crate) there: S::Vector,
+    /// Both bodies there.
+    pub(crate) grips: [Grip<S>; 2],
 }
 
 /// What a share of the pairs has found, and what it works with.
@@ -38,20 +48,31 @@ impl<S: Space> Found<S> {
     }
 }
 
-/// Holds the tracers of both bodies of some pairs against the surface of the other.
-pub(crate) struct Search<'a, S: Space> {
-    /// Length of a cell (m).
-    pub(crate) cell: f64,
+/// What is around tracers.
+#[derive(Clone, Copy)]
+pub(crate) struct Around<'a, S: Space, B> {
+    pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
-    pub(crate) pairs: &'a [Pair<S>],
     pub(crate) tracers: &'a Tracers<S>,
+    pub(crate) nodes: &'a [Node<S>],
+    /// What each node counts for at most at a surface.
+    pub(crate) most: &'a [f64],
+    pub(crate) basis: PhantomData<B>,
+}
+
+/// Holds the tracers of both bodies of some pairs against the surface of the other.
+pub(crate) struct Search<'a, S: Space, B> {
+    pub(crate) around: Around<'a, S, B>,
+    pub(crate) pairs: &'a [Pair<S>],
     pub(crate) found: &'a mut Found<S>,
 }
 
-impl<S: Space> FourKernel for Search<'_, S> {
+impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
     #[inline(always)]
     fn run<L: FourLanes>(self, _: L) {
-        let Self { cell, bodies, pairs, tracers, found: Found { gone, near } } = self;
+        let Self { around, pairs, found: Found { gone, near } } = self;
+        let Around { rules, bodies, tracers, .. } = around;
+        let cell = rules.lattice.shortest(S::DIMENSION);
         gone.clear();
         let reach = DEEPEST * cell;
         for pair in pairs.iter().flat_map(|pair| [*pair, pair.exchanged()]) {
@@ -71,10 +92,38 @@ impl<S: Space> FourKernel for Search<'_, S> {
                     }
                     let position = tracers.position[tracer] - pair.shift;
                     let there = tracers.gone_through(near.iter().copied(), position, tracers.area[tracer], reach);
-                    gone.extend(there.filter(|near| near.gap < 0.0).map(|near| Gone { pair, tracer, near }));
+                    let there = there.filter(|near| near.gap < 0.0);
+                    gone.extend(there.and_then(|near| around.gone(pair, tracer, near)));
                 }
             }
         }
+    }
+}
+
+impl<S: Space, B: Basis> Around<'_, S, B> {
+    /// What holds a tracer of the first body of a pair that has gone through the surface of the second, `near`; none where
+    /// nothing does.
+    #[inline(always)]
+    fn gone(&self, pair: Pair<S>, tracer: usize, near: Near<S>) -> Option<Gone<S>> {
+        let Self { rules, bodies, tracers, nodes, most, .. } = self;
+        let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
+        let friction = rules.friction.between(first.material, second.material)?;
+        let moduli = [first, second].map(|body| body.deformable.plane_modulus());
+        let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
+        let per_area = 0.5 * rules.penalty * harmonic / rules.lattice.shortest(S::DIMENSION);
+        let area = tracers.area[tracer];
+        let depth = -near.gap;
+        // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
+        let out = near.normal - tracers.normal(tracer);
+        let normal = out * (1.0 / S::dot(out, out).sqrt());
+        let middle = tracers.position[tracer] - pair.shift + near.normal * (0.5 * depth);
+        let there = middle + pair.shift;
+        let one = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most)?;
+        let two = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most)?;
+        let stiffness = per_area * S::dot(area, area).sqrt();
+        let slip = (one.velocity - two.velocity) * rules.time_step;
+        let overlap = Overlap { depth, normal, stiffness, slip, friction };
+        Some(Gone { pair, tracer, overlap, there, grips: [one, two] })
     }
 }
 
