@@ -10,7 +10,7 @@ use crate::material::{Law, PlasticStrain, VolumeRatio, with_law};
 use crate::nodes::{Grid, Velocities};
 use crate::options::Transfer;
 use crate::points::Lent;
-use crate::runs::{self, Ground, LONGEST};
+use crate::runs::{self, Ground, LONGEST, Run};
 use crate::scheme::Scheme;
 use crate::share::{Share, Way};
 use crate::state::State;
@@ -19,7 +19,6 @@ use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
-use std::ops::Range;
 
 /// A point whose state broke.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,30 +101,15 @@ fn follow_piece<S: Space>(
                 processor.run_by_four(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
             }
         });
-        let first = runs[0].start;
-        let whole = first..runs[runs.len() - 1].end;
         macro_rules! update {
-            ($law:ident, $count:literal, $range:expr, $flow:expr) => {{
-                let (law, range, flow, failure): (_, Range<usize>, _, _) = ($law, $range, $flow, &mut broken);
-                let gradients = &gradients[range.start - first..range.end - first];
+            ($law:ident, $count:literal) => {{
+                let (law, gradients, failure) = ($law, &gradients[..], &mut broken);
                 let update: Update<'_, '_, S, _, $count> =
-                    Update { law, range, gradients, time_step, spins, points, flow, failure };
+                    Update { law, runs, gradients, time_step, spins, points, flows, failure };
                 processor.run_by_four(update);
             }};
-            ($law:ident) => {
-                if counts {
-                    // Run by run, for these do not depend on the shares.
-                    for run in runs {
-                        let mut flow = Flow::default();
-                        update!($law, true, run.start..run.end, &mut flow);
-                        flows.push(flow);
-                    }
-                } else {
-                    update!($law, false, whole, &mut Flow::default())
-                }
-            };
         }
-        with_law!(*law, law => update!(law));
+        with_law!(*law, law => if counts { update!(law, true) } else { update!(law, false) });
     }
     if let Some(BrokenPoint { point, cause }) = broken
         && failure.is_none()
@@ -135,8 +119,8 @@ fn follow_piece<S: Space>(
     }
 }
 
-/// F ← (1 + Δt ∇v) F, volume and stress of every point of a range, of which `gradients` are the velocity gradients
-/// (1/s). With `COUNT` adds to `flow` what the stresses after the step take on the strain of it, the work of
+/// F ← (1 + Δt ∇v) F, volume and stress of every point of some runs, of which `gradients` are the velocity gradients
+/// (1/s). With `COUNT` tells of each run what the stresses after the step take on the strain of it, the work of
 /// plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume; and that against
 /// viscosity: half of what the viscous stresses before and after the step do on the strain of it.
 ///
@@ -144,12 +128,14 @@ fn follow_piece<S: Space>(
 /// its spin with has moved on, and spins that nothing answers to grow until a grain of a few cells flies apart.
 struct Update<'a, 'b, S: Space, L, const COUNT: bool> {
     law: L,
-    range: Range<usize>,
+    /// Runs one after another, of as many points in all as the longest can have.
+    runs: &'a [Run],
     gradients: &'a [S::Matrix],
     time_step: f64,
     spins: bool,
     points: &'a mut Lent<'b, S>,
-    flow: &'a mut Flow,
+    /// Run by run, for these do not depend on the shares.
+    flows: &'a mut Vec<Flow>,
     /// The first point that broke, if any did.
     failure: &'a mut Option<BrokenPoint>,
 }
@@ -157,70 +143,77 @@ struct Update<'a, 'b, S: Space, L, const COUNT: bool> {
 impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, COUNT> {
     #[inline(always)]
     fn run<R: FourLanes>(self, _: R) {
-        let Self { law, range, gradients, time_step, spins, points, flow, failure } = self;
-        let first = points.first;
+        let Self { law, runs, gradients, time_step, spins, points, flows, failure } = self;
+        let (first, start, end) = (points.first, runs[0].start, runs[runs.len() - 1].end);
+        let range = start - first..end - first;
         let affines = &mut points.affine;
-        let range = range.start - first..range.end - first;
+        let gradients = &gradients[..range.len()];
         let deformations = &mut points.deformation[range.clone()];
         let stresses = &mut points.stress[range.clone()];
         let plastic_strains = L::PlasticStrain::those_of(points.plastic_strain, range.clone());
         let (volumes, references) = (&mut points.volume[range.clone()], &points.reference_volume[range.clone()]);
+        // What is found of many points at once: volume ratios, their logarithms, 3/2 s:s, and work against viscosity.
         let (mut ratios, mut logarithms) = ([0.0; LONGEST], [0.0; LONGEST]);
-        // Work against viscosity is added up point by point, before the step and after it.
-        let at_once = if COUNT && L::VISCOUS { 1 } else { LONGEST };
-        for from in (0..gradients.len()).step_by(at_once) {
-            let some = from..gradients.len().min(from + at_once);
-            if L::LOGARITHM {
-                let states = deformations[some.clone()].iter_mut().zip(&stresses[some.clone()]);
-                let sizes = volumes[some.clone()].iter().zip(&references[some.clone()]);
-                for (((deformation, stress), gradient), ((volume, reference), ratio)) in
-                    states.zip(&gradients[some.clone()]).zip(sizes.zip(&mut ratios))
-                {
-                    let increment = *gradient * time_step;
-                    if COUNT && L::VISCOUS {
-                        let strain = S::symmetric_part(increment);
-                        flow.viscous +=
-                            0.5 * volume * law.viscous_work::<S>(strain, volume / reference, *deformation, *stress);
-                    }
-                    *ratio = deformed::<S>(deformation, increment);
-                }
-                for (logarithm, &ratio) in logarithms.iter_mut().zip(&ratios).take(some.len()) {
-                    *logarithm = ln(ratio);
-                }
+        let (mut squares, mut works) = ([0.0; LONGEST], [0.0; LONGEST]);
+        if COUNT && L::VISCOUS {
+            for (at, work) in works.iter_mut().enumerate().take(range.len()) {
+                let (strain, ratio) = (S::symmetric_part(gradients[at] * time_step), volumes[at] / references[at]);
+                let density = law.viscous_work::<S>(strain, ratio, deformations[at], stresses[at]);
+                *work = 0.5 * volumes[at] * density;
             }
-            let found = ratios.iter().zip(&logarithms);
-            let states = deformations[some.clone()].iter_mut().zip(&mut stresses[some.clone()]);
-            let sizes = volumes[some.clone()].iter_mut().zip(&references[some.clone()]);
-            for ((place, gradient), ((deformation, stress), ((volume, reference), (&ratio, &logarithm)))) in
-                some.clone().zip(&gradients[some.clone()]).zip(states.zip(sizes.zip(found)))
-            {
-                let (at, increment) = (range.start + place, *gradient * time_step);
-                let volume_ratio = if L::LOGARITHM { ratio } else { deformed::<S>(deformation, increment) };
-                if (volume_ratio <= 0.0 || volume_ratio.is_nan()) && failure.is_none() {
-                    *failure = Some(BrokenPoint { point: first + at, cause: cause::<S>(increment, volume_ratio) });
+        }
+        for ((deformation, gradient), ratio) in deformations.iter_mut().zip(gradients).zip(&mut ratios) {
+            *ratio = deformed::<S>(deformation, *gradient * time_step);
+        }
+        if L::LOGARITHM {
+            for (logarithm, &ratio) in logarithms.iter_mut().zip(&ratios).take(range.len()) {
+                *logarithm = ln(ratio);
+            }
+        }
+        if L::YIELDS {
+            for ((stress, gradient), square) in stresses.iter_mut().zip(gradients).zip(&mut squares) {
+                (*stress, *square) = law.trial::<S>(*gradient * time_step, *stress);
+            }
+        }
+        for run in runs {
+            let mut flow = Flow::default();
+            for place in run.start - start..run.end - start {
+                let increment = gradients[place] * time_step;
+                let (deformation, stress, volume) = (deformations[place], &mut stresses[place], &mut volumes[place]);
+                let ratio = VolumeRatio { ratio: ratios[place], logarithm: logarithms[place] };
+                if (ratio.ratio <= 0.0 || ratio.ratio.is_nan()) && failure.is_none() {
+                    *failure = Some(BrokenPoint { point: start + place, cause: cause::<S>(increment, ratio.ratio) });
                 }
                 let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
                 let before = (*volume, plastic_strain.value());
-                *volume = reference * volume_ratio;
-                let ratio = VolumeRatio { ratio: volume_ratio, logarithm };
-                *stress = law.follow::<S>(increment, ratio, *deformation, *stress, &mut plastic_strain);
+                *volume = references[place] * ratio.ratio;
+                *stress = if L::YIELDS {
+                    law.flow::<S>((*stress, squares[place]), &mut plastic_strain)
+                } else {
+                    law.follow::<S>(increment, ratio, deformation, *stress, &mut plastic_strain)
+                };
                 let flown = plastic_strain.value() - before.1;
                 plastic_strain.write(plastic_strains, place);
                 if spins && flown > 0.0 {
-                    let strain_rate = S::embed_symmetric(S::symmetric_part(*gradient));
-                    affines[at] = S::restrict_gradient(S::embed_gradient(*gradient) - strain_rate);
+                    let strain_rate = S::embed_symmetric(S::symmetric_part(gradients[place]));
+                    affines[range.start + place] =
+                        S::restrict_gradient(S::embed_gradient(gradients[place]) - strain_rate);
                 }
                 if COUNT {
                     let strain = S::symmetric_part(increment);
                     flow.taken += *volume * S::double_dot(*stress, strain);
                     if L::VISCOUS {
-                        flow.viscous +=
-                            0.5 * *volume * law.viscous_work::<S>(strain, volume_ratio, *deformation, *stress);
+                        flow.viscous += works[place];
+                        let density = law.viscous_work::<S>(strain, ratio.ratio, deformation, *stress);
+                        flow.viscous += 0.5 * *volume * density;
                     }
                     if flown > 0.0 {
                         flow.plastic += 0.5 * (before.0 + *volume) * law.flow_stress(plastic_strain) * flown;
                     }
                 }
+            }
+            if COUNT {
+                flows.push(flow);
             }
         }
     }

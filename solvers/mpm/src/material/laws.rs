@@ -189,6 +189,16 @@ pub struct Hypoelastic {
     pub shear_modulus: f64,
 }
 
+impl Hypoelastic {
+    #[inline(always)]
+    fn stress<S: Space>(&self, increment: S::Matrix, stress: S::Symmetric) -> S::Symmetric {
+        let strain = S::symmetric_part(increment);
+        let pressure = (self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus) * S::trace(strain);
+        let turned = S::turned(stress, increment);
+        S::scaled_sum(strain, 2.0 * self.shear_modulus, S::scaled_sum(turned, 1.0, S::isotropic(pressure)))
+    }
+}
+
 impl Law for Hypoelastic {
     type PlasticStrain = Off;
 
@@ -201,10 +211,7 @@ impl Law for Hypoelastic {
         stress: S::Symmetric,
         _plastic_strain: &mut Off,
     ) -> S::Symmetric {
-        let strain = S::symmetric_part(increment);
-        let pressure = (self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus) * S::trace(strain);
-        let turned = S::turned(stress, increment);
-        S::scaled_sum(strain, 2.0 * self.shear_modulus, S::scaled_sum(turned, 1.0, S::isotropic(pressure)))
+        self.stress::<S>(increment, stress)
     }
 
     fn energy(&self, state: &State) -> f64 {
@@ -234,25 +241,36 @@ pub struct VonMises {
 
 impl Law for VonMises {
     type PlasticStrain = f64;
+    const YIELDS: bool = true;
 
     #[inline(always)]
     fn follow<S: Space>(
         &self,
         increment: S::Matrix,
-        volume: VolumeRatio,
-        deformation: S::Matrix,
+        _volume: VolumeRatio,
+        _deformation: S::Matrix,
         stress: S::Symmetric,
         plastic_strain: &mut f64,
     ) -> S::Symmetric {
-        let stress = self.elastic.follow::<S>(increment, volume, deformation, stress, &mut Off);
-        let mean = S::trace(stress) / 3.0;
-        let deviator = S::scaled_sum(stress, 1.0, S::isotropic(-mean));
-        let squared = 1.5 * S::norm_squared(deviator);
+        self.flow::<S>(self.trial::<S>(increment, stress), plastic_strain)
+    }
+
+    #[inline(always)]
+    fn trial<S: Space>(&self, increment: S::Matrix, stress: S::Symmetric) -> (S::Symmetric, f64) {
+        let stress = self.elastic.stress::<S>(increment, stress);
+        let deviator = S::scaled_sum(stress, 1.0, S::isotropic(-(S::trace(stress) / 3.0)));
+        (stress, 1.5 * S::norm_squared(deviator))
+    }
+
+    #[inline(always)]
+    fn flow<S: Space>(&self, (stress, squared): (S::Symmetric, f64), plastic_strain: &mut f64) -> S::Symmetric {
         let limit = self.flow_stress(*plastic_strain);
         // A root only where it is needed: most of the time nothing flows.
         if squared <= limit * limit {
             return stress;
         }
+        let mean = S::trace(stress) / 3.0;
+        let deviator = S::scaled_sum(stress, 1.0, S::isotropic(-mean));
         let equivalent = squared.sqrt();
         let excess = equivalent - limit;
         let stiffness = 3.0 * self.elastic.shear_modulus;

@@ -74,6 +74,22 @@ pub trait Law: Copy + Send + Sync + 'static {
         plastic_strain.write(own, 0);
         state.stress = Solid::embed_symmetric(stress);
     }
+    /// Whether it yields, by what [`Law::trial`] and [`Law::flow`] say: the first is found for many points at once.
+    const YIELDS: bool = false;
+    /// The stress after a step if nothing flows, and 3/2 s:s of it, s = dev σ (Pa²), of laws that yield.
+    #[inline(always)]
+    fn trial<S: Space>(&self, _increment: S::Matrix, stress: S::Symmetric) -> (S::Symmetric, f64) {
+        (stress, 0.0)
+    }
+    /// The stress after flow, where there is some, from what [`Law::trial`] gave.
+    #[inline(always)]
+    fn flow<S: Space>(
+        &self,
+        (stress, _squared): (S::Symmetric, f64),
+        _plastic_strain: &mut Self::PlasticStrain,
+    ) -> S::Symmetric {
+        stress
+    }
     /// Stress at which it flows after a plastic strain (Pa); zero for laws that do not.
     #[inline(always)]
     fn flow_stress(&self, _plastic_strain: Self::PlasticStrain) -> f64 {
