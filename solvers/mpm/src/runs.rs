@@ -276,3 +276,66 @@ fn side_by_side<S: Space, L: FourLanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; 
     }
     rows
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basis::{Linear, Quadratic};
+    use crate::share::{NO_BOX, enclose};
+    use grainbench_scene::space::Plane;
+    use nalgebra::Vector2;
+
+    const LATTICE: Lattice = Lattice { cell: [0.5; 3], inverse: [2.0; 3], origin: [0.1; 3], period: [None; 3] };
+
+    /// Numbers between -1 and 1 in no order that matters.
+    fn draw(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Points wander, a few of them into other cells in each step: the runs that are found where others are known are those
+    /// of a search that knows none. There are cells with more points than the longest run has.
+    fn found_as_by_whoever_knows_nothing<B: Basis>(spread: f64) {
+        let mut state = 7;
+        let mut points = Points::<Plane>::new();
+        for _ in 0..900 {
+            points.push(Vector2::new(spread * draw(&mut state), spread * draw(&mut state)), 1.0, 1.0);
+        }
+        let order = points.order(0..900, |position| {
+            let [x, y, _] = LATTICE.first::<Plane, B>(position);
+            (100 * (y + 50) + x + 50) as usize
+        });
+        points.put_in(&[order], &grainbench_lanes::Team::default());
+        let (mut runs, mut known, mut unknown): (Vec<Run>, usize, usize) = Default::default();
+        for step in 0..150 {
+            let before = std::mem::take(&mut runs);
+            known += before.iter().filter(|run| run.is_known).count();
+            unknown += before.iter().filter(|run| !run.is_known).count();
+            // Two bodies, and now and then other shares.
+            let cut = if step % 10 == 0 { 450 } else { 300 };
+            let (mut left, mut none) = (&before[..], &[][..]);
+            let mut expected = Vec::new();
+            for range in [0..cut, cut..900] {
+                let found = find::<Plane, B>(&LATTICE, range.clone(), &points, &mut left, &mut runs);
+                assert_eq!(find::<Plane, B>(&LATTICE, range, &points, &mut none, &mut expected), found);
+            }
+            assert_eq!(format!("{runs:?}"), format!("{expected:?}"), "step {step}");
+            for at in 0..900 {
+                points.position[at] += Vector2::new(draw(&mut state), draw(&mut state)) * 2e-3;
+            }
+            for run in &mut runs {
+                let around = enclose::<Plane>(NO_BOX, &points.position[run.start..run.end]);
+                run.is_known = run.holds::<Plane>(&LATTICE, B::START, around);
+            }
+        }
+        assert!(known > 100 && unknown > 100, "{known} known, {unknown} not");
+    }
+
+    #[test]
+    fn runs_are_those_of_a_search_that_knows_none() {
+        for spread in [2.0, 0.6] {
+            found_as_by_whoever_knows_nothing::<Quadratic>(spread);
+            found_as_by_whoever_knows_nothing::<Linear>(spread);
+        }
+    }
+}
