@@ -102,6 +102,19 @@ fn what_is_told_in_short_is_what_the_snapshot_tells() {
     );
 }
 
+/// Grains that are near one another and do not touch are no rows, at the start either.
+#[test]
+fn what_is_near_and_does_not_touch_is_no_row() {
+    let apart = "title = 'apart'\ndimension = 2\nduration_cycles = 6\nmaterials.m.density = 2500.0\n\
+        contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6 }\n\
+        [grains.g]\nmaterial = 'm'\nradius = 0.05\n\
+        lattice = { origin = [0.05, 0.05], spacing = [0.1001, 0.1001], count = [20, 20] }\n[output]\nevery_cycles = 3\n";
+    let (_, all) = taken("dem", apart, 450, 1);
+    assert_eq!((all.whole.len(), all.in_short.len()), (2, 0));
+    let (_, none) = taken("dem", apart, 350, 1);
+    assert_eq!((none.whole.len(), none.in_short.len()), (0, 2));
+}
+
 /// Memory (B) that a run of the command takes.
 #[cfg(target_os = "linux")]
 fn memory(path: &Path, arguments: &[&str]) -> f64 {

@@ -9,6 +9,7 @@ use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
 use crate::grains::{ABSENT, Grains};
 use crate::laws::Laws;
+use crate::listed::Pairs;
 use crate::mean_virial::MeanVirial;
 use crate::motion::{Motion, Moving};
 use crate::neighbours::Neighbours;
@@ -141,8 +142,7 @@ impl<S: Geometry> Simulated<S> {
             simulation.begin_with(springs);
         }
         simulation.rebuild()?;
-        // No contact has been found yet, and no more touch than are listed.
-        simulation.contacts = simulation.neighbours.pairs() as u64;
+        simulation.contacts = simulation.touching_at_start() as u64;
         simulation.evaluate_forces(true, 0.0, false);
         let all = 0..simulation.grains.len();
         simulation.motion.step_back_half(&mut simulation.grains, all);
@@ -173,6 +173,25 @@ impl<S: Geometry> Simulated<S> {
     /// Whether a snapshot can be shown that has at most so many rows.
     pub(crate) fn shows(&self, most_rows: u64) -> bool {
         self.one_by_one && self.rows() <= most_rows
+    }
+
+    /// Number of contacts, before any force has been found; of those that are listed at walls all.
+    fn touching_at_start(&self) -> usize {
+        let touch = |a: usize, b: usize, shift: Vector3<f64>| {
+            let apart = self.grains.position(b) - self.grains.position(a) - shift;
+            apart.norm() < self.grains.radius(a) + self.grains.radius(b)
+        };
+        let of = |pairs: &Pairs| {
+            pairs
+                .own()
+                .filter(|&at| {
+                    let shift = pairs.shift.get(at).map_or_else(Vector3::zeros, S::vector_in_space);
+                    touch(pairs.row[at] as usize, pairs.partner[at] as usize, shift)
+                })
+                .count()
+        };
+        let pairs = self.neighbours.shares.iter().map(|share| of(&share.near) + of(&share.across));
+        pairs.sum::<usize>() + self.walls.iter().map(MovingWall::pairs).sum::<usize>()
     }
 
     /// Number of contacts of this step, and how many of them slip; none where they were not recorded or have been taken.
