@@ -182,8 +182,7 @@ impl SnapshotStore {
         self.snapshots += 1;
         self.end = Some((Brief::of(&snapshot), rows));
         if self.in_short && self.rows > READABLE {
-            self.waiting.clear();
-            (self.waiting_bytes, self.left_out) = (0, true);
+            self.leave_out();
             if rows > READABLE {
                 return Ok(());
             }
@@ -213,6 +212,11 @@ impl SnapshotStore {
         self.rows += rows;
         self.snapshots += 1;
         self.end = Some((brief, rows));
+        self.leave_out();
+    }
+
+    /// Leaves out what waits.
+    fn leave_out(&mut self) {
         self.waiting.clear();
         (self.waiting_bytes, self.left_out) = (0, true);
     }
