@@ -115,6 +115,22 @@ fn what_is_near_and_does_not_touch_is_no_row() {
     assert_eq!((none.whole.len(), none.in_short.len()), (0, 2));
 }
 
+/// A large run that breaks leaves its last state, whatever it would have left at its end.
+#[test]
+fn the_last_state_of_a_large_run_that_breaks_is_kept() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let fall = "title = 'fall'\ndimension = 2\nduration_cycles = 6\ngravity = [0.0, -1.0e9]\n\
+        materials.m.density = 2500.0\ncontacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6 }\n\
+        [grains.g]\nmaterial = 'm'\nradius = 0.05\n\
+        lattice = { origin = [0.05, 0.05], spacing = [0.2, 0.2], count = [460, 460] }\n[output]\nevery_cycles = 3\n";
+    std::fs::write(path.join("fall.toml"), fall).unwrap();
+    let run = common::grainbench(path, &["simulate", "fall.toml", "--solver", "dem", "--out", "out"]);
+    assert!(run.code == Some(1) && run.err.contains("its last state too"), "{:?} {}", run.code, run.err);
+    let files = common::files(&path.join("out"));
+    assert!(files.iter().any(|file| file.ends_with("grains.parquet")), "{files:?}");
+}
+
 /// Memory (B) that a run of the command takes.
 #[cfg(target_os = "linux")]
 fn memory(path: &Path, arguments: &[&str]) -> f64 {

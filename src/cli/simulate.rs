@@ -252,8 +252,9 @@ fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore
         out.commit().map_err(Fault::writing)
     };
     let out = arguments.out.display();
+    let last = if formats.is_empty() { "" } else { ", its last state too," };
     Fault::Broken(match write() {
-        Ok(()) => format!("{error}; what there is of the run, its last state too, is in {out}"),
+        Ok(()) => format!("{error}; what there is of the run{last} is in {out}"),
         Err(fault) => format!("{error}; what there is of the run could not be left in {out}: {fault}"),
     })
 }
@@ -518,7 +519,7 @@ impl Watch for Watcher {
 
     fn broke(&mut self, remains: Remains) {
         // A disk that refuses now is told when what remains is written.
-        let _ = self.snapshots.add(remains.end);
+        let _ = self.snapshots.add_last(remains.end);
         self.remains = Some(remains.series);
     }
 }

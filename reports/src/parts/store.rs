@@ -195,10 +195,19 @@ impl SnapshotStore {
         self.spill().map_err(|source| WriteError::new(self.shown(), source))
     }
 
-    /// Whether snapshots were left out, of a run that is told in short.
+    /// Adds the last state of a run that broke or was ended: it is kept, whatever was wanted of one that comes to its end.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn add_last(&mut self, snapshot: Snapshot) -> Result<(), WriteError> {
+        self.in_short = false;
+        self.add(snapshot)
+    }
+
+    /// Whether it is told in short and snapshots were left out for that.
     #[must_use]
     pub const fn has_left_out(&self) -> bool {
-        self.left_out
+        self.in_short && self.left_out
     }
 
     /// Rows up to which a snapshot is wanted row by row.
