@@ -1,9 +1,9 @@
 //! A hundred thousand grains: the ball on its way down.
 
-use super::{half_the_density, height, mean};
+use super::{half_the_density, height};
+use crate::rows::bulk::of_packings;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::prelude::*;
-use grainbench_reference::round_robin::Spread;
 
 /// Beds of our own, of another seed each.
 const OWN: [&str; 5] =
@@ -15,26 +15,18 @@ fn on_all() -> [Run; 5] {
     OWN.map(|variant| Run::new(variant, "dem:liggghts", super::STEP).paper_size().kept())
 }
 
-/// The mean of five beds, in units of what it may be off by: codes' deviation from two of them, |a − b|/√2, beds' from ours.
+/// The mean of five beds is where two codes have the ball on one.
 pub(super) fn claims() -> Vec<Claim> {
-    let (cited, half) = (dosta::HEIGHT_30_100K, dosta::HEIGHT_30_100K_HALF);
-    let at_30_ms = claim("height of the ball at 30 ms, 100,000 grains, mean of five beds", "mm")
-        .of_all(on_all())
-        .equals(cited.source(), move |done| {
-            let heights: Vec<f64> = done.iter().map(|done| height(done, DOWN)).collect::<Result<_, _>>()?;
-            let own = mean(&heights);
-            let variance = heights.iter().map(|height| (height - own).powi(2)).sum::<f64>() / (heights.len() - 1) as f64;
-            let code = half.value * std::f64::consts::SQRT_2;
-            let allowed = Spread { mean: cited.value, code, bed: variance.sqrt() }.allowed(heights.len(), 1);
-            Ok(Measured::new(own, cited.value, allowed))
-        })
-        .within(computed(
-            1.0,
-            "in units of 2 √(s_code² + s_bed² (1/5 + 1)), s_code from two codes on one bed, s_bed between our beds: decided \
-             before any was hit",
-        ))
-        .refuses(half_the_density());
-    vec![at_30_ms]
+    let quantity = ("height of the ball at 30 ms, 100,000 grains, mean of five beds".to_owned(), "mm");
+    let at_30_ms = of_packings(
+        quantity,
+        on_all().to_vec(),
+        (dosta::HEIGHT_30_100K, dosta::HEIGHT_30_100K_HALF),
+        |done| height(done, DOWN),
+        "in units of 2 √(s_code² + s_bed² (1/5 + 1)), s_code from two codes on one bed, s_bed between our beds: decided \
+         before any was hit",
+    );
+    vec![at_30_ms.refuses(half_the_density())]
 }
 
 /// The ball's course on our beds and where two codes have it, where the runs are kept.

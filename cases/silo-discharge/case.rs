@@ -33,6 +33,8 @@ pub(crate) static CASE: Case = Case {
 /// The silo with the small orifice, and a lower filling for the time step.
 const SMALL: &str = "small";
 const LOW: &str = "low";
+/// The lower filling, drawn by lot five times.
+const FILLINGS: [&str; 5] = [LOW, "low-2", "low-3", "low-4", "low-5"];
 /// When grains that are out are counted (s of flow).
 const COUNTED: f64 = 2.0;
 /// When both orifices are looked at (s of flow).
@@ -46,7 +48,11 @@ fn of_paper(variant: &'static str) -> Run {
 }
 
 fn low() -> Run {
-    Run::new(LOW, "dem:liggghts", LEVELS[0].resolution).long().kept()
+    of_filling(LOW)
+}
+
+fn of_filling(variant: &'static str) -> Run {
+    Run::new(variant, "dem:liggghts", LEVELS[0].resolution).long().kept()
 }
 
 fn half_the_step() -> Run {
@@ -111,6 +117,15 @@ fn claims() -> Vec<Claim> {
         near(claim("rate from .2 to .8 s, 40,000 spheres", "1000/s").of(low()), dosta::SILO_LARGE_EARLY, |done| {
             rate(&done[0], EARLY)
         })
+        .refuses(smooth()),
+        bulk::of_packings(
+            ("rate from .2 to .8 s, mean of five fillings of 40,000 spheres".to_owned(), "1000/s"),
+            FILLINGS.map(of_filling).to_vec(),
+            (dosta::SILO_LARGE_EARLY, dosta::SILO_LARGE_EARLY_HALF),
+            |done| rate(done, EARLY),
+            "in units of 2 √(s_code² + s_fill² (1/5 + 1)), s_code from two codes on one filling, s_fill between our fillings: \
+             decided before the second was run",
+        )
         .refuses(smooth()),
         claim("rate from .2 to .8 s, 40,000 spheres, with a step of 6e-6 s for 3e-6 s", "1000/s")
             .of_all([low(), half_the_step()])

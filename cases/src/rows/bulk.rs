@@ -1,9 +1,13 @@
-//! Rows of a bulk of grains beside a program: a grain until rounding has grown, means over time after it.
+//! Rows of a bulk of grains: beside a program, a grain until rounding has grown and means over time after it; beside codes that
+//! share one packing, the mean over packings of our own.
 
 use crate::rows::programs::row;
+use grainbench_harness::claim::Tolerated;
 use grainbench_harness::compare::pointwise::{together, worst};
 use grainbench_harness::prelude::*;
+use grainbench_harness::source::Cited;
 use grainbench_harness::statistics::{BLOCKS, difference};
+use grainbench_reference::round_robin::Spread;
 
 /// The place of the probe `one`, in units of the first grain's radius.
 pub(crate) fn beginning(quantity: &str, runs: [Run; 2]) -> Claim {
@@ -32,4 +36,26 @@ pub(crate) fn mean(
         let estimate = estimate.ok_or_else(|| Missing(format!("{BLOCKS} samples after {from} s")))?;
         Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
     })
+}
+
+/// The mean over own packings, an own run each, in units of what it may be off two codes on one packing of theirs,
+/// 2 √(s_code² + s_own² (1/m + 1)): s_code from half the codes' difference, half · √2, s_own between the m own packings.
+pub(crate) fn of_packings(
+    (quantity, unit): (String, &'static str),
+    runs: Vec<Run>,
+    (cited, half): (Cited, Cited),
+    value: impl Fn(&Done) -> Result<f64, Missing> + Send + Sync + 'static,
+    because: &'static str,
+) -> Tolerated {
+    claim(quantity, unit)
+        .of_all(runs)
+        .equals(cited.source(), move |done| {
+            let values = done.iter().map(&value).collect::<Result<Vec<f64>, _>>()?;
+            let own = values.iter().sum::<f64>() / values.len() as f64;
+            let variance = values.iter().map(|value| (value - own).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0);
+            let code = half.value * std::f64::consts::SQRT_2;
+            let allowed = Spread { mean: cited.value, code, bed: variance.sqrt() }.allowed(values.len(), 1);
+            Ok(Measured::new(own, cited.value, allowed))
+        })
+        .within(computed(1.0, because))
 }
