@@ -8,10 +8,10 @@ mod common;
 
 use common::{expect_file, root, with_generated};
 use grainbench::cases::registry;
-use grainbench::harness::study::point::Diagram;
 use grainbench::peers::{KEPT, kept};
 use grainbench::reference::outside::Outside;
 use grainbench::reports::judged::{Count, Judged, cases};
+use grainbench::reports::study::point::Diagram;
 use grainbench::reports::study::{Study, cost};
 use grainbench::reports::{Provenance, number};
 use std::fmt::Write as _;

@@ -8,7 +8,7 @@ mod common;
 use common::grainbench;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
-use grainbench::harness::study::stability::Hardness;
+use grainbench::reports::study::stability::Hardness;
 use grainbench::scene::effect::Effect;
 use grainbench::studies::effects::ledger::Ledger;
 use grainbench::studies::result_cache::ResultCache;

@@ -26,7 +26,6 @@ pub mod scope;
 pub mod solvers;
 pub mod source;
 pub mod statistics;
-pub mod study;
 pub mod subject;
 pub mod tolerance;
 pub mod uncertainty;

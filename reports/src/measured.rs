@@ -2,9 +2,9 @@
 //! screen of a page tells of it.
 
 use crate::report::Provenance;
+use crate::study::point::{Diagram, Standing};
+use crate::study::stability::Hardness;
 use crate::study::{Study, cost};
-use grainbench_harness::study::point::{Diagram, Standing};
-use grainbench_harness::study::stability::Hardness;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,10 +1,10 @@
 //! A small report with every kind of row and figure, for tests.
 
+use crate::study::point::{Counts, Diagram, Point, Standing};
 use grainbench_harness::control::Red;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Expected;
 use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
-use grainbench_harness::study::point::{Counts, Diagram, Point, Standing};
 use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 

@@ -9,7 +9,7 @@ use super::subject::{self, Variant};
 use super::value::positive;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
-use grainbench::harness::study::ledger::Worth;
+use grainbench::reports::study::effects::Worth;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::scene::effect::Effect;
 use grainbench::scene::solver::{Method, Resolution};

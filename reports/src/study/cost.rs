@@ -1,9 +1,9 @@
 //! What accuracy costs, drawn and said: fronts, the cheapest settings, and measured against expected.
 
 use super::Study;
+use super::point::{Counts, Diagram, Point, Standing};
 use crate::number;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_harness::study::point::{Counts, Diagram, Point, Standing};
 
 /// The solvers that every diagram has, in one order, so that each has the same colour in all.
 const OWN: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];

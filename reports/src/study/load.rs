@@ -1,4 +1,4 @@
-//! What a step costs of one grain, of a hundred and of ten thousand, as a table and a figure.
+//! What a step costs of one grain, of a hundred and of ten thousand, start-up apart: the rows, their table and their figure.
 
 use super::page::figure as framed;
 use crate::number;
@@ -6,8 +6,34 @@ use crate::page::scrolling;
 use crate::plot::DrawError;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::statistics::median;
-use grainbench_harness::study::load::{Lap, Load};
 use maud::{Markup, html};
+use serde::{Deserialize, Serialize};
+
+/// What a solver took for a scene of so many grains.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Load {
+    /// Grains.
+    pub grains: usize,
+    /// The solver.
+    pub solver: String,
+    /// Its resolution.
+    pub resolution: String,
+    /// Lap by lap.
+    pub laps: Vec<Lap>,
+    /// Why it took no part.
+    pub absent: Option<String>,
+}
+
+/// A long run less a short one, in processor time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lap {
+    /// All that is no step: reading, setting up, neighbours of the start, settling, output (s).
+    pub start_up: f64,
+    /// One step (s).
+    pub step: f64,
+    /// One second of the simulated motion (s).
+    pub second: f64,
+}
 
 /// The median of the laps.
 fn middle(load: &Load, of: fn(&Lap) -> f64) -> f64 {

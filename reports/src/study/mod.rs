@@ -2,18 +2,19 @@
 
 pub mod cost;
 pub mod effects;
-mod load;
+pub mod load;
 mod page;
+pub mod point;
 pub mod stability;
-mod step;
+pub mod step;
 mod store;
 
+use self::effects::Entry;
+use self::load::Load;
+use self::point::{Change, Diagram};
+use self::stability::{Hard, Limit};
+use self::step::Model;
 use crate::report::Provenance;
-use grainbench_harness::study::ledger::Entry;
-use grainbench_harness::study::load::Load;
-use grainbench_harness::study::point::{Change, Diagram};
-use grainbench_harness::study::stability::{Hard, Limit};
-use grainbench_harness::study::step::Model;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,12 +1,12 @@
 //! The page of a study.
 
+use super::point::{Diagram, Point, Standing};
 use super::{Study, cost, effects, load, stability, step};
 use crate::measured::Costs;
 use crate::number;
 use crate::page::{provenance, scrolling, shell, slug, summary, unique};
 use crate::plot::{self, DrawError};
 use grainbench_harness::figure::Figure;
-use grainbench_harness::study::point::{Diagram, Point, Standing};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 

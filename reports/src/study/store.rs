@@ -1,16 +1,16 @@
 //! The files of a study: written whole, read back to redraw or to compare.
 
+use super::effects::Entry;
+use super::load::Load;
+use super::point::Point;
+use super::stability::{Hard, Limit};
+use super::step::Model;
 use super::{Study, cost, load, page, stability};
 use crate::report::Provenance;
 use crate::staged::StagedDir;
 use crate::store::{LoadError, SaveError};
 use crate::{page as shared, plot};
 use grainbench_harness::figure::Figure;
-use grainbench_harness::study::ledger::Entry;
-use grainbench_harness::study::load::Load;
-use grainbench_harness::study::point::Point;
-use grainbench_harness::study::stability::{Hard, Limit};
-use grainbench_harness::study::step::Model;
 use grainbench_harness::verdict::{Control, Verdict};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};

@@ -15,7 +15,7 @@
 //! pairs of sessions.
 
 use grainbench_harness::statistics::median;
-use grainbench_harness::study::point::{Change, Point, Standing};
+use grainbench_reports::study::point::{Change, Point, Standing};
 use std::collections::BTreeMap;
 
 /// Change of a time that sessions differ by although nothing changed.
@@ -128,7 +128,7 @@ fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
-    use grainbench_harness::study::point::{Counts, Timing};
+    use grainbench_reports::study::point::{Counts, Timing};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 

@@ -8,7 +8,7 @@ use super::knobs::nominal_seconds;
 use crate::Follow;
 use crate::clock::cpu_seconds;
 use grainbench_harness::solvers::Solvers;
-use grainbench_harness::study::load::{Lap, Load};
+use grainbench_reports::study::load::{Lap, Load};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver};

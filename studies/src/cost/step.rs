@@ -9,8 +9,8 @@
 use crate::Follow;
 use crate::clock::cpu_seconds;
 use grainbench_harness::solvers::Solvers;
-use grainbench_harness::study::step::{Model, Price, Probe};
 use grainbench_lanes::{Processor, Quad, probe};
+use grainbench_reports::study::step::{Model, Price, Probe};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::Cost;
 use grainbench_scene::scene::{Duration, Sampling, Scene};

@@ -1,7 +1,7 @@
 //! What each effect is worth in a scene that no case is made of: what changes of what its probes tell, and what that costs.
 
 use super::idle::try_idly;
-use grainbench_harness::study::ledger::{Entry, Shift, Worth};
+use grainbench_reports::study::effects::{Entry, Shift, Worth};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;

@@ -7,8 +7,8 @@ use super::failure::{Failure, of_error};
 use crate::identity;
 use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
-use grainbench_harness::study::stability::Limit;
 use grainbench_reports::WriteError;
+use grainbench_reports::study::stability::Limit;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver};
 
