@@ -11,6 +11,11 @@ const HATS: &str = "mpm+linear+flip";
 /// Points per cell and axis that B-splines need: the sum over moving points is a quadrature, whose error does not fall
 /// with the cell and takes over with fewer (order 1.3 with four, 1.8 with six).
 const POINTS_OF_SPLINES: u32 = 10;
+/// And that uGIMP needs for the same reason.
+const POINTS_OF_GIMP: u32 = 4;
+/// Fraction of Courant's step at which the error in time stays below that of the cell: with .4 both orders fall to 1.6 and 1.7
+/// between 32 and 128 cells, with .1 that of uGIMP rises on to 1.99.
+const SMALL_STEP: f64 = 0.1;
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
 pub(crate) static CASE: Case = Case {
@@ -19,7 +24,8 @@ pub(crate) static CASE: Case = Case {
     claim: "Displacements converge at second order with smooth basis functions; hat functions stall, as they must.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Periodic and along the grid: no boundary, no shear, no rotation.",
+    weakness: "Periodic and along the grid: no boundary, no shear, no rotation. The order is that of the cell alone, in steps of a \
+               tenth of Courant's and with many points a cell: with the usual step and few points it falls beyond 64 cells.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -29,6 +35,12 @@ pub(crate) static CASE: Case = Case {
 
 fn runs(solver: &'static str, points: u32) -> Vec<Run> {
     [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, Resolution::grid(cells, points))).to_vec()
+}
+
+/// In steps so small that the cell alone is seen.
+fn in_small_steps(solver: &'static str, points: u32) -> Vec<Run> {
+    let resolution = |cells| Resolution::Grid { cells, points, courant: SMALL_STEP };
+    [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, resolution(cells))).to_vec()
 }
 
 /// Order in the cell, fitted over three resolutions.
@@ -45,14 +57,14 @@ fn claims() -> Vec<Claim> {
         claim(quantity, "1")
             .of_all(runs)
             .converges(2.0, SOURCE, order)
-            .within(judged(0.1, "fitted over 16 to 64 cells"))
+            .within(judged(0.1, "fitted over 16 to 64 cells, where what is left is of the next order"))
             .refuses(wrong())
     };
     vec![
-        second("order in the cell, uGIMP", runs(GIMP, 2)),
+        second("order in the cell, uGIMP", in_small_steps(GIMP, POINTS_OF_GIMP)),
         second(
             "order in the cell, quadratic B-splines",
-            runs(SPLINES, POINTS_OF_SPLINES).into_iter().map(Run::slow).collect(),
+            in_small_steps(SPLINES, POINTS_OF_SPLINES).into_iter().map(Run::long).collect(),
         ),
         claim("order in the cell, hat functions", "1")
             .of_all(runs(HATS, 2))
