@@ -109,7 +109,8 @@ impl<S: Geometry> Grains<S> {
         if rotate {
             self.inverse_inertia.push(1.0 / grain.inertia);
             if S::DIMENSION == 3 {
-                self.movement.push(Quad::default());
+                // The fourth number of a spin is free: whoever reads the spin has the radius with it.
+                self.movement.push(Quad([0.0, 0.0, 0.0, grain.radius]));
                 self.load.push(Quad::default());
             }
         }

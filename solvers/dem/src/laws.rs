@@ -128,6 +128,19 @@ pub(crate) fn gathered_of<L: Lanes, const N: usize>(
     [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
 }
 
+/// One of several quads that entries of a table have, at the first places of `to` less at those of `from`, in lanes; of the
+/// fourth numbers the sum.
+#[inline(always)]
+pub(crate) fn between<L: Lanes, const N: usize>(
+    lanes: L,
+    table: &[[Quad; N]],
+    of: usize,
+    [from, to]: [&[usize; WIDEST]; 2],
+) -> [Wide<L>; 4] {
+    let [a, b, c, d] = lanes.between(table, of, from, to);
+    [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
+}
+
 /// Places in tables of a length, as many as a register holds: looked at once, so that no table must.
 ///
 /// # Panics

@@ -9,7 +9,7 @@ use crate::contact::{MEMORY, Memory};
 use crate::forces::Terms;
 use crate::geometry::Geometry;
 use crate::grains::{Read, Sums};
-use crate::laws::{Constants, gathered, gathered_of, places};
+use crate::laws::{self, Constants, gathered, gathered_of, places};
 use crate::listed::Pairs;
 use crate::seen::Seen;
 use crate::touching::Touching;
@@ -76,21 +76,35 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     ) -> Pair<'l, S, Wide<L>> {
         let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
         let (Read { place, movement, inverse_inertia: inertia, .. }, shift) = (self.grains, self.shift);
-        let at = [gathered(lanes, place, first), gathered(lanes, place, second)];
+        let both = [first, second];
         let movement = &movement.as_chunks::<Q>().0[..place.len()];
-        let moves = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
-        let mut between = S::vector(at[1]) - S::vector(at[0]);
+        let (mut between, reach, radii, velocity, inverse_mass, mut inverse_masses, spins);
+        if T::ACTIVE && Q == 1 {
+            let at = both.map(|slots| gathered(lanes, place, slots));
+            let moves = both.map(|slots| gathered_of(lanes, movement, 0, slots));
+            (between, velocity) = (S::vector(at[1]) - S::vector(at[0]), S::vector(moves[0]) - S::vector(moves[1]));
+            (radii, reach) = ([at[0][3], at[1][3]], at[0][3] + at[1][3]);
+            (inverse_masses, inverse_mass) = ([moves[0][3], moves[1][3]], moves[0][3] + moves[1][3]);
+            spins = Some(moves.map(|moves| S::spin(moves, [zero; 4])));
+        } else {
+            // Differences are taken before quads are turned: half as many are.
+            let away = laws::between(lanes, place.as_chunks::<1>().0, 0, both);
+            let moves = laws::between(lanes, movement, 0, [second, first]);
+            (between, reach, velocity, inverse_mass) = (S::vector(away), away[3], S::vector(moves), moves[3]);
+            inverse_masses = [zero; 2];
+            if R::ACTIVE {
+                inverse_masses = both.map(|slots| gathered_of(lanes, movement, 0, slots)[3]);
+            }
+            if T::ACTIVE {
+                let turns = both.map(|slots| gathered_of(lanes, movement, Q - 1, slots));
+                (radii, spins) = ([turns[0][3], turns[1][3]], Some(turns.map(|turns| S::spin([zero; 4], turns))));
+            } else {
+                (radii, spins) = (both.map(|slots| gathered(lanes, place, slots)[3]), None);
+            }
+        }
         if !shift.is_empty() {
             let pair = places(lanes, &self.touching.pair[from..], shift.len());
             between = between - S::vector(gathered(lanes, shift, &pair));
-        }
-        let mut spins = None;
-        if T::ACTIVE {
-            let mut turns = [[zero; 4]; 2];
-            if Q == 2 {
-                turns = [gathered_of(lanes, movement, 1, first), gathered_of(lanes, movement, 1, second)];
-            }
-            spins = Some([S::spin(moves[0], turns[0]), S::spin(moves[1], turns[1])]);
         }
         let mut inverse_inertia = [zero; 2];
         if R::ACTIVE {
@@ -102,15 +116,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
                 *inverse = Wide::load(lanes, &each);
             }
         }
-        Pair {
-            law,
-            between,
-            radii: [at[0][3], at[1][3]],
-            velocity: S::vector(moves[0]) - S::vector(moves[1]),
-            inverse_masses: [moves[0][3], moves[1][3]],
-            spins,
-            inverse_inertia,
-        }
+        Pair { law, between, radii, reach, velocity, inverse_mass, inverse_masses, spins, inverse_inertia }
     }
 
     /// What some contacts remember.

@@ -2,7 +2,7 @@
 //! hold.
 
 use crate::geometry::{Geometry, Linear};
-use crate::laws::{gathered, places};
+use crate::laws::{between, gathered, places};
 use crate::listed::{BLOCK, Pairs, Remembered};
 use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, WIDEST};
 use std::marker::PhantomData;
@@ -80,14 +80,13 @@ impl<S: Geometry> Kernel for Find<'_, S> {
             count_up(&mut numbers, from);
             let mut near = 0;
             for lane in (0..WIDEST).step_by(L::WIDTH) {
-                let one = gathered(lanes, place, &places(lanes, &ones[lane..], place.len()));
-                let other = gathered(lanes, place, &places(lanes, &others[lane..], place.len()));
-                let mut between = S::vector(other) - S::vector(one);
+                let slots = [&ones, &others].map(|slots| places(lanes, &slots[lane..], place.len()));
+                let less = between(lanes, place.as_chunks::<1>().0, 0, slots.each_ref());
+                let (mut between, reach) = (S::vector(less), less[3]);
                 if !shift.is_empty() {
                     between =
                         between - S::vector(gathered(lanes, shift, &places(lanes, &numbers[lane..], shift.len())));
                 }
-                let reach = one[3] + other[3];
                 near |= between.dot(between).below(reach * reach).bits() << lane;
             }
             near &= ALL >> (WIDEST - (block.end - from).min(WIDEST));

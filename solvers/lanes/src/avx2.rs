@@ -64,6 +64,21 @@ impl Lanes for V3 {
         ])
     }
     #[inline(always)]
+    fn between<const N: usize>(
+        self,
+        table: &[[Quad; N]],
+        of: usize,
+        from: &[usize; WIDEST],
+        to: &[usize; WIDEST],
+    ) -> [__m256d; 4] {
+        let avx = self.avx;
+        let less = |lane: usize| {
+            let [from, to]: [__m256d; 2] = [table[from[lane]][of], table[to[lane]][of]].map(|quad| pulp::cast(quad.0));
+            avx._mm256_blend_pd::<0b1000>(avx._mm256_sub_pd(to, from), avx._mm256_add_pd(to, from))
+        };
+        self.turned([less(0), less(1), less(2), less(3)])
+    }
+    #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
         let places = PLACES[(bits & 255) as usize];
         pulp::cast(self.avx2._mm256_permutevar8x32_epi32(pulp::cast(*of), pulp::cast(places)))

@@ -18,6 +18,31 @@ fn split(register: __m512d) -> [Quad; 2] {
     [Quad(low), Quad(high)]
 }
 
+/// The fourth numbers of two quads.
+const FOURTH: __mmask8 = 0b1000_1000;
+
+/// The quads of a table at eight places, two in a register: 0 and 2, 1 and 3, 4 and 6, 5 and 7, so that the last step of
+/// turning them leaves them in order.
+#[inline(always)]
+fn twos<const N: usize>(lanes: V4, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
+    let two = |one: usize, other: usize| both(lanes, table[at[one]][of], table[at[other]][of]);
+    [two(0, 2), two(1, 3), two(4, 6), two(5, 7)]
+}
+
+/// Columns for rows.
+#[inline(always)]
+fn turned(lanes: V4, [a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
+    let avx = lanes.avx512f;
+    let [even_ab, odd_ab] = [avx._mm512_unpacklo_pd(a, b), avx._mm512_unpackhi_pd(a, b)];
+    let [even_cd, odd_cd] = [avx._mm512_unpacklo_pd(c, d), avx._mm512_unpackhi_pd(c, d)];
+    [
+        avx._mm512_shuffle_f64x2::<0b10_00_10_00>(even_ab, even_cd),
+        avx._mm512_shuffle_f64x2::<0b10_00_10_00>(odd_ab, odd_cd),
+        avx._mm512_shuffle_f64x2::<0b11_01_11_01>(even_ab, even_cd),
+        avx._mm512_shuffle_f64x2::<0b11_01_11_01>(odd_ab, odd_cd),
+    ]
+}
+
 impl Lanes for V4 {
     type Register = __m512d;
     type Mask = __mmask8;
@@ -69,20 +94,22 @@ impl Lanes for V4 {
     }
     #[inline(always)]
     fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
-        let avx = self.avx512f;
-        // The lanes of quads 0 and 2, 1 and 3, 4 and 6, 5 and 7 side by side, so that the last step leaves them in order.
-        let a = both(self, table[at[0]][of], table[at[2]][of]);
-        let b = both(self, table[at[1]][of], table[at[3]][of]);
-        let c = both(self, table[at[4]][of], table[at[6]][of]);
-        let d = both(self, table[at[5]][of], table[at[7]][of]);
-        let [even_ab, odd_ab] = [avx._mm512_unpacklo_pd(a, b), avx._mm512_unpackhi_pd(a, b)];
-        let [even_cd, odd_cd] = [avx._mm512_unpacklo_pd(c, d), avx._mm512_unpackhi_pd(c, d)];
-        [
-            avx._mm512_shuffle_f64x2::<0b10_00_10_00>(even_ab, even_cd),
-            avx._mm512_shuffle_f64x2::<0b10_00_10_00>(odd_ab, odd_cd),
-            avx._mm512_shuffle_f64x2::<0b11_01_11_01>(even_ab, even_cd),
-            avx._mm512_shuffle_f64x2::<0b11_01_11_01>(odd_ab, odd_cd),
-        ]
+        turned(self, twos(self, table, of, at))
+    }
+    #[inline(always)]
+    fn between<const N: usize>(
+        self,
+        table: &[[Quad; N]],
+        of: usize,
+        from: &[usize; WIDEST],
+        to: &[usize; WIDEST],
+    ) -> [__m512d; 4] {
+        let (avx, from, to) = (self.avx512f, twos(self, table, of, from), twos(self, table, of, to));
+        let less = |two: usize| {
+            let less = avx._mm512_sub_pd(to[two], from[two]);
+            avx._mm512_mask_add_pd(less, FOURTH, to[two], from[two])
+        };
+        turned(self, [less(0), less(1), less(2), less(3)])
     }
     #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {

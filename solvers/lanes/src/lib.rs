@@ -90,6 +90,15 @@ pub trait Lanes: Copy + 'static {
     /// The quads of a table whose entries have several, those of a number at the first places of `at`, turned: the first
     /// numbers of all in one register, and so on.
     fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [Self::Register; 4];
+    /// The quads at the first places of `to` less those at `from`, turned as [`gather`](Self::gather) turns them; of the fourth
+    /// numbers the sum.
+    fn between<const N: usize>(
+        self,
+        table: &[[Quad; N]],
+        of: usize,
+        from: &[usize; WIDEST],
+        to: &[usize; WIDEST],
+    ) -> [Self::Register; 4];
     /// The whole numbers whose bit is set, first, in their order; what follows them is not said. The first bit is lowest.
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST];
     /// The opposite of [`gather`](Self::gather): a quad for each lane, in the first of a row.

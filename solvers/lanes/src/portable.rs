@@ -67,6 +67,17 @@ impl Lanes for Portable {
         turned([table[at[0]][of].0, table[at[1]][of].0, table[at[2]][of].0, table[at[3]][of].0])
     }
     #[inline(always)]
+    fn between<const N: usize>(
+        self,
+        table: &[[Quad; N]],
+        of: usize,
+        from: &[usize; WIDEST],
+        to: &[usize; WIDEST],
+    ) -> [[f64; LANES]; 4] {
+        let less = |lane: usize| crate::single::less(&table[from[lane]][of], &table[to[lane]][of]);
+        turned([less(0), less(1), less(2), less(3)])
+    }
+    #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
         crate::single::packed(of, bits)
     }

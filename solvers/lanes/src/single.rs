@@ -60,6 +60,16 @@ impl Lanes for Single {
         table[at[0]][of].0
     }
     #[inline(always)]
+    fn between<const N: usize>(
+        self,
+        table: &[[Quad; N]],
+        of: usize,
+        from: &[usize; WIDEST],
+        to: &[usize; WIDEST],
+    ) -> [f64; 4] {
+        less(&table[from[0]][of], &table[to[0]][of])
+    }
+    #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
         packed(of, bits)
     }
@@ -68,6 +78,12 @@ impl Lanes for Single {
         let none = Quad::default();
         [Quad(of), none, none, none, none, none, none, none]
     }
+}
+
+/// A quad less another; of the fourth numbers the sum.
+#[inline(always)]
+pub(crate) const fn less(Quad(from): &Quad, Quad(to): &Quad) -> [f64; 4] {
+    [to[0] - from[0], to[1] - from[1], to[2] - from[2], to[3] + from[3]]
 }
 
 /// The whole numbers whose bit is set, first.

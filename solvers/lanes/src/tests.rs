@@ -105,6 +105,39 @@ fn quads_are_turned_and_turned_back() {
     }
 }
 
+/// Quads less others.
+struct Between<'a>(&'a [Quad], &'a [usize]);
+
+impl Kernel for Between<'_> {
+    type Output = Vec<[f64; 4]>;
+
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+        let mut all = Vec::new();
+        for at in self.1.chunks(L::WIDTH) {
+            let (mut from, mut to) = ([0; WIDEST], [0; WIDEST]);
+            from[..at.len()].copy_from_slice(at);
+            to[..at.len()].copy_from_slice(&at.iter().map(|place| 19 - place).collect::<Vec<_>>());
+            let columns = lanes.between(self.0.as_chunks::<1>().0, 0, &from, &to).map(|register| lanes.store(register));
+            all.extend((0..L::WIDTH).map(|lane| columns.map(|column| column[lane])));
+        }
+        all
+    }
+}
+
+#[test]
+fn quads_are_taken_from_others_and_their_fourth_numbers_are_added() {
+    let table: Vec<Quad> = (0..20).map(|row| Quad([0.0, 0.1, 0.2, 0.3].map(|at| f64::from(row) + at))).collect();
+    let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
+    let of = |&at: &usize| {
+        let (from, to) = (table[at].0, table[19 - at].0);
+        [to[0] - from[0], to[1] - from[1], to[2] - from[2], to[3] + from[3]]
+    };
+    let expected: Vec<_> = at.iter().map(of).collect();
+    for path in Processor::all() {
+        assert_eq!(path.run(Between(&table, &at)), expected, "{}", path.name());
+    }
+}
+
 /// Whole numbers, packed by all bits.
 struct Packed;
 

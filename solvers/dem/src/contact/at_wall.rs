@@ -45,7 +45,7 @@ impl<S: Geometry> AtWall<'_, S> {
             normal: self.normal,
             overlap: self.radius - self.distance,
             velocity: self.velocity,
-            effective_mass: harmonic([self.inverse_mass, 0.0]),
+            effective_mass: harmonic(self.inverse_mass),
             effective_radius: self.radius,
         };
         let options = evaluation.options;

@@ -17,9 +17,13 @@ pub(crate) struct Pair<'a, S: Geometry, X: Number> {
     pub(crate) between: S::Vectors<X>,
     /// Radii R (m).
     pub(crate) radii: [X; 2],
+    /// Sum of the radii (m).
+    pub(crate) reach: X,
     /// Velocity of the first centre relative to the second (m/s).
     pub(crate) velocity: S::Vectors<X>,
-    /// Inverse masses 1/m (1/kg).
+    /// Sum of the inverse masses, 1/m₁ + 1/m₂ (1/kg).
+    pub(crate) inverse_mass: X,
+    /// Inverse masses 1/m (1/kg), only set for rolling resistance.
     pub(crate) inverse_masses: [X; 2],
     /// Angular velocities ω (rad/s), if they rotate.
     pub(crate) spins: Option<[S::Spins<X>; 2]>,
@@ -39,7 +43,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         let [zero, one] = [distance.like(0.0), distance.like(1.0)];
         let inverse_distance = one / distance;
         let [first, second] = self.radii;
-        let overlap = first + second - distance;
+        let overlap = self.reach - distance;
         let touch = Touch {
             law: self.law,
             between: self.between,
@@ -47,14 +51,14 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
             normal: self.between * inverse_distance,
             overlap,
             velocity: self.velocity,
-            effective_mass: if N::DAMPED { harmonic(self.inverse_masses) } else { zero },
-            effective_radius: if N::CURVED || R::ACTIVE { first * second / (first + second) } else { zero },
+            effective_mass: if N::DAMPED { harmonic(self.inverse_mass) } else { zero },
+            effective_radius: if N::CURVED || R::ACTIVE { first * second / self.reach } else { zero },
         };
         let off = overlap * evaluation.options.arm_reduction;
         let arms = [first - off, second - off];
         let turning = match self.spins {
             Some([a, b]) => {
-                let inertia = if R::ACTIVE { harmonic([self.about_contact(0), self.about_contact(1)]) } else { zero };
+                let inertia = if R::ACTIVE { harmonic(self.about_contact(0) + self.about_contact(1)) } else { zero };
                 Some(Turning { surface: a * arms[0] + b * arms[1], relative: a - b, inertia })
             }
             None => None,
@@ -71,11 +75,10 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
     }
 }
 
-/// The mass (kg), or moment of inertia (kg m²), of two bodies against each other, from the inverses of both; none where
-/// both are driven: they do not feel each other.
+/// The mass (kg), or moment of inertia (kg m²), of two bodies against each other, from the sum of the inverses of both; none
+/// where both are driven: they do not feel each other.
 #[inline(always)]
-pub(crate) fn harmonic<X: Number>([first, second]: [X; 2]) -> X {
-    let inverse = first + second;
+pub(crate) fn harmonic<X: Number>(inverse: X) -> X {
     let [zero, one] = [inverse.like(0.0), inverse.like(1.0)];
     X::choose(zero.below(inverse), one / inverse, zero)
 }
@@ -113,7 +116,9 @@ mod tests {
                 law: &law,
                 between: Components(between.into()),
                 radii: [0.4, 0.6],
+                reach: 1.0,
                 velocity: Components((extra - spin.cross(&between)).into()),
+                inverse_mass: 2.0,
                 inverse_masses: [1.0; 2],
                 spins: Some([Components(spin.into()); 2]),
                 inverse_inertia: [0.0; 2],
