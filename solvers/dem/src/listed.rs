@@ -1,7 +1,7 @@
 //! Listed pairs, in rows, with what their contacts remember in the order of those that touch.
 
-use crate::contact::Memory;
 use crate::contact::chain::Layout;
+use crate::contact::{MEMORY, Memory};
 use grainbench_lanes::{Quad, WIDEST};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -10,9 +10,9 @@ use std::ops::Range;
 /// hand, and so many that little is lost at the end. A multiple of eight.
 pub(crate) const BLOCK: usize = 2048;
 
-/// What the contacts of a block of pairs remember: of those that touched when they were looked at last, in their order, after
-/// nothing, four numbers and four more. Empty where so many are not remembered.
-pub(crate) type Remembered = [Vec<Quad>; 2];
+/// What the contacts of a block of pairs remember, number by number: of those that touched when they were looked at last, in
+/// their order, after nothing. Empty where so many numbers are not remembered.
+pub(crate) type Remembered = [Vec<f64>; MEMORY];
 
 /// Pairs of grains, in rows: a row holds the partners of one grain. Partners, rows and shifts are filled up beyond the last
 /// pair, so that registers can be.
@@ -88,7 +88,7 @@ impl Pairs {
         for (at, (.., memory)) in sorted.iter().enumerate() {
             pairs.touches[at / WIDEST] |= 1 << (at % WIDEST);
             for (number, of) in pairs.memory[at / BLOCK].iter_mut().enumerate().filter(|(_, of)| !of.is_empty()) {
-                of.push(Quad(std::array::from_fn(|part| memory[4 * number + part])));
+                of.push(memory[number]);
             }
         }
         pairs
@@ -98,9 +98,7 @@ impl Pairs {
     pub(crate) fn remembered(&self) -> impl Iterator<Item = (u32, u32, Memory<f64>)> {
         let own = self.own();
         self.places().into_iter().enumerate().filter_map(move |(at, place)| {
-            let number = |number: usize| {
-                self.memory[at / BLOCK][number / 4].get(place as usize).map_or(0.0, |quad| quad.0[number % 4])
-            };
+            let number = |number: usize| self.memory[at / BLOCK][number].get(place as usize).copied().unwrap_or(0.0);
             let told = place > 0 && own.contains(&at);
             told.then(|| (self.row[at], self.partner[at], std::array::from_fn(number)))
         })
@@ -182,7 +180,7 @@ impl Pairs {
         let remembers = |count: usize| if layout.numbers > 0 && *start != [0] { count } else { 0 };
         let told = |(bits, of): (&[u8], &Remembered)| {
             let touched = bits.iter().map(|bits| bits.count_ones() as usize).sum::<usize>();
-            [0, 4].map(|from| if layout.numbers > from { 1 + touched } else { 0 }) == of.each_ref().map(Vec::len)
+            of.iter().enumerate().all(|(number, of)| of.len() == if number < layout.numbers { 1 + touched } else { 0 })
         };
         rows && in_order
             && start.last().is_some_and(|&last| last as usize == count)
@@ -227,11 +225,8 @@ impl Pairs {
         self.touches[at / WIDEST] |= 1 << (at % WIDEST);
         let memories = self.memory[at / BLOCK].iter_mut().zip(&other.memory[from / BLOCK]);
         for (number, (mine, other)) in memories.enumerate() {
-            if let Some(mut quad) = other.get(place as usize).copied() {
-                if let Some(layout) = exchanged {
-                    (0..4).for_each(|part| quad.0[part] *= layout.exchanged[4 * number + part]);
-                }
-                mine.push(quad);
+            if let Some(value) = other.get(place as usize) {
+                mine.push(value * exchanged.map_or(1.0, |layout| layout.exchanged[number]));
             }
         }
     }
@@ -244,13 +239,13 @@ impl Pairs {
             std::mem::swap(memory, before);
             for (of, before) in memory.iter_mut().zip(before) {
                 // What stands there will be written over, but for the first, which is nothing.
-                of.resize(if before.is_empty() { 0 } else { of.len().max(1) }, Quad::default());
+                of.resize(if before.is_empty() { 0 } else { of.len().max(1) }, 0.0);
             }
         }
         for of in memory.iter_mut().filter(|of| !of.is_empty()) {
             let room = 1 + count + WIDEST;
             reserve(of, room.saturating_sub(of.len()));
-            of.resize(room, Quad::default());
+            of.resize(room, 0.0);
         }
     }
 
@@ -262,13 +257,13 @@ impl Pairs {
     }
 
     pub(crate) fn forget(&mut self) {
-        self.memory.iter_mut().flatten().for_each(|memory| memory.fill(Quad::default()));
+        self.memory.iter_mut().flatten().for_each(|memory| memory.fill(0.0));
     }
 }
 
 /// The memory of a block without contacts.
 fn nothing(layout: Layout) -> Remembered {
-    [0, 4].map(|from| vec![Quad::default(); usize::from(layout.numbers > from)])
+    std::array::from_fn(|number| vec![0.0; usize::from(number < layout.numbers)])
 }
 
 /// Makes room for more: where it must grow, by an eighth at least, for there may be millions.

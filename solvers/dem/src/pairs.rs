@@ -25,7 +25,7 @@ pub(crate) struct OfPairs<'a, S: Geometry, N, T, R, const Q: usize> {
     sums: Sums<'a>,
     shift: &'a [Quad],
     /// What the contacts of the block remember, to be written over: of before, where they are steady.
-    memory: [&'a mut [Quad]; 2],
+    memory: [&'a mut [f64]; MEMORY],
     seen: Option<&'a mut Seen>,
     chain: PhantomData<(S, N, T, R)>,
 }
@@ -124,28 +124,32 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     fn remembered<L: Lanes>(&self, lanes: L, from: usize) -> Memory<Wide<L>> {
         let mut memory = [Wide::splat(lanes, 0.0); MEMORY];
         let Touching { steady, remembered, before, .. } = self.touching;
-        for (quad, (now, before)) in self.memory.iter().zip(before).enumerate() {
-            if Self::NUMBERS > 4 * quad {
-                let quads = if *steady {
-                    gathered(lanes, &now[from..from + L::WIDTH], &IN_ORDER)
-                } else {
-                    gathered(lanes, before, &places(lanes, &remembered[from..], before.len()))
-                };
-                memory[4 * quad..4 * quad + 4].copy_from_slice(&quads);
+        let mut places = [0; WIDEST];
+        places.copy_from_slice(&remembered[from..from + WIDEST]);
+        // Where a block is not as it was, most contacts still follow one another as they did.
+        let follow = places[..L::WIDTH].iter().zip(0..).all(|(&place, lane)| place == places[0] + lane);
+        let numbers = memory.iter_mut().zip(self.memory.iter().zip(before));
+        for (number, (now, before)) in numbers.take(Self::NUMBERS) {
+            let mut values = [0.0; WIDEST];
+            if *steady {
+                values[..L::WIDTH].copy_from_slice(&now[from..from + L::WIDTH]);
+            } else if follow {
+                values[..L::WIDTH].copy_from_slice(&before[places[0] as usize..][..L::WIDTH]);
+            } else {
+                for (value, &place) in values.iter_mut().zip(&places[..L::WIDTH]) {
+                    *value = before[place as usize];
+                }
             }
+            *number = Wide::load(lanes, &values);
         }
         memory
     }
 
     /// Keeps what contacts remember from now on.
     #[inline(always)]
-    fn remember<L: Lanes>(&mut self, lanes: L, memory: &Memory<Wide<L>>, from: usize) {
-        for (quad, now) in self.memory.iter_mut().enumerate() {
-            if Self::NUMBERS > 4 * quad {
-                let of = 4 * quad;
-                let quads = spread(lanes, [memory[of], memory[of + 1], memory[of + 2], memory[of + 3]]);
-                now[from..from + L::WIDTH].copy_from_slice(&quads[..L::WIDTH]);
-            }
+    fn remember<L: Lanes>(&mut self, memory: &Memory<Wide<L>>, from: usize) {
+        for (number, now) in memory.iter().zip(&mut self.memory).take(Self::NUMBERS) {
+            now[from..from + L::WIDTH].copy_from_slice(&number.store()[..L::WIDTH]);
         }
     }
 
@@ -220,7 +224,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
             let answer = self.pair(lanes, &slots, from, &law).respond::<N, T, R>(evaluation, &mut memory);
             let count = (touching.count - from).min(L::WIDTH);
             self.add(lanes, &answer, &slots, count);
-            self.remember(lanes, &memory, from);
+            self.remember(&memory, from);
             if evaluation.record
                 && let Some(seen) = &mut self.seen
                 && self.sums.holds(slots.first[0])
@@ -232,9 +236,6 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
         }
     }
 }
-
-/// Places one after the other.
-const IN_ORDER: [usize; WIDEST] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /// A quad for each lane.
 #[inline(always)]
