@@ -76,30 +76,31 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     ) -> Pair<'l, S, Wide<L>> {
         let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
         let (Read { place, movement, inverse_inertia: inertia, .. }, shift) = (self.grains, self.shift);
-        let both = [first, second];
         let movement = &movement.as_chunks::<Q>().0[..place.len()];
-        let (mut between, reach, radii, velocity, inverse_mass, mut inverse_masses, spins);
+        let (mut between, reach, mut radii, velocity, inverse_mass, mut inverse_masses, mut spins);
         if T::ACTIVE && Q == 1 {
-            let at = both.map(|slots| gathered(lanes, place, slots));
-            let moves = both.map(|slots| gathered_of(lanes, movement, 0, slots));
+            let at = [gathered(lanes, place, first), gathered(lanes, place, second)];
+            let moves = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
             (between, velocity) = (S::vector(at[1]) - S::vector(at[0]), S::vector(moves[0]) - S::vector(moves[1]));
             (radii, reach) = ([at[0][3], at[1][3]], at[0][3] + at[1][3]);
             (inverse_masses, inverse_mass) = ([moves[0][3], moves[1][3]], moves[0][3] + moves[1][3]);
-            spins = Some(moves.map(|moves| S::spin(moves, [zero; 4])));
+            spins = Some([S::spin(moves[0], [zero; 4]), S::spin(moves[1], [zero; 4])]);
         } else {
-            // Differences are taken before quads are turned: half as many are.
-            let away = laws::between(lanes, place.as_chunks::<1>().0, 0, both);
+            // Differences are taken before quads are turned: half as many are. What only some laws read is left alone by others.
+            let away = laws::between(lanes, place.as_chunks::<1>().0, 0, [first, second]);
             let moves = laws::between(lanes, movement, 0, [second, first]);
             (between, reach, velocity, inverse_mass) = (S::vector(away), away[3], S::vector(moves), moves[3]);
-            inverse_masses = [zero; 2];
-            if R::ACTIVE {
-                inverse_masses = both.map(|slots| gathered_of(lanes, movement, 0, slots)[3]);
-            }
+            (radii, inverse_masses, spins) = ([zero; 2], [zero; 2], None);
             if T::ACTIVE {
-                let turns = both.map(|slots| gathered_of(lanes, movement, Q - 1, slots));
-                (radii, spins) = ([turns[0][3], turns[1][3]], Some(turns.map(|turns| S::spin([zero; 4], turns))));
-            } else {
-                (radii, spins) = (both.map(|slots| gathered(lanes, place, slots)[3]), None);
+                let turns = [gathered_of(lanes, movement, Q - 1, first), gathered_of(lanes, movement, Q - 1, second)];
+                radii = [turns[0][3], turns[1][3]];
+                spins = Some([S::spin([zero; 4], turns[0]), S::spin([zero; 4], turns[1])]);
+            } else if N::CURVED || R::ACTIVE {
+                radii = [gathered(lanes, place, first)[3], gathered(lanes, place, second)[3]];
+            }
+            if R::ACTIVE {
+                let masses = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
+                inverse_masses = [masses[0][3], masses[1][3]];
             }
         }
         if !shift.is_empty() {

@@ -71,12 +71,12 @@ impl Lanes for V3 {
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [__m256d; 4] {
-        let avx = self.avx;
-        let less = |lane: usize| {
-            let [from, to]: [__m256d; 2] = [table[from[lane]][of], table[to[lane]][of]].map(|quad| pulp::cast(quad.0));
-            avx._mm256_blend_pd::<0b1000>(avx._mm256_sub_pd(to, from), avx._mm256_add_pd(to, from))
-        };
-        self.turned([less(0), less(1), less(2), less(3)])
+        self.turned([
+            less(self, table[from[0]][of], table[to[0]][of]),
+            less(self, table[from[1]][of], table[to[1]][of]),
+            less(self, table[from[2]][of], table[to[2]][of]),
+            less(self, table[from[3]][of], table[to[3]][of]),
+        ])
     }
     #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
@@ -89,6 +89,13 @@ impl Lanes for V3 {
         let quad = |row| Quad(pulp::cast(row));
         [quad(a), quad(b), quad(c), quad(d), none, none, none, none]
     }
+}
+
+/// A quad less another; of the fourth numbers the sum.
+#[inline(always)]
+fn less(lanes: V3, from: Quad, to: Quad) -> __m256d {
+    let (from, to): (__m256d, __m256d) = (pulp::cast(from.0), pulp::cast(to.0));
+    lanes.avx._mm256_blend_pd::<0b1000>(lanes.avx._mm256_sub_pd(to, from), lanes.avx._mm256_add_pd(to, from))
 }
 
 /// Rows for columns.

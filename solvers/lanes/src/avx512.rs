@@ -25,8 +25,18 @@ const FOURTH: __mmask8 = 0b1000_1000;
 /// turning them leaves them in order.
 #[inline(always)]
 fn twos<const N: usize>(lanes: V4, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
-    let two = |one: usize, other: usize| both(lanes, table[at[one]][of], table[at[other]][of]);
-    [two(0, 2), two(1, 3), two(4, 6), two(5, 7)]
+    [
+        both(lanes, table[at[0]][of], table[at[2]][of]),
+        both(lanes, table[at[1]][of], table[at[3]][of]),
+        both(lanes, table[at[4]][of], table[at[6]][of]),
+        both(lanes, table[at[5]][of], table[at[7]][of]),
+    ]
+}
+
+/// Two quads less two others; of the fourth numbers the sums.
+#[inline(always)]
+fn less(lanes: V4, from: __m512d, to: __m512d) -> __m512d {
+    lanes.avx512f._mm512_mask_add_pd(lanes.avx512f._mm512_sub_pd(to, from), FOURTH, to, from)
 }
 
 /// Columns for rows.
@@ -104,12 +114,16 @@ impl Lanes for V4 {
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [__m512d; 4] {
-        let (avx, from, to) = (self.avx512f, twos(self, table, of, from), twos(self, table, of, to));
-        let less = |two: usize| {
-            let less = avx._mm512_sub_pd(to[two], from[two]);
-            avx._mm512_mask_add_pd(less, FOURTH, to[two], from[two])
-        };
-        turned(self, [less(0), less(1), less(2), less(3)])
+        let (from, to) = (twos(self, table, of, from), twos(self, table, of, to));
+        turned(
+            self,
+            [
+                less(self, from[0], to[0]),
+                less(self, from[1], to[1]),
+                less(self, from[2], to[2]),
+                less(self, from[3], to[3]),
+            ],
+        )
     }
     #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {

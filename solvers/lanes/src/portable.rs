@@ -1,5 +1,6 @@
 //! Four lanes that any processor has.
 
+use crate::single::less;
 use crate::{FourLanes, LANES, Lanes, Quad, WIDEST};
 
 /// Four numbers in a row.
@@ -74,8 +75,12 @@ impl Lanes for Portable {
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [[f64; LANES]; 4] {
-        let less = |lane: usize| crate::single::less(&table[from[lane]][of], &table[to[lane]][of]);
-        turned([less(0), less(1), less(2), less(3)])
+        turned([
+            less(&table[from[0]][of], &table[to[0]][of]),
+            less(&table[from[1]][of], &table[to[1]][of]),
+            less(&table[from[2]][of], &table[to[2]][of]),
+            less(&table[from[3]][of], &table[to[3]][of]),
+        ])
     }
     #[inline(always)]
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
