@@ -25,8 +25,8 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Periodic and along the grid: no boundary, no shear, no rotation. The order is that of the cell alone, in \
-               steps of a tenth of Courant's and with many points a cell: with the usual step and few points it falls beyond 64 \
-               cells.",
+               steps of a tenth of Courant's and with many points a cell: with the usual step and few points it falls beyond \
+               64 cells.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
