@@ -4,6 +4,7 @@ use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::scene::record::{Cost, Record};
 use grainbench::scene::solver::{Resolution, Threads};
+use rayon::prelude::*;
 
 /// A record without its times. Debug output tells every bit of a number but the sign of a NaN, and there are none.
 fn bits(mut record: Record) -> String {
@@ -13,7 +14,7 @@ fn bits(mut record: Record) -> String {
 
 #[test]
 fn a_rerun_gives_the_same_bits() {
-    for case in CASES {
+    CASES.par_iter().for_each(|case| {
         let variant = &case.variants().unwrap()[0];
         let mut scene = case.variant(variant).unwrap();
         // Long runs are cut: bits part at once or not at all.
@@ -36,7 +37,7 @@ fn a_rerun_gives_the_same_bits() {
             });
             assert!(first == second, "{} with {} differs from its rerun on three threads", case.name, solver.name());
         }
-    }
+    });
 }
 
 /// Sixteen hundred discs that fall on one another and roll over a periodic face.

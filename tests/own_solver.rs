@@ -7,6 +7,7 @@ use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::harness::control::Wrong;
 use grainbench::own::NotJudged;
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,9 +22,9 @@ fn every_convention_passes_what_is_fair_to_any_solver() {
         (case.claims)().iter().any(|claim| claim.scope.is_of_grains())
     };
     let cases: Vec<&str> = CASES.iter().map(|case| case.name).filter(has_fair_gates).collect();
-    for convention in Convention::ALL {
+    Convention::ALL.into_par_iter().for_each(|convention| {
         grainbench::judge(Dem::new(convention), &cases).unwrap().require().unwrap();
-    }
+    });
 }
 
 /// Another solver or a defect of ours cannot be put into a stranger's solver.

@@ -15,6 +15,7 @@ use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::{Cost, Record};
 use grainbench::scene::scene::{Duration, Sampling, Scene};
 use grainbench::scene::solver::{Resolution, RunError, Watch};
+use rayon::prelude::*;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -57,35 +58,38 @@ const MANY: usize = 20_000;
 /// convention.
 #[test]
 fn every_case_continues_to_the_same_bits() {
-    let mut compared = 0;
     // Of many packings by one law, some.
     let variants = |case: &Case| -> Vec<Scene> {
         let names = case.variants().unwrap();
         names.iter().step_by(names.len().div_ceil(12)).map(|variant| case.variant(variant).unwrap()).collect()
     };
-    for (case, scene) in CASES.iter().flat_map(|case| variants(case).into_iter().map(move |scene| (case, scene))) {
-        let scene = begun(scene);
-        if scene.grains.len() > MANY {
-            continue;
-        }
+    let scenes: Vec<(&Case, Scene)> = CASES
+        .iter()
+        .flat_map(|case| variants(case).into_iter().map(move |scene| (*case, begun(scene))))
+        .filter(|(_, scene)| scene.grains.len() <= MANY)
+        .collect();
+    let compare = |(case, scene): &(&Case, Scene)| {
+        let mut compared = 0;
         for solver in solvers::all().into_iter().filter(|solver| solver.name().starts_with("dem")) {
             let resolution = Resolution::CriticalFraction(0.1);
             let mut keeper = Keeper { every: 19, kept: Vec::new() };
-            let whole = match solver.run(&scene, &resolution, &mut ()) {
+            let whole = match solver.run(scene, &resolution, &mut ()) {
                 // Scenes of deformable bodies alone.
                 Err(RunError::Unsupported { .. }) => continue,
                 run => untimed(run.unwrap()),
             };
-            let watched = untimed(solver.run(&scene, &resolution, &mut keeper).unwrap());
+            let watched = untimed(solver.run(scene, &resolution, &mut keeper).unwrap());
             assert!(whole == watched, "{}: {} is another run when checkpoints are taken", case.name, solver.name());
             let (first, last) = (keeper.kept.first().unwrap(), keeper.kept.last().unwrap());
             for checkpoint in [first, last] {
-                let continued = untimed(solver.restart(&scene, &resolution, checkpoint, &mut ()).unwrap());
+                let continued = untimed(solver.restart(scene, &resolution, checkpoint, &mut ()).unwrap());
                 assert!(whole == continued, "{}: {} from step {}", case.name, solver.name(), checkpoint.step());
                 compared += 1;
             }
         }
-    }
+        compared
+    };
+    let compared: u32 = scenes.par_iter().map(compare).sum();
     assert!(compared > 100, "{compared}");
 }
 
