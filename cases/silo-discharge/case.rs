@@ -18,7 +18,8 @@ pub(crate) static CASE: Case = Case {
             of 2024, and through the smaller orifice at its part of it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The filling is our own; of 100,000 spheres there is a single one, of 40,000 there are five. Of the paper's eight codes only two are known here by their courses; the mean over all, as others quote it, is 4.7 % below these two. \
+    weakness: "The filling is our own; of 100,000 spheres there is a single one, of 40,000 there are five. Of the paper's eight \
+               codes only two are known here by their courses; the mean over all, as others quote it, is 4.7 % below these two. \
                Rolling friction, which changes rates most, is not in the law. \
                Wrong physics, grains that slide without friction, is tried with 40,000 spheres alone; the large fillings \
                refuse the other orifice.",
