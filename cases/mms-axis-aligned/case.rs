@@ -62,7 +62,7 @@ fn claims() -> Vec<Claim> {
             .refuses(wrong())
     };
     vec![
-        second("order in the cell, uGIMP", in_small_steps(GIMP, POINTS_OF_GIMP)),
+        second("order in the cell, uGIMP", in_small_steps(GIMP, POINTS_OF_GIMP).into_iter().map(Run::slow).collect()),
         second(
             "order in the cell, quadratic B-splines",
             in_small_steps(SPLINES, POINTS_OF_SPLINES).into_iter().map(Run::long).collect(),
