@@ -21,7 +21,7 @@ pub(crate) struct Grains<S: Geometry> {
     /// Position (m) and radius (m); in the plane x, y, the angle θ (rad) and the radius.
     pub(crate) place: Vec<Quad>,
     /// Velocity (m/s) and inverse mass (1/kg); in the plane vx, vy, the spin ω (rad/s) and the inverse mass. In space, where
-    /// grains rotate, each is followed by the angular velocity ω (rad/s).
+    /// grains rotate, each is followed by the angular velocity ω (rad/s) and the radius (m) once more.
     pub(crate) movement: Vec<Quad>,
     /// Force F (N), the sum over contacts, without the weight; in the plane Fx, Fy and the torque M (N m). In space, where
     /// grains rotate, each is followed by the torque M (N m).
@@ -45,9 +45,11 @@ impl<S: Geometry> Grains<S> {
         let quads = count * quads::<S>(rotate);
         let lengths = [material.len(), id.len()];
         let turning = if rotate { count } else { 0 };
+        let spins = movement.iter().skip(1).step_by(2).filter(|_| quads > count);
         let placed = slot.iter().filter(|&&slot| slot != ABSENT).count();
         lengths.iter().all(|&length| length == count)
             && [movement.len(), load.len(), inverse_inertia.len()] == [quads, quads, turning]
+            && spins.zip(place).all(|(spin, place)| spin.0[3].to_bits() == place.0[3].to_bits())
             && slot.len() == scene.grains.len()
             && placed == count
             && (placed == slot.len() || !scene.stays.is_always())

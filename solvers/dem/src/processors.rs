@@ -199,3 +199,15 @@ fn whatever_touches_is_listed_while_the_skin_widens() {
     }
     assert!(simulation.neighbours.skin > first, "the skin has widened");
 }
+
+/// A checkpoint of some other program may hold another radius beside a spin, and torque arms would follow it.
+#[test]
+fn a_radius_beside_a_spin_is_that_of_its_grain() {
+    use crate::grains::Grains;
+    use grainbench_scene::space::Solid;
+    let scene = scene(3);
+    let mut grains = Grains::<Solid>::new(&scene, true);
+    assert!(grains.is_of(&scene, true));
+    grains.movement[1].0[3] *= 1.1;
+    assert!(!grains.is_of(&scene, true));
+}
