@@ -6,7 +6,6 @@ use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use std::collections::HashMap;
 
 /// Centres of a square or simple-cubic lattice (m), x fastest.
 #[must_use]
@@ -78,16 +77,15 @@ pub fn random(
     let mut sizes: Vec<f64> = (0..count).map(|_| radii.draw(&mut generator)).collect();
     sizes.sort_by(|a, b| b.total_cmp(a));
     let cell = 2.0 * radii.largest();
-    let mut taken: HashMap<[i64; 3], Vec<(Vector3<f64>, f64)>> = HashMap::new();
+    let mut taken = Taken::new(cell, sizes.len());
     let mut placed = Vec::with_capacity(sizes.len());
     for &radius in &sizes {
         let position = (0..TRIES).find_map(|_| {
             let centre = somewhere(&mut generator, radius, domain, dimension);
-            let free = images(centre, domain, cell).into_iter().all(|image| is_free(image, radius, cell, &taken));
-            free.then_some(centre)
+            images(centre, domain, cell).into_iter().all(|image| taken.is_free(image, radius)).then_some(centre)
         });
         let position = position.ok_or_else(|| filled(sizes.iter().copied(), domain, dimension))?;
-        taken.entry(cell_of(position, cell)).or_default().push((position, radius));
+        taken.add(position, radius);
         let velocity = direction(&mut generator, dimension) * speed;
         placed.push(Placed { position, radius, velocity });
     }
@@ -116,10 +114,6 @@ fn direction(generator: &mut impl Rng, dimension: Dimension) -> Vector3<f64> {
     }
 }
 
-fn cell_of(position: Vector3<f64>, cell: f64) -> [i64; 3] {
-    [0, 1, 2].map(|axis| (position[axis] / cell).floor() as i64)
-}
-
 /// The centre itself and its periodic images that come within a cell of the domain.
 fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>> {
     let mut images = vec![centre];
@@ -140,18 +134,60 @@ fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>>
     images
 }
 
-fn is_free(centre: Vector3<f64>, radius: f64, cell: f64, taken: &HashMap<[i64; 3], Vec<(Vector3<f64>, f64)>>) -> bool {
-    // Far beyond what a cell number can hold, neighbours are the same cell.
-    let [i, j, k] = cell_of(centre, cell).map(|at| at.clamp(i64::MIN + 1, i64::MAX - 1));
-    (-1..=1).all(|di| {
-        (-1..=1).all(|dj| {
-            (-1..=1).all(|dk| {
-                taken
-                    .get(&[i + di, j + dj, k + dk])
-                    .is_none_or(|others| others.iter().all(|(other, size)| (centre - other).norm() >= radius + size))
+/// Room that is taken: spheres by cells, which are as wide as the largest is thick. Cells of one bucket may be far apart; that
+/// costs a distance, and no sphere is missed by it.
+struct Taken {
+    /// Edge of a cell (m).
+    cell: f64,
+    /// The last sphere of each bucket, with the one before it.
+    last: Vec<Option<u32>>,
+    /// Centre (m), radius (m), and the one before in its bucket.
+    spheres: Vec<(Vector3<f64>, f64, Option<u32>)>,
+}
+
+impl Taken {
+    fn new(cell: f64, most: usize) -> Self {
+        Self { cell, last: vec![None; most.next_power_of_two()], spheres: Vec::with_capacity(most) }
+    }
+
+    /// Number of a place's cell along each axis.
+    fn cell_of(&self, place: Vector3<f64>) -> [i64; 3] {
+        [0, 1, 2].map(|axis| (place[axis] / self.cell).floor() as i64)
+    }
+
+    /// The bucket of a cell: its numbers times large primes, so that cells in a row come to lie apart.
+    fn bucket(&self, cell: [i64; 3]) -> usize {
+        const PRIMES: [i64; 3] = [0x9e37_79b1, 0x85eb_ca77, 0xc2b2_ae3d];
+        let mixed = (0..3).fold(0, |mixed: i64, axis| mixed ^ cell[axis].wrapping_mul(PRIMES[axis]));
+        (mixed ^ (mixed >> 15)) as usize & (self.last.len() - 1)
+    }
+
+    fn add(&mut self, centre: Vector3<f64>, radius: f64) {
+        let bucket = self.bucket(self.cell_of(centre));
+        let number = self.spheres.len() as u32;
+        self.spheres.push((centre, radius, self.last[bucket].replace(number)));
+    }
+
+    fn is_free(&self, centre: Vector3<f64>, radius: f64) -> bool {
+        // Far beyond what a cell number can hold, neighbours are the same cell.
+        let [i, j, k] = self.cell_of(centre).map(|at| at.clamp(i64::MIN + 1, i64::MAX - 1));
+        // What is in the way is most often in the cell itself.
+        [0, -1, 1].into_iter().all(|dk| {
+            [0, -1, 1].into_iter().all(|dj| {
+                [0, -1, 1].into_iter().all(|di| {
+                    let mut at = self.last[self.bucket([i + di, j + dj, k + dk])];
+                    while let Some(number) = at {
+                        let (other, size, before) = self.spheres[number as usize];
+                        if (centre - other).norm() < radius + size {
+                            return false;
+                        }
+                        at = before;
+                    }
+                    true
+                })
             })
         })
-    })
+    }
 }
 
 #[cfg(test)]
