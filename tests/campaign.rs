@@ -259,7 +259,8 @@ fn failures_keep_their_type() {
     assert!(ok(&grainbench(here, &["work", "p", "--again"])).out.contains("2 done now, 2 of them failed"));
 }
 
-/// Workers that are killed, each at a moment by lot, and lines that are cut off: what is left is done, and nothing twice.
+/// Workers that are killed, after as many results as the lot says and a moment, and lines that are cut off: what is left is done,
+/// and nothing twice.
 #[test]
 fn killed_workers_lose_nothing_and_do_nothing_twice() {
     let directory = tempfile::tempdir().unwrap();
@@ -272,7 +273,8 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
     ok(&grainbench(here, &["collect", "whole"]));
     ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
     let mut state = 7_u64;
-    let mut killed = 0;
+    let (mut killed, mut at_work) = (0, 0);
+    let results = || if here.join("p/results").is_dir() { done(&here.join("p")).len() } else { 0 };
     for round in 0..40 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let start = |chunk: &str| {
@@ -280,13 +282,19 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
             command.args(["work", "p", "--chunk", chunk]).current_dir(here);
             command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
         };
-        let workers = [start("1/2"), start("2/2")];
-        std::thread::sleep(Duration::from_millis(30 + (state >> 40) % 150));
+        let before = results();
+        let mut workers = [start("1/2"), start("2/2")];
+        let enough = before + (state >> 40) as usize % 5;
+        while results() < enough && workers.iter_mut().any(|worker| worker.try_wait().unwrap().is_none()) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(Duration::from_micros((state >> 50) % 4000));
         for mut worker in workers {
             killed += usize::from(worker.try_wait().unwrap().is_none());
             let _ = worker.kill();
             worker.wait().unwrap();
         }
+        at_work += usize::from(results() > before);
         if round % 3 == 0 {
             // The last line of one of them was not whole.
             let cut = fs::read_dir(here.join("p/results")).unwrap().map(|entry| entry.unwrap().path()).max();
@@ -296,7 +304,10 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
             }
         }
     }
-    assert!(killed > 10, "{killed}: too many end before they are killed");
+    assert!(
+        killed > 10 && at_work > 10,
+        "{killed} and {at_work}: too many end before they are killed, or begin nothing"
+    );
     ok(&grainbench(here, &["work", "p"]));
     let ids = done(&here.join("p"));
     assert_eq!(ids.len(), ids.iter().collect::<BTreeSet<_>>().len(), "a task was done twice");

@@ -9,7 +9,7 @@ use crate::plan::RUNNING;
 use grainbench_reports::{WriteError, write_file};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
@@ -158,27 +158,37 @@ fn age(path: &Path, now: SystemTime) -> Option<f64> {
 }
 
 /// The lock, for as long as this is alive.
-struct Lock(PathBuf);
+struct Lock {
+    path: PathBuf,
+    /// Those of one machine take turns by a lock of the system, which ends with its process; none where there are no such locks.
+    _turn: Option<File>,
+}
 
 impl Lock {
     fn of(folder: &Path) -> Result<Self, Fault> {
         let path = folder.join(LOCK);
+        let turn = File::create(folder.join(format!("{LOCK}-{}", machine::name()))).ok();
+        let turn = turn.filter(|file| file.lock().is_ok());
         for _ in 0..TRIES {
             match File::create_new(&path) {
-                Ok(_) => return Ok(Self(path)),
+                Ok(mut file) => {
+                    let _ = file.write_all(machine::name().as_bytes());
+                    return Ok(Self { path, _turn: turn });
+                }
                 Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
                     return Err(WriteError::new(path, error).into());
                 }
                 Err(_) => {}
             }
-            if age(&path, time_of(folder)).is_some_and(|age| age > LEFT) {
+            if is_left(&path, turn.is_some(), time_of(folder)) {
                 // Of those who try this one can, and it takes away what it has looked at.
                 let aside = folder.join(format!(".left-{}-{}", machine::name(), std::process::id()));
                 if fs::rename(&path, &aside).is_ok() {
                     let _ = fs::remove_file(&aside);
                 }
+            } else {
+                sleep(PAUSE);
             }
-            sleep(PAUSE);
         }
         Err(Fault::in_file(
             &path,
@@ -188,9 +198,15 @@ impl Lock {
     }
 }
 
+/// Whether nobody holds a lock any more: it is old, or of this machine, of whose processes it is the turn of another.
+fn is_left(path: &Path, is_our_turn: bool, now: SystemTime) -> bool {
+    let is_of_this_machine = || fs::read_to_string(path).is_ok_and(|host| host == machine::name());
+    age(path, now).is_some_and(|age| age > LEFT) || is_our_turn && is_of_this_machine()
+}
+
 impl Drop for Lock {
     fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
+        let _ = fs::remove_file(&self.path);
     }
 }
 
@@ -232,6 +248,24 @@ mod tests {
         }
         fs::write(plan.path().join(RUNNING).join("b.json"), "{\"worker\"").unwrap();
         assert_eq!(held(plan.path(), 60.0).unwrap(), [], "what cannot be read is nobody's");
+    }
+
+    /// A worker that was killed while it held the lock keeps nobody of its machine waiting.
+    #[test]
+    fn a_lock_is_left_by_who_is_no_more() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(LOCK);
+        for (host, is_our_turn, left) in [
+            (machine::name(), true, true),
+            (machine::name(), false, false),
+            ("elsewhere".to_owned(), true, false),
+            (String::new(), true, false),
+        ] {
+            fs::write(&path, &host).unwrap();
+            let written = fs::metadata(&path).unwrap().modified().unwrap();
+            assert_eq!(is_left(&path, is_our_turn, written), left, "{host:?} {is_our_turn}");
+            assert!(is_left(&path, is_our_turn, written + Duration::from_secs(21)), "{host:?} {is_our_turn}");
+        }
     }
 
     #[test]
