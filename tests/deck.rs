@@ -6,6 +6,7 @@ mod common;
 
 use common::{files, grainbench};
 use grainbench::cases::registry::{CASES, by_name};
+use grainbench::harness::case::Case;
 use grainbench::reference::deck::{DeckError, Program, write_deck};
 use grainbench::scene::file::GrainShape;
 use grainbench::scene::function::{Function, FunctionKind};
@@ -13,6 +14,7 @@ use grainbench::scene::motion::{Moment, Motion, Phase};
 use grainbench::scene::scene::{Scene, WallShape};
 use grainbench::scene::solver::Resolution;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 /// The deck's files one below the other.
 fn shown(case: &str, variant: &str, program: Program) -> String {
@@ -124,8 +126,8 @@ fn a_wall_that_moves_by_functions() {
 
 #[test]
 fn every_case_has_a_deck_or_a_reason() {
-    let mut written = 0;
-    for case in CASES {
+    let decks = |case: &&Case| {
+        let mut written = 0;
         for variant in case.variants().unwrap() {
             let scene = case.variant(&variant).unwrap();
             for program in Program::ALL {
@@ -140,7 +142,9 @@ fn every_case_has_a_deck_or_a_reason() {
                 }
             }
         }
-    }
+        written
+    };
+    let written: u32 = CASES.par_iter().map(decks).sum();
     assert!(written > 30, "{written}");
 }
 

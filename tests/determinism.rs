@@ -1,16 +1,12 @@
 //! The same scene, solver and step give the same bits, however often and beside whatever else they run.
 
+mod common;
+
+use common::bits;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
-use grainbench::scene::record::{Cost, Record};
 use grainbench::scene::solver::{Resolution, Threads};
 use rayon::prelude::*;
-
-/// A record without its times. Debug output tells every bit of a number but the sign of a NaN, and there are none.
-fn bits(mut record: Record) -> String {
-    record.cost = Cost { wall_seconds: 0.0, ..record.cost };
-    format!("{record:?}")
-}
 
 #[test]
 fn a_rerun_gives_the_same_bits() {
@@ -20,6 +16,7 @@ fn a_rerun_gives_the_same_bits() {
         // Long runs are cut: bits part at once or not at all.
         if scene.grains.len() > 100 {
             scene.duration = grainbench::scene::scene::Duration::Cycles(200);
+            scene.snapshots = 5;
         }
         // Of the method that takes long, scenes made for it that are short.
         let deformable = ["incline-disc", "two-discs"].contains(&case.name);

@@ -3,9 +3,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod common;
+
+use common::bits;
 use grainbench::cases::solvers;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
-use grainbench::scene::record::{Cost, Record};
+use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Resolution, RunError, Threads, Watch};
 use grainbench::scene::source::SceneSource;
@@ -144,10 +147,6 @@ impl Watch for Keeper {
     }
 }
 
-fn untimed(record: Record) -> String {
-    format!("{:?}", Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record })
-}
-
 /// A funnel of triangles that turns, with grains that come through it and are taken out below.
 fn funnel() -> Scene {
     let rim = |part: u32, radius: f64, z: f64| {
@@ -178,15 +177,15 @@ fn threads_and_restarts_change_no_bit() {
     let mut keeper = Keeper(Vec::new());
     let straight = run(&scene, &mut keeper);
     assert!(straight.snapshots.last().unwrap().grains.len() < 48, "none was taken out");
-    let straight = untimed(straight);
+    let straight = bits(straight);
     for threads in [2, 3] {
-        assert!(untimed(run(&scene, &mut Threads(threads))) == straight, "{threads} threads");
+        assert!(bits(run(&scene, &mut Threads(threads))) == straight, "{threads} threads");
     }
     let solver = solvers::by_name("dem").unwrap();
     assert!(keeper.0.len() > 5);
     for checkpoint in &keeper.0 {
         let record = solver.restart(&scene, &STEP, checkpoint, &mut ()).unwrap_or_else(|error| panic!("{error}"));
-        assert!(untimed(record) == straight);
+        assert!(bits(record) == straight);
     }
 }
 

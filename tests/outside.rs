@@ -5,6 +5,7 @@
 mod common;
 
 use common::{Answer, grainbench};
+use rayon::prelude::*;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -295,11 +296,11 @@ fn a_grain_in_python_is_judged_line_by_line() {
         ("dt / inertia / 2", "dt / inertia / 2.02"),
         ("x = plus(x, v, dt)", "x = plus(x, v, 0.999 * dt)"),
     ];
-    for (right, wrong) in spoiled {
+    spoiled.into_par_iter().for_each(|(right, wrong)| {
         let folder = example("python", "one_grain.py", Some((right, wrong)));
         let mut codes = EASY.iter().map(|case| passes(folder.path(), &[case], &["--no-controls"]).0);
         assert!(codes.any(|code| code == Some(1)), "{wrong}: every row passes");
-    }
+    });
 }
 
 /// The same in C++, which is built by the manifest first.

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{files, grainbench};
+use common::{bits, files, grainbench};
 use grainbench::cases::kept::{self, Wanted};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
@@ -35,11 +35,6 @@ impl Watch for Keeper {
         self.kept.push(Checkpoint::from_bytes(&checkpoint.to_bytes()?)?);
         Ok(())
     }
-}
-
-/// A record without its times, in every bit.
-fn untimed(record: Record) -> String {
-    format!("{:?}", Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record })
 }
 
 /// The beginning of a scene, with samples at odd places.
@@ -76,13 +71,13 @@ fn every_case_continues_to_the_same_bits() {
             let whole = match solver.run(scene, &resolution, &mut ()) {
                 // Scenes of deformable bodies alone.
                 Err(RunError::Unsupported { .. }) => continue,
-                run => untimed(run.unwrap()),
+                run => bits(run.unwrap()),
             };
-            let watched = untimed(solver.run(scene, &resolution, &mut keeper).unwrap());
+            let watched = bits(solver.run(scene, &resolution, &mut keeper).unwrap());
             assert!(whole == watched, "{}: {} is another run when checkpoints are taken", case.name, solver.name());
             let (first, last) = (keeper.kept.first().unwrap(), keeper.kept.last().unwrap());
             for checkpoint in [first, last] {
-                let continued = untimed(solver.restart(scene, &resolution, checkpoint, &mut ()).unwrap());
+                let continued = bits(solver.restart(scene, &resolution, checkpoint, &mut ()).unwrap());
                 assert!(whole == continued, "{}: {} from step {}", case.name, solver.name(), checkpoint.step());
                 compared += 1;
             }

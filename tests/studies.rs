@@ -8,6 +8,7 @@ mod common;
 use common::grainbench;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
+use grainbench::harness::case::Case;
 use grainbench::reports::study::stability::Hardness;
 use grainbench::scene::effect::Effect;
 use grainbench::studies::effects::ledger::Ledger;
@@ -15,6 +16,7 @@ use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::stability::assembly;
 use grainbench::studies::stability::hard;
 use grainbench::studies::stability::limit::of_assembly;
+use rayon::prelude::*;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -67,8 +69,8 @@ const NOT_FELT: &[(&str, Effect)] =
 
 #[test]
 fn an_effect_that_is_needed_is_caught_when_it_is_off() {
-    let mut wrong = Vec::new();
-    for case in CASES {
+    let wrong = |case: &&'static Case| {
+        let mut wrong = Vec::new();
         let mut ledger = Ledger::new(case, Arc::new(Registry));
         let mut effects: Vec<Effect> =
             ledger.pieces().iter().filter(|piece| piece.key.is_some()).map(|piece| piece.effect).collect();
@@ -80,7 +82,9 @@ fn an_effect_that_is_needed_is_caught_when_it_is_off() {
                 wrong.push(format!("{}: {:?}, {}", case.name, effect, caught.unwrap_or_else(|| "not felt".to_owned())));
             }
         }
-    }
+        wrong
+    };
+    let wrong: Vec<String> = CASES.par_iter().flat_map_iter(wrong).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

@@ -6,6 +6,7 @@ use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::harness::case::PLAIN;
 use grainbench::harness::evidence::Evidence;
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -338,7 +339,7 @@ fn every_case_folder_is_whole() {
 
 #[test]
 fn every_case_and_claim_says_what_it_claims_and_why() {
-    for case in CASES {
+    CASES.par_iter().for_each(|case| {
         let words = [case.title, case.claim, case.derivation, case.weakness];
         assert!(words.iter().all(|text| !text.trim().is_empty()), "{}: title, claim, derivation, weakness", case.name);
         assert!(!case.levels.is_empty(), "{} has no level", case.name);
@@ -371,7 +372,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
                 assert!(variants.iter().any(|variant| variant == run.variant), "{place}: no variant {}", run.variant);
             }
         }
-    }
+    });
 }
 
 /// What rustfmt finds to mend in some files: `cargo fmt` sees no file that only a generated list names, as those of

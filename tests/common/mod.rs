@@ -3,6 +3,8 @@
 // Each test file uses its part of this.
 #![allow(dead_code)]
 
+use grainbench::scene::kept_record;
+use grainbench::scene::record::{Cost, Record};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -14,6 +16,12 @@ pub(crate) struct Answer {
     pub(crate) out: String,
     /// Standard error.
     pub(crate) err: String,
+}
+
+/// A record in every bit, but without its times. (Printed numbers would take longer than most runs.)
+pub(crate) fn bits(record: Record) -> Vec<u8> {
+    let untimed = Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record };
+    kept_record::body("", &untimed).expect("a record can be kept")
 }
 
 /// The program, which keeps and takes no finished runs: what a test sees was done for it.

@@ -7,7 +7,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
+use std::{ops, thread};
 
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -152,20 +154,29 @@ fn work(kind: &Kind, range: Range, folder: &Path) {
 /// Has items tried by processes of their own, a chunk each, and tells what they found.
 fn watch(kind: &Kind, range: Range) {
     let Range { seed, from, count } = range;
-    let end = from + count;
-    let begun = Instant::now();
-    let (mut next, mut findings) = (from, Vec::new());
-    while next < end && findings.len() < ENOUGH {
-        let chunk = Range { seed, from: next, count: CHUNK.min(end - next) };
-        let (found, after) = in_a_process(kind, chunk);
-        for finding in &found {
-            eprintln!("{finding}");
+    let (done, begun) = (AtomicU64::new(0), Instant::now());
+    // Each core goes through its share.
+    let cores = thread::available_parallelism().map_or(1, |cores| cores.get() as u64).min(count.max(1));
+    let share = |core: u64| from + count * core / cores..from + count * (core + 1) / cores;
+    let go_through = |share: ops::Range<u64>| {
+        let (mut next, mut findings) = (share.start, Vec::new());
+        while next < share.end && findings.len() < ENOUGH {
+            let chunk = Range { seed, from: next, count: CHUNK.min(share.end - next) };
+            let (found, after) = in_a_process(kind, chunk);
+            for finding in &found {
+                eprintln!("{finding}");
+            }
+            findings.extend(found);
+            let done = done.fetch_add(after - next, Ordering::Relaxed) + after - next;
+            next = after;
+            eprintln!("{} of seed {seed}: {done} of {count}, {} s", kind.name, begun.elapsed().as_secs());
         }
-        findings.extend(found);
-        next = after;
-        let (done, seconds) = (next - from, begun.elapsed().as_secs());
-        eprintln!("{} of seed {seed}: {done} of {count}, {seconds} s, {} found", kind.name, findings.len());
-    }
+        findings
+    };
+    let findings: Vec<String> = thread::scope(|scope| {
+        let shares: Vec<_> = (0..cores).map(|core| scope.spawn(move || go_through(share(core)))).collect();
+        shares.into_iter().flat_map(|core| core.join().unwrap()).collect()
+    });
     let wrong: Vec<&String> = findings.iter().filter(|finding| !finding.contains(": nothing is wrong\n")).collect();
     assert!(wrong.is_empty(), "{} of {count} {}:\n{}", wrong.len(), kind.name, findings.join("\n"));
 }
@@ -203,7 +214,7 @@ fn in_a_process(kind: &Kind, range: Range) -> (Vec<String>, u64) {
             child.wait().expect("it is ours");
             break Some(format!("not done after {} s", PATIENCE.as_secs()));
         }
-        std::thread::sleep(Duration::from_millis(20));
+        thread::sleep(Duration::from_millis(20));
     };
     let found = fs::read_to_string(&notes.found).unwrap_or_default();
     let mut found: Vec<String> =
