@@ -259,10 +259,10 @@ impl<'a> Sums<'a> {
         slot.wrapping_sub(self.first) < self.count
     }
 
-    /// The force and torque of a grain, if its slot is one of these.
+    /// Those of all grains, if these are.
     #[inline(always)]
-    pub(crate) fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
-        self.load.as_chunks_mut::<Q>().0.get_mut(slot.wrapping_sub(self.first))
+    pub(crate) fn all(&mut self, grains: usize) -> Option<All<'_>> {
+        (self.first == 0 && self.count >= grains).then_some(All { grains, load: self.load })
     }
 
     /// Takes off the sums of the first grains, so many.
@@ -271,6 +271,32 @@ impl<'a> Sums<'a> {
         self.first += count;
         self.count -= count;
         Self { first, count, load: take_off(&mut self.load, count * quads) }
+    }
+}
+
+/// Where forces and torques are added up.
+pub(crate) trait Loads {
+    /// The force and torque of a grain, if its slot is one of these.
+    fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]>;
+}
+
+impl Loads for Sums<'_> {
+    #[inline(always)]
+    fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
+        self.load.as_chunks_mut::<Q>().0.get_mut(slot.wrapping_sub(self.first))
+    }
+}
+
+/// The sums of all grains, so many: every slot is one of these.
+pub(crate) struct All<'a> {
+    grains: usize,
+    load: &'a mut [Quad],
+}
+
+impl Loads for All<'_> {
+    #[inline(always)]
+    fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
+        Some(&mut self.load.as_chunks_mut::<Q>().0[..self.grains][slot])
     }
 }
 

@@ -8,7 +8,7 @@ use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Memory};
 use crate::forces::Terms;
 use crate::geometry::Geometry;
-use crate::grains::{Read, Sums};
+use crate::grains::{Loads, Read, Sums};
 use crate::laws::{self, Constants, gathered, gathered_of, places};
 use crate::listed::Pairs;
 use crate::seen::Seen;
@@ -157,39 +157,53 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     /// Adds the forces and torques of so many contacts, one after the other.
     #[inline(always)]
     fn add<L: Lanes>(&mut self, lanes: L, answer: &Answer<S, Wide<L>>, slots: &Slots, count: usize) {
-        let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
-        let sums = &mut self.sums;
-        let [one, on_one] = S::load(answer.force, answer.torques[0], zero);
-        let [other, on_other] = S::load(-answer.force, answer.torques[1], zero);
-        let one = spread(lanes, one);
+        let zero = Wide::splat(lanes, 0.0);
+        let one = S::load(answer.force, answer.torques[0], zero);
+        let added = [one, S::load(-answer.force, answer.torques[1], zero)];
+        // Where all grains are added up and registers are full, no slot and no lane is to be looked at.
+        match self.sums.all(self.grains.place.len()) {
+            Some(mut all) if count == L::WIDTH => Self::add_to(lanes, &mut all, added, slots, L::WIDTH),
+            _ => Self::add_to(lanes, &mut self.sums, added, slots, count),
+        }
+    }
+
+    /// Adds the quads of a force and a torque to the first grain of each contact, and those of the others to the second.
+    #[inline(always)]
+    fn add_to<L: Lanes>(
+        lanes: L,
+        loads: &mut impl Loads,
+        [one, other]: [[[Wide<L>; 4]; 2]; 2],
+        Slots { first, second }: &Slots,
+        count: usize,
+    ) {
         if Q == 2 {
-            let [on_one, on_other] = [spread(lanes, on_one), spread(lanes, on_other)];
+            let other = spread_pairs(lanes, [one[0], other[1]]);
+            let one = spread_pairs(lanes, one);
             for lane in 0..count {
-                if let Some([force, torque]) = sums.of(first[lane]) {
-                    force.add(&one[lane]);
-                    torque.add(&on_one[lane]);
+                if let Some(load) = loads.of(first[lane]) {
+                    lanes.add_to(load, one[lane]);
                 }
-                if let Some([force, torque]) = sums.of(second[lane]) {
-                    force.subtract(&one[lane]);
-                    torque.add(&on_other[lane]);
+                if let Some(load) = loads.of(second[lane]) {
+                    lanes.oppose(load, other[lane]);
                 }
             }
         } else if T::ACTIVE {
-            let other = spread(lanes, other);
+            let [one, other] = [spread(lanes, one[0]), spread(lanes, other[0])];
             for lane in 0..count {
-                if let Some([load]) = sums.of(first[lane]) {
+                if let Some([load]) = loads.of(first[lane]) {
                     load.add(&one[lane]);
                 }
-                if let Some([load]) = sums.of(second[lane]) {
+                if let Some([load]) = loads.of(second[lane]) {
                     load.add(&other[lane]);
                 }
             }
         } else {
+            let one = spread(lanes, one[0]);
             for lane in 0..count {
-                if let Some([force]) = sums.of(first[lane]) {
+                if let Some([force]) = loads.of(first[lane]) {
                     force.add(&one[lane]);
                 }
-                if let Some([force]) = sums.of(second[lane]) {
+                if let Some([force]) = loads.of(second[lane]) {
                     force.subtract(&one[lane]);
                 }
             }
@@ -242,4 +256,11 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
 #[inline(always)]
 fn spread<L: Lanes>(lanes: L, [a, b, c, d]: [Wide<L>; 4]) -> [Quad; WIDEST] {
     lanes.quads([a.register(), b.register(), c.register(), d.register()])
+}
+
+/// Two quads for each lane.
+#[inline(always)]
+fn spread_pairs<L: Lanes>(lanes: L, [[a, b, c, d], [e, f, g, h]]: [[Wide<L>; 4]; 2]) -> [L::Pair; WIDEST] {
+    let one = [a.register(), b.register(), c.register(), d.register()];
+    lanes.pairs([one, [e.register(), f.register(), g.register(), h.register()]])
 }

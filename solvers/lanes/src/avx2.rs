@@ -7,6 +7,7 @@ use std::arch::x86_64::{__m256d, _CMP_LT_OQ};
 impl Lanes for V3 {
     type Register = __m256d;
     type Mask = __m256d;
+    type Pair = [Quad; 2];
     const WIDTH: usize = LANES;
 
     #[inline(always)]
@@ -88,6 +89,18 @@ impl Lanes for V3 {
         let ([a, b, c, d], none) = (self.turned(of), Quad::default());
         let quad = |row| Quad(pulp::cast(row));
         [quad(a), quad(b), quad(c), quad(d), none, none, none, none]
+    }
+    #[inline(always)]
+    fn pairs(self, of: [[__m256d; 4]; 2]) -> [[Quad; 2]; WIDEST] {
+        crate::paired(self.quads(of[0]), self.quads(of[1]))
+    }
+    #[inline(always)]
+    fn add_to(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
+        crate::add_both(quads, pair);
+    }
+    #[inline(always)]
+    fn oppose(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
+        crate::oppose_both(quads, pair);
     }
 }
 

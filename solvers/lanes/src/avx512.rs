@@ -21,6 +21,9 @@ fn split(register: __m512d) -> [Quad; 2] {
 /// The fourth numbers of two quads.
 const FOURTH: __mmask8 = 0b1000_1000;
 
+/// The numbers of the first quad.
+const FIRST: __mmask8 = 0b0000_1111;
+
 /// The quads of a table at eight places, two in a register: 0 and 2, 1 and 3, 4 and 6, 5 and 7, so that the last step of
 /// turning them leaves them in order.
 #[inline(always)]
@@ -53,9 +56,26 @@ fn turned(lanes: V4, [a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
     ]
 }
 
+/// Two quads for each of four lanes, from the first and last two numbers of each.
+#[inline(always)]
+fn in_pairs(lanes: V4, [a, b]: [__m512d; 2], [c, d]: [__m512d; 2]) -> [__m512d; 4] {
+    let avx = lanes.avx512f;
+    let [low, high] =
+        [avx._mm512_shuffle_f64x2::<0b01_00_01_00>(a, b), avx._mm512_shuffle_f64x2::<0b11_10_11_10>(a, b)];
+    let [other_low, other_high] =
+        [avx._mm512_shuffle_f64x2::<0b01_00_01_00>(c, d), avx._mm512_shuffle_f64x2::<0b11_10_11_10>(c, d)];
+    [
+        avx._mm512_shuffle_f64x2::<0b10_00_10_00>(low, other_low),
+        avx._mm512_shuffle_f64x2::<0b11_01_11_01>(low, other_low),
+        avx._mm512_shuffle_f64x2::<0b10_00_10_00>(high, other_high),
+        avx._mm512_shuffle_f64x2::<0b11_01_11_01>(high, other_high),
+    ]
+}
+
 impl Lanes for V4 {
     type Register = __m512d;
     type Mask = __mmask8;
+    type Pair = __m512d;
     const WIDTH: usize = WIDEST;
 
     #[inline(always)]
@@ -140,5 +160,31 @@ impl Lanes for V4 {
         let [one, three] = split(avx._mm512_permutex2var_pd(odd_ab, low, odd_cd));
         let [five, seven] = split(avx._mm512_permutex2var_pd(odd_ab, high, odd_cd));
         [zero, one, two, three, four, five, six, seven]
+    }
+    #[inline(always)]
+    fn pairs(self, [[a, b, c, d], [e, f, g, h]]: [[__m512d; 4]; 2]) -> [__m512d; WIDEST] {
+        let avx = self.avx512f;
+        let [zero, two, four, six] = in_pairs(
+            self,
+            [avx._mm512_unpacklo_pd(a, b), avx._mm512_unpacklo_pd(c, d)],
+            [avx._mm512_unpacklo_pd(e, f), avx._mm512_unpacklo_pd(g, h)],
+        );
+        let [one, three, five, seven] = in_pairs(
+            self,
+            [avx._mm512_unpackhi_pd(a, b), avx._mm512_unpackhi_pd(c, d)],
+            [avx._mm512_unpackhi_pd(e, f), avx._mm512_unpackhi_pd(g, h)],
+        );
+        [zero, one, two, three, four, five, six, seven]
+    }
+    #[inline(always)]
+    fn add_to(self, quads: &mut [Quad; 2], pair: __m512d) {
+        let sum = self.avx512f._mm512_add_pd(both(self, quads[0], quads[1]), pair);
+        *quads = split(sum);
+    }
+    #[inline(always)]
+    fn oppose(self, quads: &mut [Quad; 2], pair: __m512d) {
+        let of = both(self, quads[0], quads[1]);
+        let sum = self.avx512f._mm512_add_pd(of, pair);
+        *quads = split(self.avx512f._mm512_mask_sub_pd(sum, FIRST, of, pair));
     }
 }

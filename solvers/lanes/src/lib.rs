@@ -62,6 +62,8 @@ pub trait Lanes: Copy + 'static {
     type Register: Copy;
     /// So many answers.
     type Mask: Copy;
+    /// Two quads together.
+    type Pair: Copy;
     /// Numbers in a register.
     const WIDTH: usize;
 
@@ -103,6 +105,32 @@ pub trait Lanes: Copy + 'static {
     fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST];
     /// The opposite of [`gather`](Self::gather): a quad for each lane, in the first of a row.
     fn quads(self, of: [Self::Register; 4]) -> [Quad; WIDEST];
+    /// The same of two: two quads for each lane.
+    fn pairs(self, of: [[Self::Register; 4]; 2]) -> [Self::Pair; WIDEST];
+    /// Adds to each number of two quads.
+    fn add_to(self, quads: &mut [Quad; 2], pair: Self::Pair);
+    /// Subtracts from each number of the first quad, and adds to those of the second.
+    fn oppose(self, quads: &mut [Quad; 2], pair: Self::Pair);
+}
+
+/// Two quads for each lane, from those of one and of the other.
+#[inline(always)]
+fn paired([a, b, c, d, e, f, g, h]: [Quad; WIDEST], [i, j, k, l, m, n, o, p]: [Quad; WIDEST]) -> [[Quad; 2]; WIDEST] {
+    [[a, i], [b, j], [c, k], [d, l], [e, m], [f, n], [g, o], [h, p]]
+}
+
+/// Adds to each number of two quads.
+#[inline(always)]
+fn add_both([one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
+    one.add(&pair[0]);
+    other.add(&pair[1]);
+}
+
+/// Subtracts from each number of the first quad, and adds to those of the second.
+#[inline(always)]
+fn oppose_both([one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
+    one.subtract(&pair[0]);
+    other.add(&pair[1]);
 }
 
 /// What computes with four lanes.

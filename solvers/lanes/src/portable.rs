@@ -16,6 +16,7 @@ fn each<T>(a: [f64; LANES], b: [f64; LANES], operation: impl Fn(f64, f64) -> T) 
 impl Lanes for Portable {
     type Register = [f64; LANES];
     type Mask = [bool; LANES];
+    type Pair = [Quad; 2];
     const WIDTH: usize = LANES;
 
     #[inline(always)]
@@ -90,6 +91,18 @@ impl Lanes for Portable {
     fn quads(self, of: [[f64; LANES]; 4]) -> [Quad; WIDEST] {
         let ([a, b, c, d], none) = (turned(of), Quad::default());
         [Quad(a), Quad(b), Quad(c), Quad(d), none, none, none, none]
+    }
+    #[inline(always)]
+    fn pairs(self, of: [[[f64; LANES]; 4]; 2]) -> [[Quad; 2]; WIDEST] {
+        crate::paired(self.quads(of[0]), self.quads(of[1]))
+    }
+    #[inline(always)]
+    fn add_to(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
+        crate::add_both(quads, pair);
+    }
+    #[inline(always)]
+    fn oppose(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
+        crate::oppose_both(quads, pair);
     }
 }
 

@@ -9,6 +9,7 @@ pub struct Single;
 impl Lanes for Single {
     type Register = f64;
     type Mask = bool;
+    type Pair = [Quad; 2];
     const WIDTH: usize = 1;
 
     #[inline(always)]
@@ -77,6 +78,18 @@ impl Lanes for Single {
     fn quads(self, of: [f64; 4]) -> [Quad; WIDEST] {
         let none = Quad::default();
         [Quad(of), none, none, none, none, none, none, none]
+    }
+    #[inline(always)]
+    fn pairs(self, of: [[f64; 4]; 2]) -> [[Quad; 2]; WIDEST] {
+        crate::paired(self.quads(of[0]), self.quads(of[1]))
+    }
+    #[inline(always)]
+    fn add_to(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
+        crate::add_both(quads, pair);
+    }
+    #[inline(always)]
+    fn oppose(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
+        crate::oppose_both(quads, pair);
     }
 }
 

@@ -171,3 +171,48 @@ fn four_portable_lanes_are_four_numbers() {
     let at = [2, 0, 3, 1];
     assert_eq!(There(&table, &at).run(Portable), There(&table, &at).run(Single));
 }
+
+/// Two quads for each lane, added to those that are there.
+struct Pairs<'a>(&'a [Quad], &'a [usize]);
+
+impl Kernel for Pairs<'_> {
+    type Output = Vec<[Quad; 2]>;
+
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+        let mut all = Vec::new();
+        for at in self.1.chunks(L::WIDTH) {
+            let (mut one, mut other) = ([0; WIDEST], [0; WIDEST]);
+            one[..at.len()].copy_from_slice(at);
+            other[..at.len()].copy_from_slice(&at.iter().map(|place| 19 - place).collect::<Vec<_>>());
+            let table = self.0.as_chunks::<1>().0;
+            let pairs = lanes.pairs([lanes.gather(table, 0, &one), lanes.gather(table, 0, &other)]);
+            for lane in 0..at.len() {
+                let mut sums = [Quad([1.0, 2.0, 3.0, 4.0]), Quad([5.0, 6.0, 7.0, 8.0])];
+                lanes.add_to(&mut sums, pairs[lane]);
+                all.push(sums);
+                lanes.oppose(&mut sums, pairs[lane]);
+                all.push(sums);
+            }
+        }
+        all
+    }
+}
+
+#[test]
+fn two_quads_of_each_lane_are_added_together() {
+    let table: Vec<Quad> = (0..20).map(|row| Quad([0.0, 0.1, 0.2, 0.3].map(|at| f64::from(row) + at))).collect();
+    let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
+    let of = |&at: &usize| {
+        let mut sums = [Quad([1.0, 2.0, 3.0, 4.0]), Quad([5.0, 6.0, 7.0, 8.0])];
+        sums[0].add(&table[at]);
+        sums[1].add(&table[19 - at]);
+        let added = sums;
+        sums[0].subtract(&table[at]);
+        sums[1].add(&table[19 - at]);
+        [added, sums]
+    };
+    let expected: Vec<_> = at.iter().flat_map(of).collect();
+    for path in Processor::all() {
+        assert_eq!(path.run(Pairs(&table, &at)), expected, "{}", path.name());
+    }
+}
