@@ -21,8 +21,10 @@ fn split(register: __m512d) -> [Quad; 2] {
 /// The fourth numbers of two quads.
 const FOURTH: __mmask8 = 0b1000_1000;
 
-/// The numbers of the first quad.
-const FIRST: __mmask8 = 0b0000_1111;
+/// The signs of the first quad's numbers.
+const FIRST_OPPOSED: [u64; WIDEST] = [SIGN, SIGN, SIGN, SIGN, 0, 0, 0, 0];
+/// The bit of a number that is its sign.
+const SIGN: u64 = 1 << 63;
 
 /// The quads of a table at eight places, two in a register: 0 and 2, 1 and 3, 4 and 6, 5 and 7, so that the last step of
 /// turning them leaves them in order.
@@ -183,8 +185,6 @@ impl Lanes for V4 {
     }
     #[inline(always)]
     fn oppose(self, quads: &mut [Quad; 2], pair: __m512d) {
-        let of = both(self, quads[0], quads[1]);
-        let sum = self.avx512f._mm512_add_pd(of, pair);
-        *quads = split(self.avx512f._mm512_mask_sub_pd(sum, FIRST, of, pair));
+        self.add_to(quads, self.avx512dq._mm512_xor_pd(pair, pulp::cast(FIRST_OPPOSED)));
     }
 }
