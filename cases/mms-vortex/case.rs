@@ -5,7 +5,9 @@ use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 
-const LEVELS: &[Level] = &[level("1/16", 16.0), level("1/32", 32.0), level("1/64", 64.0)];
+const CELLS: [f64; 4] = [16.0, 32.0, 64.0, 128.0];
+const LEVELS: &[Level] =
+    &[level("1/16", CELLS[0]), level("1/32", CELLS[1]), level("1/64", CELLS[2]), level("1/128", CELLS[3])];
 const SOLVERS: [(&str, &str); 3] = [
     ("quadratic B-splines, FLIP with spin", "mpm"),
     ("uGIMP, FLIP", "mpm+gimp+flip"),
@@ -23,10 +25,11 @@ pub(crate) static CASE: Case = Case {
     name: "mms-vortex",
     title: "Manufactured vortex",
     claim: "Displacements converge in a motion that turns and shears the material by far; points that are stretched \
-            that far do not let go of each other.",
+            that far do not let go of each other, until FLIP's noise has grown.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One material law, no contact, and edges at which nothing happens.",
+    weakness: "One material law, no contact, and edges at which nothing happens. The order that is seen with 16 and 32 \
+               cells does not last: with 128 FLIP tears the ring apart, and APIC's falls.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -45,7 +48,7 @@ fn run(solver: &'static str, level: Level) -> Run {
 
 fn order(done: &[Done]) -> Result<f64, Missing> {
     let points: Result<Vec<(f64, f64)>, Missing> =
-        done.iter().zip([16.0, 32.0]).map(|(done, cells)| Ok((1.0 / cells, error(done)?))).collect();
+        done.iter().zip(CELLS).map(|(done, cells)| Ok((1.0 / cells, error(done)?))).collect();
     Ok(slope(&points?))
 }
 
@@ -58,15 +61,19 @@ fn claims() -> Vec<Claim> {
             .within(tolerance)
             .refuses(control)
     };
+    let converges = |quantity: &'static str, runs: Vec<Run>| {
+        claim(quantity, "1")
+            .of_all(runs)
+            .converges_at_least(1.0, SOURCE, order)
+            .within(exactly("the force jumps at the edges, which a grid sees as of first order there (derivation)"))
+            .refuses(damped())
+    };
     let mut claims = Vec::new();
-    for (solver, allowed) in [("mpm", 0.1), ("mpm+gimp+flip", 0.2)] {
-        claims.push(
-            claim("order in the cell at the largest turn, 16 to 32 cells", "1")
-                .of_all(LEVELS[..2].iter().map(|&level| run(solver, level).slow()))
-                .converges(2.0, SOURCE, order)
-                .within(judged(allowed, "two levels, and a force that jumps at the edges"))
-                .refuses(damped()),
-        );
+    for solver in ["mpm", "mpm+gimp+flip"] {
+        claims.push(converges(
+            "order in the cell at the largest turn, 16 to 32 cells",
+            LEVELS[..2].iter().map(|&level| run(solver, level).slow()).collect(),
+        ));
         for (level, allowed) in LEVELS.iter().zip([0.036, 9.5e-3]) {
             claims.push(off(
                 format!("root mean square error of the displacement at the largest turn, {} cells", level.name),
@@ -80,6 +87,19 @@ fn claims() -> Vec<Claim> {
             ));
         }
     }
+    claims.push(converges(
+        "order in the cell at the largest turn, 16 to 128 cells",
+        LEVELS.iter().map(|&level| run(KEEPS_NO_NOISE, level).long()).collect(),
+    ));
+    claims.push(off(
+        "root mean square error of the displacement at the largest turn, 1/128 cells".to_owned(),
+        run("mpm", LEVELS[3]).long().known(
+            "FLIP keeps what a grid cannot see of the points' velocities: with 128 cells it has grown by the largest turn, \
+             and points part from each other. A transfer that drops it goes on to converge",
+        ),
+        computed(0.036 / 8.0, "an eighth of what is allowed with 16 cells: of first order in the cell at least"),
+        Control::without_the_error("APIC", KEEPS_NO_NOISE, LEVELS[3].resolution),
+    ));
     let back = |run, tolerance, control| {
         let quantity = "root mean square error of the displacement when all is back, t = 1 s, 1/32 cells";
         off(quantity.to_owned(), run, tolerance, control)
