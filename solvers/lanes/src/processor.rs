@@ -1,12 +1,12 @@
 //! What this processor has, and loops that are compiled for it.
 
-use crate::{FourLanes, Lanes, Portable, Single};
+use crate::{FourLanes, Lanes, Portable};
 use std::sync::OnceLock;
 
 /// The environment variable that forces a path: `portable`, `avx2` or `avx512`.
 pub const PROCESSOR: &str = "GRAINBENCH_PROCESSOR";
 
-/// A loop that takes as many at a time as registers hold, or one by one.
+/// A loop that takes as many at a time as registers hold, or four, or one by one.
 pub trait Kernel {
     /// What it leaves.
     type Output;
@@ -92,7 +92,7 @@ impl Processor {
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
-            Self::Portable => kernel.run(Single),
+            Self::Portable => kernel.run(Portable),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => pulp::Simd::vectorize(features, Compiled { lanes: features, kernel }),
             #[cfg(target_arch = "x86_64")]
