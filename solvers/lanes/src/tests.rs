@@ -186,11 +186,11 @@ impl Kernel for Pairs<'_> {
             other[..at.len()].copy_from_slice(&at.iter().map(|place| 19 - place).collect::<Vec<_>>());
             let table = self.0.as_chunks::<1>().0;
             let pairs = lanes.pairs([lanes.gather(table, 0, &one), lanes.gather(table, 0, &other)]);
-            for lane in 0..at.len() {
+            for &pair in &pairs[..at.len()] {
                 let mut sums = [Quad([1.0, 2.0, 3.0, 4.0]), Quad([5.0, 6.0, 7.0, 8.0])];
-                lanes.add_to(&mut sums, pairs[lane]);
+                lanes.add_to(&mut sums, pair);
                 all.push(sums);
-                lanes.oppose(&mut sums, pairs[lane]);
+                lanes.oppose(&mut sums, pair);
                 all.push(sums);
             }
         }
