@@ -53,10 +53,7 @@ fn runs(variant: &'static str) -> [Run; 2] {
 
 /// The force on the first of a pair, m Δv/Δt, over all steps.
 fn force(variant: &'static str, about: &str) -> Claim {
-    let allowed = judged(
-        1e-10,
-        "the same cycle: rounding of velocities, which forces are the differences of; in units of the largest",
-    );
+    let allowed = rounding(1.0, "the same cycle; in units of the largest force");
     let control = Control::ours("E* × 1.00001 in ours", |scene| {
         scene.change_laws(|law| law.scale_normal(1.00001));
     });
@@ -68,10 +65,7 @@ fn force(variant: &'static str, about: &str) -> Claim {
 
 /// The torque on it, I Δω/Δt.
 fn torque(variant: &'static str, about: &str) -> Claim {
-    let allowed = judged(
-        1e-10,
-        "the same cycle: rounding of spins, which torques are the differences of; in units of the largest",
-    );
+    let allowed = rounding(1.0, "the same cycle; in units of the largest torque");
     let control = Control::ours("μ × 1.00001 in ours", |scene| {
         scene.change_laws(|law| law.friction *= 1.00001);
     });

@@ -73,7 +73,7 @@ fn claims() -> Vec<Claim> {
         .of_all(LEVELS.iter().map(|&level| run(level)))
         .sweep(|done| Ok((done.record.provenance.time_step, rms(done)?)))
         .converges(2.0, Source::Derived("central differences are of second order"))
-        .within(judged(0.05, "fitted over three halvings"))
+        .within(asymptotic(2.0))
         .refuses(heavier())
         .drawn(&CONVERGENCE, "dem");
     let force = claim("mean force on the driver over the last half", "N")

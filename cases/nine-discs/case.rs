@@ -16,7 +16,7 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::Duration;
 use modal::{Inward, Modal, RAMP_TIME, law};
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::{PI, SQRT_2, TAU};
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025)];
 /// A step at which the residual oscillation of the paper's Fig. 6, .15 F_eq, is met with 40 cycles at κ = 1.
@@ -57,9 +57,9 @@ fn claims() -> Vec<Claim> {
         slip_in_compression(),
         distortion(),
         vec![rigid::refuses_cycles("kappa-0")],
-        programs::nine_discs(&MODAL, step, travel),
-        programs::turning_walls(DISTORTION[1], step, travel),
-        program_forces::nine_discs("kappa-1", step),
+        programs::nine_discs(&MODAL, step, travel, rounded),
+        programs::turning_walls(DISTORTION[1], step, travel, 3.0 / over_radius(DISTORTION[1])),
+        program_forces::nine_discs("kappa-1", step, &rounded("kappa-1")),
         elastic::DISCS.claims(Run::slow),
     ]
     .concat()
@@ -119,12 +119,25 @@ fn static_forces() -> Vec<Claim> {
 /// κ = 0, and rounding of the walls' places, by ε 3R in each cycle in which they move.
 fn left_out(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
-    let (phase, step) = (&scene.walls[0].motion.phases[0], 0.1 * scene.critical_time_step());
-    let over_radius = phase.velocity.norm() * phase.stop.seconds(step) / scene.grains[0].radius;
+    let over_radius = over_radius(variant);
     let rest = Modal::of(&scene).at_rest();
-    let cycles = phase.stop.seconds(1.0);
+    let cycles = scene.walls[0].motion.phases[0].stop.seconds(1.0);
     let rounding = cycles * f64::EPSILON * 3.0 / over_radius;
     0.5 * rest.corner * (rest.edge - rest.corner) * over_radius + rounding
+}
+
+/// δ/R: the walls' travel over the radius, with steps of a tenth of the critical one.
+fn over_radius(variant: &str) -> f64 {
+    let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
+    let (phase, step) = (&scene.walls[0].motion.phases[0], 0.1 * scene.critical_time_step());
+    phase.velocity.norm() * phase.stop.seconds(step) / scene.grains[0].radius
+}
+
+/// Rounding of the discs' places over the 400 cycles, in units of the walls' travel.
+fn rounded(variant: &str) -> Tolerance {
+    let places = f64::EPSILON * 3.0 / over_radius(variant);
+    let because = "places round by ε 3R in each of 400 cycles: three standard deviations of their sum, 3 √400 ε 3R/δ";
+    computed(3.0 * 400.0_f64.sqrt() * places, because)
 }
 
 /// How far each wall of a run travels in its first phase (m).
@@ -170,13 +183,12 @@ fn discrete() -> Vec<Claim> {
             let control = Control::scene("stiffness off by 1e-8", |scene| {
                 scene.change_laws(|law| law.scale_normal(1.0 + 1e-8));
             });
-            let rounding = judged(1e-11, "rounding of positions, as it adds up over 400 cycles, against δ/R = 1.5e-3");
-            (vec![Run::new(variant, "dem", LEVELS[0].resolution)], rounding, control)
+            (vec![Run::new(variant, "dem", LEVELS[0].resolution)], rounded(variant), control)
         } else {
             let control = Control::scene("tangential stiffness off by 1e-7", |scene| {
                 scene.change_laws(|law| law.scale_tangential(1.0 + 1e-7));
             });
-            let remainder = judged(1e-9, "the extrapolation's own remainder, of the order of (δ/R)³ with δ/R = 1.5e-3");
+            let remainder = computed(over_radius(variant).powi(3), "the extrapolation's own remainder, (δ/R)³");
             ([1.0, 0.5, 0.25].map(|factor| at_speed(variant, factor)).to_vec(), remainder, control)
         };
         claim("displacement over 400 cycles, δ → 0, against the cycle's own answer, worst", "wall travel")
@@ -208,7 +220,10 @@ fn geometry() -> Claim {
             Ok((travel(done), worst.error()))
         })
         .scales(1.0, 1.0, Source::Derived("normals turn by (a − b)/2R (derivation)"))
-        .within(judged(0.05, "fitted over a factor of four"))
+        .within(computed(
+            over_radius("kappa-1"),
+            "the next power of δ/R, with a coefficient of its own size: δ/R of the largest",
+        ))
         .refuses(Control::scene("mass off by a thousandth", |scene| {
             scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.001);
         }))
@@ -264,7 +279,7 @@ fn continuous() -> Vec<Claim> {
                 .of_all(LEVELS.iter().map(|&level| modal_run(variant, level)))
                 .sweep(|done| Ok((done.record.provenance.time_step, modal_error(done)?.error())))
                 .converges(2.0, Source::Derived("central differences are of second order"))
-                .within(judged(0.1, "fitted over two halvings"))
+                .within(asymptotic(2.0))
                 .refuses(lighter()),
         );
     }
@@ -377,7 +392,10 @@ fn damping() -> Vec<Claim> {
                         Ok(Measured::new(mean / done[1].last("centre-edge.normal_force")?, 1.0, 1.0))
                     },
                 )
-                .within(judged(5e-4, "the mean over some 70 periods keeps a part of the oscillation"))
+                .within(computed(
+                    1.0 / (70.0 * PI),
+                    "the mean over 70 periods keeps a part of one: 1/(70 π) of an oscillation as large as the mean",
+                ))
                 .refuses(Control::scene("damping holds the walls back: a hundredth less travel", |scene| {
                     if scene.global_damping > 0.0 {
                         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= 0.99);

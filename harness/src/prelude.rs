@@ -10,7 +10,9 @@ pub use crate::reading::{Reader, Reading, Table};
 pub use crate::run::{Change, Done, Missing, Run};
 pub use crate::runner::Runner;
 pub use crate::source::Source;
-pub use crate::tolerance::{Tolerance, computed, estimated, exactly, judged, one_interval, required};
+pub use crate::tolerance::{
+    Tolerance, asymptotic, computed, estimated, exactly, judged, one_interval, required, rounding,
+};
 pub use grainbench_scene::effect::Effect;
 pub use grainbench_scene::scene::Scene;
 pub use grainbench_scene::solver::{Resolution, RunError};

@@ -438,10 +438,11 @@ impl Runner {
         })
     }
 
-    /// How far a claim may be off and how that was made: what it says, or what is stored of it where that is less; none
-    /// where an estimate should be stored and is not.
-    fn allowed(&self, claim: &Claim) -> Option<(f64, Made)> {
-        let stated = (claim.tolerance.allowed, claim.tolerance.made_without_estimate());
+    /// How far a claim may be off, of these runs, and how that was made: what it says, or what is stored of it where that is
+    /// less; none where an estimate should be stored and is not.
+    #[must_use]
+    pub fn allowed(&self, claim: &Claim, done: &[Done]) -> Option<(f64, Made)> {
+        let stated = (claim.tolerance.of(done), claim.tolerance.made_without_estimate());
         if claim.tolerance.made != Made::Estimated || self.stranger.is_some() {
             return Some(stated);
         }
@@ -453,7 +454,7 @@ impl Runner {
     /// The row of a claim, from its runs.
     fn conclude(&self, claim: &Claim, done: Result<Vec<Done>, RunError>) -> Verdict {
         let first = claim.runs.first();
-        let allowed = self.allowed(claim);
+        let allowed = self.allowed(claim, done.as_deref().unwrap_or_default());
         let row = Verdict {
             variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
             solver: first.map_or_else(String::new, |run| self.solver_name(run)),
@@ -471,6 +472,8 @@ impl Runner {
                 row.left(Outcome::NoReference, "no estimate of its numerical uncertainty is stored")
             }
             Ok(done) => {
+                let row =
+                    if claim.tolerance.each_step { Verdict { allowed: claim.tolerance.of(&done), ..row } } else { row };
                 let row = self.with_programs(row, &done);
                 match (claim.measure)(&done) {
                     // A solver of another's need not tell all that ours do.

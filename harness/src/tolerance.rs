@@ -1,5 +1,6 @@
 //! How far a quantity may be off, how that number was made, and why.
 
+use crate::run::Done;
 use serde::{Deserialize, Serialize};
 
 /// How a tolerance was made.
@@ -38,8 +39,10 @@ impl Made {
 /// A tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Largest |error| that passes; of one that is estimated, the most that it may be.
+    /// Largest |error| that passes; of one that is estimated, the most that it may be; of rounding, in each step.
     pub allowed: f64,
+    /// Whether it grows with the steps of the first run.
+    pub each_step: bool,
     /// How that number was made.
     pub made: Made,
     /// Why it is what it is.
@@ -56,8 +59,18 @@ impl Tolerance {
         }
     }
 
+    /// Largest |error| that passes of these runs; of none, in one step.
+    #[must_use]
+    pub fn of(&self, done: &[Done]) -> f64 {
+        self.after(done.first().and_then(|done| done.series().step.last()).copied().unwrap_or(1))
+    }
+
+    fn after(&self, steps: u64) -> f64 {
+        if self.each_step { self.allowed * steps as f64 } else { self.allowed }
+    }
+
     fn new(made: Made, allowed: f64, because: impl Into<String>) -> Self {
-        Self { allowed, made, because: because.into() }
+        Self { allowed, each_step: false, made, because: because.into() }
     }
 }
 
@@ -65,6 +78,15 @@ impl Tolerance {
 #[must_use]
 pub fn computed(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Computed, allowed, because)
+}
+
+/// By rounding: a step rounds positions and velocities, each to half a unit in the last place, in the run and in what it is
+/// compared with, so that N steps put them apart by at most 2 N ε in units of what is rounded; `lever` is that in units of the
+/// row. N is the number of steps of the first run.
+#[must_use]
+pub fn rounding(lever: f64, because: impl Into<String>) -> Tolerance {
+    let because = format!("{}; {:.3} ε in each step", because.into(), 2.0 * lever);
+    Tolerance { each_step: true, ..computed(2.0 * lever * f64::EPSILON, because) }
 }
 
 /// By three levels of resolution, whose estimate is stored; no wider than `most`.
@@ -91,8 +113,25 @@ pub fn required(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Required, allowed, because)
 }
 
+/// Of an order of convergence: a tenth of the method's, as ASME V&V 20-2009 (section 2) asks of levels in the asymptotic range.
+#[must_use]
+pub fn asymptotic(order: f64) -> Tolerance {
+    required(0.1 * order, "a tenth of the method's order, as ASME V&V 20-2009 asks of levels in the asymptotic range")
+}
+
 /// By judgement, with the physics that it leaves room for.
 #[must_use]
 pub fn judged(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Judged, allowed, because)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_grows_with_the_steps() {
+        assert_eq!(rounding(1.0, "").after(500), 1000.0 * f64::EPSILON);
+        assert_eq!(computed(1e-3, "").after(500), 1e-3);
+    }
 }

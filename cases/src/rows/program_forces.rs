@@ -8,7 +8,7 @@ use crate::rows::programs::{PAIRS, layer_of_spheres, row};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 
-const BECAUSE: &str = "the same cycle: overlaps round as positions do";
+const BECAUSE: &str = "the same cycle, whose positions round alike; in units of the largest force";
 
 fn stiffer() -> Control {
     Control::ours("stiffness off by 1e-6 in ours", |scene| {
@@ -21,12 +21,11 @@ fn stiffer() -> Control {
 pub fn forces(
     runs: impl Fn(&'static str) -> Run,
     columns: &'static [&'static str],
-    allowed: f64,
     unit: impl Fn(&Scene, f64) -> f64 + Clone + Send + Sync + 'static,
 ) -> Vec<Claim> {
     let of = |pair: [&'static str; 2]| {
         let unit = unit.clone();
-        row("force at contacts, worst", "N", judged(allowed, BECAUSE), pair.map(&runs), stiffer(), move |done| {
+        row("force at contacts, worst", "N", rounding(1.0, BECAUSE), pair.map(&runs), stiffer(), move |done| {
             worst(done, columns, unit(&done[0].scene, done[0].record.provenance.time_step))
         })
     };
@@ -34,9 +33,9 @@ pub fn forces(
 }
 
 /// Forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves walls as
-/// meshes, whose forces it does not tell disc by disc.
+/// meshes, whose forces it does not tell disc by disc. They round as places do.
 #[must_use]
-pub fn nine_discs(variant: &'static str, resolution: Resolution) -> Vec<Claim> {
+pub fn nine_discs(variant: &'static str, resolution: Resolution, rounded: &Tolerance) -> Vec<Claim> {
     const BETWEEN: &[&str] =
         &["centre-edge.normal_force", "corner-edge.normal_force", "centre-edge.shear_force", "corner-edge.shear_force"];
     const AT_WALLS: &[&str] = &["wall-edge.normal_force", "wall-corner.normal_force", "wall-corner.shear_force"];
@@ -50,7 +49,7 @@ pub fn nine_discs(variant: &'static str, resolution: Resolution) -> Vec<Claim> {
             let run = Run::new(variant, solver, resolution);
             if pair[1] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
         });
-        row(quantity, "N", judged(1e-10, BECAUSE), runs, stiffer(), move |done| {
+        row(quantity, "N", rounded.clone(), runs, stiffer(), move |done| {
             worst(done, columns, unit(&done[0].scene, done[0].record.provenance.time_step))
         })
     };

@@ -58,7 +58,7 @@ fn telling() -> Control {
 }
 
 fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
-    let allowed = judged(1e-11, "the same cycle: rounding, which grows over 10,000 steps; in units of R");
+    let allowed = rounding(1.0, "the same cycle; in units of R");
     row(&format!("position over 1 s, {damping}, worst"), "m", allowed, runs, control, |done| {
         let scene = &done[0].scene;
         let axes = if scene.dimension.count() == 2 { &["grain.x", "grain.y"][..] } else { &["grain.x", "grain.z"] };
@@ -83,7 +83,7 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
                     law.stiffness_damping *= 1.001;
                 });
             });
-            let allowed = judged(1e-14, "the same cycle: rounding");
+            let allowed = rounding(1.0, "the same cycle; in units of the approach velocity");
             claims.push(row("coefficient of restitution", "1", allowed, runs, control, |done| {
                 Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0))
             }));
@@ -102,9 +102,14 @@ pub(crate) fn layer_of_spheres(scene: &mut Scene) {
 /// What positions of the nine discs are compared by.
 const NINE_DISCS: [&str; 4] = ["edge.x", "edge.y", "corner.x", "corner.y"];
 
-/// Positions of the nine discs over all cycles, in units of what `travel` says.
+/// Positions of the nine discs over all cycles, in units of what `travel` says, and how far they may be rounded.
 #[must_use]
-pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Claim> {
+pub fn nine_discs(
+    variants: &[&'static str],
+    resolution: Resolution,
+    travel: fn(&Done) -> f64,
+    rounded: fn(&str) -> Tolerance,
+) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
@@ -115,7 +120,7 @@ pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(
             let control = Control::ours("stiffness off by 1e-6 in ours", |scene| {
                 scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
             });
-            let allowed = judged(2e-11, "the same cycle: rounding of positions, 3e-12 of the wall travel a step");
+            let allowed = rounded(variant);
             let quantity = "position over all cycles, worst";
             claims.push(row(quantity, "m", allowed, runs, control, move |done| {
                 worst(done, &NINE_DISCS, travel(&done[0]))
@@ -126,9 +131,14 @@ pub fn nine_discs(variants: &[&'static str], resolution: Resolution, travel: fn(
 }
 
 /// The same while the walls turn. Neither program has mass-proportional damping, and a damped contact of LIGGGHTS feels
-/// where one `run` ends and the next begins: the row is undamped.
+/// where one `run` ends and the next begins: the row is undamped. `places` are the largest in units of the walls' travel.
 #[must_use]
-pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&Done) -> f64) -> Vec<Claim> {
+pub fn turning_walls(
+    variant: &'static str,
+    resolution: Resolution,
+    travel: fn(&Done) -> f64,
+    places: f64,
+) -> Vec<Claim> {
     fn undamped(scene: &mut Scene) {
         scene.global_damping = 0.0;
         scene.change_laws(|law| law.stiffness_damping = 0.0);
@@ -148,9 +158,7 @@ pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&
         let control = Control::ours("walls that turn faster by 1e-6 in ours", |scene| {
             scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases).for_each(|phase| phase.spin *= 1.0 + 1e-6);
         });
-        let rounding = if pair[1] == "lammps" { 3e-11 } else { 5e-10 };
-        let allowed =
-            judged(rounding, "the same cycle: rounding, which sliding contacts carry on; in units of the wall travel");
+        let allowed = rounding(places, "the same cycle: sliding contacts carry on what was rounded of places up to 3R");
         row("position while the walls turn, worst", "m", allowed, runs, control, move |done| {
             worst(done, &NINE_DISCS, travel(&done[0]))
         })
@@ -163,7 +171,7 @@ pub fn turning_walls(variant: &'static str, resolution: Resolution, travel: fn(&
 pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) -> Vec<Claim> {
     let mut claims = Vec::new();
     for pair in PAIRS {
-        let allowed = judged(1e-12, "the same cycle: rounding; relative to the velocity before");
+        let allowed = rounding(1.0, "the same cycle; relative to the velocity before");
         let runs = || pair.map(|solver| Run::new(variant, solver, resolution));
         let control = Control::ours("E* × 1.00001 in ours", |scene| {
             scene.change_laws(|law| law.scale_normal(1.00001));
@@ -172,7 +180,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
             worst(done, &["a.vx", "a.vz"], done[0].scene.grains[0].velocity.norm())
         }));
         if turns {
-            let allowed = judged(1e-12, "the same cycle: rounding; relative to the velocity before over the radius");
+            let allowed = rounding(1.0, "the same cycle; relative to the velocity before over the radius");
             let control = Control::ours("G* × 1.00001 in ours", |scene| {
                 scene.change_laws(|law| law.scale_tangential(1.00001));
             });
@@ -190,7 +198,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
 pub fn rolling(variant: &'static str) -> Vec<Claim> {
     let of = |pair: [&'static str; 2]| {
         let allowed = if pair[1] == "lammps" {
-            judged(3e-12, "the same cycle: rounding, which grows over 50,000 steps; in units of R")
+            rounding(1.0, "the same cycle; in units of R")
         } else {
             let because = "its evaluation at the start takes a step of rolling for done, a moment k_r ωΔt: second order in Δt, \
                            and a grain that starts at rest (the slopes) shows nothing of it; in units of R";
@@ -208,7 +216,7 @@ pub fn rolling(variant: &'static str) -> Vec<Claim> {
 /// A grain that starts from rest on a slope, over a damped rolling spring: `tilted` are the runs of both sides.
 #[must_use]
 pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
-    let allowed = judged(1e-13, "the same cycle: rounding; in units of R");
+    let allowed = rounding(1.0, "the same cycle; in units of R");
     let runs = PAIRS[1].map(tilted);
     let control = Control::ours("the dashpot of the rolling spring × .999 in ours", |scene| {
         scene.change_laws(|law| law.rolling_damping *= 0.999);
@@ -222,7 +230,7 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
-            let allowed = judged(1e-12, "the same cycle: rounding; relative to the velocity before");
+            let allowed = rounding(1.0, "the same cycle; relative to the velocity before");
             let control = Control::ours("friction ×1.001 in ours", |scene| {
                 scene.change_laws(|law| law.friction *= 1.001);
             });
@@ -230,8 +238,7 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
             claims.push(row("velocity over the impact, worst", "m/s", allowed, runs, control.clone(), |done| {
                 worst(done, &["grain.vx", "grain.vy"], done[0].scene.grains[0].velocity.norm())
             }));
-            let allowed =
-                judged(1e-12, "the same cycle: rounding; relative to the largest force of the spring, v√(km)");
+            let allowed = rounding(1.0, "the same cycle; relative to the largest force of the spring, v√(km)");
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
             claims.push(row("force on the wall, worst", "N", allowed, runs, control, |done| {
                 let (grain, law) = (&done[0].scene.grains[0], done[0].scene.laws[0].unwrap_or_default());

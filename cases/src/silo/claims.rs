@@ -302,7 +302,10 @@ impl Silo {
             run if self.run.set == Set::Long => run.slow(),
             run => run,
         };
-        let allowed = judged(1e-9, "order of sums, which grows by e every .033 τ; relative to the largest value");
+        let allowed = rounding(
+            2.0 * (0.2_f64 / 0.033).exp(),
+            "order of sums, which grows by e every .033 τ; of an energy twice that of velocities",
+        );
         let control =
             Control::ours("friction .25 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.25));
         row("kinetic energy up to .2 τ, worst", "m g d", allowed, [run("dem:lammps"), run("lammps")], control, |done| {

@@ -109,7 +109,7 @@ impl Ledger {
         for claim in &claims {
             match self.error_without(claim, effect) {
                 None => nothing = nothing.or_else(|| Some(format!("{}: no value without it", words(claim)))),
-                error if is_red(claim, error) => return Some(words(claim)),
+                Some((error, allowed)) if error.abs() > allowed => return Some(words(claim)),
                 _ => {}
             }
         }
@@ -171,20 +171,25 @@ impl Ledger {
     /// A claim with and without an effect.
     fn shift(&mut self, claim: &Claim, effect: Effect) -> Shift {
         let without = self.error_without(claim, effect);
+        let row = self.runner.judge(claim);
+        // What cannot be run or measured any more shows nothing, as in any control.
+        let red = without.is_some_and(|(error, allowed)| error.abs() > allowed);
         Shift {
             quantity: claim.quantity.clone(),
             solver: claim.runs[0].solver.to_owned(),
-            with: self.runner.judge(claim).error,
-            without,
-            allowed: claim.tolerance.allowed,
-            red: is_red(claim, without),
+            with: row.error,
+            without: without.map(|(error, _)| error),
+            allowed: row.allowed,
+            red,
         }
     }
 
-    /// The error of a claim without an effect; none when it cannot be run or measured any more.
-    fn error_without(&mut self, claim: &Claim, effect: Effect) -> Option<f64> {
+    /// The error of a claim without an effect and how large it may be; none when it cannot be run or measured any more.
+    fn error_without(&mut self, claim: &Claim, effect: Effect) -> Option<(f64, f64)> {
         let done: Result<Vec<Done>, RunError> = claim.runs.iter().map(|run| self.run_without(run, effect)).collect();
-        (claim.measure)(&done.ok()?).ok().map(|measured| measured.error()).filter(|error| error.is_finite())
+        let done = done.ok()?;
+        let error = (claim.measure)(&done).ok().map(|measured| measured.error()).filter(|error| error.is_finite())?;
+        Some((error, self.runner.allowed(claim, &done)?.0))
     }
 
     /// A run of a claim whose solver is given the scene without the effect; the scene of the claim stays what it was,
@@ -253,9 +258,4 @@ impl Ledger {
 /// Whether the solver of a run knows an effect.
 fn knows(run: &Run, effect: Effect) -> bool {
     Method::of(run.solver).is_none_or(|method| effect.concerns(method))
-}
-
-/// Whether a claim turns red at an error, by its value: what cannot be run or measured any more shows nothing, as in any control.
-fn is_red(claim: &Claim, error: Option<f64>) -> bool {
-    error.is_some_and(|error| error.abs() > claim.tolerance.allowed)
 }
