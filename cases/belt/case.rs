@@ -168,6 +168,7 @@ const NO_GRAIN: OneGrain = OneGrain {
     spin: f64::NAN,
     overlap_ratio: f64::NAN,
     normal_stiffness: f64::NAN,
+    tangential_damping: f64::NAN,
 };
 
 /// Against the rigid answer where the contact is so stiff that conventions hardly differ: fair to any solver.

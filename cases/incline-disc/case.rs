@@ -17,16 +17,16 @@ pub(crate) static CASE: Case = incline::case(
 static INCLINE: Incline = Incline {
     case: &CASE,
     slopes: &[
-        Slope { variant: "60deg-mu.3", sticks: false, rigid_allowed: 1e-3 },
-        Slope { variant: "60deg-mu.9", sticks: true, rigid_allowed: 3e-4 },
-        Slope { variant: "60deg-mu.5", sticks: false, rigid_allowed: 2.5e-3 },
-        Slope { variant: "30deg-mu.5", sticks: true, rigid_allowed: 3e-4 },
+        Slope { variant: "60deg-mu.3", sticks: false },
+        Slope { variant: "60deg-mu.9", sticks: true },
+        Slope { variant: "60deg-mu.5", sticks: false },
+        Slope { variant: "30deg-mu.5", sticks: true },
     ],
     rigid: &[
-        Row { variant: "60deg-mu.3", rolls: false, x: 8e-4, v: 1e-12, omega: 5e-5 },
-        Row { variant: "60deg-mu.9", rolls: true, x: 8e-4, v: 4e-4, omega: 8e-4 },
-        Row { variant: "60deg-mu.5", rolls: false, x: 8e-4, v: 4e-4, omega: 8e-4 },
-        Row { variant: "30deg-mu.5", rolls: true, x: 8e-4, v: 7e-5, omega: 5e-5 },
+        Row { variant: "60deg-mu.3", rolls: false, lifts: None },
+        Row { variant: "60deg-mu.9", rolls: true, lifts: Some([4e-4, 8e-4]) },
+        Row { variant: "60deg-mu.5", rolls: false, lifts: Some([4e-4, 8e-4]) },
+        Row { variant: "30deg-mu.5", rolls: true, lifts: None },
     ],
     set_down: ("30deg-mu.5", Dashpots::OfMass),
 };

@@ -21,13 +21,10 @@ pub(crate) static CASE: Case = incline::case(
 
 static INCLINE: Incline = Incline {
     case: &CASE,
-    slopes: &[
-        Slope { variant: "45deg-mu.495", sticks: true, rigid_allowed: 3e-4 },
-        Slope { variant: "60deg-mu2_7", sticks: false, rigid_allowed: 1e-3 },
-    ],
+    slopes: &[Slope { variant: "45deg-mu.495", sticks: true }, Slope { variant: "60deg-mu2_7", sticks: false }],
     rigid: &[
-        Row { variant: "45deg-mu.495", rolls: true, x: 8e-4, v: 1.5e-5, omega: 1.5e-5 },
-        Row { variant: "60deg-mu2_7", rolls: false, x: 8e-4, v: 1e-12, omega: 2e-5 },
+        Row { variant: "45deg-mu.495", rolls: true, lifts: None },
+        Row { variant: "60deg-mu2_7", rolls: false, lifts: None },
     ],
     set_down: ("45deg-mu.495", Dashpots::OfStiffness),
 };
