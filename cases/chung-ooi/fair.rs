@@ -100,7 +100,7 @@ fn normal(variant: &'static str) -> [Claim; 3] {
                 let exact = hertz(&done[0].scene).0;
                 Ok(Measured::new(peak(&overlap(&done[0])?), exact, exact))
             })
-            .within(judged(FIRST_ORDER, SCHEME))
+            .within(computed(FIRST_ORDER, SCHEME))
             .refuses(stiffer()),
         claim("duration of contact, from places", "s")
             .of(run())
@@ -108,12 +108,12 @@ fn normal(variant: &'static str) -> [Claim; 3] {
                 let exact = hertz(&done[0].scene).2;
                 Ok(Measured::new(parted(&done[0])?, exact, exact))
             })
-            .within(judged(FIRST_ORDER, SCHEME))
+            .within(computed(FIRST_ORDER, SCHEME))
             .refuses(stiffer()),
         claim("rebound velocity over impact velocity", "1")
             .of(run())
             .equals(HERTZ, |done| Ok(Measured::new(rebound(&done[0])?, 1.0, 1.0)))
-            .within(judged(FIRST_ORDER, SCHEME))
+            .within(computed(FIRST_ORDER, SCHEME))
             .refuses(Control::scene("e = .99", |scene| {
                 scene.change_laws(|law| law.damping_ratio = super::damping_ratio(0.99));
             })),
@@ -131,7 +131,10 @@ fn given_back(run: Run) -> Claim {
             let [late, early] = [restitution(ratio), released_early(ratio)];
             Ok(Measured::new(found, if found - late < early - found { late } else { early }, 1.0))
         })
-        .within(judged(2e-3, "release falls within a step and a dashpot may be a step late: first order in Δt"))
+        .within(computed(
+            2.0 * FIRST_ORDER,
+            "release falls within a step and a dashpot may be a step late: two of an impact of a thousand",
+        ))
         .refuses(Control::scene("damping × 1.2", |scene| scene.change_laws(|law| law.damping_ratio *= 1.2)))
 }
 
@@ -168,7 +171,10 @@ fn sliding(run: &Run) -> [Claim; 2] {
             "m/s",
             "a.vx",
             0,
-            judged(FIRST_ORDER, "first order in Δt, and an instant of sticking at both ends; of what friction takes"),
+            computed(
+                FIRST_ORDER,
+                "first order in Δt: one step of an impact of a thousand, which may stick; of what friction takes",
+            ),
             Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)),
         ),
         of("spin", "rad/s", "a.omega_y", 1, arm, wrong_inertia()),
@@ -197,7 +203,10 @@ fn coulomb(run: Run) -> Claim {
             let (grain, meeting) = (&scene.grains[0], Meeting::of(scene));
             Ok(grain.mass * (done[0].last("a.vx")? - grain.velocity.x) / meeting.impulse(1.0))
         })
-        .within(judged(0.02, "first order in Δt, .002 of the impulse; of the width of the band"))
+        .within(computed(
+            2.0 * FIRST_ORDER / (high - low),
+            "two steps of an impact of a thousand; of the width of the band",
+        ))
         .refuses(Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)))
 }
 
@@ -235,7 +244,10 @@ fn momentum(run: &Run) -> [Claim; 2] {
                 let [first, second] = [gained(0)?, gained(1)?];
                 Ok(Measured::new(first + second, 0.0, first.abs()))
             })
-            .within(judged(1e-6, "velocities of the heavy sphere are 1e-5 of the light one's, and told to ten digits"))
+            .within(computed(
+                1.25e5 * 1e-10,
+                "velocities are told to ten digits of the light sphere's, and the other is 125,000 times as heavy",
+            ))
             .refuses(Control::scene("the second sphere a hundredth heavier", |scene| scene.grains[1].mass *= 1.01))
     };
     [
@@ -255,7 +267,7 @@ fn gears(variant: &'static str) -> [Claim; 3] {
                     if is_spin { (grain.spin.y, grain.spin.y) } else { (0.0, grain.spin.y * grain.radius) };
                 Ok(Measured::new(done[0].last(column)?, before, scale))
             })
-            .within(judged(1e-9, "rounding of spins that differ in sign alone"))
+            .within(computed(10.0 * 1e-10, "spins differ in sign alone; velocities are told to ten digits"))
             .refuses(Control::scene("one sphere turns slower by a hundredth", |scene| scene.grains[1].spin *= 0.99))
     };
     [
