@@ -133,7 +133,7 @@ fn claims() -> Vec<Claim> {
                 let exact = -Impact::of(&done[0].scene).stress();
                 Ok(Measured::new(plateau(&done[0])?, exact, -exact))
             })
-            .within(judged(0.015, "ringing behind a front that is a jump"))
+            .within(estimated(0.015, "ringing behind a front that is a jump"))
             .refuses(softer())
             .fair_to_any_continuum(),
     );

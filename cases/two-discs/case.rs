@@ -106,7 +106,7 @@ fn claims() -> Vec<Claim> {
         claim("spurious spin ΩR/v₀, frictionless, 30° to the grid", "1")
             .of(run("inclined", "mpm"))
             .holds("no torque without friction", |done| Ok(Measured::new(spin(&done[0])?, 0.0, 1.0)))
-            .within(judged(5e-3, "frictionless surfaces of tracers are not quite smooth"))
+            .within(estimated(5e-3, "frictionless surfaces of tracers are not quite smooth"))
             .refuses(Control::solver("nodal contact on approach (2000)", "mpm:2000")),
     );
     claims.extend(oblique());
@@ -205,7 +205,7 @@ fn touching() -> Vec<Claim> {
                 let cell = done[0].scene.grains[0].radius / 8.0;
                 Ok(Measured::new(first_gap(&done[0])?, 0.0, cell))
             })
-            .within(judged(
+            .within(estimated(
                 0.07,
                 "in cells; the way of one step, after which a contact is seen, and tracers that stand in for a surface",
             ))

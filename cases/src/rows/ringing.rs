@@ -115,7 +115,7 @@ impl Ringing {
                     let (_, found) = self.ringing(&done[0])?;
                     Ok(Measured::new(found.iter().sum::<f64>() / found.len() as f64, force, force))
                 })
-                .within(judged(of_force, self.because))
+                .within(estimated(of_force, self.because))
                 .refuses(softer()),
             claim("frequency at which elastic discs ring", "rad/s")
                 .of(set(self.discs()))
@@ -123,7 +123,7 @@ impl Ringing {
                     let expected = self.expected(&done[0])?;
                     Ok(Measured::new(self.frequency(&done[0])?, expected, expected))
                 })
-                .within(judged(
+                .within(estimated(
                     of_frequency,
                     "half the error of the stiffness, and discs that do not move quite as a whole",
                 ))
