@@ -86,9 +86,10 @@ impl<'a> Flawed<'a> {
         Self { solver, flaw, runs: AtomicU64::new(0) }
     }
 
-    /// The same of a solver that has run once before: a run of it is not like the one of the same place of a new one.
+    /// The same of a solver that has run a thousand times before: no run of it is like one of a new one, also where one of the two
+    /// has refused some scenes that the other was not given.
     pub(super) const fn again(solver: &'a dyn Solver, flaw: Flaw) -> Self {
-        Self { solver, flaw, runs: AtomicU64::new(1) }
+        Self { solver, flaw, runs: AtomicU64::new(1000) }
     }
 }
 
@@ -128,5 +129,36 @@ impl Solver for Flawed<'_> {
             grain.velocity *= 1.0 + 4.0 * f64::EPSILON;
         }
         Ok(record)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_scene::solver::Resolution;
+
+    /// Refuses every scene.
+    struct Refuses;
+
+    impl Solver for Refuses {
+        fn name(&self) -> String {
+            "refuses".to_owned()
+        }
+
+        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Watch) -> Result<Record, RunError> {
+            Err(RunError::Unsupported { solver: self.name(), reason: "everything".to_owned() })
+        }
+    }
+
+    #[test]
+    fn a_solver_that_refused_scenes_is_not_caught_up_with_by_one_that_ran_before() {
+        let [first, again] =
+            [Flawed::new(&Refuses, Flaw::Irreproducible), Flawed::again(&Refuses, Flaw::Irreproducible)];
+        for (_, scene) in
+            super::super::scenes::collisions().into_iter().flatten().map(|named| (named.name, named.scene))
+        {
+            let _ = first.run(&scene, &Resolution::CriticalFraction(0.1), &mut ());
+            assert_ne!(first.runs.load(Ordering::Relaxed), again.runs.load(Ordering::Relaxed));
+        }
     }
 }
