@@ -211,10 +211,10 @@ fn claims() -> Vec<Claim> {
                 |done| mode(done).map_or(f64::NAN, |mode| mode.amplitude()),
             )
             .within(estimated(
-                0.1,
+                7e-2,
                 "the phase that .5 % of the period are after two of them, 4π × .005, and the other modes through the thickness; \
                  in units of the amplitude",
-            ))
+            ).up_to(0.1))
             .refuses(softer())
             .fair_to_any_continuum()
             .drawn(&RADIAL, "t/4"),
@@ -227,10 +227,10 @@ fn claims() -> Vec<Claim> {
                 Ok(Measured::drift(&done[0].series().time, energy, energy[0]))
             })
             .within(estimated(
-                0.06,
+                3e-2,
                 "waves through the thickness, of a few cells, whose energy edges that cut cells make more or less of: .67 % is \
                  theirs",
-            ))
+            ).up_to(0.06))
             .refuses(Control::scene("damping of two per second", |scene| scene.global_damping = 2.0)),
     );
     claims

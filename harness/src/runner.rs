@@ -448,7 +448,7 @@ impl Runner {
         }
         // A bound below its estimate is a judgement, and says so.
         let found = self.solvers.uncertainty(self.case, claim)?;
-        Some(if found < stated.0 { (found, Made::Estimated) } else { stated })
+        Some(if found < claim.tolerance.up_to { (found, Made::Estimated) } else { stated })
     }
 
     /// The row of a claim, from its runs.

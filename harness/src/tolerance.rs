@@ -39,8 +39,10 @@ impl Made {
 /// A tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Largest |error| that passes; of one that is estimated, the most that it may be; of rounding, in each step.
+    /// Largest |error| that passes; of one that is estimated, that of solvers of others; of rounding, in each step.
     pub allowed: f64,
+    /// The most that an estimate may be: above it stands what passes of solvers of others, as a judgement.
+    pub up_to: f64,
     /// Whether it grows with the steps of the first run.
     pub each_step: bool,
     /// How that number was made.
@@ -65,12 +67,19 @@ impl Tolerance {
         self.after(done.first().and_then(|done| done.series().step.last()).copied().unwrap_or(1))
     }
 
+    /// One that is estimated as one whose estimate may be larger than what passes of solvers of others: it is uncertain by more
+    /// than it is off.
+    #[must_use]
+    pub fn up_to(self, most: f64) -> Self {
+        Self { up_to: most, ..self }
+    }
+
     fn after(&self, steps: u64) -> f64 {
         if self.each_step { self.allowed * steps as f64 } else { self.allowed }
     }
 
     fn new(made: Made, allowed: f64, because: impl Into<String>) -> Self {
-        Self { allowed, each_step: false, made, because: because.into() }
+        Self { allowed, up_to: allowed, each_step: false, made, because: because.into() }
     }
 }
 

@@ -157,7 +157,7 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
                 },
                 |done| (DEEPER - 1.0) * rest(&done.scene),
             )
-            .within(estimated(0.02, BECAUSE))
+            .within(estimated(0.01, BECAUSE).up_to(0.02))
     };
     let slip = || {
         claim("slip velocity v − ΩR while it rings, largest deviation", "m/s")
@@ -174,7 +174,7 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
                 },
                 |done| peak(&done.scene),
             )
-            .within(estimated(0.02, BECAUSE))
+            .within(estimated(0.01, BECAUSE).up_to(0.02))
     };
     vec![
         overlap().refuses(Control::scene("springs ×1.05", stiffer)).fair_to_any_springs().drawn(&SPRINGS, variant),
