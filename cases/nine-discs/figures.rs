@@ -1,7 +1,7 @@
 //! Figures of the nine discs, after Figs 5-9 of the paper.
 
 use super::modal::{Modal, law};
-use super::{DISTORTION, FIGURE_STEP, LEVELS, MODAL, TURN, modal_error, modal_run};
+use super::{DISTORTION, FIGURE_STEP, LEVELS, MODAL, ORDER, SPEEDS, TURN, modal_error, modal_run};
 use crate::sources::literature::cundall_strack_1979::RESIDUAL_AMPLITUDE;
 use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
@@ -145,20 +145,23 @@ fn convergence(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for variant in MODAL {
         let mut points = Vec::new();
-        for &level in LEVELS {
-            let done = runner.run(&modal_run(variant, level))?;
-            if let (Ok(worst), Some(critical)) = (modal_error(&done), done.record.provenance.critical_time_step) {
-                points.push((done.record.provenance.time_step / critical, worst.error().abs()));
+        for &level in ORDER {
+            let done: Vec<Done> =
+                SPEEDS.iter().map(|&speed| runner.run(&modal_run(variant, level, speed))).collect::<Result<_, _>>()?;
+            let run = &done[0].record.provenance;
+            if let (Ok(worst), Some(critical)) = (modal_error(&done), run.critical_time_step) {
+                points.push((run.time_step / critical, worst.error().abs()));
             }
         }
         curves.push(Curve::new(variant, Stroke::MarkedLine, points));
     }
-    let square: Vec<(f64, f64)> = [0.025, 0.1].iter().map(|f| (*f, 0.8 * f * f)).collect();
+    let square: Vec<(f64, f64)> = [0.0125, 0.1].iter().map(|f| (*f, 0.8 * f * f)).collect();
     curves.push(Curve::new("slope 2", Stroke::Dashed, square));
     Ok(Figure::graph(
         "convergence",
         "Deviation from the continuous answer",
-        "Worst displacement error over ten periods of the slow mode, in units of the wall travel.",
+        "Worst displacement error over ten periods of the slow mode, in units of the wall travel, in the limit of small \
+         overlaps: at a finite one geometry adds 5 × 10⁻⁵.",
         [Axis::log("Δt / critical step"), Axis::log("worst error / wall travel")],
         curves,
     ))
