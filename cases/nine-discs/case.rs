@@ -181,8 +181,8 @@ fn at_speed(variant: &'static str, factor: f64) -> Run {
 /// Speeds of the walls, in units of the scene's, from which what geometry makes of a finite overlap is taken out.
 const SPEEDS: [f64; 3] = [1.0, 0.5, 0.25];
 
-/// Inward displacements of one run as they are, of runs at three speeds in the limit δ → 0: what is of first and second order in δ
-/// cancels in the sum with the weights 1/3, −2 and 8/3.
+/// Inward displacements of one run as they are, of runs at three speeds in the limit δ → 0: what is of first and second order
+/// in δ cancels in the sum with the weights 1/3, −2 and 8/3.
 fn without_geometry(done: &[Done]) -> Result<Vec<Inward>, Missing> {
     let runs: Vec<Vec<Inward>> = done.iter().map(inward).collect::<Result<_, _>>()?;
     let weights: &[f64] = if runs.len() == 1 { &[1.0] } else { &[1.0 / 3.0, -2.0, 8.0 / 3.0] };
@@ -296,8 +296,8 @@ fn continuous() -> Vec<Claim> {
                 })
                 .within(computed(
                     2.0 * 9.0 / 80.0 * 0.2_f64.powi(2),
-                    "the next power of ωΔt: a step turns a mode by 2 arcsin(ωΔt/2) = ωΔt (1 + (ωΔt)²/24 (1 + 9 (ωΔt)²/80)), which \
-                     changes the order by 2 × 9 (ωΔt)²/80, with ωΔt ≤ .2 at the coarsest",
+                    "the next power of ωΔt: a step turns a mode by 2 arcsin(ωΔt/2) = ωΔt (1 + (ωΔt)²/24 (1 + 9 (ωΔt)²/80)), \
+                     which changes the order by 2 × 9 (ωΔt)²/80, with ωΔt ≤ .2 at the coarsest",
                 ))
                 .refuses(lighter()),
         );
