@@ -86,8 +86,8 @@ impl<'a> Flawed<'a> {
         Self { solver, flaw, runs: AtomicU64::new(0) }
     }
 
-    /// The same of a solver that has run a thousand times before: no run of it is like one of a new one, also where one of the two
-    /// has refused some scenes that the other was not given.
+    /// The same of a solver that has run a thousand times before: no run of it is like one of a new one, also where one of the
+    /// two has refused some scenes that the other was not given.
     pub(super) const fn again(solver: &'a dyn Solver, flaw: Flaw) -> Self {
         Self { solver, flaw, runs: AtomicU64::new(1000) }
     }
