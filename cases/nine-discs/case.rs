@@ -62,7 +62,7 @@ fn claims() -> Vec<Claim> {
         programs::nine_discs(&MODAL, step, travel, rounded),
         programs::turning_walls(DISTORTION[1], step, travel, 3.0 / over_radius(DISTORTION[1])),
         program_forces::nine_discs("kappa-1", step, &rounded("kappa-1")),
-        elastic::DISCS.claims(Run::slow),
+        elastic::DISCS.claims(&CASE, Run::slow),
     ]
     .concat()
 }

@@ -112,7 +112,7 @@ fn claims() -> Vec<Claim> {
         );
     }
     claims.push(rigid::refuses_cycles(PLAIN));
-    claims.extend(elastic::DISCS.claims(|run| run));
+    claims.extend(elastic::DISCS.claims(&CASE, |run| run));
     claims
 }
 

@@ -91,12 +91,49 @@ impl Pressed {
         low * self.modulus * self.radius
     }
 
-    /// Stiffness of a diameter against a little more of a force (N/m per metre), dF/dδ: a ∝ √F takes 2/π off the
-    /// compliance.
+    /// How a disc that bears a force at two opposite contacts gives way to a little more of it at one of them, in units of
+    /// ΔF/(πE'): its mean displacement against that contact, u, and that of the opposite point against the mean, v.
+    ///
+    /// Its inertia balances ΔF as a uniform body force −ΔF/(πR²). With x along ΔF from the centre and r, θ from the contact,
+    ///
+    /// ```text
+    /// σ = −(2ΔF/πr) cos θ e_r e_r + (ΔF/2πR) (e_x e_x + e_y e_y) + (ΔF/2πR²) [x (e_x e_x − e_y e_y) + y (e_x e_y + e_y e_x)]
+    /// ```
+    ///
+    /// leaves the rim free; the mean displacement is that of the centre. With n = ν/(1 − ν) and a patch that grows as √F
+    ///
+    /// ```text
+    /// u = 2 ln(2R/a) − 5/4 − n/4        v = −2 ln 2 + 3/4 − n/4        w = 2 − π/2 + πn/2
+    /// ```
+    ///
+    /// where u − v = 2 ln(4R/a) − 2 is half a diameter between two flats, and w what a pair of ΔF across widens towards each
+    /// side.
+    /// Source: Flamant's solution (Timoshenko & Goodier, Theory of Elasticity, §§36, 41); Johnson, Contact Mechanics, eq. 5.57.
     #[must_use]
-    pub fn stiffness(&self, force: f64) -> f64 {
-        self.modulus / (self.compliance(force / (self.modulus * self.radius)) - 2.0 / PI)
+    pub fn gives(&self, force: f64) -> Gives {
+        let n = self.poisson / (1.0 - self.poisson);
+        let patch = self.patch(force);
+        let u = 2.0 * (2.0 / patch).ln() - 1.25 - 0.25 * n;
+        let v = -2.0 * 2.0_f64.ln() + 0.75 - 0.25 * n;
+        Gives { u, v, w: 2.0 - 0.5 * PI + 0.5 * PI * n }
     }
+
+    /// Half-width a of the patch over the radius, a² = 4pR²/π.
+    #[must_use]
+    pub fn patch(&self, force: f64) -> f64 {
+        (4.0 * force / (PI * self.modulus * self.radius)).sqrt()
+    }
+}
+
+/// How a disc gives way, in units of ΔF/(πE').
+#[derive(Clone, Copy, Debug)]
+pub struct Gives {
+    /// Of its mean displacement against a contact.
+    pub u: f64,
+    /// Of the point opposite to a contact against the mean.
+    pub v: f64,
+    /// Of a side towards which a pair across widens it.
+    pub w: f64,
 }
 
 /// −Ai'(0): what of a front of width 1 has come before it is due.
@@ -106,4 +143,69 @@ pub(crate) const AHEAD: f64 = 0.258_819_403_792_806_8;
 /// frequency is lower by (25/96)(kh)² (derivations of `vibrating-bar` and `bar-impact`).
 pub(crate) fn front(cell: f64, way: f64) -> f64 {
     (3.0 * 25.0 / 96.0 * cell * cell * way).cbrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Stress of one load F = πE' on a disc of radius 1 whose body force −F/π balances it, at a point from the centre; the load
+    /// acts at (−1, 0) along +x.
+    fn stress([x, y]: [f64; 2]) -> [[f64; 2]; 2] {
+        let (along, r) = ([x + 1.0, y], (x + 1.0).hypot(y));
+        let radial = -2.0 * along[0] / (r * r);
+        let e = along.map(|part| part / r);
+        let of = |i: usize, j: usize, rest: f64| radial * e[i] * e[j] + rest;
+        [[of(0, 0, 0.5 + 0.5 * x), of(0, 1, 0.5 * y)], [of(1, 0, 0.5 * y), of(1, 1, 0.5 - 0.5 * x)]]
+    }
+
+    /// The rim is free but for the contact; the strain along the diameter that starts there, and Johnson's depth below a patch,
+    /// give u and v; the mean displacement is that of the centre.
+    #[test]
+    fn a_disc_gives_way_to_a_load_that_its_inertia_bears() {
+        for at in 1..20 {
+            let angle = PI - 0.3 * f64::from(at);
+            let normal = [angle.cos(), angle.sin()];
+            let [xx, yy] = stress(normal);
+            for row in [xx, yy] {
+                assert!((row[0] * normal[0] + row[1] * normal[1]).abs() < 1e-12, "{angle}");
+            }
+        }
+        let disc = Pressed { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };
+        let (n, force) = (1.0 / 3.0, 2e-3);
+        let Gives { u, v, .. } = disc.gives(force);
+        // E' du/dx over F/π: what two points on the diameter are apart.
+        let apart = |from: f64, to: f64| -> f64 {
+            let (parts, width) = (20_000, (to - from) / 20_000.0);
+            let strain = |x: f64| {
+                let [xx, yy] = stress([x, 0.0]);
+                xx[0] - n * yy[1]
+            };
+            (0..parts).map(|part| strain(from + (f64::from(part) + 0.5) * width) * width).sum()
+        };
+        assert!((apart(0.0, 1.0) - v).abs() < 1e-6, "{} is not {v}", apart(0.0, 1.0));
+        // To a depth of many patches below the contact Johnson's eq. 5.57, of a patch that grows with the load one less.
+        let depth = 0.01;
+        let (patch, tension) = (disc.patch(force), depth * (0.5 * (1.0 - n) - 0.5 * (1.0 + n)));
+        let near = 2.0 * (2.0 * depth / patch).ln() - n - 1.0 - tension;
+        assert!((near - apart(depth - 1.0, 0.0) - u).abs() < 1e-3, "{} is not {u}", near - apart(depth - 1.0, 0.0));
+        // u_x − u_x(0) over the disc.
+        let (mut mean, mut area, parts) = (0.0, 0.0, 800);
+        for i in 0..parts {
+            for j in 0..parts {
+                let place = |at: i32| (2.0 * f64::from(at) + 1.0) / f64::from(parts) - 1.0;
+                let (x, y) = (place(i), place(j));
+                if x * x + y * y < 1.0 {
+                    let square = (x + 1.0).powi(2) + y * y;
+                    let flamant = -square.ln() - (1.0 + n) * y * y / square;
+                    let rest = 0.5 * (1.0 - n) * x + 0.25 * (1.0 + n) * (x * x + 3.0 * y * y);
+                    mean += flamant + rest;
+                    area += 1.0;
+                }
+            }
+        }
+        assert!((mean / area).abs() < 2e-3, "{}", mean / area);
+        let half = 2.0 * (4.0 / patch).ln() - 2.0;
+        assert!((u - v - half).abs() < 1e-12);
+    }
 }
