@@ -472,8 +472,6 @@ impl Runner {
                 row.left(Outcome::NoReference, "no estimate of its numerical uncertainty is stored")
             }
             Ok(done) => {
-                let row =
-                    if claim.tolerance.each_step { Verdict { allowed: claim.tolerance.of(&done), ..row } } else { row };
                 let row = self.with_programs(row, &done);
                 match (claim.measure)(&done) {
                     // A solver of another's need not tell all that ours do.

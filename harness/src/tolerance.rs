@@ -40,11 +40,11 @@ impl Made {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
     /// Largest |error| that passes; of one that is estimated, that of solvers of others; of rounding, in each step.
-    pub allowed: f64,
+    allowed: f64,
     /// The most that an estimate may be: above it stands what passes of solvers of others, as a judgement.
-    pub up_to: f64,
+    pub(crate) up_to: f64,
     /// Whether it grows with the steps of the first run.
-    pub each_step: bool,
+    each_step: bool,
     /// How that number was made.
     pub made: Made,
     /// Why it is what it is.

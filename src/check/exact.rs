@@ -21,14 +21,13 @@ pub(super) fn exact(
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Verdict {
     let scene = Arc::new(candidate.scene.clone());
-    let measured = |series: Series| {
-        let record = record(&candidate.scene, outputs, observed, series);
-        (claim.measure)(&[Done::new(Arc::clone(&scene), Arc::new(record))])
-    };
+    let done =
+        |series: Series| Done::new(Arc::clone(&scene), Arc::new(record(&candidate.scene, outputs, observed, series)));
+    let measured = |series: Series| (claim.measure)(&[done(series)]);
     let row = Verdict {
         evidence: claim.evidence(),
         source: claim.source.words(),
-        allowed: claim.tolerance.allowed,
+        allowed: claim.tolerance.of(&[done(observed.series.clone())]),
         tolerance: claim.tolerance.made_without_estimate(),
         because: claim.tolerance.because.clone(),
         ..row(claim.quantity.clone(), claim.unit)

@@ -10,7 +10,6 @@ use grainbench_harness::run::{Done, Missing};
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reports::sweep::{Looked, Quantity};
 use grainbench_scene::error::did_you_mean;
-use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use std::sync::Arc;
@@ -136,7 +135,7 @@ impl Look {
     pub(super) fn at(&self, seen: &Seen<'_>) -> Looked {
         let found = match self {
             Self::Gate(claim, allowed) => {
-                let allowed = || allowed.unwrap_or_else(|| own_allowance(claim, &seen.done.scene));
+                let allowed = || allowed.unwrap_or_else(|| own_allowance(claim, seen.done));
                 (claim.measure)(std::slice::from_ref(seen.done)).map(|measured| judged(&measured, allowed()))
             }
             Self::Own(own) => own.at(seen),
@@ -150,8 +149,9 @@ impl Look {
 }
 
 /// How far a claim may be off in a scene of other numbers than its case has, where it says so.
-fn own_allowance(claim: &Claim, scene: &Scene) -> f64 {
-    claim.elsewhere.as_ref().map_or(claim.tolerance.allowed, |elsewhere| (elsewhere.allowed)(scene))
+fn own_allowance(claim: &Claim, done: &Done) -> f64 {
+    let stated = || claim.tolerance.of(std::slice::from_ref(done));
+    claim.elsewhere.as_ref().map_or_else(stated, |elsewhere| (elsewhere.allowed)(&done.scene))
 }
 
 /// A row of what was measured.

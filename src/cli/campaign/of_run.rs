@@ -201,7 +201,7 @@ fn crashed(selected: &Selected, gate: usize, detail: String) -> Verdict {
         variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
         solver: first.map_or_else(String::new, |run| run.solver.to_owned()),
         resolution: claim.resolution(),
-        allowed: claim.tolerance.allowed,
+        allowed: claim.tolerance.of(&[]),
         because: claim.tolerance.because.clone(),
         evidence: claim.evidence(),
         source: claim.source.words(),
