@@ -3,7 +3,7 @@
 //! Without friction. The walls move in by d = .01 R and stop; a row of three diameters is shortened by 2d, with as much
 //! across. Rigid discs on springs k_n have the force k_n d/2 everywhere and ring with ω² = 2 k_n/m. Elastic ones have
 //! F(2d/3) in closed form, and ring as discs do whose mean moves against a wall and against a neighbour (derivation):
-//! ω² = 3πE'/(m (2u + v − w²/(2(u − v)))).
+//! ω² = 3πE'/(m (2u + v − w²/(2(u − v)))), less what their inertia stirs.
 
 use crate::rows::elastic::{Gives, Pressed};
 use crate::rows::ringing::{Ringing, Rung};
@@ -19,15 +19,25 @@ pub(super) const DISCS: Ringing = Ringing {
     time: 5.4,
     sample: 0.01,
     cells: 12.0,
-    fine: None,
+    fine: 24.0,
     exact: |scene, squeeze| {
         let disc = Pressed::of(scene, 4)?;
         let force = disc.force(2.0 / 3.0 * squeeze);
         let Gives { u, v, w } = disc.gives(force);
         let compliance = 2.0 * u + v - w * w / (2.0 * (u - v));
         let restoring = 3.0 * PI * disc.modulus / compliance;
-        // The contact with a neighbour bears half of what the wall does: (1 + 1/4)/(3/2)² at N = 3/2 of it, of compliance/3.
-        Some(Rung { force, restoring, patch: disc.patch(force), share: 5.0 / 3.0 / compliance })
+        // Under a force of one on a disc, whose way is x: loads at wall and neighbour, in outer rows and in middle ones.
+        let x = compliance / 3.0;
+        let inner = (x - (u - 0.5 * w)) / (u - v - w);
+        let differs = -w / (2.0 * (u - v));
+        let (outer, middle) = ([inner + 1.0, inner], [inner + 1.0 + differs, inner + differs]);
+        let edge = disc.stirred([middle[0], middle[1], outer[1], outer[1]]);
+        let corner = disc.stirred([outer[0], outer[1], outer[0], outer[1]]);
+        let centre = disc.stirred([middle[1]; 4]);
+        // Four edges move along one axis, four corners along both.
+        let stirred = (4.0 * (edge + corner) + centre) / (12.0 * x * x);
+        // The neighbour bears half of what the wall does: (1 + 1/4)/(3/2)² of both contacts, of compliance/3.
+        Some(Rung { force, restoring, stirred, patch: disc.patch(force), share: 5.0 / 3.0 / compliance })
     },
     springs: 2.0,
     share: 0.5,

@@ -4,7 +4,7 @@
 //! The walls move in by d = .01 R and stop; by symmetry the plane between the discs is one more wall. A disc's diameter
 //! is shortened by d. A rigid disc on springs k_n has the wall force F = (2/3) k_n d and rings with ω² = 3 k_n/m. An
 //! elastic one has F(d) in closed form. While it rings one contact presses it as much more as the other does less: its mean
-//! moves by x where ΔF (u + v)/(πE') = x, so that ω² = 2πE'/(m (u + v)) as long as that is slow beside its own modes.
+//! moves by x where ΔF (u + v)/(πE') = x, so that ω² = 2πE'/(m (u + v)), less what its inertia stirs.
 
 use crate::rows::elastic::{Gives, Pressed};
 use crate::rows::ringing::{Ringing, Rung};
@@ -21,14 +21,15 @@ pub(super) const DISCS: Ringing = Ringing {
     time: 17.2,
     sample: 0.02,
     cells: 8.0,
-    fine: Some(32.0),
+    fine: 32.0,
     exact: |scene, squeeze| {
         let disc = Pressed::of(scene, 2)?;
         let force = disc.force(squeeze);
         let Gives { u, v, .. } = disc.gives(force);
         let restoring = 2.0 * PI * disc.modulus / (u + v);
         // Of the springs between the discs each has a half: (1 + 1/2)/2² of both contacts, of (u + v)/2.
-        Some(Rung { force, restoring, patch: disc.patch(force), share: 0.75 / (u + v) })
+        let stirred = disc.stirred([1.0, -1.0, 0.0, 0.0]) / (u + v).powi(2);
+        Some(Rung { force, restoring, stirred, patch: disc.patch(force), share: 0.75 / (u + v) })
     },
     springs: 3.0,
     share: 2.0 / 3.0,
