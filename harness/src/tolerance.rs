@@ -122,10 +122,14 @@ pub fn required(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Required, allowed, because)
 }
 
+/// Why an order may be off.
+pub(crate) const ASYMPTOTIC: &str =
+    "a tenth of the method's order, as ASME V&V 20-2009 asks of levels in the asymptotic range";
+
 /// Of an order of convergence: a tenth of the method's, as ASME V&V 20-2009 (section 2) asks of levels in the asymptotic range.
 #[must_use]
 pub fn asymptotic(order: f64) -> Tolerance {
-    required(0.1 * order, "a tenth of the method's order, as ASME V&V 20-2009 asks of levels in the asymptotic range")
+    required(0.1 * order, ASYMPTOTIC)
 }
 
 /// By judgement, with the physics that it leaves room for.

@@ -145,9 +145,9 @@ impl OneGrain {
             let stretch = self.share() * self.along / self.tangential_frequency().powi(2);
             return State { x: 2.0 * stretch / exact.x, v: 0.0, omega: 0.0 };
         }
-        let missing = self.slips_from() / t;
-        let velocity = missing * t * self.friction * self.onto / exact.v;
-        State { x: 2.0 * velocity, v: velocity, omega: missing }
+        let late = self.slips_from();
+        let velocity = late * self.friction * self.onto / exact.v;
+        State { x: 2.0 * velocity, v: velocity, omega: late / t }
     }
 
     /// What is left, after t, of a slip velocity that the tangential spring and dashpot make ring about rolling: e^{−λt} with

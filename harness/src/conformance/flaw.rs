@@ -154,10 +154,8 @@ mod tests {
     fn a_solver_that_refused_scenes_is_not_caught_up_with_by_one_that_ran_before() {
         let [first, again] =
             [Flawed::new(&Refuses, Flaw::Irreproducible), Flawed::again(&Refuses, Flaw::Irreproducible)];
-        for (_, scene) in
-            super::super::scenes::collisions().into_iter().flatten().map(|named| (named.name, named.scene))
-        {
-            let _ = first.run(&scene, &Resolution::CriticalFraction(0.1), &mut ());
+        for named in super::super::scenes::collisions().into_iter().flatten() {
+            let _ = first.run(&named.scene, &Resolution::CriticalFraction(0.1), &mut ());
             assert_ne!(first.runs.load(Ordering::Relaxed), again.runs.load(Ordering::Relaxed));
         }
     }

@@ -5,7 +5,7 @@ use super::row::{Found, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::expect::{Bound, Expected, Measured};
-use crate::tolerance::Made;
+use crate::tolerance::{ASYMPTOTIC, Made, asymptotic};
 use crate::verdict::Verdict;
 
 pub(super) const PROPERTY: Property = Property {
@@ -14,7 +14,7 @@ pub(super) const PROPERTY: Property = Property {
     flaw: Flaw::FirstOrder,
     evidence: Evidence::Convergence,
     source: "the solver's own claim",
-    because: "a tenth of the method's order, as ASME V&V 20-2009 asks of levels in the asymptotic range",
+    because: ASYMPTOTIC,
     check,
 };
 
@@ -30,7 +30,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
         let expected = Expected::Bound(Bound::Order(order.expected));
         Ok(Found {
             measured: Measured::new((coarse / fine).log2(), expected, 1.0),
-            allowed: 0.1 * order.expected,
+            allowed: asymptotic(order.expected).of(&[]),
             made: Made::Required,
         })
     })
