@@ -13,7 +13,7 @@ use crate::laws::{self, Constants, gathered, gathered_of, places};
 use crate::listed::Pairs;
 use crate::seen::Seen;
 use crate::touching::Touching;
-use grainbench_lanes::{Kernel, Lanes, Processor, Quad, Single, WIDEST, Wide};
+use grainbench_lanes::{Kernel, Lanes, Plain, Processor, Quad, WIDEST, Wide};
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
 
@@ -59,7 +59,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     /// Runs it; contacts that are recorded are taken one by one.
     pub(crate) fn run_on(self, processor: Processor) {
         if self.seen.is_some() {
-            self.run(Single);
+            self.run(Plain::<1>);
         } else {
             processor.run(self);
         }

@@ -16,16 +16,14 @@ mod avx2;
 mod avx512;
 pub mod logarithm;
 mod number;
-mod portable;
+mod plain;
 pub mod probe;
 mod processor;
-mod single;
 mod team;
 
 pub use number::{Number, Wide};
-pub use portable::Portable;
+pub use plain::Plain;
 pub use processor::{FourKernel, Kernel, PROCESSOR, Processor};
-pub use single::Single;
 pub use team::{Team, take_off};
 
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! What this processor has, and loops that are compiled for it.
 
-use crate::{FourLanes, Lanes, Portable};
+use crate::{FourLanes, LANES, Lanes, Plain};
 use std::sync::OnceLock;
 
 /// The environment variable that forces a path: `portable`, `avx2` or `avx512`.
@@ -92,7 +92,7 @@ impl Processor {
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
-            Self::Portable => kernel.run(Portable),
+            Self::Portable => kernel.run(Plain::<LANES>),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => pulp::Simd::vectorize(features, Compiled { lanes: features, kernel }),
             #[cfg(target_arch = "x86_64")]
@@ -104,7 +104,7 @@ impl Processor {
     #[inline(always)]
     pub fn run_by_four<K: FourKernel>(self, kernel: K) {
         match self {
-            Self::Portable => kernel.run(Portable),
+            Self::Portable => kernel.run(Plain::<LANES>),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: features, kernel }),
             // Four lanes as well, but with the more registers that this processor has.

@@ -164,12 +164,12 @@ fn whole_numbers_are_packed_by_bits() {
 #[test]
 fn four_portable_lanes_are_four_numbers() {
     let [mut one, mut four] = [Vec::new(), Vec::new()];
-    Every(&mut one).run(Single);
-    Every(&mut four).run(Portable);
+    Every(&mut one).run(Plain::<1>);
+    Every(&mut four).run(Plain::<4>);
     assert!(one == four);
     let table = [1.0, 5.0, 9.0, 13.0].map(|from| Quad([from, from + 1.0, from + 2.0, from + 3.0]));
     let at = [2, 0, 3, 1];
-    assert_eq!(There(&table, &at).run(Portable), There(&table, &at).run(Single));
+    assert_eq!(There(&table, &at).run(Plain::<4>), There(&table, &at).run(Plain::<1>));
 }
 
 /// Two quads for each lane, added to those that are there.

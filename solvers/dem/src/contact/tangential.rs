@@ -339,10 +339,10 @@ mod tests {
     /// Contacts with a dashpot beside contacts without: each is limited as it would be by itself.
     #[test]
     fn contacts_side_by_side_are_limited_as_alone() {
-        use grainbench_lanes::{Portable, Wide};
+        use grainbench_lanes::{Plain, Wide};
         let stretches = [0.2, 0.0, 0.01, -0.3];
         let (viscosities, limits) = ([3.0, 0.0, 3.0, 0.0], [5.0, 5.0, 50.0, 5.0]);
-        let wide = |values: [f64; 4]| Wide::four(Portable, values);
+        let wide = |values: [f64; 4]| Wide::four(Plain::<4>, values);
         for cap in [Cap::Spring, Cap::Total, Cap::TotalAsLammps] {
             let bound = Bound { stiffness: wide([100.0; 4]), viscosity: Some(wide(viscosities)), limit: wide(limits) };
             let mut stretch = Components([wide(stretches)]);
