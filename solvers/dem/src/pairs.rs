@@ -7,13 +7,13 @@ use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Memory};
 use crate::forces::Terms;
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Linear};
 use crate::grains::{Loads, Read, Sums};
 use crate::laws::{self, Constants, gathered, gathered_of, places};
 use crate::listed::Pairs;
 use crate::seen::Seen;
 use crate::touching::Touching;
-use grainbench_lanes::{Kernel, Lanes, Plain, Processor, Quad, WIDEST, Wide};
+use grainbench_lanes::{Kernel, Lanes, Number, Plain, Processor, Quad, WIDEST, Wide};
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
 
@@ -30,10 +30,49 @@ pub(crate) struct OfPairs<'a, S: Geometry, N, T, R, const Q: usize> {
     chain: PhantomData<(S, N, T, R)>,
 }
 
+/// Registers of pairs whose distances are found before their forces. A root and a quotient take long, and all of a force waits
+/// for them: so several of each are under way at once. As few as stay at hand.
+const ROUND: usize = 8;
+
+/// How far the grains of pairs are apart.
+#[derive(Clone, Copy)]
+struct Apart<S: Geometry, X: Number> {
+    /// Vector from the first centre to the second (m).
+    between: S::Vectors<X>,
+    /// Its length (m), and the inverse of that (1/m).
+    distance: X,
+    inverse_distance: X,
+    /// Sum of the radii (m).
+    reach: X,
+    /// Radii R (m), where they are read with the places.
+    radii: [X; 2],
+}
+
+impl<S: Geometry, L: Lanes> Apart<S, Wide<L>> {
+    /// Not found yet.
+    #[inline(always)]
+    fn none(lanes: L) -> Self {
+        let zero = Wide::splat(lanes, 0.0);
+        let between = S::vector([zero; 4]);
+        Self { between, distance: zero, inverse_distance: zero, reach: zero, radii: [zero; 2] }
+    }
+}
+
 /// Slots of the grains of as many pairs as a register holds.
 struct Slots {
     first: [usize; WIDEST],
     second: [usize; WIDEST],
+}
+
+impl Slots {
+    /// Of so many grains.
+    ///
+    /// # Panics
+    /// When one lies beyond them.
+    #[inline(always)]
+    fn of<L: Lanes>(lanes: L, (first, second): (&[u32], &[u32]), grains: usize) -> Self {
+        Self { first: places(lanes, first, grains), second: places(lanes, second, grains) }
+    }
 }
 
 impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> OfPairs<'a, S, N, T, R, Q> {
@@ -65,47 +104,66 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
     }
 
+    /// How far the grains of some pairs are apart.
+    #[inline(always)]
+    fn apart<L: Lanes>(&self, lanes: L, slots: &Slots, from: usize) -> Apart<S, Wide<L>> {
+        let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
+        let (place, shift) = (self.grains.place, self.shift);
+        let (mut between, reach, radii);
+        if T::ACTIVE && Q == 1 {
+            let at = [gathered(lanes, place, first), gathered(lanes, place, second)];
+            between = S::vector(at[1]) - S::vector(at[0]);
+            (radii, reach) = ([at[0][3], at[1][3]], at[0][3] + at[1][3]);
+        } else {
+            // Differences are taken before quads are turned: half as many are. What only some laws read is left alone by others.
+            let away = laws::between(lanes, place.as_chunks::<1>().0, 0, [first, second]);
+            (between, reach) = (S::vector(away), away[3]);
+            radii = if !T::ACTIVE && (N::CURVED || R::ACTIVE) {
+                [gathered(lanes, place, first)[3], gathered(lanes, place, second)[3]]
+            } else {
+                [zero; 2]
+            };
+        }
+        if !shift.is_empty() {
+            let pair = places(lanes, &self.touching.pair[from..], shift.len());
+            between = between - S::vector(gathered(lanes, shift, &pair));
+        }
+        let distance = between.dot(between).sqrt();
+        Apart { between, distance, inverse_distance: distance.like(1.0) / distance, reach, radii }
+    }
+
     /// The grains of some pairs, made ready for the chain of stages.
     #[inline(always)]
     fn pair<'l, L: Lanes>(
         &self,
         lanes: L,
         slots: &Slots,
-        from: usize,
+        apart: Apart<S, Wide<L>>,
         law: &'l Constants<Wide<L>>,
     ) -> Pair<'l, S, Wide<L>> {
         let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
-        let (Read { place, movement, inverse_inertia: inertia, .. }, shift) = (self.grains, self.shift);
+        let Read { place, movement, inverse_inertia: inertia, .. } = self.grains;
         let movement = &movement.as_chunks::<Q>().0[..place.len()];
-        let (mut between, reach, mut radii, velocity, inverse_mass, mut inverse_masses, mut spins);
+        let Apart { between, distance, inverse_distance, reach, mut radii } = apart;
+        let (velocity, inverse_mass, mut inverse_masses, mut spins);
         if T::ACTIVE && Q == 1 {
-            let at = [gathered(lanes, place, first), gathered(lanes, place, second)];
             let moves = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
-            (between, velocity) = (S::vector(at[1]) - S::vector(at[0]), S::vector(moves[0]) - S::vector(moves[1]));
-            (radii, reach) = ([at[0][3], at[1][3]], at[0][3] + at[1][3]);
+            velocity = S::vector(moves[0]) - S::vector(moves[1]);
             (inverse_masses, inverse_mass) = ([moves[0][3], moves[1][3]], moves[0][3] + moves[1][3]);
             spins = Some([S::spin(moves[0], [zero; 4]), S::spin(moves[1], [zero; 4])]);
         } else {
-            // Differences are taken before quads are turned: half as many are. What only some laws read is left alone by others.
-            let away = laws::between(lanes, place.as_chunks::<1>().0, 0, [first, second]);
             let moves = laws::between(lanes, movement, 0, [second, first]);
-            (between, reach, velocity, inverse_mass) = (S::vector(away), away[3], S::vector(moves), moves[3]);
-            (radii, inverse_masses, spins) = ([zero; 2], [zero; 2], None);
+            (velocity, inverse_mass) = (S::vector(moves), moves[3]);
+            (inverse_masses, spins) = ([zero; 2], None);
             if T::ACTIVE {
                 let turns = [gathered_of(lanes, movement, Q - 1, first), gathered_of(lanes, movement, Q - 1, second)];
                 radii = [turns[0][3], turns[1][3]];
                 spins = Some([S::spin([zero; 4], turns[0]), S::spin([zero; 4], turns[1])]);
-            } else if N::CURVED || R::ACTIVE {
-                radii = [gathered(lanes, place, first)[3], gathered(lanes, place, second)[3]];
             }
             if R::ACTIVE {
                 let masses = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
                 inverse_masses = [masses[0][3], masses[1][3]];
             }
-        }
-        if !shift.is_empty() {
-            let pair = places(lanes, &self.touching.pair[from..], shift.len());
-            between = between - S::vector(gathered(lanes, shift, &pair));
         }
         let mut inverse_inertia = [zero; 2];
         if R::ACTIVE {
@@ -117,7 +175,19 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
                 *inverse = Wide::load(lanes, &each);
             }
         }
-        Pair { law, between, radii, reach, velocity, inverse_mass, inverse_masses, spins, inverse_inertia }
+        Pair {
+            law,
+            between,
+            distance,
+            inverse_distance,
+            radii,
+            reach,
+            velocity,
+            inverse_mass,
+            inverse_masses,
+            spins,
+            inverse_inertia,
+        }
     }
 
     /// What some contacts remember.
@@ -125,16 +195,21 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     fn remembered<L: Lanes>(&self, lanes: L, from: usize) -> Memory<Wide<L>> {
         let mut memory = [Wide::splat(lanes, 0.0); MEMORY];
         let Touching { steady, remembered, before, .. } = self.touching;
+        if *steady {
+            for (number, now) in memory.iter_mut().zip(&self.memory).take(Self::NUMBERS) {
+                let mut values = [0.0; WIDEST];
+                values[..L::WIDTH].copy_from_slice(&now[from..from + L::WIDTH]);
+                *number = Wide::load(lanes, &values);
+            }
+            return memory;
+        }
         let mut places = [0; WIDEST];
         places.copy_from_slice(&remembered[from..from + WIDEST]);
         // Where a block is not as it was, most contacts still follow one another as they did.
         let follow = places[..L::WIDTH].iter().zip(0..).all(|(&place, lane)| place == places[0] + lane);
-        let numbers = memory.iter_mut().zip(self.memory.iter().zip(before));
-        for (number, (now, before)) in numbers.take(Self::NUMBERS) {
+        for (number, before) in memory.iter_mut().zip(before).take(Self::NUMBERS) {
             let mut values = [0.0; WIDEST];
-            if *steady {
-                values[..L::WIDTH].copy_from_slice(&now[from..from + L::WIDTH]);
-            } else if follow {
+            if follow {
                 values[..L::WIDTH].copy_from_slice(&before[places[0] as usize..][..L::WIDTH]);
             } else {
                 for (value, &place) in values.iter_mut().zip(&places[..L::WIDTH]) {
@@ -223,30 +298,40 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
         let (laws, touching) = (self.terms.laws, self.touching);
         let evaluation = self.terms.evaluation(L::WIDTH == 1 && self.seen.is_some());
         let mut law = laws.gather(lanes, &[0; WIDEST]);
-        for from in (0..touching.count).step_by(L::WIDTH) {
-            let slots = Slots {
-                first: places(lanes, &touching.first[from..], grains),
-                second: places(lanes, &touching.second[from..], grains),
-            };
-            if !laws.is_one() {
-                let numbers = std::array::from_fn(|lane| {
-                    let [one, other] = [slots.first[lane], slots.second[lane]].map(|slot| self.grains.material[slot]);
-                    laws.number(one, other)
-                });
-                law = laws.gather(lanes, &numbers);
+        let mut aparts = [Apart::none(lanes); ROUND];
+        for round in (0..touching.count).step_by(ROUND * L::WIDTH) {
+            let end = touching.count.next_multiple_of(L::WIDTH).min(round + ROUND * L::WIDTH);
+            let [first, second] = [&touching.first[round..end], &touching.second[round..end]];
+            let mut from = round;
+            for (slots, apart) in first.chunks_exact(L::WIDTH).zip(second.chunks_exact(L::WIDTH)).zip(&mut aparts) {
+                *apart = self.apart(lanes, &Slots::of(lanes, slots, grains), from);
+                from += L::WIDTH;
             }
-            let mut memory = self.remembered(lanes, from);
-            let answer = self.pair(lanes, &slots, from, &law).respond::<N, T, R>(evaluation, &mut memory);
-            let count = (touching.count - from).min(L::WIDTH);
-            self.add(lanes, &answer, &slots, count);
-            self.remember(&memory, from);
-            if evaluation.record
-                && let Some(seen) = &mut self.seen
-                && self.sums.holds(slots.first[0])
-            {
-                let (one, other, Read { place, id, .. }) = (slots.first[0], slots.second[0], self.grains);
-                let partner = Partner::Grain(id[other] + 1);
-                seen.add(&answer, id[one] + 1, partner, S::vector_in_space(&place[one]), place[one].0[3]);
+            let mut from = round;
+            for (slots, apart) in first.chunks_exact(L::WIDTH).zip(second.chunks_exact(L::WIDTH)).zip(&aparts) {
+                let slots = Slots::of(lanes, slots, grains);
+                if !laws.is_one() {
+                    let numbers = std::array::from_fn(|lane| {
+                        let [one, other] =
+                            [slots.first[lane], slots.second[lane]].map(|slot| self.grains.material[slot]);
+                        laws.number(one, other)
+                    });
+                    law = laws.gather(lanes, &numbers);
+                }
+                let mut memory = self.remembered(lanes, from);
+                let answer = self.pair(lanes, &slots, *apart, &law).respond::<N, T, R>(evaluation, &mut memory);
+                let count = (touching.count - from).min(L::WIDTH);
+                self.add(lanes, &answer, &slots, count);
+                self.remember(&memory, from);
+                if evaluation.record
+                    && let Some(seen) = &mut self.seen
+                    && self.sums.holds(slots.first[0])
+                {
+                    let (one, other, Read { place, id, .. }) = (slots.first[0], slots.second[0], self.grains);
+                    let partner = Partner::Grain(id[other] + 1);
+                    seen.add(&answer, id[one] + 1, partner, S::vector_in_space(&place[one]), place[one].0[3]);
+                }
+                from += L::WIDTH;
             }
         }
     }

@@ -5,7 +5,7 @@ use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
 use super::{Memory, Touch};
-use crate::geometry::{Geometry, Linear};
+use crate::geometry::Geometry;
 use crate::laws::Constants;
 use grainbench_lanes::Number;
 
@@ -15,6 +15,9 @@ pub(crate) struct Pair<'a, S: Geometry, X: Number> {
     pub(crate) law: &'a Constants<X>,
     /// Vector from the first centre to the second (m).
     pub(crate) between: S::Vectors<X>,
+    /// Its length (m), and the inverse of that (1/m).
+    pub(crate) distance: X,
+    pub(crate) inverse_distance: X,
     /// Radii R (m).
     pub(crate) radii: [X; 2],
     /// Sum of the radii (m).
@@ -39,9 +42,8 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         evaluation: Evaluation<'_>,
         memory: &mut Memory<X>,
     ) -> Answer<S, X> {
-        let distance = self.between.dot(self.between).sqrt();
-        let [zero, one] = [distance.like(0.0), distance.like(1.0)];
-        let inverse_distance = one / distance;
+        let Self { distance, inverse_distance, .. } = *self;
+        let zero = distance.like(0.0);
         let [first, second] = self.radii;
         let overlap = self.reach - distance;
         let touch = Touch {
@@ -115,6 +117,8 @@ mod tests {
             let pair = Pair::<Solid, f64> {
                 law: &law,
                 between: Components(between.into()),
+                distance: between.norm(),
+                inverse_distance: 1.0 / between.norm(),
                 radii: [0.4, 0.6],
                 reach: 1.0,
                 velocity: Components((extra - spin.cross(&between)).into()),
