@@ -31,7 +31,8 @@ pub(crate) struct OfPairs<'a, S: Geometry, N, T, R, const Q: usize> {
 }
 
 /// Registers of pairs whose distances are found before their forces. A root and a quotient take long, and all of a force waits
-/// for them: so several of each are under way at once. As few as stay at hand.
+/// for them: so several of each are under way at once. As few as stay at hand. The widest registers, of which there are more,
+/// lose as much by storing what they found as they gain.
 const ROUND: usize = 8;
 
 /// How far the grains of pairs are apart.
@@ -304,7 +305,9 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
             let [first, second] = [&touching.first[round..end], &touching.second[round..end]];
             let mut from = round;
             for (slots, apart) in first.chunks_exact(L::WIDTH).zip(second.chunks_exact(L::WIDTH)).zip(&mut aparts) {
-                *apart = self.apart(lanes, &Slots::of(lanes, slots, grains), from);
+                if L::WIDTH < WIDEST {
+                    *apart = self.apart(lanes, &Slots::of(lanes, slots, grains), from);
+                }
                 from += L::WIDTH;
             }
             let mut from = round;
@@ -319,7 +322,8 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
                     law = laws.gather(lanes, &numbers);
                 }
                 let mut memory = self.remembered(lanes, from);
-                let answer = self.pair(lanes, &slots, *apart, &law).respond::<N, T, R>(evaluation, &mut memory);
+                let apart = if L::WIDTH < WIDEST { *apart } else { self.apart(lanes, &slots, from) };
+                let answer = self.pair(lanes, &slots, apart, &law).respond::<N, T, R>(evaluation, &mut memory);
                 let count = (touching.count - from).min(L::WIDTH);
                 self.add(lanes, &answer, &slots, count);
                 self.remember(&memory, from);
