@@ -154,10 +154,29 @@ impl OneGrain {
     /// the slower rate λ of s″ + 2b s′ + ω² s = 0, 2b = γ_t (1 + 1/i).
     #[must_use]
     pub fn rung(&self, t: f64) -> f64 {
+        (-self.settling_rate() * t).exp()
+    }
+
+    /// That rate λ (1/s).
+    fn settling_rate(&self) -> f64 {
         let (half, omega) =
             (0.5 * self.tangential_damping * (1.0 + 1.0 / self.inertia_factor), self.tangential_frequency());
-        let rate = if half > omega { half - (half * half - omega * omega).sqrt() } else { half };
-        (-rate * t).exp()
+        if half > omega { half - (half * half - omega * omega).sqrt() } else { half }
+    }
+
+    /// Frequency (rad/s) of a grain that rolls on its rolling spring (Ai, Chen, Rotter & Ooi 2011), ω_r² = k_r/((1 + i)mR²)
+    /// with k_r = 2.25 k_n μ_r² R².
+    #[must_use]
+    pub fn rolling_frequency(&self, rolling_friction: f64) -> f64 {
+        let moment = (1.0 + self.inertia_factor) * self.mass;
+        1.5 * rolling_friction * (self.normal_stiffness / moment).sqrt()
+    }
+
+    /// What a critically damped rolling spring leaves, after t, of the acceleration with which a grain begins to roll, in the mean
+    /// over as long again: v = a t e^{−ω_r t}, hence at most e^{−ω_r t} of it; and later by 1/λ, for friction follows late.
+    #[must_use]
+    pub fn rolled(&self, rolling_friction: f64, t: f64) -> f64 {
+        (-self.rolling_frequency(rolling_friction) * (t - 1.0 / self.settling_rate())).exp()
     }
 
     /// How far (m) a grain falls behind at the end of sliding, when the dashpot counts in Coulomb's limit: from the slip velocity
@@ -359,5 +378,32 @@ mod tests {
         assert!((slip / early / grain.rung(0.1) - 1.0).abs() < 1e-3, "{} of {}", slip / early, grain.rung(0.1));
         let lacks = grain.share() * (way - 0.5 * start * start / slows);
         assert!(lacks < grain.tail() && lacks > grain.tail() / 3.0, "{lacks} of {}", grain.tail());
+    }
+
+    /// A grain that comes to rest on both of its springs, step by step: no more is left than is said, and more than half of it.
+    #[test]
+    fn a_grain_comes_to_rest_on_its_rolling_spring() {
+        let (grain, rolling_friction, half, step) = (disc(), 0.05, 2.0, 1e-5);
+        let about_contact = (1.0 + grain.inertia_factor) * grain.mass * grain.radius.powi(2);
+        let stiffness = 2.25 * grain.normal_stiffness * (rolling_friction * grain.radius).powi(2);
+        let damping = 2.0 * (about_contact * stiffness).sqrt();
+        let (mut speed, mut spin, mut slipped, mut angle) = (0.0, 0.0, 0.0, 0.0);
+        let mut after = |steps: u32| {
+            for _ in 0..steps {
+                let slip = speed - spin * grain.radius;
+                let friction = grain.tangential_stiffness * slipped + grain.tangential_damping * grain.mass * slip;
+                let moment = stiffness * angle + damping * spin;
+                speed += (grain.along - friction / grain.mass) * step;
+                spin += (friction * grain.radius - moment) * step
+                    / (grain.inertia_factor * grain.mass * grain.radius.powi(2));
+                slipped += (speed - spin * grain.radius) * step;
+                angle += spin * step;
+            }
+            speed
+        };
+        let [early, late] = [200_000, 200_000].map(&mut after);
+        let left = (early - late) / half / (grain.along / (1.0 + grain.inertia_factor));
+        let said = grain.rolled(rolling_friction, half);
+        assert!(left < said && left > 0.5 * said, "{left} of {said}");
     }
 }
