@@ -172,8 +172,8 @@ impl OneGrain {
         1.5 * rolling_friction * (self.normal_stiffness / moment).sqrt()
     }
 
-    /// What a critically damped rolling spring leaves, after t, of the acceleration with which a grain begins to roll, in the mean
-    /// over as long again: v = a t e^{−ω_r t}, hence at most e^{−ω_r t} of it; and later by 1/λ, for friction follows late.
+    /// What a critically damped rolling spring leaves, after t, of the acceleration with which a grain begins to roll, in the
+    /// mean over as long again: v = a t e^{−ω_r t}, hence at most e^{−ω_r t} of it; and later by 1/λ, for friction follows late.
     #[must_use]
     pub fn rolled(&self, rolling_friction: f64, t: f64) -> f64 {
         (-self.rolling_frequency(rolling_friction) * (t - 1.0 / self.settling_rate())).exp()
