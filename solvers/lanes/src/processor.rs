@@ -92,7 +92,7 @@ impl Processor {
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
-            Self::Portable => kernel.run(Plain::<LANES>),
+            Self::Portable => portable(kernel),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => pulp::Simd::vectorize(features, Compiled { lanes: features, kernel }),
             #[cfg(target_arch = "x86_64")]
@@ -104,7 +104,7 @@ impl Processor {
     #[inline(always)]
     pub fn run_by_four<K: FourKernel>(self, kernel: K) {
         match self {
-            Self::Portable => kernel.run(Plain::<LANES>),
+            Self::Portable => portable_by_four(kernel),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: features, kernel }),
             // Four lanes as well, but with the more registers that this processor has.
@@ -112,6 +112,19 @@ impl Processor {
             Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: *features, kernel }),
         }
     }
+}
+
+/// A loop, compiled for what every processor can do. It is a function of its own, as those for other processors are: many such loops
+/// in one function take the compiler minutes.
+#[inline(never)]
+fn portable<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Plain::<LANES>)
+}
+
+/// A loop over four at a time, compiled in the same way.
+#[inline(never)]
+fn portable_by_four<K: FourKernel>(kernel: K) {
+    kernel.run(Plain::<LANES>);
 }
 
 /// A loop, compiled for a processor.
