@@ -8,6 +8,7 @@ use common::grainbench;
 use serde_json::Value;
 use std::path::Path;
 
+/// Rows that begin with the drum's start.
 const ROWS: [&str; 4] = ["run", "drum-mixing", "--filter", "quantity=zone 2"];
 
 /// Outcome and reason of each row of a report.
@@ -64,4 +65,28 @@ fn another_start_is_told_from_the_published_one() {
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     let rows = rows(path);
     assert!(rows.len() == 7 && rows.iter().all(|(outcome, _)| outcome == "stale"), "{rows:?}");
+}
+
+/// The shared beds of the impact: what is no bed is told with its place.
+#[test]
+fn what_is_no_bed_is_refused() {
+    const BEDS: [&str; 6] = ["run", "impact-bed", "--filter", "quantity=the shared bed", "--levels", "all"];
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::create_dir(path.join("data")).unwrap();
+    let with_data = [&BEDS[..], &["--data", "data"]].concat();
+    let refused = |words: &str| {
+        let answer = grainbench(path, &with_data);
+        assert_eq!(answer.code, Some(2), "{}", answer.err);
+        assert!(answer.err.contains(words) && !path.join("grainbench-out").exists(), "{}", answer.err);
+    };
+    refused("data: expected `50KParticles.txt` or `Case3_PenetrationTest_50000_Particles.txt`, found neither");
+    std::fs::write(path.join("data/100KParticles.txt"), "").unwrap();
+    refused("100KParticles.txt:1: expected a line of titles");
+    std::fs::write(path.join("data/100KParticles.txt"), "R X Y Z\n0.001 0 0\n").unwrap();
+    refused(
+        "100KParticles.txt:2: expected a radius, 0.001 of 100000 grains or 0.01 of one ball, and three coordinates (m)",
+    );
+    std::fs::write(path.join("data/100KParticles.txt"), "R X Y Z\n0.001 0 0 0\n").unwrap();
+    refused("100KParticles.txt:2: expected 100000 grains and one ball, found 1 grains and 0 ball");
 }

@@ -5,13 +5,12 @@ mod ladder;
 #[path = "zones.rs"]
 mod zones;
 
-use crate::registry::grains_of;
+use crate::registry::made_of;
 use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::claim::Tolerated;
-use grainbench_harness::data::Data;
+use grainbench_harness::data::{Data, NotMade};
 use grainbench_harness::prelude::*;
-use grainbench_reference::parse_data;
 use grainbench_reference::round_robin::{DRUM, DRUM_SCENE, course, read_start, start_in};
 use grainbench_scene::scene::Duration;
 use grainbench_scene::source::SceneSource;
@@ -50,17 +49,15 @@ static PUBLISHED: Data = Data {
 };
 
 /// The scene of the drum with the start that a folder holds.
-fn published(folder: &Path) -> Result<Scene, String> {
-    let start = start_in(folder).map_err(|error| format!("{}: {error}", folder.display()))?.ok_or_else(|| {
-        format!("{}: expected the start of the drum, a file whose name ends in `.xyz`, found none", folder.display())
+fn published(folder: &Path) -> Result<Scene, NotMade> {
+    let start = start_in(folder).map_err(|error| NotMade::Wrong(format!("{}: {error}", folder.display())))?;
+    let start = start.ok_or_else(|| {
+        let expected = "expected the start of the drum, a file whose name ends in `.xyz`, found none";
+        NotMade::Absent(format!("{}: {expected}", folder.display()))
     })?;
-    let files = read_start(&start).map_err(|error| error.to_string())?.files();
-    let read = |path: &Path| {
-        let named = files.iter().find(|(name, _)| path.ends_with(name));
-        let (name, text) = named.ok_or_else(|| format!("{}: expected a file of the start", path.display()))?;
-        Ok(grains_of(&parse_data(text.as_bytes(), name).map_err(|error| error.to_string())?))
-    };
-    SceneSource::from_text("drum.toml", Path::new("."), DRUM_SCENE).scene(&read).map_err(|error| error.to_string())
+    let files = read_start(&start).map_err(|error| NotMade::Wrong(error.to_string()))?.files();
+    let source = SceneSource::from_text("drum.toml", Path::new("."), DRUM_SCENE);
+    made_of(&source, &files).map_err(NotMade::Wrong)
 }
 
 /// What was asked for before, and until when.

@@ -2,7 +2,7 @@
 
 use super::{DRUM, EARLY, ZONES, beside, counted, course, of_paper, published};
 use grainbench_harness::claim::Tolerated;
-use grainbench_harness::data::Data;
+use grainbench_harness::data::{Data, NotMade};
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 use std::path::Path;
@@ -16,7 +16,7 @@ const TWICE: f64 = 6e-6;
 /// The drum of the paper until then.
 static SHORTER: Data = Data { name: "published-half", needs: super::PUBLISHED.needs, scene: shorter };
 
-fn shorter(folder: &Path) -> Result<Scene, String> {
+fn shorter(folder: &Path) -> Result<Scene, NotMade> {
     Ok(Scene { duration: Duration::Seconds(UNTIL), ..published(folder)? })
 }
 

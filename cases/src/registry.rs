@@ -3,8 +3,10 @@
 use grainbench_harness::case::{Case, Home, Made};
 use grainbench_harness::runner::Runner;
 use grainbench_harness::subject::{Subject, from_claims};
-use grainbench_reference::DataFile;
+use grainbench_reference::{DataFile, parse_data};
 use grainbench_scene::resolve::FileGrain;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::source::SceneSource;
 use nalgebra::Vector3;
 use std::path::Path;
 use std::sync::Arc;
@@ -47,8 +49,21 @@ pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, String> {
     Ok(grains_of(&grainbench_reference::read_data_file(path).map_err(|error| error.to_string())?))
 }
 
+/// The scene of a source whose grains stand in data files of LAMMPS: name and text of each.
+///
+/// # Errors
+/// Says what is wrong with the scene, or with a file where.
+pub(crate) fn made_of(source: &SceneSource, files: &[(&str, String)]) -> Result<Scene, String> {
+    let read = |path: &Path| {
+        let named = files.iter().find(|(name, _)| path.ends_with(name));
+        let (name, text) = named.ok_or_else(|| format!("{}: expected a file of the start", path.display()))?;
+        Ok(grains_of(&parse_data(text.as_bytes(), name).map_err(|error| error.to_string())?))
+    };
+    source.scene(&read).map_err(|error| error.to_string())
+}
+
 /// The grains of a data file.
-pub(crate) fn grains_of(data: &DataFile) -> Vec<FileGrain> {
+fn grains_of(data: &DataFile) -> Vec<FileGrain> {
     let grain = |atom: &grainbench_reference::Atom| FileGrain {
         type_number: atom.type_,
         radius: atom.radius(),

@@ -10,6 +10,25 @@ pub struct Data {
     pub name: &'static str,
     /// What it needs, where that is to be had, and how it is given, in words.
     pub needs: &'static str,
-    /// The scene, with what a folder holds; else what was expected there and what was found.
-    pub scene: fn(&Path) -> Result<Scene, String>,
+    /// The scene, with what a folder holds.
+    pub scene: fn(&Path) -> Result<Scene, NotMade>,
+}
+
+/// Why a scene cannot be made of what a folder holds: what was expected there and what was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NotMade {
+    /// The folder does not hold it.
+    Absent(String),
+    /// What the folder holds in its place cannot be used.
+    Wrong(String),
+}
+
+impl NotMade {
+    /// In words.
+    #[must_use]
+    pub fn into_words(self) -> String {
+        match self {
+            Self::Absent(words) | Self::Wrong(words) => words,
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::claim::Claim;
 use crate::control::{self, Wrong};
-use crate::data::Data;
+use crate::data::{Data, NotMade};
 use crate::expect::Measured;
 use crate::reading::{self, Table};
 use crate::run::{Done, Run, Set, Standing};
@@ -358,7 +358,7 @@ impl Runner {
     /// The scene that is made from data of others.
     fn made_from(&self, data: &Data, run: &Run) -> Result<Scene, RunError> {
         let folder = self.data.as_deref().ok_or_else(|| data.needs.to_owned());
-        let made = folder.and_then(|folder| (data.scene)(folder));
+        let made = folder.and_then(|folder| (data.scene)(folder).map_err(NotMade::into_words));
         made.map_err(|reason| RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
 

@@ -16,7 +16,7 @@ use super::value::whole;
 use grainbench::cases::solvers;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
-use grainbench::harness::data::Data;
+use grainbench::harness::data::{Data, NotMade};
 use grainbench::harness::figure::Figure;
 use grainbench::harness::run::{Done, Run, Set};
 use grainbench::harness::runner::Runner;
@@ -190,7 +190,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     Ok(if left > 0 || is_mute { ExitCode::from(RED) } else { code })
 }
 
-/// Refuses data that no row begins with, or that is not what a row needs.
+/// Refuses data that no row begins with, that holds nothing of what rows need, or something in its place that cannot be used.
 fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault> {
     let runs = selected.iter().flat_map(|of| &of.claims).flat_map(|claim| &claim.runs);
     let mut needed: Vec<&Data> = runs.filter_map(|run| run.data).collect();
@@ -201,8 +201,14 @@ fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault>
             "--data: expected rows that begin with data of others, found none among those asked for",
         ));
     }
-    let unusable = |data: &&Data| (data.scene)(folder).err();
-    needed.iter().find_map(unusable).map_or(Ok(()), |reason| Err(Fault::input(format!("--data: {reason}"))))
+    let not_made: Vec<NotMade> = needed.iter().filter_map(|data| (data.scene)(folder).err()).collect();
+    let is_wrong = |reason: &NotMade| matches!(reason, NotMade::Wrong(_));
+    let any_is_wrong = not_made.iter().any(is_wrong);
+    if any_is_wrong || not_made.len() == needed.len() {
+        let told = not_made.into_iter().filter(|reason| !any_is_wrong || is_wrong(reason)).map(NotMade::into_words);
+        return Err(Fault::input(format!("--data: {}", told.collect::<Vec<_>>().join("; "))));
+    }
+    Ok(())
 }
 
 /// A report; beside the whole registry stands what is kept of programs and of costs, and not beside a case of it.

@@ -4,6 +4,8 @@
 //! and deviations between codes and between beds (`reference/literature/dosta-2024`).
 
 mod again;
+mod atoms;
+mod bed;
 mod impact;
 mod said;
 mod spread;
@@ -11,6 +13,7 @@ mod start;
 mod tables;
 
 pub use again::{EARLY, Pair, Quantity, STEADY, STEADY_SMALL, pairs};
+pub use bed::{Bed, bed_in, bed_names, read_bed};
 pub use impact::{Course, Impact};
 pub use said::{Said, of_all, of_drum, of_drums, of_impact, table_of};
 pub use spread::Spread;

@@ -1,17 +1,16 @@
 //! The shared start of the drum: an `xyz` file of grains, as data files of LAMMPS about the middle of the drum.
 
+use super::atoms::{DENSITY_M1, atoms};
+use crate::read::line_reader::LineReader;
 use crate::read::read_error::{ReadError, quoted};
-use std::fmt::Write as _;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// The middle of the drum in the file's coordinates (m).
 const MIDDLE: [f64; 3] = [0.102, 0.032, 0.102];
 /// Most grains that are read.
 const MOST: usize = 1_000_000;
-/// Longest line that is read (bytes).
-const LONGEST: u64 = 4096;
 
 /// Centres of grains about the middle of the drum (m).
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,60 +36,43 @@ pub fn start_in(folder: &Path) -> std::io::Result<Option<PathBuf>> {
 /// The file cannot be read, or a line is not what it must be.
 pub fn read_start(path: &Path) -> Result<Start, ReadError> {
     let file = path.to_string_lossy();
-    let mut input = BufReader::new(File::open(path).map_err(|error| ReadError::opening(&file, error))?);
-    let mut number = 0;
-    let mut next = || -> Result<Option<String>, ReadError> {
-        number += 1;
-        let mut line = String::new();
-        let read = (&mut input).take(LONGEST).read_line(&mut line);
-        match read.map_err(|error| ReadError::reading(&file, number, error))? {
-            0 => Ok(None),
-            _ => Ok(Some(line)),
-        }
-    };
-    let first = next()?.unwrap_or_default();
-    let count = first.trim().parse().ok().filter(|count| (1..=MOST).contains(count));
-    let count = count
-        .ok_or_else(|| ReadError::at(&file, 1, format!("a number of grains up to {MOST}"), quoted(first.trim())))?;
-    next()?;
+    let input = BufReader::new(File::open(path).map_err(|error| ReadError::opening(&file, error))?);
+    let mut lines = LineReader::new(input, &file)?;
+    let first = lines.next_line()?.map_or("", |line| line.text.trim()).to_owned();
+    let count = first.parse().ok().filter(|count| (1..=MOST).contains(count));
+    let count =
+        count.ok_or_else(|| ReadError::at(&file, 1, format!("a number of grains up to {MOST}"), quoted(&first)))?;
+    lines.next_line()?;
     let mut start = Start::default();
     for row in 0..count {
         let expected = || format!("a type, 0 or 1, and three coordinates of {count} grains");
         let place = row as u64 + 3;
-        let line = next()?.ok_or_else(|| ReadError::at(&file, place, expected(), "the end of the file"))?;
-        let fields: Vec<&str> = line.split_whitespace().collect();
+        let line = lines.next_line()?.ok_or_else(|| ReadError::at(&file, place, expected(), "the end of the file"))?;
+        let fields: Vec<&str> = line.text.split_whitespace().collect();
         let numbers: Option<Vec<f64>> =
             fields.iter().skip(1).map(|field| field.parse().ok().filter(|number: &f64| number.abs() < 1.0)).collect();
         let kind = fields.first().and_then(|kind| ["0", "1"].iter().position(|known| known == kind));
         match (kind, numbers.as_deref()) {
             (Some(kind), Some(&[x, y, z])) => {
-                start.kinds[kind].push([x - MIDDLE[0], y - MIDDLE[1], z - MIDDLE[2]]);
+                start.kinds[kind].push([x - MIDDLE[0], y - MIDDLE[1], z - MIDDLE[2]].map(rounded));
             }
-            _ => return Err(ReadError::at(&file, place, expected(), quoted(line.trim()))),
+            _ => return Err(line.error(expected(), quoted(line.text.trim()))),
         }
     }
     Ok(start)
+}
+
+/// A coordinate without what the difference from the middle leaves in its last digits: to 1e-9 m, finer than the file.
+fn rounded(at: f64) -> f64 {
+    (at * 1e9).round() / 1e9
 }
 
 impl Start {
     /// Both kinds as the data files that the scene of the drum begins with: name and text of each.
     #[must_use]
     pub fn files(&self) -> [(&'static str, String); 2] {
-        [("drum-m2.data", self.data(0, 0.004, 2000.0)), ("drum-m1.data", self.data(1, 0.002, 2500.0))]
-    }
-
-    /// One kind as a data file of LAMMPS, with these diameter (m) and density (kg/m³).
-    #[must_use]
-    pub fn data(&self, kind: usize, diameter: f64, density: f64) -> String {
-        let grains = &self.kinds[kind];
-        let mut text = format!(
-            "drum\n\n{} atoms\n1 atom types\n\n-0.11 0.11 xlo xhi\n-0.04 0.04 ylo yhi\n-0.11 0.11 zlo zhi\n\nAtoms # sphere\n\n",
-            grains.len()
-        );
-        for (number, [x, y, z]) in grains.iter().enumerate() {
-            let _ = writeln!(text, "{} 1 {diameter} {density} {x:.9} {y:.9} {z:.9}", number + 1);
-        }
-        text
+        let of = |kind: usize, diameter, density| atoms(&self.kinds[kind], diameter, density);
+        [("drum-m2.data", of(0, 0.004, 2000.0)), ("drum-m1.data", of(1, 0.002, DENSITY_M1))]
     }
 }
 
@@ -110,7 +92,8 @@ mod tests {
         let start = read("2\nbox\n0 0.102 0.032 0.002\n1 0.202 0.032 0.102\n").unwrap();
         assert_eq!(start.kinds[0].len(), 1);
         assert!((start.kinds[1][0][0] - 0.1).abs() < 1e-12);
-        assert!(start.data(1, 0.002, 2500.0).contains("\n1 1 0.002 2500 0.100000000 0.000000000 0.000000000\n"));
+        let [_, (_, text)] = start.files();
+        assert!(text.contains("\n1 1 0.002 2500 0.1 0 0\n"), "{text}");
     }
 
     #[test]

@@ -114,8 +114,8 @@ impl Processor {
     }
 }
 
-/// A loop, compiled for what every processor can do. It is a function of its own, as those for other processors are: many such loops
-/// in one function take the compiler minutes.
+/// A loop, compiled for what every processor can do. It is a function of its own, as those for other processors are: many such
+/// loops in one function take the compiler minutes.
 #[inline(never)]
 fn portable<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Plain::<LANES>)

@@ -1,0 +1,70 @@
+//! The impact on the beds that are shared by the round robin, where the user has them.
+
+use super::{DEEP, half_the_density, height};
+use crate::registry::made_of;
+use crate::sources::literature::dosta_2024 as dosta;
+use grainbench_harness::data::{Data, NotMade};
+use grainbench_harness::prelude::*;
+use grainbench_harness::source::Cited;
+use grainbench_reference::round_robin::{Spread, bed_in, bed_names, read_bed};
+use grainbench_scene::source::SceneSource;
+use std::path::Path;
+
+/// When the ball is at rest in a hundred thousand grains (s).
+const REST: f64 = 0.06;
+
+/// The impact on the shared bed of fifty thousand grains.
+static FIFTY: Data = Data {
+    name: "shared-50k",
+    needs: "it begins with the shared start of Dosta et al. 2024 (doi 10.5281/zenodo.8252892) with fifty thousand grains, \
+            `50KParticles.txt`; `grainbench run impact-bed --levels all --data DIR` takes it from a folder that holds it",
+    scene: |folder| shared(folder, 50, DEEP),
+};
+/// The impact on the shared bed of a hundred thousand grains.
+static HUNDRED: Data = Data {
+    name: "shared-100k",
+    needs: "it begins with the shared start of Dosta et al. 2024 (doi 10.5281/zenodo.8252892) with a hundred thousand grains, \
+            `100KParticles.txt`; `grainbench run impact-bed --levels all --data DIR` takes it from a folder that holds it",
+    scene: |folder| shared(folder, 100, REST),
+};
+
+/// The scene of the case with the ball and the bed of a shared start, for so long (s).
+fn shared(folder: &Path, thousands: usize, duration: f64) -> Result<Scene, NotMade> {
+    let path = bed_in(folder, thousands).ok_or_else(|| {
+        let [name, other] = bed_names(thousands);
+        NotMade::Absent(format!("{}: expected `{name}` or `{other}`, found neither", folder.display()))
+    })?;
+    let bed = read_bed(&path, thousands).map_err(|error| NotMade::Wrong(error.to_string()))?;
+    let source = SceneSource::from_text("scene.toml", Path::new("."), super::CASE.scene)
+        .set("duration", &duration.to_string())
+        .set("grains.ball.position", &format!("{:?}", bed.ball))
+        .set("grains.bed.state", "")
+        .set("grains.bed.file", "{ path = \"bed.data\" }");
+    made_of(&source, &[("bed.data", bed.data())]).map_err(NotMade::Wrong)
+}
+
+/// Where LIGGGHTS and MUSEN have the ball on the same bed, one more code may be off by 2 s_code: no spread between beds is in it.
+fn row(quantity: &str, data: &'static Data, time: f64, (cited, half): (Cited, Cited)) -> Claim {
+    let code = half.value * std::f64::consts::SQRT_2;
+    let allowed = Spread { mean: cited.value, code, bed: 0.0 }.allowed(1, 1);
+    claim(quantity, "mm")
+        .of(Run::new(PLAIN, "dem:liggghts", super::STEP).from_data(data).long())
+        .equals_cited(cited, 1.0, move |done| height(&done[0], time))
+        .within(computed(allowed, "one more code on the same bed: 2 s_code, s_code = |a − b|/√2 of the two codes"))
+        .refuses(half_the_density())
+}
+
+pub(super) fn claims() -> Vec<Claim> {
+    let at_30_ms = (dosta::HEIGHT_30_100K, dosta::HEIGHT_30_100K_HALF);
+    let at_rest = (dosta::HEIGHT_60_100K, dosta::HEIGHT_60_100K_HALF);
+    vec![
+        row(
+            "height of the ball at 30 ms, 50,000 grains, the shared bed",
+            &FIFTY,
+            DEEP,
+            (dosta::HEIGHT_30_50K, dosta::HEIGHT_30_50K_HALF),
+        ),
+        row("height of the ball at 30 ms, 100,000 grains, the shared bed", &HUNDRED, DEEP, at_30_ms),
+        row("height of the ball at rest, 100,000 grains, the shared bed", &HUNDRED, REST, at_rest),
+    ]
+}

@@ -1,0 +1,139 @@
+//! The shared starts of the impact: a table of spheres, of which one is the ball.
+
+use super::atoms::{DENSITY_M1, atoms};
+use crate::read::line_reader::LineReader;
+use crate::read::read_error::{ReadError, quoted};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Radii of a grain and of the ball (m).
+const RADII: [f64; 2] = [0.001, 0.01];
+/// How far a radius may be off (m).
+const ROUNDED: f64 = 1e-6;
+
+/// Centres of the ball and of the grains of the bed (m).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bed {
+    /// The ball.
+    pub ball: [f64; 3],
+    /// The grains, in the order of the file.
+    pub grains: Vec<[f64; 3]>,
+}
+
+/// The names under which the start with so many thousand grains is shared: by the authors, and by Yade.
+#[must_use]
+pub fn bed_names(thousands: usize) -> [String; 2] {
+    [format!("{thousands}KParticles.txt"), format!("Case3_PenetrationTest_{thousands}000_Particles.txt")]
+}
+
+/// The start with so many thousand grains in a folder, where there is one.
+#[must_use]
+pub fn bed_in(folder: &Path, thousands: usize) -> Option<PathBuf> {
+    bed_names(thousands).map(|name| folder.join(name)).into_iter().find(|path| path.is_file())
+}
+
+/// Reads a start: a line of titles, and for each sphere its radius and three coordinates (m); the ball is told by its radius.
+///
+/// # Errors
+/// The file cannot be read, a line is not what it must be, or there is not one ball among so many thousand grains.
+pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
+    let file = path.to_string_lossy();
+    let count = thousands * 1000;
+    let input = BufReader::new(File::open(path).map_err(|error| ReadError::opening(&file, error))?);
+    let mut lines = LineReader::new(input, &file)?;
+    let titles = lines.next_line()?.map_or("", |line| line.text.trim()).to_owned();
+    if titles.is_empty() || titles.split_whitespace().all(|title| title.parse::<f64>().is_ok()) {
+        return Err(ReadError::at(&file, 1, "a line of titles", quoted(&titles)));
+    }
+    let mut balls = Vec::new();
+    let mut grains = Vec::new();
+    while let Some(line) = lines.next_line()? {
+        if line.text.trim().is_empty() {
+            continue;
+        }
+        let numbers: Option<Vec<f64>> = line
+            .text
+            .split_whitespace()
+            .map(|field| field.parse().ok().filter(|number: &f64| number.abs() < 1.0))
+            .collect();
+        let is = |radius: f64, of: usize| (radius - RADII[of]).abs() < ROUNDED;
+        match numbers.as_deref() {
+            Some(&[radius, x, y, z]) if is(radius, 0) && grains.len() < count => grains.push([x, y, z]),
+            Some(&[radius, x, y, z]) if is(radius, 1) && balls.is_empty() => balls.push([x, y, z]),
+            _ => {
+                let expected = format!(
+                    "a radius, {} of {count} grains or {} of one ball, and three coordinates (m)",
+                    RADII[0], RADII[1]
+                );
+                return Err(line.error(expected, quoted(line.text.trim())));
+            }
+        }
+    }
+    match balls[..] {
+        [ball] if grains.len() == count => Ok(Bed { ball, grains }),
+        _ => {
+            let found = format!("{} grains and {} ball at the end of the file", grains.len(), balls.len());
+            Err(lines.error_at_end(format!("{count} grains and one ball"), found))
+        }
+    }
+}
+
+impl Bed {
+    /// The grains of the bed as a data file of LAMMPS.
+    #[must_use]
+    pub fn data(&self) -> String {
+        atoms(&self.grains, 2.0 * RADII[0], DENSITY_M1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The start with a thousand grains in a row of columns, beginning and ending as asked.
+    fn text(titles: &str, grains: usize, end: &str) -> String {
+        let grain = |number: usize| {
+            format!("0.001\t{}\t{:.3}\t-.0\n", 0.002 * (number % 40) as f64, 0.002 * (number / 40) as f64)
+        };
+        titles.to_owned() + &(0..grains).map(grain).collect::<String>() + end
+    }
+
+    fn read(text: &str) -> Result<Bed, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(&bed_names(1)[0]);
+        std::fs::write(&path, text).unwrap();
+        assert_eq!(bed_in(folder.path(), 1).as_ref(), Some(&path));
+        assert_eq!(bed_in(folder.path(), 2), None);
+        read_bed(&path, 1).map_err(|error| error.to_string())
+    }
+
+    const TITLES: &str = "R\tX\tY\tZ\n";
+    const BALL: &str = "0.01\t0\t0\t0.06\n";
+
+    #[test]
+    fn reads_grains_and_the_ball() {
+        let bed = read(&text(TITLES, 1000, BALL)).unwrap();
+        assert_eq!((bed.ball, bed.grains.len()), ([0.0, 0.0, 0.06], 1000));
+        assert!(bed.data().contains("\n42 1 0.002 2500 0.002 0.002 -0\n"), "{}", bed.data());
+    }
+
+    #[test]
+    fn refuses_what_is_no_start() {
+        for (text, words) in [
+            (String::new(), ":1: expected a line of titles"),
+            (text("", 1000, BALL), ":1: expected a line of titles"),
+            (text(TITLES, 999, BALL), ":1001: expected 1000 grains and one ball, found 999 grains and 1 ball"),
+            (text(TITLES, 1000, ""), ":1001: expected 1000 grains and one ball, found 1000 grains and 0 ball"),
+            (text(TITLES, 1001, BALL), ":1002: expected a radius"),
+            (text(TITLES, 1000, &BALL.repeat(2)), ":1003: expected a radius"),
+            (text(TITLES, 3, "0.001 0 0\n"), ":5: expected a radius"),
+            (text(TITLES, 3, "0.002 0 0 0\n"), ":5: expected a radius"),
+            (text(TITLES, 3, "0.001 nan 0 0\n"), ":5: expected a radius"),
+            (text(TITLES, 3, "0.001 0 0 60\n"), ":5: expected a radius"),
+        ] {
+            let error = read(&text).unwrap_err();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+}
