@@ -10,6 +10,8 @@ use std::path::Path;
 
 /// Rows that begin with the drum's start.
 const ROWS: [&str; 4] = ["run", "drum-mixing", "--filter", "quantity=zone 2"];
+/// Rows that begin with the shared beds of the impact.
+const BEDS: [&str; 6] = ["run", "impact-bed", "--filter", "quantity=the shared bed", "--levels", "all"];
 
 /// Outcome and reason of each row of a report.
 fn rows(directory: &Path) -> Vec<(String, String)> {
@@ -33,17 +35,19 @@ fn without_it_rows_say_where_it_is_to_be_had() {
     }
 }
 
+/// With what `data` holds these rows are not begun with, and that is told.
+fn refused(path: &Path, rows: &[&str], words: &str) {
+    let answer = grainbench(path, &[rows, &["--data", "data"]].concat());
+    assert_eq!(answer.code, Some(2), "{}", answer.err);
+    assert!(answer.err.contains(words) && !path.join("grainbench-out").exists(), "{}", answer.err);
+}
+
 #[test]
 fn what_is_no_start_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();
     std::fs::create_dir(path.join("data")).unwrap();
-    let with_data = [&ROWS[..], &["--data", "data"]].concat();
-    let refused = |words: &str| {
-        let answer = grainbench(path, &with_data);
-        assert_eq!(answer.code, Some(2), "{}", answer.err);
-        assert!(answer.err.contains(words) && !path.join("grainbench-out").exists(), "{}", answer.err);
-    };
+    let refused = |words: &str| refused(path, &ROWS, words);
     refused("data: expected the start of the drum, a file whose name ends in `.xyz`, found none");
     std::fs::write(path.join("data/start.xyz"), "1\nbox\n1 0 0\n").unwrap();
     refused("start.xyz:3: expected a type, 0 or 1, and three coordinates");
@@ -67,19 +71,24 @@ fn another_start_is_told_from_the_published_one() {
     assert!(rows.len() == 7 && rows.iter().all(|(outcome, _)| outcome == "stale"), "{rows:?}");
 }
 
+/// Without the beds nothing is run, and no figure of the case either, which would take minutes.
+#[test]
+fn without_the_shared_beds_rows_say_where_they_are_to_be_had() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &BEDS);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let rows = rows(directory.path());
+    let told = |(outcome, row): &(String, String)| outcome == "not-available" && row.contains("KParticles.txt");
+    assert!(rows.len() == 3 && rows.iter().all(told), "{rows:?}");
+}
+
 /// The shared beds of the impact: what is no bed is told with its place.
 #[test]
 fn what_is_no_bed_is_refused() {
-    const BEDS: [&str; 6] = ["run", "impact-bed", "--filter", "quantity=the shared bed", "--levels", "all"];
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();
     std::fs::create_dir(path.join("data")).unwrap();
-    let with_data = [&BEDS[..], &["--data", "data"]].concat();
-    let refused = |words: &str| {
-        let answer = grainbench(path, &with_data);
-        assert_eq!(answer.code, Some(2), "{}", answer.err);
-        assert!(answer.err.contains(words) && !path.join("grainbench-out").exists(), "{}", answer.err);
-    };
+    let refused = |words: &str| refused(path, &BEDS, words);
     refused("data: expected `50KParticles.txt` or `Case3_PenetrationTest_50000_Particles.txt`, found neither");
     std::fs::write(path.join("data/100KParticles.txt"), "").unwrap();
     refused("100KParticles.txt:1: expected a line of titles");

@@ -230,7 +230,9 @@ pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &
         let solver =
             |claim: &Claim| stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default().to_owned();
         let is_meant = |claim: &Claim| before.as_ref().is_none_or(|before| before.was_red(case, &solver(claim), claim));
+        let asked = of_case.claims.len();
         of_case.claims.retain(|claim| filters.means(claim) && is_meant(claim));
+        of_case.is_part = of_case.claims.len() < asked;
     }
     selected.retain(|of_case| !of_case.claims.is_empty());
     if selected.is_empty() {
@@ -456,10 +458,11 @@ pub(crate) fn runner(selected: &Selected, options: &Options, thorough: bool, sol
 /// # Errors
 /// When a run fails that is drawn.
 pub(crate) fn draw(selected: &Selected, runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    match selected.stranger {
-        None => course::of_case(selected.case, runner, &selected.claims),
-        Some(_) => course::figures(runner, &selected.claims),
+    if selected.stranger.is_some() || selected.is_part {
+        // The case's own figures ask for runs that none of these claims does.
+        return course::figures(runner, &selected.claims);
     }
+    course::of_case(selected.case, runner, &selected.claims)
 }
 
 /// The section of a case in which nothing was done yet.

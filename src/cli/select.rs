@@ -19,6 +19,8 @@ pub(crate) struct Selected {
     pub(crate) claims: Vec<Claim>,
     /// The program that is put in the place of the solvers that they name.
     pub(crate) stranger: Option<Arc<Outside>>,
+    /// Whether some of them were left out afterwards: of a part is drawn what its claims show alone.
+    pub(crate) is_part: bool,
 }
 
 /// The claims of the cases named, of solvers and of programs by their manifests: what is judged of each.
@@ -70,7 +72,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
             let wanted = |variant: &str| mine.iter().any(|named| named.variant == Some(variant));
             claims.retain(|claim| row(claim).is_some_and(|run| wanted(run.variant)));
         }
-        selected.push(Selected { case, claims, stranger: None });
+        selected.push(Selected { case, claims, stranger: None, is_part: false });
     }
     refuse_unknown_solvers(&selected, solvers)?;
     let levels = wanted_levels(&selected, levels)?;
