@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 /// Density of M1 (kg/m³).
 pub(super) const DENSITY_M1: f64 = 2500.0;
-/// Half the edge of the box that is written (m): what lies beyond is refused when grains are read.
-const HALF: f64 = 1.0;
+/// Half the edge of the box that is written (m): grains within 1 m are read, which the drum's middle shifts.
+const HALF: f64 = 2.0;
 
 /// Grains by their centres (m), of one diameter (m) and one density (kg/m³).
 pub(super) fn atoms(centres: &[[f64; 3]], diameter: f64, density: f64) -> String {
