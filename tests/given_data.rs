@@ -99,3 +99,22 @@ fn what_is_no_bed_is_refused() {
     std::fs::write(path.join("data/100KParticles.txt"), "R X Y Z\n0.001 0 0 0\n").unwrap();
     refused("100KParticles.txt:2: expected 100000 grains and one ball, found 1 grains and 0 ball");
 }
+
+/// Where one start is given, rows of another are left aside with their controls.
+#[test]
+fn rows_of_one_start_do_not_ask_for_another() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::create_dir(path.join("data")).unwrap();
+    std::fs::write(path.join("data/start.xyz"), "2\nbox\n0 0.102 0.032 0.05\n1 0.122 0.032 0.05\n").unwrap();
+    let drum = ["drum-mixing", "--filter", "quantity=zone 2 at .1 s", "--data", "data"];
+    let answer = grainbench(path, &[&BEDS[..], &drum].concat());
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let outcomes: Vec<String> = rows(path).into_iter().map(|(outcome, _)| outcome).collect();
+    // Two grains are not thirty thousand.
+    assert_eq!(outcomes, ["fail", "not-available", "not-available", "not-available"]);
+    let results = std::fs::read_to_string(path.join("grainbench-out/results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    let controls = results["controls"].as_array().unwrap();
+    assert!(controls.len() == 1 && controls[0]["case"] == "drum-mixing", "{controls:?}");
+}

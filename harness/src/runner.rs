@@ -179,7 +179,7 @@ impl Runner {
     pub fn is_available(&self, claim: &Claim) -> bool {
         let is_stored = |run: &Run| !self.live && self.solvers.is_stored(self.case, run);
         let can_run = |run: &Run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok());
-        let has_data = |run: &Run| run.data.is_none() || self.data.is_some();
+        let has_data = |run: &Run| run.data.is_none() || !matches!(self.scene(run), Err(RunError::NotAvailable { .. }));
         claim.runs.iter().all(|run| has_data(run) && (self.is_read_back(run, None) || is_stored(run) || can_run(run)))
     }
 
