@@ -7,6 +7,7 @@ use crate::rows::draws::apart;
 use crate::rows::programs::row;
 use column::{COLUMN, STEADY, side};
 use grainbench_harness::prelude::*;
+use grainbench_harness::statistics::{BLOCKS, difference};
 use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[
@@ -68,11 +69,16 @@ fn weight(scene: &Scene) -> f64 {
     scene.grains.iter().map(|grain| grain.mass).sum::<f64>() * scene.gravity.norm()
 }
 
-/// The mean of a column of the series over the steady descent.
-fn steady(done: &Done, name: &str) -> Result<f64, Missing> {
+/// A column of the series in the steady descent.
+fn descending(done: &Done, name: &str) -> Result<Vec<f64>, Missing> {
     let values = done.series().time.iter().zip(done.column(name)?).filter(|(time, _)| **time >= STEADY);
     let values: Vec<f64> = values.map(|(_, value)| *value).collect();
-    if values.is_empty() { Err(Missing(format!("samples of `{name}`"))) } else { Ok(mean(&values)) }
+    if values.is_empty() { Err(Missing(format!("samples of `{name}`"))) } else { Ok(values) }
+}
+
+/// Its mean.
+fn steady(done: &Done, name: &str) -> Result<f64, Missing> {
+    Ok(mean(&descending(done, name)?))
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -139,18 +145,34 @@ fn claims() -> Vec<Claim> {
     all
 }
 
+/// What the mean over the steady descent may be off.
+fn known() -> Tolerance {
+    one_interval("in units of half the 99 % confidence interval of the mean, from the means over 8 blocks of time")
+}
+
+/// The mean of some columns over the steady descent, as parts of the weight that are borne, beside all of it; in units of half
+/// the confidence interval of that mean.
+fn all_borne(done: &Done, columns: &[&str]) -> Result<Measured, Missing> {
+    let weight = weight(&done.scene);
+    let mut borne = Vec::new();
+    for name in columns {
+        let forces = descending(done, name)?;
+        borne.resize(forces.len(), 0.0);
+        borne.iter_mut().zip(forces).for_each(|(borne, force)| *borne -= force / weight);
+    }
+    let estimate = difference(&vec![1.0; borne.len()], &borne, BLOCKS);
+    let estimate = estimate.ok_or_else(|| Missing(format!("{BLOCKS} samples of {columns:?}")))?;
+    Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
+}
+
 /// Floor and side bear the weight.
 fn balance() -> Claim {
     claim("weight that floor and side bear, over the weight", "1")
         .of(run(PLAIN, "dem"))
         .holds("momentum of the column, which descends at one speed", |done| {
-            let borne = -steady(&done[0], "floor.force_z")? - steady(&done[0], "side.force_z")?;
-            Ok(Measured::new(borne / weight(&done[0].scene), 1.0, 1.0))
+            all_borne(&done[0], &["floor.force_z", "side.force_z"])
         })
-        .within(judged(
-            2e-3,
-            "its momentum changes by less than m v √N over the time of the mean, and 120 samples alias its swings",
-        ))
+        .within(known())
         .refuses(Control::scene("gravity 1 % larger", |scene| scene.gravity *= 1.01))
 }
 
@@ -159,9 +181,9 @@ fn smooth() -> Claim {
     claim("part of the weight on the floor, smooth side", "1")
         .of(run("smooth", "dem"))
         .equals(Source::Derived("a side without friction bears nothing"), |done| {
-            Ok(Measured::new(on_floor(&done[0])?, 1.0, 1.0))
+            all_borne(&done[0], &["floor.force_z"])
         })
-        .within(judged(2e-3, "as of floor and side together"))
+        .within(known())
         .refuses(Control::scene("a friction of .02 at the side", |scene| side_friction(scene, 0.02)))
 }
 
