@@ -7,7 +7,7 @@ mod figures;
 
 use crate::rows::programs::{PAIRS, layer_of_spheres};
 use crate::sources::literature::{cundall_strack_1979 as paper, josselin_de_jong_1969 as experiment};
-use crate::stage::Stage;
+use crate::stage::{NEAR_IN_GROWTH, NEAR_IN_OVERLAP, NEAR_IN_RATIO, Stage};
 use grainbench_harness::compare::perturbed::{self, Parting};
 use grainbench_harness::prelude::*;
 use grainbench_harness::run::Standing;
@@ -121,7 +121,7 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
         claim(format!("growth of F_V from stage A to stage B, {words}"), "1")
             .of_all(packings.to_vec())
             .holds(IMPOSED, held(experiment::GROWTH.value, 1.0, growth))
-            .within(judged(2e-4, FOUND))
+            .within(computed(NEAR_IN_GROWTH, FOUND))
             .refuses(further_to_b()),
     );
     claims
@@ -153,11 +153,11 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
                 "imposed, as the experiment has it, by the motion of the walls (derivation)",
                 held(experiment::RATIO_A.value, 1.0, |[a, _]| a.ratio()),
             )
-            .within(judged(0.01, FOUND))
+            .within(computed(NEAR_IN_RATIO, FOUND))
             .refuses(smooth()),
         quantity("mean overlap / mean radius at stage A")
             .holds(IMPOSED, held(1e-3, 1e-3, |[a, _]| a.overlap))
-            .within(judged(0.01, FOUND))
+            .within(computed(NEAR_IN_OVERLAP / 1e-3, FOUND))
             .refuses(further),
         quantity("forces added up over the four walls / largest, stages A and B")
             .holds(

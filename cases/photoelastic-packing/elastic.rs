@@ -1,6 +1,7 @@
 //! Fifty of the discs as elastic bodies, whose contacts have no stiffness of their own.
 
 use super::{FOUND, IMPOSED, LEVELS, equilibrium, experiment, further_to_b, ratio_at_b, run, stages};
+use crate::stage::NEAR_IN_GROWTH;
 use grainbench_harness::prelude::*;
 use nalgebra::Vector3;
 
@@ -34,7 +35,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 let ([_, sheared], [_, alone]) = (vertical(&done[0])?, vertical(&done[1])?);
                 Ok(Measured::new(sheared / alone - 1.0, experiment::GROWTH.value, 1.0))
             })
-            .within(judged(2e-4, FOUND))
+            .within(computed(NEAR_IN_GROWTH, FOUND))
             .refuses(further_to_b()),
         claim("F_V at stage B over that at stage A, walls at rest, 50 elastic discs", "1")
             .of(alone().known(

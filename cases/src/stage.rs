@@ -4,6 +4,13 @@
 use grainbench_scene::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::Vector3;
 
+/// How near the search for the motion of the walls of `photoelastic-packing` ends: of F_H/F_V at stage A.
+pub const NEAR_IN_RATIO: f64 = 0.004;
+/// The same of the mean overlap over the mean radius at stage A.
+pub const NEAR_IN_OVERLAP: f64 = 8e-6;
+/// The same of F_V at stage B over that at stage A.
+pub const NEAR_IN_GROWTH: f64 = 1e-4;
+
 /// Sums over walls and contacts of one snapshot. Walls are planes along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage {

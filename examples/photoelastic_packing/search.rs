@@ -2,21 +2,18 @@
 //! goes.
 
 use super::walls::{Course, drive, run, run_elastic, size, watch};
-use grainbench::cases::stage::Stage;
+use grainbench::cases::stage::{NEAR_IN_GROWTH, NEAR_IN_OVERLAP, NEAR_IN_RATIO, Stage};
 use grainbench::scene::motion::Moment;
 use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::{Duration, Scene};
 use std::error::Error;
 
-/// F_H/F_V at stage A, and how near is near enough for the search.
+/// F_H/F_V at stage A.
 const RATIO: f64 = 0.39;
-const NEAR: f64 = 0.004;
-/// Mean overlap over mean radius at stage A, and how near is near enough.
+/// Mean overlap over mean radius at stage A.
 const OVERLAP: f64 = 1e-3;
-const CLOSE: f64 = 8e-6;
-/// F_V at stage B over that at stage A, and how near is near enough.
+/// F_V at stage B over that at stage A.
 const GROWTH: f64 = 1.04348;
-const SAME: f64 = 1e-4;
 /// Strain at which a path is given up.
 const FAR: f64 = 0.1;
 
@@ -122,7 +119,7 @@ impl<'s> Search<'s> {
         }
         let mut best = high;
         for _ in 0..8 {
-            if off(&best).abs() < CLOSE {
+            if off(&best).abs() < NEAR_IN_OVERLAP {
                 break;
             }
             let part = (-of_low / (off(&high) - of_low)).clamp(0.1, 0.9);
@@ -145,7 +142,7 @@ impl<'s> Search<'s> {
             if let Some(before) = before.filter(|before| before.1.ratio() > RATIO && now.1.ratio() < RATIO) {
                 return self.between(before, now);
             }
-            if (now.1.ratio() - RATIO).abs() < NEAR {
+            if (now.1.ratio() - RATIO).abs() < NEAR_IN_RATIO {
                 return Ok(now);
             }
             before = Some(now);
@@ -161,7 +158,7 @@ impl<'s> Search<'s> {
         let off = |(_, stage): &(Imposed, Stage)| (stage.ratio() - RATIO).abs();
         let mut best = if off(&above) < off(&below) { above } else { below };
         for _ in 0..10 {
-            if off(&best) < NEAR {
+            if off(&best) < NEAR_IN_RATIO {
                 break;
             }
             let (high, low) = (above.1.ratio(), below.1.ratio());
@@ -200,7 +197,7 @@ impl<'s> Search<'s> {
         }
         let mut best = high;
         for _ in 0..12 {
-            if best.1.abs() < SAME {
+            if best.1.abs() < NEAR_IN_GROWTH {
                 break;
             }
             let part = (-low.1 / (high.1 - low.1)).clamp(0.1, 0.9);
