@@ -137,8 +137,8 @@ fn tolerance(coarsest: f64, cells: f64) -> Tolerance {
 /// What is left of the cylinder's swings about its equilibrium when its force is read, over the weight.
 ///
 /// With a little more load dP the half-width grows as √P, so that the centre of the cylinder comes nearer to the base of the
-/// block, d below the contact, by dP/π [(2 ln(4R/b) − 2)/E'₁ + (2 ln(2d/b) − ν/(1 − ν) − 1)/E'₂]: Johnson, Contact Mechanics, eqs.
-/// 5.57 and 5.58, which hold for a cylinder and for a layer on a base. Steel on aluminium, R = d = .05 m.
+/// block, d below the contact, by dP/π [(2 ln(4R/b) − 2)/E'₁ + (2 ln(2d/b) − ν/(1 − ν) − 1)/E'₂]: Johnson, Contact
+/// Mechanics, eqs. 5.57 and 5.58, which hold for a cylinder and for a layer on a base. Steel on aluminium, R = d = .05 m.
 fn swings() -> f64 {
     let (radius, half_width, poisson, damping) = (0.05_f64, 6.2146e-3, 0.3, 40_000.0_f64);
     let [steel, aluminium] = [210e9, 70e9].map(|young| young / (1.0 - poisson * poisson));
