@@ -31,8 +31,6 @@ pub(crate) struct Grip<S: Space> {
     stencil: Stencil<f64>,
     /// Sum of the weights.
     total: f64,
-    /// What an impulse there changes the velocity by (1/kg): Σ w²/m / (Σ w)² over the nodes.
-    pub(crate) mobility: f64,
     /// Velocity there (m/s).
     pub(crate) velocity: S::Vector,
 }
@@ -51,18 +49,16 @@ impl<S: Space> Grip<S> {
         if !part.window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
             return None;
         }
-        let (mut total, mut mobility, mut velocity) = (0.0, 0.0, S::ORIGIN);
+        let (mut total, mut velocity) = (0.0, S::ORIGIN);
         stencil.each::<S, B>(&part.window, |node| {
             let weight = node.weight.min(most[node.slot]);
             if weight > 0.0 {
                 total += weight;
                 let Node { mass, velocity: momentum, .. } = nodes[node.slot];
                 velocity += momentum * (weight / mass);
-                mobility += weight * (weight / mass);
             }
         });
-        let mobility = mobility / (total * total);
-        (total > 1e-6).then(|| Self { stencil, total, mobility, velocity: velocity * (1.0 / total) })
+        (total > 1e-6).then(|| Self { stencil, total, velocity: velocity * (1.0 / total) })
     }
 
     /// A force (N) on the body there.

@@ -51,22 +51,6 @@ pub(crate) struct Rules<'a> {
     pub(crate) time_step: f64,
 }
 
-impl Rules<'_> {
-    /// Stiffness (N/m) of the springs of a tracer, of so much per area (N/m³; N/m² in the plane), where an impulse changes the
-    /// velocities of both surfaces against each other by `mobility` (1/kg).
-    ///
-    /// On a mobility μ springs of stiffness k swing with ω² = k μ, and a step Δt follows them as long as ω Δt < 2: those of a cell
-    /// of surface together are no stiffer than that. Where points lie close they are far from it: ω Δt is .6 to .9 at a Courant
-    /// number of .4. Where a grain is drawn out to a few points, a tracer stands for more than a cell, and around it there is
-    /// hardly any mass: springs as stiff as elsewhere would swing ever wider there and throw points out of the scene.
-    #[inline(always)]
-    pub(crate) fn stiffness<S: Space>(&self, per_area: f64, area: S::Vector, mobility: f64) -> f64 {
-        let area = S::dot(area, area).sqrt();
-        let of_cell = self.lattice.shortest(S::DIMENSION).powi(S::DIMENSION as i32 - 1);
-        (per_area * area).min(4.0 * (area / of_cell).min(1.0) / (mobility * self.time_step * self.time_step))
-    }
-}
-
 /// What springs tell of a step.
 pub(crate) struct Told<'a, S: Space, A> {
     /// The energy budget, or its absence.
@@ -129,7 +113,7 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
                     let overlap = Overlap {
                         depth,
                         normal: wall.normal,
-                        stiffness: rules.stiffness::<S>(per_area, tracers.area[at], grip.mobility),
+                        stiffness: per_area * S::dot(tracers.area[at], tracers.area[at]).sqrt(),
                         slip: (grip.velocity - wall.velocity(position)) * rules.time_step,
                         friction: coefficient,
                     };
@@ -206,40 +190,4 @@ fn lowest<S: Space>(body: &Body, wall: &RigidPlane<S>) -> f64 {
     let [low, high] = &body.bounds;
     let corner = normal.zip_zip_map(low, high, |n, low, high| if n > 0.0 { low } else { high });
     (corner - S::embed(wall.point)).dot(&normal)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use grainbench_scene::space::Plane;
-    use nalgebra::Vector2;
-
-    /// How wide a spring between two surfaces of a mobility (1/kg) swings in a hundred steps that begin at a depth of one.
-    fn widest(stiffness: f64, mobility: f64, time_step: f64) -> f64 {
-        let (mut depth, mut velocity, mut widest) = (1.0_f64, 0.0, 0.0_f64);
-        for _ in 0..100 {
-            velocity -= stiffness * mobility * depth * time_step;
-            depth += velocity * time_step;
-            widest = widest.max(depth.abs());
-        }
-        widest
-    }
-
-    /// Cells of .5 m, steps of 1 ms, 1000 N/m² along a surface: a tracer of .1 m has 100 N/m wherever steps follow it, and no more
-    /// than they can follow where hardly any mass is around it; one that stands for two cells no more than one of a cell.
-    #[test]
-    fn springs_are_no_stiffer_than_steps_can_follow() {
-        let lattice = Lattice { cell: [0.5; 3], inverse: [2.0; 3], origin: [0.0; 3], period: [None; 3] };
-        let friction = FrictionTable { coefficients: Vec::new(), materials: 0 };
-        let rules = Rules { lattice: &lattice, friction: &friction, penalty: 2.6, time_step: 1e-3 };
-        let stiffness =
-            |length: f64, mobility: f64| rules.stiffness::<Plane>(1000.0, Vector2::new(0.0, length), mobility);
-        assert!((stiffness(0.1, 1.0) - 100.0).abs() < 1e-12);
-        assert!((stiffness(0.5, 1e5) - 40.0).abs() < 1e-12 && (stiffness(1.0, 1e5) - 40.0).abs() < 1e-12);
-        for mobility in [1e3, 1e4, 1e5, 1e6] {
-            let allowed = 0.99 * stiffness(0.5, mobility);
-            assert!(widest(allowed, mobility, 1e-3) < 20.0, "{mobility}");
-        }
-        assert!(widest(500.0, 1e5, 1e-3) > 1e6, "springs that are as stiff as elsewhere");
-    }
 }

@@ -15,20 +15,8 @@ use std::marker::PhantomData;
 /// How far a surface can bulge beyond the box around its tracers (cells).
 const BULGE: f64 = 0.25;
 
-/// How far from a tracer the surface that it has gone through is looked for (cells).
-const REACH: f64 = 0.8;
-
-/// Depth at which surfaces are taken to have passed through each other, and are let go (cells). Springs that bear half of the
-/// plane modulus E' are half as deep.
-const DEEPEST: f64 = 0.4;
-
-/// How deep a surface that is so far beneath another (m) is for their springs, of surfaces that are let go at the `deepest`: as
-/// deep as it is, but beyond half of that less and less. So those that have passed each other, as grains may that are drawn
-/// out to the width of a cell, are not struck when they come back.
-#[inline(always)]
-fn felt(depth: f64, deepest: f64) -> f64 {
-    depth.min(deepest - depth)
-}
+/// Depth at which surfaces are taken to have passed through each other, and are let go (cells).
+const DEEPEST: f64 = 0.8;
 
 /// A tracer of the first body of a pair that has gone through the surface of the second.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +74,7 @@ impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
         let Around { rules, bodies, tracers, .. } = around;
         let cell = rules.lattice.shortest(S::DIMENSION);
         gone.clear();
-        let reach = REACH * cell;
+        let reach = DEEPEST * cell;
         for pair in pairs.iter().flat_map(|pair| [*pair, pair.exchanged()]) {
             let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
             let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
@@ -120,14 +108,11 @@ impl<S: Space, B: Basis> Around<'_, S, B> {
         let Self { rules, bodies, tracers, nodes, most, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
         let friction = rules.friction.between(first.material, second.material)?;
-        let (cell, depth) = (rules.lattice.shortest(S::DIMENSION), -near.gap);
-        let felt = felt(depth, DEEPEST * cell);
-        if felt <= 0.0 {
-            return None;
-        }
         let moduli = [first, second].map(|body| body.deformable.plane_modulus());
         let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
-        let per_area = 0.5 * rules.penalty * harmonic / cell;
+        let per_area = 0.5 * rules.penalty * harmonic / rules.lattice.shortest(S::DIMENSION);
+        let area = tracers.area[tracer];
+        let depth = -near.gap;
         // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
         let out = near.normal - tracers.normal(tracer);
         let normal = out * (1.0 / S::dot(out, out).sqrt());
@@ -135,9 +120,9 @@ impl<S: Space, B: Basis> Around<'_, S, B> {
         let there = middle + pair.shift;
         let one = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most)?;
         let two = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most)?;
-        let stiffness = rules.stiffness::<S>(per_area, tracers.area[tracer], one.mobility + two.mobility);
+        let stiffness = per_area * S::dot(area, area).sqrt();
         let slip = (one.velocity - two.velocity) * rules.time_step;
-        let overlap = Overlap { depth: felt, normal, stiffness, slip, friction };
+        let overlap = Overlap { depth, normal, stiffness, slip, friction };
         Some(Gone { pair, tracer, overlap, there, grips: [one, two] })
     }
 }
@@ -150,22 +135,4 @@ fn beyond<S: Space>(position: S::Vector, low: S::Vector, high: S::Vector) -> f64
         (at(low) - at(position)).max(at(position) - at(high))
     };
     (0..S::DIMENSION).map(beyond).fold(f64::NEG_INFINITY, f64::max)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::felt;
-
-    /// A surface is let go little by little: what pushes goes to nothing without a jump, and is the depth itself up to half.
-    #[test]
-    fn surfaces_that_come_back_are_not_struck() {
-        for at in 0..=20 {
-            assert_eq!(felt(0.01 * f64::from(at), 0.4), 0.01 * f64::from(at));
-        }
-        for at in 0..1000 {
-            let [before, after] = [at, at + 1].map(|at| felt(4e-4 * f64::from(at), 0.4));
-            assert!((after - before).abs() < 4.1e-4 && before < 0.2 + 1e-12);
-        }
-        assert!(felt(0.4, 0.4) <= 0.0 && felt(0.8, 0.4) < 0.0);
-    }
 }
