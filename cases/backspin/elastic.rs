@@ -9,6 +9,7 @@ use crate::exact::one_grain::course;
 use crate::rows::elastic::{Pressed, Rest, settle, stiffen};
 use crate::rows::elastic_backspin::{excess, rolling, slippery, sphere};
 use grainbench_harness::prelude::*;
+use grainbench_scene::material::{Constitutive, Deformable};
 use std::f64::consts::PI;
 
 const SPHERE: Rest = Rest { duration: 0.6, damping: 20.0 };
@@ -32,11 +33,12 @@ fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f6
 }
 
 /// How much nearer to the plane than its radius the centre of the disc is on a grid of so many cells a radius (R), at rest under
-/// its weight W (N per metre) and that of the springs at its surface: with K = 10 MPa, G = 2.5 MPa and 3000 kg/m³, E' = 4G (K +
-/// G/3)/(K + 4G/3), ν = 5/13, and R = .5 m. See [`Pressed::gives`] for what the disc gives.
+/// its weight W (N per metre) and that of the springs at its surface: with K = 10 MPa, G = 2.5 MPa, so ν = 5/13, 3000 kg/m³ and R
+/// = .5 m. See [`Pressed::gives`] for what the disc gives.
 fn flattened(cells: f64) -> f64 {
-    let (bulk, shear, radius) = (10e6, 2.5e6, 0.5);
-    let modulus = 4.0 * shear * (bulk + shear / 3.0) / (bulk + 4.0 * shear / 3.0);
+    let radius = 0.5;
+    let rock = Deformable { bulk_modulus: 10e6, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };
+    let modulus = rock.plane_modulus();
     let disc = Pressed { modulus, poisson: 5.0 / 13.0, radius, sides: 2 };
     let weight = 3000.0 * 9.8 * PI * radius * radius;
     let springs = weight / (2.0 * disc.patch(weight) * radius) / (2.6 * modulus * cells);
