@@ -77,7 +77,7 @@ impl<S: Space> Simulation<S> {
         for ((body, angle), runs) in state.bodies.iter_mut().zip(kept.angles).zip(kept.runs_in_order) {
             (body.angle, body.part.runs_in_order) = (angle, runs);
         }
-        state.find_all_bounds(&contacts.tracers.position);
+        state.find_all_bounds(&mut contacts.tracers);
         self.looked = kept.looked;
         (self.step, self.cost) = (kept.step, kept.cost);
         self.open_accounts();

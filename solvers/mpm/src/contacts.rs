@@ -21,6 +21,10 @@ use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
+use std::slice;
+
+/// Shares of the pairs that each of several threads has in the mean: some find much more than others.
+const SHARES: usize = 8;
 
 /// What is asked of springs in a step beside their forces.
 pub(crate) struct Asked<'a, S: Space> {
@@ -104,7 +108,6 @@ impl<S: Space> Contacts<S> {
             pairs.find(bodies, lattice, margin);
         }
         if setting.contact == Contact::Gap {
-            tracers.find_boxes();
             shared.find_meetings(lattice, bodies, &pairs.found, tracers, walls, nodes);
         } else {
             shared.find(lattice, bodies, fields, &pairs.found, walls, nodes);
@@ -143,11 +146,8 @@ impl<S: Space> Contacts<S> {
         touches.clear();
         springs.begin();
         pairs.find(bodies, lattice, 0.0);
-        if !pairs.found.is_empty() {
-            tracers.find_boxes();
-        }
         let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
-        let shares = state.team.members();
+        let shares = if state.team.members() > 1 { SHARES * state.team.members() } else { 1 };
         springs.found.resize(shares, Found::new());
         let (all, tracers) = (&pairs.found[..], &*tracers);
         state.team.each(springs.found.iter_mut(), |number, found| {
@@ -241,11 +241,11 @@ impl<S: Space> Contacts<S> {
             let some = bodies.iter().take_while(|body| body.tracers.end <= member * count / members).count();
             let (own, others) = bodies.split_at(if member == members { bodies.len() } else { some });
             bodies = others;
-            (own, left.take_off(own.iter().map(|body| body.tracers.len()).sum()))
+            (own, left.take_off(own))
         });
         state.team.each(parts, |_, (bodies, mut tracers)| {
             for body in bodies {
-                let (part, of) = (&body.part, tracers.take_off(body.tracers.len()));
+                let (part, of) = (&body.part, tracers.take_off(slice::from_ref(body)));
                 with_basis!(setting.basis, B => {
                     let basis = PhantomData::<B>;
                     match velocities {

@@ -97,18 +97,19 @@ impl<S: Space> Share<S> {
     /// that reaches from `start` on ([`Basis::START`]).
     pub(crate) fn move_points(&mut self, points: &mut Lent<'_, S>, lattice: &Lattice, start: f64) -> Way {
         let mut way = Way::default();
-        for (position, next) in points.position.iter_mut().zip(&*points.next) {
-            let along = *next - *position;
-            let squared = S::dot(along, along);
-            way.is_lost |= squared.is_nan();
-            way.squared = way.squared.max(squared);
-            *position = *next;
-        }
         for piece in &mut self.pieces {
             piece.bounds = NO_BOX;
             for run in &mut self.runs[piece.runs.clone()] {
                 let range = run.start - points.first..run.end - points.first;
-                let around = enclose::<S>(NO_BOX, &points.position[range]);
+                let mut around = NO_BOX;
+                for (position, next) in points.position[range.clone()].iter_mut().zip(&points.next[range]) {
+                    let along = *next - *position;
+                    let squared = S::dot(along, along);
+                    way.is_lost |= squared.is_nan();
+                    way.squared = way.squared.max(squared);
+                    *position = *next;
+                    around = enclose::<S>(around, &[*next]);
+                }
                 run.is_known = run.holds::<S>(lattice, start, around);
                 for axis in 0..S::DIMENSION {
                     let [low, high] = &mut piece.bounds;
@@ -197,6 +198,7 @@ fn row_of(window: &Window, node: [i32; 3]) -> usize {
 }
 
 /// The box around positions and another box.
+#[inline(always)]
 pub(crate) fn enclose<S: Space>([mut low, mut high]: [[f64; 3]; 2], positions: &[S::Vector]) -> [[f64; 3]; 2] {
     for &position in positions {
         for axis in 0..S::DIMENSION {

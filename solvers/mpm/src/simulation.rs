@@ -281,7 +281,7 @@ impl<S: Space> Simulation<S> {
             }
             way
         };
-        state.gather_bounds(&contacts.tracers.position);
+        state.gather_bounds(&contacts.tracers);
         if way.is_lost || way.squared.sqrt() > cell {
             return Err(state.ran_away(scheme.time_step, cell));
         }

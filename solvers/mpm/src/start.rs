@@ -35,7 +35,7 @@ impl<S: Space> Simulation<S> {
     pub(crate) fn cover(&mut self) {
         let Self { scheme, state, boundary, contacts, .. } = self;
         contacts.drop_idle_surfaces(scheme.setting.contact, state, boundary);
-        state.find_all_bounds(&contacts.tracers.position);
+        state.find_all_bounds(&mut contacts.tracers);
     }
 
     /// Gives every point the velocity that the scene asks for, half a step before the clock starts, so that every step

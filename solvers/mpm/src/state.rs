@@ -8,6 +8,7 @@ use crate::options::Basis;
 use crate::points::Points;
 use crate::runs::Run;
 use crate::share::{self, NO_BOX, Piece, Share, Way, enclose};
+use crate::surface::Tracers;
 use grainbench_lanes::Team;
 use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
@@ -119,16 +120,8 @@ impl<S: Space> State<S> {
         team.fold(parts, go, Way::default(), Way::farther)
     }
 
-    /// The box around a body, of whose tracers the positions are given.
-    pub(crate) fn find_bounds(&mut self, place: usize, tracers: &[S::Vector]) {
-        let Self { bodies, points, .. } = self;
-        let body = &mut bodies[place];
-        let around = enclose::<S>(NO_BOX, &points.position[body.part.points.clone()]);
-        body.bounds = in_space::<S>(enclose::<S>(around, &tracers[body.tracers.clone()]));
-    }
-
-    /// The same, where shares have put boxes around their points.
-    pub(crate) fn gather_bounds(&mut self, tracers: &[S::Vector]) {
+    /// The boxes around all bodies, where shares have put boxes around their points, and runs of tracers have theirs.
+    pub(crate) fn gather_bounds(&mut self, tracers: &Tracers<S>) {
         let Self { bodies, shares, .. } = self;
         let mut around = vec![NO_BOX; bodies.len()];
         for Piece { body, bounds: [low, high], .. } in shares.iter().flat_map(|share| &share.pieces) {
@@ -139,13 +132,17 @@ impl<S: Space> State<S> {
             }
         }
         for (body, around) in bodies.iter_mut().zip(around) {
-            body.bounds = in_space::<S>(enclose::<S>(around, &tracers[body.tracers.clone()]));
+            body.bounds = in_space::<S>(tracers.enclose_runs(body.chunks.clone(), around));
         }
     }
 
-    /// The boxes around all bodies.
-    pub(crate) fn find_all_bounds(&mut self, tracers: &[S::Vector]) {
-        (0..self.bodies.len()).for_each(|place| self.find_bounds(place, tracers));
+    /// The boxes around all bodies and runs of tracers, where they were put.
+    pub(crate) fn find_all_bounds(&mut self, tracers: &mut Tracers<S>) {
+        tracers.find_boxes();
+        for body in &mut self.bodies {
+            let around = enclose::<S>(NO_BOX, &self.points.position[body.part.points.clone()]);
+            body.bounds = in_space::<S>(tracers.enclose_runs(body.chunks.clone(), around));
+        }
     }
 
     /// Kinetic energy (J) of the points' velocities and of the affine part that they carry, ½ m tr(A D Aᵀ) with

@@ -1,10 +1,12 @@
 //! Tracers: massless points on the surface of bodies, carried by the grid.
 
 use crate::basis::Basis;
+use crate::bodies::Body;
 use crate::grid::{Lattice, Stencil};
 use crate::patch::{Copies, Patch};
 use crate::runs;
 use crate::seed;
+use crate::share::{NO_BOX, enclose};
 use crate::transfer::Part;
 use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, Wide, take_off};
 use grainbench_scene::space::Space;
@@ -34,6 +36,12 @@ pub(crate) struct Chunk<S: Space> {
 }
 
 impl<S: Space> Chunk<S> {
+    /// Puts the box around its tracers, which are here.
+    #[inline(always)]
+    fn enclose(&mut self, positions: &[S::Vector]) {
+        [self.low, self.high] = enclose::<S>(NO_BOX, positions).map(|[x, y, z]| S::restrict(Vector3::new(x, y, z)));
+    }
+
     /// Whether its box meets another.
     #[inline(always)]
     pub(crate) fn meets(&self, low: S::Vector, high: S::Vector) -> bool {
@@ -95,7 +103,8 @@ impl<S: Space> Tracers<S> {
 
     /// All of them, lent.
     pub(crate) fn lent(&mut self) -> TracersOf<'_, S> {
-        TracersOf { first: 0, position: &mut self.position, area: &mut self.area, neighbours: &self.neighbours }
+        let Self { position, area, neighbours, chunks } = self;
+        TracersOf { first: 0, position, area, neighbours, chunks }
     }
 
     /// Adds a closed surface; in the plane its patches follow each other with the body on their left.
@@ -120,16 +129,14 @@ impl<S: Space> Tracers<S> {
         first..self.chunks.len()
     }
 
-    /// Boxes around all runs.
+    /// Boxes around all runs, where tracers were put and not carried.
     pub(crate) fn find_boxes(&mut self) {
-        for chunk in &mut self.chunks {
-            let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-            let (low, high) = self.position[chunk.tracers.clone()].iter().fold(start, |(low, high), &at| {
-                let at = S::embed(at);
-                (low.inf(&at), high.sup(&at))
-            });
-            (chunk.low, chunk.high) = (S::restrict(low), S::restrict(high));
-        }
+        self.chunks.iter_mut().for_each(|chunk| chunk.enclose(&self.position[chunk.tracers.clone()]));
+    }
+
+    /// A box around a box and some runs (m).
+    pub(crate) fn enclose_runs(&self, runs: Range<usize>, around: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+        self.chunks[runs].iter().fold(around, |around, chunk| enclose::<S>(around, &[chunk.low, chunk.high]))
     }
 
     /// Outward unit normal at a tracer.
@@ -158,6 +165,10 @@ impl<S: Space> Tracers<S> {
 
     /// The surface made of some runs where a position on another, of which `facing` points out (of any length), has
     /// gone through it; none when it has not, does not face it, or is farther than `reach` (m) from it.
+    ///
+    /// `closest` is the tracer of these runs that the position before was closest to, and then the one that this is closest
+    /// to. Positions along a surface have theirs next to each other, so it tells how far to look; what is found does not
+    /// depend on it.
     #[inline(always)]
     pub(crate) fn gone_through(
         &self,
@@ -165,21 +176,29 @@ impl<S: Space> Tracers<S> {
         position: S::Vector,
         facing: S::Vector,
         reach: f64,
+        closest: &mut Option<usize>,
     ) -> Option<Near<S>> {
-        let (mut closest, mut squared) = (None, 2.0 * reach * reach);
+        let distance_to = |at: usize| {
+            let between = position - self.position[at];
+            S::dot(between, between)
+        };
+        let faces = |at: usize| S::dot(self.area[at], facing) < 0.0;
+        let mut squared = 2.0 * reach * reach;
+        if let Some(before) = closest.take().filter(|&before| faces(before)) {
+            squared = squared.min(distance_to(before).next_up());
+        }
         for chunk in chunks.clone().map(|chunk| &self.chunks[chunk]) {
             if chunk.away(position) >= squared {
                 continue;
             }
             for at in chunk.tracers.clone() {
-                let between = position - self.position[at];
-                let distance = S::dot(between, between);
-                if distance < squared && S::dot(self.area[at], facing) < 0.0 {
-                    (closest, squared) = (Some(at), distance);
+                let distance = distance_to(at);
+                if distance < squared && faces(at) {
+                    (*closest, squared) = (Some(at), distance);
                 }
             }
         }
-        let closest = closest?;
+        let closest = (*closest)?;
         if self.is_above(closest, position) {
             return None;
         }
@@ -303,21 +322,25 @@ pub(crate) struct TracersOf<'a, S: Space> {
     position: &'a mut [S::Vector],
     area: &'a mut [S::Vector],
     neighbours: &'a [[u32; 2]],
+    chunks: &'a mut [Chunk<S>],
 }
 
 impl<S: Space> TracersOf<'_, S> {
-    /// Takes off the first, so many.
-    pub(crate) fn take_off(&mut self, count: usize) -> Self {
+    /// Takes off the first: those of some bodies that follow each other.
+    pub(crate) fn take_off(&mut self, bodies: &[Body]) -> Self {
+        let count = bodies.iter().map(|body| body.tracers.len()).sum();
         let first = self.first;
         self.first += count;
         let (neighbours, others) = self.neighbours.split_at(count);
         self.neighbours = others;
-        Self { first, position: take_off(&mut self.position, count), area: take_off(&mut self.area, count), neighbours }
+        let [position, area] = [&mut self.position, &mut self.area].map(|of| take_off(of, count));
+        let chunks = take_off(&mut self.chunks, bodies.iter().map(|body| body.chunks.len()).sum());
+        Self { first, position, area, neighbours, chunks }
     }
 }
 
 /// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that
-/// carry mass.
+/// carry mass, and the boxes around their runs.
 pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
@@ -335,7 +358,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
         let Self { lattice, part, of, nodes, most, velocity, elapsed, .. } = self;
-        let TracersOf { first, position, area, neighbours } = of;
+        let TracersOf { first, position, area, neighbours, chunks } = of;
         let zero = Wide::splat(lanes, 0.0);
         // Never read unless copied to.
         let Some(&any) = nodes.first() else { return };
@@ -403,6 +426,10 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
                 }
             }
         }
+        for chunk in chunks {
+            let Range { start, end } = chunk.tracers;
+            chunk.enclose(&position[start - first..end - first]);
+        }
         if S::DIMENSION == 2 {
             for (area, neighbours) in area.iter_mut().zip(neighbours) {
                 let [before, after] = neighbours.map(|neighbour| position[neighbour as usize - first]);
@@ -449,11 +476,12 @@ mod tests {
                 let on_surface = chord.powi(4) / (128.0 * radius.powi(3));
                 let below = (chord * depth / radius).powi(2) / (8.0 * (radius - depth));
                 let allowed = (on_surface + below) * (1.0 + (chord / radius).powi(2));
+                let mut closest = None;
                 for at in 0..500 {
                     let (sine, cosine) = (TAU * (f64::from(at) + 0.37) / 500.0).sin_cos();
                     let outward = Vector2::new(cosine, sine);
                     let position = centre.xy() + outward * (radius - depth);
-                    let near = tracers.gone_through(chunks.clone(), position, -outward, 2.0 * chord);
+                    let near = tracers.gone_through(chunks.clone(), position, -outward, 2.0 * chord, &mut closest);
                     let off = near.map_or(f64::NAN, |near| near.gap + depth);
                     assert!(off.abs() < allowed, "{off:e} at a depth of {depth} in {count}, allowed {allowed:e}");
                     most = most.max(off.abs());

@@ -66,7 +66,7 @@ impl<S: Space> Pairs<S> {
                 }
             }
         }
-        self.found.sort_by_key(|pair| (pair.first, pair.second));
+        self.found.sort_unstable_by_key(|pair| (pair.first, pair.second));
         self.found.dedup_by_key(|pair| (pair.first, pair.second));
     }
 

@@ -86,12 +86,14 @@ impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
                 if near.is_empty() {
                     continue;
                 }
+                let mut closest = None;
                 for tracer in chunk.tracers.clone() {
                     if beyond::<S>(tracers.position[tracer], low, high) > BULGE * cell {
                         continue;
                     }
                     let position = tracers.position[tracer] - pair.shift;
-                    let there = tracers.gone_through(near.iter().copied(), position, tracers.area[tracer], reach);
+                    let (facing, runs) = (tracers.area[tracer], near.iter().copied());
+                    let there = tracers.gone_through(runs, position, facing, reach, &mut closest);
                     let there = there.filter(|near| near.gap < 0.0);
                     gone.extend(there.and_then(|near| around.gone(pair, tracer, near)));
                 }

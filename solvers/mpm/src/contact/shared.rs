@@ -312,10 +312,12 @@ impl<S: Space> Shared<S> {
             let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
             let [low, high] = second.bounds.map(|corner| S::restrict(corner) + pair.shift);
             for chunk in tracers.chunks[first.chunks.clone()].iter().filter(|chunk| chunk.meets(low, high)) {
+                let mut closest = None;
                 for at in chunk.tracers.clone() {
                     let position = tracers.position[at];
                     let (chunks, seen) = (second.chunks.clone(), position - pair.shift);
-                    let Some(near) = tracers.gone_through(chunks, seen, tracers.area[at], reach) else { continue };
+                    let near = tracers.gone_through(chunks, seen, tracers.area[at], reach, &mut closest);
+                    let Some(near) = near else { continue };
                     let normal = tracers.normal(at);
                     // The lower body comes first, so that both passes find the same pair.
                     let (out, swap) = (normal - near.normal, pair.second < pair.first);
