@@ -72,10 +72,7 @@ pub(super) fn claims() -> Vec<Claim> {
                  quarter slow",
             ))
             .equals_cited(rolls.reference, 1.0, |done| excess(&done[0]))
-            .within(judged(
-                rolls.allowed[0] + rolls.reference.uncertainty,
-                "what a contact that acts at the surface reaches at this resolution",
-            ))
+            .within(required(rolls.allowed[0] + rolls.reference.uncertainty, ASKED))
             .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, POINTS))),
     );
     claims

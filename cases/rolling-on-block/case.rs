@@ -64,10 +64,7 @@ fn claims() -> Vec<Claim> {
                      too little",
                 ))
                 .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
-                .within(judged(
-                    slope.allowed[1] + slope.reference.uncertainty,
-                    "what a contact that acts at the surface reaches at this resolution",
-                ))
+                .within(required(slope.allowed[1] + slope.reference.uncertainty, ASKED))
                 .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[1].resolution)),
         );
     }
