@@ -215,8 +215,8 @@ fn reproduced(slope: Elastic, cells: f64, cited: Cited) -> Claim {
         .within(judged(
             0.022,
             "two implementations of one method at the same resolution, with other material points; while discs settle \
-             ours damps points, not nodes, which is worth up to .004; at the phase of the grid that the scene has, for \
-             discs that roll go up to .075 less far where they begin at other parts of a cell",
+             ours damps points, not nodes, which is worth up to .004. Seen at one phase of the grid: discs that roll get \
+             up to .075 less or .053 more far where they begin elsewhere in a cell (derivation)",
         ))
         .refuses(control)
 }
