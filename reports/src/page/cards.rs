@@ -135,8 +135,9 @@ fn times(row: &Verdict) -> String {
 
 /// What comes before the first colon's or sentence's end, for a reason is told in full in its row.
 fn first_sentence(text: &str) -> &str {
-    let end = text.find([':', ';', '.']).filter(|end| *end > 30).unwrap_or(text.len());
-    &text[..end]
+    let ends_there = |&at: &usize| at > 30 && text[at + 1..].chars().next().is_none_or(char::is_whitespace);
+    let end = text.match_indices([':', ';', '.']).map(|(at, _)| at).find(ends_there);
+    &text[..end.unwrap_or(text.len())]
 }
 
 fn kinds(report: &Report, solver: &str) -> String {
@@ -207,6 +208,36 @@ fn price(of: &Costs, line: &Line) -> Markup {
                 } @else { "not reached in any of " (line.asked) }
                 @if is_old { "; measured " (of.stamp.day()) (OLD) }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_sentence;
+
+    /// A sentence does not end in the middle of a number, nor before it has said anything.
+    #[test]
+    fn a_sentence_ends_before_a_space() {
+        for (text, first) in [
+            (
+                "two of five beds send the ball back at 1.11 m/s, more slowly; one goes",
+                "two of five beds send the ball back at 1.11 m/s, more slowly",
+            ),
+            (
+                "slow elements are looser than others by .003 there.",
+                "slow elements are looser than others by .003 there",
+            ),
+            (
+                "grains: what rests on springs of half their stiffness sinks. It",
+                "grains: what rests on springs of half their stiffness sinks",
+            ),
+            (
+                "no end at all is in this text, which is long enough",
+                "no end at all is in this text, which is long enough",
+            ),
+        ] {
+            assert_eq!(first_sentence(text), first);
         }
     }
 }
