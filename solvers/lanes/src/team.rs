@@ -1,7 +1,7 @@
 //! The threads of one run.
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// Threads that share the work of a run.
 #[derive(Clone, Debug, Default)]
@@ -44,16 +44,27 @@ impl Team {
         let Some(pool) = &self.pool else {
             return parts.enumerate().fold(start, |joined, (number, part)| join(joined, work(number, part)));
         };
-        let parts: Vec<T> = parts.collect();
-        let work = |(number, part)| work(number, part);
-        let done: Vec<R> = pool.install(|| parts.into_par_iter().enumerate().with_max_len(1).map(work).collect());
-        done.into_iter().fold(start, join)
+        let slots: Vec<_> = parts.map(|part| Mutex::new((Some(part), None))).collect();
+        at_once(pool, slots.len(), &|number| {
+            if let Ok(mut slot) = slots[number].lock()
+                && let Some(part) = slot.0.take()
+            {
+                slot.1 = Some(work(number, part));
+            }
+        });
+        slots.into_iter().filter_map(|slot| slot.into_inner().ok()?.1).fold(start, join)
     }
 
     /// Works on every part, of which nothing comes but what it leaves in the part.
     pub fn each<T: Send>(&self, parts: impl Iterator<Item = T>, work: impl Fn(usize, T) + Sync) {
         self.fold(parts, work, (), |(), ()| ());
     }
+}
+
+/// Does every job of so many, all at once as far as there are threads. It knows nothing of the jobs: compiled with each kind
+/// of work, what shares them out was a fifth of the code of a solver.
+fn at_once(pool: &rayon::ThreadPool, jobs: usize, job: &(dyn Fn(usize) + Sync)) {
+    pool.install(|| (0..jobs).into_par_iter().with_max_len(1).for_each(job));
 }
 
 /// Takes the first of a slice off, so many or as many as there are.
