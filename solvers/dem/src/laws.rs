@@ -84,6 +84,16 @@ impl Laws {
         usize::from(one) * self.material_count + usize::from(other)
     }
 
+    /// The numbers of the laws between the grains of some pairs, of these materials.
+    #[inline(always)]
+    pub(crate) fn numbers(&self, material: &[u16], [first, second]: [&[usize; WIDEST]; 2]) -> [usize; WIDEST] {
+        let mut numbers = [0; WIDEST];
+        for (number, (&one, &other)) in numbers.iter_mut().zip(first.iter().zip(second)) {
+            *number = self.number(material[one], material[other]);
+        }
+        numbers
+    }
+
     /// The law between two materials.
     pub(crate) fn between(&self, one: u16, other: u16) -> &Constants<f64> {
         &self.laws[self.number(one, other)]

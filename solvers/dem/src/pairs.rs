@@ -314,12 +314,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
             for (slots, apart) in first.chunks_exact(L::WIDTH).zip(second.chunks_exact(L::WIDTH)).zip(&aparts) {
                 let slots = Slots::of(lanes, slots, grains);
                 if !laws.is_one() {
-                    let numbers = std::array::from_fn(|lane| {
-                        let [one, other] =
-                            [slots.first[lane], slots.second[lane]].map(|slot| self.grains.material[slot]);
-                        laws.number(one, other)
-                    });
-                    law = laws.gather(lanes, &numbers);
+                    law = laws.gather(lanes, &laws.numbers(self.grains.material, [&slots.first, &slots.second]));
                 }
                 let mut memory = self.remembered(lanes, from);
                 let apart = if L::WIDTH < WIDEST { *apart } else { self.apart(lanes, &slots, from) };

@@ -6,10 +6,34 @@ use crate::{FourLanes, LANES, Lanes, Quad, WIDEST};
 #[derive(Clone, Copy, Debug)]
 pub struct Plain<const WIDTH: usize>;
 
+/// Does the same in each lane, of which there are at most four. Written out: as a loop, every operation would have to be
+/// unrolled by the compiler, once more in every kernel.
+macro_rules! each {
+    ($lane:ident of $count:expr => $do:expr) => {{
+        const { assert!($count <= LANES) };
+        each!(@ 0, $lane of $count => $do);
+        each!(@ 1, $lane of $count => $do);
+        each!(@ 2, $lane of $count => $do);
+        each!(@ 3, $lane of $count => $do);
+    }};
+    (@ $number:literal, $lane:ident of $count:expr => $do:expr) => {
+        if $number < $count {
+            let $lane: usize = $number;
+            $do;
+        }
+    };
+}
+
 /// An answer as bits, so that it picks a number without a branch: all of them, or none.
 #[inline(always)]
 const fn all_bits(yes: bool) -> u64 {
     if yes { u64::MAX } else { 0 }
+}
+
+/// One of two numbers by such bits.
+#[inline(always)]
+const fn chosen(mask: u64, yes: f64, no: f64) -> f64 {
+    f64::from_bits(yes.to_bits() & mask | no.to_bits() & !mask)
 }
 
 impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
@@ -37,73 +61,55 @@ impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
     #[inline(always)]
     fn add(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
         let mut of = a;
-        for lane in 0..WIDTH {
-            of[lane] = a[lane] + b[lane];
-        }
+        each!(lane of WIDTH => of[lane] = a[lane] + b[lane]);
         of
     }
     #[inline(always)]
     fn sub(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
         let mut of = a;
-        for lane in 0..WIDTH {
-            of[lane] = a[lane] - b[lane];
-        }
+        each!(lane of WIDTH => of[lane] = a[lane] - b[lane]);
         of
     }
     #[inline(always)]
     fn mul(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
         let mut of = a;
-        for lane in 0..WIDTH {
-            of[lane] = a[lane] * b[lane];
-        }
+        each!(lane of WIDTH => of[lane] = a[lane] * b[lane]);
         of
     }
     #[inline(always)]
     fn div(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
         let mut of = a;
-        for lane in 0..WIDTH {
-            of[lane] = a[lane] / b[lane];
-        }
+        each!(lane of WIDTH => of[lane] = a[lane] / b[lane]);
         of
     }
     #[inline(always)]
     fn sqrt(self, a: [f64; WIDTH]) -> [f64; WIDTH] {
         let mut of = a;
-        for lane in 0..WIDTH {
-            of[lane] = a[lane].sqrt();
-        }
+        each!(lane of WIDTH => of[lane] = a[lane].sqrt());
         of
     }
     #[inline(always)]
     fn below(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [u64; WIDTH] {
         let mut of = [0; WIDTH];
-        for lane in 0..WIDTH {
-            of[lane] = all_bits(a[lane] < b[lane]);
-        }
+        each!(lane of WIDTH => of[lane] = all_bits(a[lane] < b[lane]));
         of
     }
     #[inline(always)]
     fn choose(self, mask: [u64; WIDTH], yes: [f64; WIDTH], no: [f64; WIDTH]) -> [f64; WIDTH] {
         let mut of = yes;
-        for lane in 0..WIDTH {
-            of[lane] = f64::from_bits(yes[lane].to_bits() & mask[lane] | no[lane].to_bits() & !mask[lane]);
-        }
+        each!(lane of WIDTH => of[lane] = chosen(mask[lane], yes[lane], no[lane]));
         of
     }
     #[inline(always)]
     fn bits(self, mask: [u64; WIDTH]) -> u32 {
         let mut bits = 0;
-        for (lane, each) in mask.into_iter().enumerate() {
-            bits |= (each as u32 & 1) << lane;
-        }
+        each!(lane of WIDTH => bits |= (mask[lane] as u32 & 1) << lane);
         bits
     }
     #[inline(always)]
     fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [[f64; WIDTH]; 4] {
         let mut rows = [[0.0; 4]; WIDTH];
-        for lane in 0..WIDTH {
-            rows[lane] = table[at[lane]][of].0;
-        }
+        each!(lane of WIDTH => rows[lane] = table[at[lane]][of].0);
         turned(rows)
     }
     #[inline(always)]
@@ -115,9 +121,7 @@ impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
         to: &[usize; WIDEST],
     ) -> [[f64; WIDTH]; 4] {
         let mut rows = [[0.0; 4]; WIDTH];
-        for lane in 0..WIDTH {
-            rows[lane] = less(&table[from[lane]][of], &table[to[lane]][of]);
-        }
+        each!(lane of WIDTH => rows[lane] = less(&table[from[lane]][of], &table[to[lane]][of]));
         turned(rows)
     }
     #[inline(always)]
@@ -127,9 +131,7 @@ impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
     #[inline(always)]
     fn quads(self, of: [[f64; WIDTH]; 4]) -> [Quad; WIDEST] {
         let mut quads = [Quad::default(); WIDEST];
-        for lane in 0..WIDTH {
-            quads[lane] = Quad([of[0][lane], of[1][lane], of[2][lane], of[3][lane]]);
-        }
+        each!(lane of WIDTH => quads[lane] = Quad([of[0][lane], of[1][lane], of[2][lane], of[3][lane]]));
         quads
     }
     #[inline(always)]
@@ -150,11 +152,7 @@ impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
 #[inline(always)]
 fn turned<const WIDTH: usize>(rows: [[f64; 4]; WIDTH]) -> [[f64; WIDTH]; 4] {
     let mut columns = [[0.0; WIDTH]; 4];
-    for row in 0..WIDTH {
-        for column in 0..4 {
-            columns[column][row] = rows[row][column];
-        }
-    }
+    each!(row of WIDTH => each!(column of 4 => columns[column][row] = rows[row][column]));
     columns
 }
 
