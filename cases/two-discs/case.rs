@@ -2,10 +2,11 @@
 
 use crate::sources::prototype::two_elastic_discs::{ENERGY_OF_2000, OBLIQUE_SPIN, RESTITUTION};
 use grainbench_harness::prelude::*;
+use std::f64::consts::SQRT_2;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
 /// When the discs of the Sulsky variant touch (s): 3 − √2.
-const TOUCH: f64 = 3.0 - std::f64::consts::SQRT_2;
+const TOUCH: f64 = 3.0 - SQRT_2;
 
 pub(crate) static CASE: Case = Case {
     name: "two-discs",
@@ -196,8 +197,10 @@ fn touching() -> Vec<Claim> {
     const SURFACES_MEET: Source = Source::Derived(
         "centres √2 (.6 − .2 t) apart, as in Sulsky, Chen & Schreyer 1994, touch at t = 3 − √2 (derivation)",
     );
-    /// A step (s): cells of R/8 = .025 m, c = 1.160239 m/s.
-    const STEP: f64 = COURANT * 0.025 / 1.160_239;
+    /// A cell of R/8 (m), a step (s) with c = 1.160239 m/s, and how fast the centres close (m/s).
+    const CELL: f64 = 0.025;
+    const STEP: f64 = COURANT * CELL / 1.160_239;
+    const CLOSING: f64 = SQRT_2 * 0.2;
     vec![
         claim("gap at first contact", "m")
             .of(run("sulsky", "mpm"))
@@ -205,9 +208,9 @@ fn touching() -> Vec<Claim> {
                 let cell = done[0].scene.grains[0].radius / 8.0;
                 Ok(Measured::new(first_gap(&done[0])?, 0.0, cell))
             })
-            .within(estimated(
-                0.07,
-                "in cells; the way of one step, after which a contact is seen, and tracers that stand in for a surface",
+            .within(computed(
+                CLOSING * STEP / CELL,
+                "in cells; the way of one step of .3 h/c at √2 × .2 m/s, after which a contact is seen",
             ))
             .refuses(Control::scene("discs a sixth of a cell too large", |scene| {
                 scene.grains.iter_mut().for_each(|grain| {
