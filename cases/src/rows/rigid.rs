@@ -186,6 +186,8 @@ fn rolling(grain: &OneGrain, t: f64) -> f64 {
 /// frequency f and damping ratio ζ nears its overlap with exp(−t/τ), τ = 2ζ/(2πf), so that until t a part τ/t of what the
 /// arm is worth is missing.
 fn final_velocity(case: &Case, row: Row) -> Claim {
+    /// When it is read (s).
+    const END: f64 = 1.0;
     let Settings { wall_frequency, damping_ratio, .. } = Settings::default();
     let ((overlap, i), lag) = (arm(case, row), 2.0 * damping_ratio / (TAU * wall_frequency));
     claim("velocity at 1 s, arm R − δ/2", "m/s")
@@ -199,7 +201,7 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
             },
         )
         .within(computed(
-            lag * i / (1.0 + i) * overlap,
+            lag / END * i / (1.0 + i) * overlap,
             "the overlap is reached with exp(−t/τ), τ = 2ζ/(2πf) = .053 s: τ/t of what the arm is worth, i/(1 + i) of δ/R",
         ))
         .refuses(wrong(row))
