@@ -89,6 +89,10 @@ impl Watch for Resumable<'_> {
         self.watch.most_rows()
     }
 
+    fn allows_unstable(&self) -> bool {
+        self.watch.allows_unstable()
+    }
+
     fn in_short(&mut self, brief: Brief, rows: u64) {
         self.watch.in_short(brief, rows);
     }

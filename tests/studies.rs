@@ -51,7 +51,7 @@ fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
 fn hard_cases_hold_or_say_why_not() {
     // A thousand thousand steps are for the command line.
     for case in hard::all().iter().filter(|case| !case.name.starts_with("heap")) {
-        for solver in ["dem", "dem:no-tension", "rigid", "mpm"] {
+        for solver in ["dem", "rigid", "mpm"] {
             let row = hard::judge(case, &Registry, solver);
             let quiet = row.standing == Hardness::QuietlyWrong || row.detail.starts_with("quietly");
             assert!(!quiet, "{} · {solver}: {}", row.case, row.detail);

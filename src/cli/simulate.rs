@@ -208,6 +208,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         snapshots,
         remains: None,
         wants_state: arguments.state.is_some(),
+        allow_unstable: arguments.allow_unstable,
         state: None,
         interrupt,
     };
@@ -393,6 +394,8 @@ struct Watcher {
     /// Whether the state at the end is wanted, and that.
     wants_state: bool,
     state: Option<EndState>,
+    /// Whether the run goes on where its time step is above the critical one.
+    allow_unstable: bool,
     interrupt: Interrupt,
 }
 
@@ -495,6 +498,10 @@ impl Watch for Watcher {
 
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
         self.snapshots.add(snapshot).map(|()| None).map_err(|error| NotStored(error.to_string()))
+    }
+
+    fn allows_unstable(&self) -> bool {
+        self.allow_unstable
     }
 
     fn most_rows(&self) -> u64 {

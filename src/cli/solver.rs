@@ -12,6 +12,9 @@ pub(crate) fn find(name: &str) -> Result<Arc<dyn Solver>, Fault> {
     if is_manifest(name) {
         return Ok(outside(name)?);
     }
+    if let Some(now) = solvers::renamed(name) {
+        eprintln!("note: `{name}` is the earlier name of `{now}`, which is used");
+    }
     let solver = solvers::by_name(name).ok_or_else(|| {
         let names = solvers::names();
         Fault::unknown("the path of a manifest (`SOLVER.toml`) or a solver", name, names.iter().map(String::as_str))

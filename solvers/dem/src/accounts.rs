@@ -2,7 +2,9 @@
 //!
 //! Over a step a driven grain or a wall moves by V Δt while the force on it goes from F to F': its work is −½ (F +
 //! F')·V Δt, which is to second order what positions and velocities half a step apart take from it. The work of
-//! friction is that of [`Tangential::rubbed`](crate::contact::tangential::Tangential::rubbed).
+//! friction, and the energy that tangential springs release as their stiffness changes, are those of
+//! [`Tangential::lost`](crate::contact::tangential::Tangential::lost). The energy that is left in the tangential spring of a
+//! contact when it ends is in no entry: nothing where surfaces slip in the end, as they do with finite friction.
 
 use grainbench_scene::budget::Budget;
 use grainbench_scene::effects::Effects;
@@ -18,6 +20,8 @@ pub(crate) struct Accounts {
     work: f64,
     /// Work of friction (J).
     friction: f64,
+    /// Energy released by tangential springs whose stiffness changed (J).
+    released: f64,
     /// Impulse of walls, driven grains and gravity (N s).
     impulse: Vector3<f64>,
     /// Forces on driven groups, then on walls, at the last evaluation (N).
@@ -55,6 +59,8 @@ pub(crate) struct Step {
     pub(crate) free_mass: f64,
     /// Work of friction (J).
     pub(crate) friction: f64,
+    /// Energy released by tangential springs whose stiffness changed (J).
+    pub(crate) released: f64,
     /// Time step Δt (s).
     pub(crate) time_step: f64,
 }
@@ -69,6 +75,7 @@ impl Accounts {
         }
         self.impulse += step.gravity * (step.free_mass * step.time_step);
         self.friction += step.friction;
+        self.released += step.released;
         self.forces = step.forces;
     }
 
@@ -83,6 +90,7 @@ impl Accounts {
             gravitational: grains.iter().map(|grain| -grain.mass * scene.gravity.dot(&grain.position)).sum(),
             work: self.work,
             friction: self.friction,
+            contact: self.released,
             momentum: grains.iter().map(|grain| grain.velocity * grain.mass).sum(),
             impulse: self.impulse,
             ..Budget::default()

@@ -43,19 +43,35 @@ pub enum Tension {
     Clipped,
 }
 
-/// How the tangential spring's stretch is carried along with a contact that turns in the plane.
+/// Transport of the tangential and the rolling spring at a contact that turns or whose stiffness changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum History {
-    /// As a scalar along the tangent, which turns with the contact (Cundall & Strack 1979).
+    /// The springs turn with the contact: with its normal, and about the normal with the mean spin of both bodies. In the
+    /// plane that is a scalar along the tangent (Cundall & Strack 1979). A tangential spring whose stiffness grows keeps its
+    /// force, and one whose stiffness falls its stretch (`mindlin_rescale` of LAMMPS; Thornton, Cummins & Cleary, Powder
+    /// Technology 233 (2013) 30-46): no closed cycle yields work.
     Turned,
-    /// As a vector whose normal part is taken off (LAMMPS, LIGGGHTS).
+    /// A vector whose normal part is taken off (LAMMPS, LIGGGHTS), with a force of stiffness times stretch.
     Projected,
 }
 
-/// Which angular velocity rolls at a wall.
+/// Normal along which the velocities of a step are decomposed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VelocityNormal {
+    /// The mean of the normals at the start and at the end of the step, as velocities belong to its middle: second order
+    /// at contacts that turn.
+    MidStep,
+    /// The normal at the end of the step (Cundall & Strack 1979, LAMMPS, LIGGGHTS): first order at contacts that turn. A wall
+    /// that turns has the velocity of its place at the end of the step.
+    EndOfStep,
+}
+
+/// Angular velocity that rolls at a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WallRolling {
-    /// The grain's own, ω.
+    /// The grain's relative to the wall's, ω − Ω.
+    RelativeSpin,
+    /// The grain's own, ω, also at a wall that turns (LAMMPS `wall/gran` with `rolling sds`).
     Spin,
     /// The velocity of its surface at the torque arm over the distance of the wall, ω (R − δ/2)/(R − δ): between grains
     /// the two are the same (LIGGGHTS `rolling_friction epsd`).
@@ -75,22 +91,26 @@ pub struct Convention {
     pub torque_arm: TorqueArm,
     /// Tension at release.
     pub tension: Tension,
-    /// Stretch at a contact that turns.
+    /// Transport of springs.
     pub history: History,
+    /// Normal of velocities.
+    pub velocity_normal: VelocityNormal,
     /// Angular velocity against which walls resist.
     pub wall_rolling: WallRolling,
 }
 
 impl Convention {
-    /// Ours: Coulomb's limit holds at every step, for spring and dashpot together.
+    /// The default: Coulomb's limit holds at every step, for spring and dashpot together, and a damped contact ends when its
+    /// normal force returns to zero.
     pub const DEFAULT: Self = Self {
         name: "dem",
         coulomb_cap: CoulombCap::SpringAndDashpot,
         cap_normal: CapNormal::Pushing,
         torque_arm: TorqueArm::Radius,
-        tension: Tension::Allowed,
+        tension: Tension::Clipped,
         history: History::Turned,
-        wall_rolling: WallRolling::Spin,
+        velocity_normal: VelocityNormal::MidStep,
+        wall_rolling: WallRolling::RelativeSpin,
     };
     /// Cundall & Strack 1979 to the letter: the limit is that of the springs, and the tangential dashpot is added to it
     /// while the contact sticks, however large it is.
@@ -101,7 +121,8 @@ impl Convention {
         torque_arm: TorqueArm::Radius,
         tension: Tension::Allowed,
         history: History::Turned,
-        wall_rolling: WallRolling::Spin,
+        velocity_normal: VelocityNormal::EndOfStep,
+        wall_rolling: WallRolling::RelativeSpin,
     };
     /// LAMMPS `gran/hooke/history`.
     pub const LAMMPS: Self = Self {
@@ -111,6 +132,7 @@ impl Convention {
         torque_arm: TorqueArm::Radius,
         tension: Tension::Allowed,
         history: History::Projected,
+        velocity_normal: VelocityNormal::EndOfStep,
         wall_rolling: WallRolling::Spin,
     };
     /// LIGGGHTS `hooke/stiffness tangential history`.
@@ -121,13 +143,12 @@ impl Convention {
         torque_arm: TorqueArm::ContactPoint,
         tension: Tension::Allowed,
         history: History::Projected,
+        velocity_normal: VelocityNormal::EndOfStep,
         wall_rolling: WallRolling::Surface,
     };
-    /// Ours with the normal force never below zero.
-    pub const NO_TENSION: Self = Self { name: "dem:no-tension", tension: Tension::Clipped, ..Self::DEFAULT };
 
     /// Every preset.
-    pub const ALL: [Self; 5] = [Self::DEFAULT, Self::CUNDALL_STRACK, Self::LAMMPS, Self::LIGGGHTS, Self::NO_TENSION];
+    pub const ALL: [Self; 4] = [Self::DEFAULT, Self::CUNDALL_STRACK, Self::LAMMPS, Self::LIGGGHTS];
 
     /// The options in words, for a record.
     #[must_use]
@@ -170,8 +191,16 @@ impl Convention {
                 }
             ),
             format!(
+                "velocities on the normal of {}",
+                match self.velocity_normal {
+                    VelocityNormal::MidStep => "mid-step",
+                    VelocityNormal::EndOfStep => "the end of the step",
+                }
+            ),
+            format!(
                 "rolling at walls by {}",
                 match self.wall_rolling {
+                    WallRolling::RelativeSpin => "the spin relative to the wall",
                     WallRolling::Spin => "the spin",
                     WallRolling::Surface => "the surface",
                 }

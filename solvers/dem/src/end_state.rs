@@ -38,7 +38,7 @@ impl<S: Geometry> Simulated<S> {
                 .walls
                 .iter()
                 .flat_map(|wall| wall.near.iter().map(move |near| (wall.name(), near)))
-                .filter(|(_, (_, memory))| memory.iter().any(|&number| number != 0.0))
+                .filter(|(_, (_, memory))| memory[..numbers].iter().any(|&number| number != 0.0))
                 .map(|(name, &(slot, memory))| (of_slot(slot), name.to_owned(), memory[..numbers].to_vec()))
                 .chain(
                     self.walls

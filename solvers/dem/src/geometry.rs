@@ -141,6 +141,24 @@ pub(crate) trait Geometry: Space {
     /// rolls.
     fn rolled<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> Self::Spins<X>;
 
+    /// Part of a spin along the normal; none in the plane.
+    fn twist<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> X;
+    /// A remembered tangential quantity at a contact that has turned: its normal has the mean `middle` over the step, and it
+    /// turns about `normal` by an angle whose half has the tangent `half_twist`. In the plane a scalar, which stays.
+    fn turned<X: Number>(
+        tangent: Self::Tangents<X>,
+        middle: Self::Vectors<X>,
+        normal: Self::Vectors<X>,
+        half_twist: X,
+    ) -> Self::Tangents<X>;
+    /// A remembered rolling angle, turned alike.
+    fn turned_spin<X: Number>(
+        spin: Self::Spins<X>,
+        middle: Self::Vectors<X>,
+        normal: Self::Vectors<X>,
+        half_twist: X,
+    ) -> Self::Spins<X>;
+
     /// The vector of a quad, in three dimensions.
     #[inline(always)]
     fn vector_in_space(quad: &Quad) -> Vector3<f64> {
@@ -222,12 +240,50 @@ impl Geometry for Plane {
     fn rolled<X: Number>(spin: Components<X, 1>, _normal: Components<X, 2>) -> Components<X, 1> {
         spin
     }
+    #[inline(always)]
+    fn twist<X: Number>(Components([spin]): Components<X, 1>, _normal: Components<X, 2>) -> X {
+        spin.like(0.0)
+    }
+    #[inline(always)]
+    fn turned<X: Number>(
+        tangent: Components<X, 1>,
+        _middle: Components<X, 2>,
+        _normal: Components<X, 2>,
+        _half_twist: X,
+    ) -> Components<X, 1> {
+        tangent
+    }
+    #[inline(always)]
+    fn turned_spin<X: Number>(
+        spin: Components<X, 1>,
+        _middle: Components<X, 2>,
+        _normal: Components<X, 2>,
+        _half_twist: X,
+    ) -> Components<X, 1> {
+        spin
+    }
 }
 
 /// a × b.
 #[inline(always)]
 fn cross<X: Number>(Components(a): Components<X, 3>, Components(b): Components<X, 3>) -> Components<X, 3> {
     Components([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+}
+
+/// A vector ξ perpendicular to the normal e at the start of a step, at its end: reflected at the plane perpendicular to the
+/// mean normal m, which takes e to −e', ξ' = ξ − 2 (ξ·m) m/(m·m), and turned about e' by an angle φ with t = tan φ/2,
+/// ξ'' = [(1 − t²) ξ' + 2t e'×ξ']/(1 + t²). Both keep its length.
+#[inline(always)]
+fn turned<X: Number>(
+    vector: Components<X, 3>,
+    middle: Components<X, 3>,
+    normal: Components<X, 3>,
+    half_twist: X,
+) -> Components<X, 3> {
+    let one = half_twist.like(1.0);
+    let tilted = vector - middle * (vector.dot(middle) * 2.0 / middle.dot(middle));
+    let square = half_twist * half_twist;
+    (tilted * (one - square) + cross(normal, tilted) * (half_twist * 2.0)) * (one / (one + square))
 }
 
 impl Geometry for Solid {
@@ -282,6 +338,28 @@ impl Geometry for Solid {
     #[inline(always)]
     fn rolled<X: Number>(spin: Components<X, 3>, normal: Components<X, 3>) -> Components<X, 3> {
         Self::tangential(spin, normal)
+    }
+    #[inline(always)]
+    fn twist<X: Number>(spin: Components<X, 3>, normal: Components<X, 3>) -> X {
+        spin.dot(normal)
+    }
+    #[inline(always)]
+    fn turned<X: Number>(
+        tangent: Components<X, 3>,
+        middle: Components<X, 3>,
+        normal: Components<X, 3>,
+        half_twist: X,
+    ) -> Components<X, 3> {
+        turned(tangent, middle, normal, half_twist)
+    }
+    #[inline(always)]
+    fn turned_spin<X: Number>(
+        spin: Components<X, 3>,
+        middle: Components<X, 3>,
+        normal: Components<X, 3>,
+        half_twist: X,
+    ) -> Components<X, 3> {
+        turned(spin, middle, normal, half_twist)
     }
 }
 

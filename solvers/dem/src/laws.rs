@@ -1,5 +1,7 @@
 //! The contact laws of a scene as the kernels read them: one row of numbers for every two materials.
 
+use crate::contact::Options;
+use crate::release::no_tension_ratio;
 use grainbench_lanes::{Lanes, Quad, WIDEST, Wide};
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
@@ -20,7 +22,7 @@ pub(crate) struct Constants<X> {
     pub(crate) normal_damping: X,
     /// Mass-proportional tangential damping γ_t (1/s).
     pub(crate) tangential_damping: X,
-    /// Damping ratio ζ.
+    /// Damping ratio ζ that gives the coefficient of restitution at the release of the convention.
     pub(crate) damping_ratio: X,
     /// Coefficient of rolling resistance μ_r.
     pub(crate) rolling_friction: X,
@@ -28,9 +30,10 @@ pub(crate) struct Constants<X> {
     pub(crate) rolling_damping: X,
 }
 
-impl From<&ContactLaw> for Constants<f64> {
-    /// A law without friction has no tangential spring or dashpot either, also in a scene that has friction elsewhere.
-    fn from(law: &ContactLaw) -> Self {
+impl Constants<f64> {
+    /// The numbers of a law. One without friction has no tangential spring or dashpot either, also in a scene that has friction
+    /// elsewhere.
+    fn new(law: &ContactLaw, options: &Options) -> Self {
         let [normal, tangential] = law.springs.constants();
         let if_sheared = |number: f64| if law.has_friction() { number } else { 0.0 };
         Self {
@@ -40,11 +43,16 @@ impl From<&ContactLaw> for Constants<f64> {
             stiffness_damping: law.stiffness_damping,
             normal_damping: law.normal_damping,
             tangential_damping: if_sheared(law.tangential_damping),
-            damping_ratio: law.damping_ratio,
+            damping_ratio: damping_ratio(law, options),
             rolling_friction: law.rolling_friction,
             rolling_damping: law.rolling_damping,
         }
     }
+}
+
+/// Damping ratio ζ of a law that gives its coefficient of restitution at the release of a convention.
+pub(crate) fn damping_ratio(law: &ContactLaw, options: &Options) -> f64 {
+    if options.may_pull() { law.damping_ratio } else { no_tension_ratio(law.damping_ratio) }
 }
 
 /// The law between every two materials.
@@ -57,9 +65,10 @@ pub(crate) struct Laws {
 }
 
 impl Laws {
-    /// The laws of a scene.
-    pub(crate) fn new(scene: &Scene) -> Self {
-        let constants = |law: &Option<ContactLaw>| law.as_ref().map(Constants::from).unwrap_or_default();
+    /// The laws of a scene in a convention.
+    pub(crate) fn new(scene: &Scene, options: &Options) -> Self {
+        let constants =
+            |law: &Option<ContactLaw>| law.as_ref().map(|law| Constants::new(law, options)).unwrap_or_default();
         let laws: Vec<Constants<f64>> = scene.laws.iter().map(constants).collect();
         let quads = |quad: fn(&Constants<f64>) -> [f64; 4]| laws.iter().map(|law| Quad(quad(law))).collect();
         Self {

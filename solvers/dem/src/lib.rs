@@ -20,6 +20,7 @@ mod accounts;
 mod cells;
 mod contact;
 pub mod convention;
+mod critical;
 mod driving;
 mod edge;
 mod end_state;
@@ -36,6 +37,7 @@ mod observe;
 mod pairs;
 #[cfg(test)]
 mod processors;
+mod release;
 mod seen;
 mod share;
 mod simulation;

@@ -280,7 +280,7 @@ mod tests {
     /// What a checkpoint may hold that some other program wrote.
     #[test]
     fn lists_of_other_grains_are_told() {
-        let layout = Layout { numbers: 1, exchanged: [1.0; 8] };
+        let layout = Layout { numbers: 1, exchanged: [1.0; MEMORY] };
         let pairs = Pairs::list(0..2, layout, |row, partners, _| {
             if row == 0 {
                 partners.push(1)

@@ -265,11 +265,12 @@ fn bounds<S: Geometry>(place: &[Quad]) -> (Vector3<f64>, Vector3<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::MEMORY;
     use grainbench_scene::scene::Domain;
     use grainbench_scene::space::{Plane, Solid};
     use std::collections::BTreeSet;
 
-    const NOTHING: Layout = Layout { numbers: 0, exchanged: [1.0; 8] };
+    const NOTHING: Layout = Layout { numbers: 0, exchanged: [1.0; MEMORY] };
 
     /// A cheap reproducible scatter.
     fn scatter(count: usize, dimension: usize, size: f64) -> Vec<Vector3<f64>> {

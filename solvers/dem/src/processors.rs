@@ -132,7 +132,7 @@ fn runs_leave_the_same_bits_on_all_paths_and_threads_in_the_plane() {
 
 #[test]
 fn runs_leave_the_same_bits_on_all_paths_and_threads_in_space() {
-    same_on_all(|scene, convention, team| simulated(scene, convention, solid(scene), team));
+    same_on_all(|scene, convention, team| simulated(scene, convention, solid(scene, convention), team));
 }
 
 /// Grains that are moved while they are at hand end where they do when every cycle is taken by itself.
@@ -142,7 +142,8 @@ fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
     for (name, law, _) in laws() {
         scene.change_laws(|each| *each = law);
         let end = |at_once: u64| {
-            let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene), Team::default());
+            let mut simulation =
+                simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), Team::default());
             (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
             format!("{:?} {:?}", simulation.grains, simulation.neighbours.shares[0].near.memory)
         };
@@ -167,7 +168,7 @@ fn ball_under_beads() -> Scene {
 fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
     let scene = ball_under_beads();
     let end = |at_once: u64, team: Team| {
-        let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene), team);
+        let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), team);
         simulation.fewest_in_a_share = 5;
         (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
         let ball = simulation.grains.slot[0] as usize;
@@ -183,7 +184,7 @@ fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
 #[test]
 fn whatever_touches_is_listed_while_the_skin_widens() {
     let scene = ball_under_beads();
-    let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene), Team::default());
+    let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), Team::default());
     let first = simulation.neighbours.skin;
     for _ in 0..8 {
         simulation.take_cycles(100).expect("it goes on");

@@ -27,6 +27,8 @@ pub(crate) struct Energies {
     pub(crate) elastic: f64,
     /// Work of friction in the step (J).
     pub(crate) rubbed: f64,
+    /// Energy released by a change of stiffness in the step (J).
+    pub(crate) released: f64,
 }
 
 impl Seen {
@@ -62,7 +64,8 @@ impl Seen {
         let zero = answer.overlap.like(0.0);
         let slipping = X::choose(answer.slipping, zero.like(1.0), zero).first() > 0.0;
         self.slipping += usize::from(slipping);
-        self.energies.push(Energies { elastic: answer.elastic_energy.first(), rubbed: answer.rubbed.first() });
+        let [elastic, rubbed, released] = [answer.elastic_energy, answer.rubbed, answer.released].map(X::first);
+        self.energies.push(Energies { elastic, rubbed, released });
         if !self.one_by_one {
             return;
         }

@@ -29,6 +29,10 @@ use nalgebra::Vector3;
 /// Radius from which on a grain is far larger than others, in mean radii: cells as wide as it would hold hundreds of those.
 const FAR_LARGER: f64 = 4.0;
 
+/// Steps from one look at the stiffness of contacts to the next: a collision takes some thirty steps at a tenth of the critical
+/// one, and a look costs about as much as a step.
+const STEPS_BETWEEN_LOOKS: u64 = 32;
+
 /// A simulation in a space.
 pub(crate) struct Simulated<S: Geometry> {
     pub(crate) scene: Scene,
@@ -64,7 +68,9 @@ pub(crate) struct Simulated<S: Geometry> {
     /// Mean radius of the grains (m).
     mean_radius: f64,
     /// Critical time step 2√(m_min/k_max) of the scene (s).
-    critical: f64,
+    pub(crate) critical: f64,
+    /// Whether contacts are looked at for stiffness that the time step is too long for.
+    pub(crate) follows_critical: bool,
     /// Cycles taken.
     pub(crate) step: u64,
     /// Bound on how far any grain has moved since the pairs were listed (m).
@@ -98,11 +104,11 @@ impl<S: Geometry> Simulated<S> {
         let mean_radius = scene.grains.iter().map(|grain| grain.radius).sum::<f64>() / scene.grains.len() as f64;
         let gravity = S::embed(S::restrict(scene.gravity));
         let mut simulation = Self {
-            laws: Laws::new(scene),
+            laws: Laws::new(scene, &options),
             options,
             grains: Grains::new(scene, forces.turn()),
             neighbours: Neighbours::new(skin::first(mean_radius)),
-            walls: scene.walls.iter().map(MovingWall::new).collect(),
+            walls: scene.walls.iter().map(|wall| MovingWall::new(wall, options.mid_step)).collect(),
             forces,
             processor: Processor::new(),
             team,
@@ -119,6 +125,7 @@ impl<S: Geometry> Simulated<S> {
             largest_radius,
             mean_radius,
             critical: scene.critical_time_step(),
+            follows_critical: false,
             step: 0,
             travelled: 0.0,
             driven_speed: scene.driven.iter().map(Driven::fastest).fold(0.0, f64::max),
@@ -251,6 +258,9 @@ impl<S: Geometry> Simulated<S> {
             let looked_at = self.mean_virial.as_ref().is_some_and(|mean| mean.is_due(self.step + 1));
             let (record, move_on) = (self.accounting || left == 0 || looked_at, at_once && left > 0);
             self.cycle(record, has_moved, move_on)?;
+            if self.follows_critical && self.step % STEPS_BETWEEN_LOOKS == 1 {
+                self.refuse_stiff_contacts()?;
+            }
             has_moved = move_on;
         }
         Ok(())
@@ -385,6 +395,7 @@ impl<S: Geometry> Simulated<S> {
             gravity: self.scene.gravity,
             free_mass: self.free_mass,
             friction: self.energies().map(|of| of.rubbed).sum(),
+            released: self.energies().map(|of| of.released).sum(),
             time_step: self.motion.time_step,
         });
     }

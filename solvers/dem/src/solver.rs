@@ -33,6 +33,8 @@ pub struct Dem {
     pub convention: Convention,
     /// A defect, for negative controls only.
     pub defect: Option<Defect>,
+    /// Whether a run goes on where its time step is above the critical one of a contact.
+    pub allow_unstable: bool,
 }
 
 impl Dem {
@@ -42,13 +44,19 @@ impl Dem {
     /// The method in a convention.
     #[must_use]
     pub const fn new(convention: Convention) -> Self {
-        Self { convention, defect: None }
+        Self { convention, defect: None, allow_unstable: false }
     }
 
     /// The method with a defect, for negative controls.
     #[must_use]
     pub const fn with_defect(self, defect: Defect) -> Self {
         Self { defect: Some(defect), ..self }
+    }
+
+    /// The method that goes on where its time step is above the critical one of a contact.
+    #[must_use]
+    pub const fn allowing_unstable_steps(self) -> Self {
+        Self { allow_unstable: true, ..self }
     }
 
     /// Sets up a scene with a time step (s), for callers who advance the simulation themselves.
@@ -74,7 +82,7 @@ impl Dem {
         let team = Team::new(threads.min(scene.grains.len() / FEWEST));
         match scene.dimension {
             Dimension::Two => self.start_with(scene, plane(scene, &self.convention), time_step, (team, most_rows)),
-            Dimension::Three => self.start_with(scene, solid(scene), time_step, (team, most_rows)),
+            Dimension::Three => self.start_with(scene, solid(scene, &self.convention), time_step, (team, most_rows)),
         }
     }
 
@@ -94,8 +102,9 @@ impl Dem {
             );
             return Err(RunError::Unsupported { solver: self.name(), reason });
         }
-        let simulated = Simulated::new(scene, forces, Options::of(&self.convention), time_step, team);
-        Ok(Box::new(simulated.map_err(RunError::Broken)?))
+        let mut simulated = Simulated::new(scene, forces, Options::of(&self.convention), time_step, team)?;
+        simulated.follow_critical_step(self.allow_unstable);
+        Ok(Box::new(simulated))
     }
 
     /// The run that a checkpoint belongs to.
@@ -122,7 +131,7 @@ impl Dem {
     /// Refuses a time step (s) at which springs alone are stable and dashpots are not. A dashpot near or above critical
     /// damping then brings energy in, and the run would go on as if nothing were wrong.
     fn refuse_lagging_dashpots(&self, scene: &Scene, time_step: f64) -> Result<(), RunError> {
-        let (damped, undamped) = damped_step(scene);
+        let (damped, undamped) = damped_step(scene, &self.convention);
         if time_step > damped && time_step <= undamped {
             return Err(self.resolution_error(format!(
                 "expected at most {damped:.4e} s, where the dashpot of a contact is stable, found a step of {time_step:.4e} s"
@@ -173,7 +182,8 @@ impl Dem {
         self.refuse(scene)?;
         let (time_step, steps) = self.steps(scene, resolution)?;
         self.refuse_lagging_dashpots(scene, time_step)?;
-        let mut simulation = self.start_on(scene, time_step, watch.threads(), watch.most_rows())?;
+        let dem = Self { allow_unstable: self.allow_unstable || watch.allows_unstable(), ..*self };
+        let mut simulation = dem.start_on(scene, time_step, watch.threads(), watch.most_rows())?;
         let run = self.run_of(scene, time_step, steps, simulation.layout());
         let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
         let mut running = Running { simulation, run, defect: self.defect };
@@ -196,9 +206,12 @@ pub(crate) fn plane(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Pl
     }
 }
 
-/// The loops over contacts in space, where a stretch is a vector in every convention.
-pub(crate) fn solid(scene: &Scene) -> Box<dyn Forces<Solid>> {
-    chain::<Solid, Coulomb<Projected>>(scene)
+/// The loops over contacts in space.
+pub(crate) fn solid(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Solid>> {
+    match convention.history {
+        History::Turned => chain::<Solid, Coulomb<Turned>>(scene),
+        History::Projected => chain::<Solid, Coulomb<Projected>>(scene),
+    }
 }
 
 /// The loops over contacts for the effects that a scene calls for, with `T` where it has friction.

@@ -1,5 +1,8 @@
 //! How large a step any packing of equal grains bears.
 
+use crate::contact::Options;
+use crate::convention::Convention;
+use crate::laws::damping_ratio;
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::{Dimension, Scene};
 
@@ -22,13 +25,14 @@ pub fn stable_fraction(scene: &Scene) -> f64 {
     1.0 / (contacts * (1.0 + worst * (1.0 + 1.0 / scene.grain_shape.inertia_factor()))).sqrt()
 }
 
-/// The largest step (s) at which a dashpot at a single contact is stable, and the largest without the dashpot, of the
-/// contact that bears least; both infinite where nothing is damped.
+/// The largest step (s) at which a dashpot at a single contact is stable in a convention, and the largest without the dashpot,
+/// of the contact that bears least; both infinite where nothing is damped.
 ///
 /// The dashpot feels the velocity of half a step before: λ² − (2 − θ² − 2ζθ)λ + 1 − 2ζθ = 0 with θ = ωΔt, ω² = k/m* and
 /// ζ = c/(2√(k m*)) reaches λ = −1 at θ = 2(√(1 + ζ²) − ζ), half of the undamped limit 2 already at ζ = 3/4.
 #[must_use]
-pub fn damped_step(scene: &Scene) -> (f64, f64) {
+pub fn damped_step(scene: &Scene, convention: &Convention) -> (f64, f64) {
+    let options = Options::of(convention);
     // The lightest grains of every material.
     let mut lightest = vec![[f64::INFINITY; 2]; scene.materials.len()];
     for grain in &scene.grains {
@@ -45,7 +49,8 @@ pub fn damped_step(scene: &Scene) -> (f64, f64) {
             return;
         };
         let frequency = (law.normal_stiffness() / mass).sqrt();
-        let ratio = 0.5 * (law.stiffness_damping * frequency + law.normal_damping / frequency) + law.damping_ratio;
+        let ratio =
+            0.5 * (law.stiffness_damping * frequency + law.normal_damping / frequency) + damping_ratio(law, &options);
         let step = 2.0 / frequency * ((1.0 + ratio * ratio).sqrt() - ratio);
         if ratio > 0.0 && step < least.0 {
             least = (step, 2.0 / frequency);

@@ -26,6 +26,10 @@ pub(crate) struct MovingWall {
     /// Mean velocity over the last step (m/s), and spin (rad/s) about the centre.
     velocity: Vector3<f64>,
     spin: Vector3<f64>,
+    /// Whether the velocity of a point is its mean over the last step, and not that of its place at the end of it.
+    mid_step: bool,
+    /// Factors c₁ and c₂ (s) of the velocity V + c₁ Ω×r − c₂ Ω×(Ω×r) at r from the centre.
+    swing: [f64; 2],
     /// The grains near the wall, by slot.
     pub(crate) near: NearWall,
     /// What a mesh knows of them instead.
@@ -72,7 +76,8 @@ pub(crate) struct Facing {
 }
 
 impl MovingWall {
-    pub(crate) fn new(wall: &Wall) -> Self {
+    /// The wall at its start, with velocities of mid-step or of the end of a step.
+    pub(crate) fn new(wall: &Wall, mid_step: bool) -> Self {
         let rest = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
         Self {
             shape: wall.shape.clone(),
@@ -81,6 +86,8 @@ impl MovingWall {
             at_list: rest,
             velocity: Vector3::zeros(),
             spin: Vector3::zeros(),
+            mid_step,
+            swing: [1.0, 0.0],
             near: Vec::new(),
             at_mesh: AtMesh::default(),
             force: Vector3::zeros(),
@@ -186,6 +193,7 @@ impl MovingWall {
         }
         self.velocity = (now.translation - self.displacement.translation) / time_step;
         self.spin = (now.rotation - self.displacement.rotation) / time_step;
+        self.swing = swing(self.spin.norm() * time_step, time_step, self.mid_step);
         self.displaced_to(now);
     }
 
@@ -234,6 +242,21 @@ impl MovingWall {
         true
     }
 
+    /// Slot of every grain that is near, and its distance from the wall (m); of a mesh every contact of the last evaluation.
+    pub(crate) fn distances<S: Geometry>(&self, grains: &Grains<S>) -> impl Iterator<Item = (usize, f64)> {
+        let near = self.near.iter().map(|&(slot, _)| {
+            let slot = slot as usize;
+            (slot, self.facing(grains.position(slot)).distance)
+        });
+        let held = self.mesh().into_iter().flat_map(move |mesh| {
+            self.at_mesh.held.iter().map(move |held| {
+                let slot = held.slot as usize;
+                (slot, (mesh.within(grains.position(slot)) - held.point).norm())
+            })
+        });
+        near.chain(held)
+    }
+
     /// Distance from a point to the wall's centre of rotation (m).
     pub(crate) fn distance_to_centre(&self, point: Vector3<f64>) -> f64 {
         (point - self.centre).norm()
@@ -264,8 +287,25 @@ impl MovingWall {
     /// Velocity at a point of it (m/s).
     #[inline(always)]
     fn velocity_at(&self, point: Vector3<f64>) -> Vector3<f64> {
-        self.velocity + self.spin.cross(&(point - self.centre))
+        let [turning, inward] = self.swing;
+        let around = self.spin.cross(&(point - self.centre));
+        self.velocity + around * turning - self.spin.cross(&around) * inward
     }
+
+    /// Angular velocity over the last step (rad/s).
+    pub(crate) fn spin(&self) -> Vector3<f64> {
+        self.spin
+    }
+}
+
+/// The factors of a velocity that is the mean over a step Δt (s) in which a wall turns by θ (rad), c₁ = sin θ/θ and
+/// c₂ = Δt (1 − cos θ)/θ²: those of (r − r₀)/Δt, where r₀ = r − sin θ n×r + (1 − cos θ) n×(n×r) is turned back by θ about n.
+fn swing(angle: f64, time_step: f64, mid_step: bool) -> [f64; 2] {
+    if !mid_step || angle == 0.0 {
+        return [1.0, 0.0];
+    }
+    let (sine, half) = (libm::sin(angle), libm::sin(0.5 * angle));
+    [sine / angle, 2.0 * half * half / (angle * angle) * time_step]
 }
 
 fn facing_point(at: Vector3<f64>, nearest: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>, f64) {

@@ -59,11 +59,11 @@ pub struct ContactSpec {
     /// Mass-proportional tangential damping γ_t (1/s): dashpot c_s = γ_t m_eff.
     #[serde(default)]
     pub tangential_damping: f64,
-    /// Coefficient of restitution e, above 0 and at most 1: a normal dashpot that gives it exactly when the dashpot may
-    /// pull at release, c_n = 2ζ√(k_n m_eff) for linear, 2√(5/6) ζ√(S m_eff) with S = dF/dδ for Hertz contacts, and
-    /// ζ = −ln e/√(π² + ln² e). The dashpot is half a step late and release falls within a step, so that what comes
-    /// out is off by an amount of first order in the step: for .5, .490 between free grains and .480 against a driven one
-    /// at a tenth of the critical step, within .002 at a hundredth. Dashpots add up: beside another one less comes out.
+    /// Coefficient of restitution e, above 0 and at most 1, by a normal dashpot c_n = 2ζ√(k_n m_eff) in linear and
+    /// 2√(5/6) ζ√(S m_eff) with S = dF/dδ in Hertz contacts. Where a contact ends when its force returns to zero, as in `dem`,
+    /// e = exp(−2ζ acos ζ/√(1 − ζ²)); where it ends with the overlap, as in the other conventions, e = exp(−πζ/√(1 − ζ²)). The
+    /// dashpot is half a step late and the touch falls within a step, so that e is off by an amount of first order in the step.
+    /// Dashpots add up: beside another one the grains part with less.
     #[serde(default)]
     pub restitution: Option<f64>,
     /// Coefficient of rolling resistance μ_r: a moment of at most μ_r R_eff F_n against rolling, R_eff = R₁R₂/(R₁+R₂),
@@ -91,7 +91,7 @@ pub struct ContactLaw {
     pub normal_damping: f64,
     /// Mass-proportional tangential damping γ_t (1/s).
     pub tangential_damping: f64,
-    /// Damping ratio ζ from a coefficient of restitution.
+    /// Damping ratio ζ from a coefficient of restitution, of a contact that ends with the overlap.
     pub damping_ratio: f64,
     /// Coefficient of rolling resistance μ_r.
     pub rolling_friction: f64,

@@ -237,6 +237,11 @@ pub enum Cause {
         /// Its radius (m).
         radius: f64,
     },
+    /// A contact became so stiff that the time step is above the critical one.
+    Stiffened {
+        /// Stiffness of its springs (N/m).
+        stiffness: f64,
+    },
     /// A grain turned so far in one step that the direction of friction is lost.
     Spun {
         /// Angle turned in the step (rad).
@@ -289,6 +294,12 @@ impl fmt::Display for Cause {
             Self::NotFinite => write!(formatter, "its state is not finite"),
             Self::Runaway { moved, radius } => {
                 write!(formatter, "it moved {moved:.3e} m in one step, more than its radius {radius:.3e} m")
+            }
+            Self::Stiffened { stiffness } => {
+                write!(
+                    formatter,
+                    "a contact of it became so stiff, {stiffness:.3e} N/m, that the time step is above the critical one"
+                )
             }
             Self::Spun { turned } => write!(formatter, "it turned by {turned:.3e} rad in one step"),
             Self::LeftCell { moved, cell } => {
@@ -515,6 +526,10 @@ pub trait Watch {
     }
     /// Called in place of [`Watch::snapshot`] with one that is not wanted, and the rows it would have.
     fn in_short(&mut self, _brief: Brief, _rows: u64) {}
+    /// Whether a run goes on where its time step is above the critical one.
+    fn allows_unstable(&self) -> bool {
+        false
+    }
     /// Whether every snapshot stays in the record.
     fn keeps_snapshots(&self) -> bool {
         true
@@ -553,6 +568,16 @@ impl Watch for Threads {
         self.0
     }
     fn progress(&mut self, _done: u64, _total: u64) {}
+}
+
+/// A run that goes on where its time step is above the critical one.
+pub struct Unstable;
+
+impl Watch for Unstable {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn allows_unstable(&self) -> bool {
+        true
+    }
 }
 
 /// A solver, ours or anyone's.

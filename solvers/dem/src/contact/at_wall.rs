@@ -5,12 +5,12 @@ use super::normal::Normal;
 use super::pair::harmonic;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{Memory, Touch};
-use crate::geometry::Geometry;
+use super::{MEMORY, Memory, Touch, Turn, mean_normal, stiffness_ratio};
+use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 
-/// A grain that touches a wall, as the loop over walls finds it. The wall is a body of infinite mass and does not
-/// rotate by itself.
+/// A grain that touches a wall, as the loop over walls finds it. The wall is a body of infinite mass that moves as it is
+/// driven.
 pub(crate) struct AtWall<'a, S: Geometry> {
     /// The law between the materials of grain and wall.
     pub(crate) law: &'a Constants<f64>,
@@ -26,6 +26,8 @@ pub(crate) struct AtWall<'a, S: Geometry> {
     pub(crate) inverse_mass: f64,
     /// Angular velocity ω of the grain (rad/s), if it rotates.
     pub(crate) spin: Option<S::Spins<f64>>,
+    /// Angular velocity Ω of the wall (rad/s).
+    pub(crate) wall_spin: S::Spins<f64>,
     /// Moment of inertia I of the grain (kg m²), only set for rolling resistance.
     pub(crate) inertia: f64,
 }
@@ -38,24 +40,44 @@ impl<S: Geometry> AtWall<'_, S> {
         evaluation: Evaluation<'_>,
         memory: &mut Memory<f64>,
     ) -> Answer<S, f64> {
+        let (options, elapsed, overlap) = (evaluation.options, evaluation.elapsed, self.radius - self.distance);
+        let middle = self.middle_normal(memory);
+        let velocity_normal = if options.mid_step && T::MAY_BE_MID_STEP { middle } else { self.normal };
+        let turns = T::TURNED && S::DIMENSION == 3;
         let touch = Touch {
             law: self.law,
             between: self.normal,
             inverse_distance: 1.0,
             normal: self.normal,
-            overlap: self.radius - self.distance,
+            overlap,
+            velocity_normal,
+            turn: self.spin.filter(|_| turns).map(|spin| Turn::new(middle, spin + self.wall_spin, elapsed)),
+            stiffness_ratio: if N::CURVED && T::ACTIVE {
+                stiffness_ratio(overlap, self.velocity.dot(middle), elapsed)
+            } else {
+                1.0
+            },
             velocity: self.velocity,
             effective_mass: harmonic(self.inverse_mass),
             effective_radius: self.radius,
         };
-        let options = evaluation.options;
-        let arms = [self.radius - touch.overlap * options.arm_reduction, 0.0];
+        let arms = [self.radius - overlap * options.arm_reduction, 0.0];
         let rolling = if R::ACTIVE && options.rolls_by_surface { arms[0] / self.distance } else { 1.0 };
         let turning = self.spin.map(|spin| Turning {
             surface: spin * arms[0],
-            relative: spin * rolling,
+            relative: spin * rolling - self.wall_spin * options.wall_spin,
             inertia: self.inertia + touch.effective_mass * self.radius * self.radius,
         });
         stages::<S, N, T, R, f64>(&touch, arms, turning, evaluation, memory)
+    }
+
+    /// Mean of the unit normals of the last evaluation and of this one, which the contact remembers from now on. The normal
+    /// itself at a new contact, and at one that goes on at another face of a wall, more than a quarter turn away.
+    #[inline(always)]
+    fn middle_normal(&self, memory: &mut Memory<f64>) -> S::Vectors<f64> {
+        let remembered = &mut memory[MEMORY - 3..];
+        let before = S::Vectors::<f64>::read(remembered);
+        self.normal.write(remembered);
+        if before.dot(self.normal) > 0.0 { mean_normal::<S, f64>(before, self.normal) } else { self.normal }
     }
 }

@@ -58,6 +58,8 @@ pub(crate) struct Answer<S: Geometry, X: Number> {
     pub(crate) elastic_energy: X,
     /// Work of friction in the step (J), only when it is recorded.
     pub(crate) rubbed: X,
+    /// Energy that the tangential spring releases in the step because its stiffness changes (J), only when it is recorded.
+    pub(crate) released: X,
 }
 
 /// How a contact is evaluated.
@@ -95,9 +97,10 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
         slipping: zero.below(zero),
         elastic_energy: zero,
         rubbed: zero,
+        released: zero,
     };
     if let (true, Some(turning)) = (T::ACTIVE, turning) {
-        let slip = S::slip(touch.velocity, turning.surface, touch.normal);
+        let slip = S::slip(touch.velocity, turning.surface, touch.velocity_normal);
         let before = *memory;
         let shear = T::respond::<N, X>(touch, normal, slip, evaluation, memory);
         let force = S::along(shear.force, touch.normal);
@@ -105,7 +108,7 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
         let twist = S::torque_of(touch.normal, force);
         answer.torques = [twist * arms[0], twist * arms[1]];
         if record {
-            answer.rubbed = T::rubbed::<N, X>(touch, slip, elapsed, &before, memory);
+            [answer.rubbed, answer.released] = T::lost::<N, X>(touch, slip, elapsed, &before, memory);
         }
         (answer.shear, answer.slipping) = (shear.force, shear.slipping);
         if R::ACTIVE {

@@ -11,14 +11,15 @@ pub(crate) mod pair;
 pub(crate) mod rolling;
 pub(crate) mod tangential;
 
-use crate::convention::{CapNormal, Convention, CoulombCap, History, Tension, TorqueArm, WallRolling};
-use crate::geometry::Geometry;
+use crate::convention::{CapNormal, Convention, CoulombCap, History, Tension, TorqueArm, VelocityNormal, WallRolling};
+use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
 pub(crate) use tangential::Cap;
 
-/// Numbers that a contact may remember from step to step: the tangential stage's first, the rolling stage's after them.
-pub(crate) const MEMORY: usize = 8;
+/// Numbers that a contact may remember from step to step: the tangential stage's first, the rolling stage's after them. A
+/// contact with a wall remembers its normal in the last three.
+pub(crate) const MEMORY: usize = 9;
 
 /// What a contact remembers from step to step.
 pub(crate) type Memory<X> = [X; MEMORY];
@@ -37,12 +38,71 @@ pub(crate) struct Touch<'a, S: Geometry, X: Number> {
     pub(crate) normal: S::Vectors<X>,
     /// Overlap δ (m), positive.
     pub(crate) overlap: X,
+    /// Normal along which velocities are decomposed: the mean over the step, or `normal` itself.
+    pub(crate) velocity_normal: S::Vectors<X>,
+    /// Turning of the contact over the step; none where a convention projects what is remembered.
+    pub(crate) turn: Option<Turn<S, X>>,
+    /// Stiffness of the tangential spring at the start of the step over that at its end.
+    pub(crate) stiffness_ratio: X,
     /// Velocity of the first centre relative to the second body at the contact, v₁ − v₂ (m/s).
     pub(crate) velocity: S::Vectors<X>,
     /// Effective mass m₁m₂/(m₁+m₂), or m₁ at a wall (kg). Only set for dashpots.
     pub(crate) effective_mass: X,
     /// Effective radius R₁R₂/(R₁+R₂), or R₁ at a wall (m). Only set for stages that say so.
     pub(crate) effective_radius: X,
+}
+
+/// Turning of a contact over a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn<S: Geometry, X: Number> {
+    /// Mean of the unit normals at the start and at the end of the step.
+    pub(crate) middle: S::Vectors<X>,
+    /// Tangent of half the angle by which it turns about the normal.
+    pub(crate) half_twist: X,
+}
+
+impl<S: Geometry, X: Number> Turn<S, X> {
+    /// The turning of a contact whose normal has a mean over a step of `elapsed` (s), in which its bodies have two spins with
+    /// this sum (rad/s): about the normal it turns with the mean of both.
+    #[inline(always)]
+    pub(crate) fn new(middle: S::Vectors<X>, spins: S::Spins<X>, elapsed: f64) -> Self {
+        Self { middle, half_twist: S::twist(spins, middle) * (0.25 * elapsed) }
+    }
+}
+
+/// Mean of the unit normals at the start and at the end of a step of `elapsed` (s), from the vector `between` two centres (m)
+/// at its end, the inverse of its length (1/m), its unit vector and the relative velocity v₁ − v₂ (m/s).
+///
+/// The vector at the start is b − (v₂ − v₁)Δt, exactly; the inverse of its length over that at the end, 1/√r, is taken as
+/// (3 + r)/(1 + 3r), whose error is (r − 1)³/32.
+#[inline(always)]
+pub(crate) fn middle_normal<S: Geometry, X: Number>(
+    (between, inverse_distance, normal): (S::Vectors<X>, X, S::Vectors<X>),
+    velocity: S::Vectors<X>,
+    elapsed: f64,
+) -> S::Vectors<X> {
+    let before = between + velocity * inverse_distance.like(elapsed);
+    let squared = before.dot(before) * (inverse_distance * inverse_distance);
+    let inverse = inverse_distance * (squared + 3.0) / (squared * 3.0 + 1.0);
+    mean_normal::<S, X>(before * inverse, normal)
+}
+
+/// Mean over a step of a unit normal that turns from one direction to another by an angle θ, as long as sin(θ/2)/(θ/2): half
+/// the sum m of both has the length cos(θ/2), and m (4 − m·m)/3 is right to θ⁴/2880. So bodies that turn rigidly, whose centres
+/// move along chords, do not slip.
+#[inline(always)]
+pub(crate) fn mean_normal<S: Geometry, X: Number>(before: S::Vectors<X>, now: S::Vectors<X>) -> S::Vectors<X> {
+    let sum = before + now;
+    let squared = sum.dot(sum);
+    sum * (squared.like(2.0 / 3.0) - squared * (1.0 / 24.0))
+}
+
+/// Stiffness of a tangential spring, proportional to the root of the overlap δ (m), at the start of a step of `elapsed` (s)
+/// over that at its end, where bodies approach at `approach` (m/s) in it.
+#[inline(always)]
+pub(crate) fn stiffness_ratio<X: Number>(overlap: X, approach: X, elapsed: f64) -> X {
+    let ratio = overlap.like(1.0) - approach * elapsed / overlap;
+    ratio.at_least(overlap.like(0.0)).sqrt()
 }
 
 /// The options of a convention that are values and not types.
@@ -60,9 +120,18 @@ pub(crate) struct Options {
     pub(crate) cap: Cap,
     /// Whether grains roll at walls by their surface's velocity over the distance of the wall, and not by their spin.
     pub(crate) rolls_by_surface: bool,
+    /// Weight of a wall's spin in the angular velocity that rolls at it: 0 or 1.
+    pub(crate) wall_spin: f64,
+    /// Whether velocities are decomposed along the normal of mid-step.
+    pub(crate) mid_step: bool,
 }
 
 impl Options {
+    /// Whether a normal dashpot may pull.
+    pub(crate) const fn may_pull(&self) -> bool {
+        self.least_normal_force < 0.0
+    }
+
     /// The values of a convention's options.
     #[must_use]
     pub(crate) const fn of(convention: &Convention) -> Self {
@@ -89,6 +158,11 @@ impl Options {
                 (CoulombCap::SpringAndDashpot, History::Projected) => Cap::TotalAsLammps,
             },
             rolls_by_surface: matches!(convention.wall_rolling, WallRolling::Surface),
+            wall_spin: match convention.wall_rolling {
+                WallRolling::RelativeSpin => 1.0,
+                WallRolling::Spin | WallRolling::Surface => 0.0,
+            },
+            mid_step: matches!(convention.velocity_normal, VelocityNormal::MidStep),
         }
     }
 }

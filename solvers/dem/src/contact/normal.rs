@@ -39,7 +39,7 @@ fn damped<S: Geometry, X: Number>(
     spring: X,
     viscosity: X,
 ) -> NormalForce<X> {
-    let dashpot = viscosity * touch.velocity.dot(touch.normal);
+    let dashpot = viscosity * touch.velocity.dot(touch.velocity_normal);
     let total = (spring + dashpot).at_least(spring.like(options.least_normal_force));
     let signed = spring + (total - spring) * options.dashpot_in_cap;
     NormalForce { total, for_cap: signed.at_least(-signed * options.pull_in_cap) }

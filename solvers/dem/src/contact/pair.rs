@@ -4,8 +4,8 @@ use super::chain::{Answer, Evaluation, Turning, stages};
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{Memory, Touch};
-use crate::geometry::Geometry;
+use super::{Memory, Touch, Turn, middle_normal, stiffness_ratio};
+use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
 
@@ -42,17 +42,33 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         evaluation: Evaluation<'_>,
         memory: &mut Memory<X>,
     ) -> Answer<S, X> {
-        let Self { distance, inverse_distance, .. } = *self;
-        let zero = distance.like(0.0);
+        let Self { between, distance, inverse_distance, velocity, .. } = *self;
+        let (zero, elapsed) = (distance.like(0.0), evaluation.elapsed);
         let [first, second] = self.radii;
         let overlap = self.reach - distance;
+        let normal = between * inverse_distance;
+        let is_mid_step = evaluation.options.mid_step && T::MAY_BE_MID_STEP && (N::DAMPED || T::ACTIVE);
+        let turns = T::TURNED && S::DIMENSION == 3;
+        let changes = N::CURVED && T::ACTIVE && (T::TURNED || evaluation.record);
+        let middle = if is_mid_step || turns || changes {
+            middle_normal::<S, X>((between, inverse_distance, normal), velocity, elapsed)
+        } else {
+            normal
+        };
         let touch = Touch {
             law: self.law,
-            between: self.between,
+            between,
             inverse_distance,
-            normal: self.between * inverse_distance,
+            normal,
             overlap,
-            velocity: self.velocity,
+            velocity_normal: if is_mid_step { middle } else { normal },
+            turn: self.spins.filter(|_| turns).map(|[a, b]| Turn::new(middle, a + b, elapsed)),
+            stiffness_ratio: if changes {
+                stiffness_ratio(overlap, velocity.dot(middle), elapsed)
+            } else {
+                distance.like(1.0)
+            },
+            velocity,
             effective_mass: if N::DAMPED { harmonic(self.inverse_mass) } else { zero },
             effective_radius: if N::CURVED || R::ACTIVE { first * second / self.reach } else { zero },
         };

@@ -82,7 +82,11 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
         let zero = arm.like(0.0);
         let rate = S::rolled(rate, touch.normal);
         let stiffness = rolling_stiffness::<S, N, X>(touch);
-        let mut angle = S::rolled(S::Spins::<X>::read(memory) + rate * arm.like(elapsed), touch.normal);
+        let mut angle = S::Spins::<X>::read(memory);
+        if let Some(turn) = touch.turn {
+            angle = S::turned_spin(angle, turn.middle, touch.normal, turn.half_twist);
+        }
+        angle = S::rolled(angle + rate * arm.like(elapsed), touch.normal);
         let limit = arm * normal.for_cap;
         let squared = stiffness * stiffness * angle.dot(angle);
         let yields = (limit * limit).below(squared);

@@ -6,8 +6,9 @@
 use super::chain::Evaluation;
 use super::normal::{Normal, NormalForce};
 use super::{Memory, Touch};
-use crate::geometry::{Geometry, Linear};
+use crate::geometry::{Components, Geometry, Linear};
 use grainbench_lanes::Number;
+use grainbench_scene::space::{Plane, Solid};
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
@@ -24,6 +25,10 @@ pub(crate) struct Shear<S: Geometry, X: Number> {
 pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
     /// Whether there is a tangential force at all.
     const ACTIVE: bool;
+    /// Whether springs turn with the contact ([`crate::convention::History::Turned`]).
+    const TURNED: bool;
+    /// Whether a convention of this stage may decompose velocities along the normal of mid-step.
+    const MAY_BE_MID_STEP: bool;
     /// Numbers that a contact remembers from step to step, first in its memory: the stretch of its tangential spring (m).
     const NUMBERS: usize;
     /// What they are multiplied by when the roles of first and second grain are exchanged.
@@ -38,16 +43,19 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
         memory: &mut Memory<X>,
     ) -> Shear<S, X>;
 
-    /// Work of friction in a step (J), ½ k_s (s + s')·(s + ṡ Δt − s'): the mean force of the spring times the distance
-    /// that its end slid. Here s is the stretch before the step, carried to the normal of now, s' the stretch after it,
-    /// and ṡ the slip velocity.
-    fn rubbed<N: Normal, X: Number>(
+    /// Energy lost in a step (J): the work of friction, and the energy released by a change of stiffness.
+    ///
+    /// The work of friction is ½ k (s + s')·(s + ṡ Δt − s'): the mean force of the spring times the distance that its end slid.
+    /// Here s is the stretch before the step, carried to the contact of now, s' the stretch after it, ṡ the slip velocity and k
+    /// the stiffness after the step. With the stretch s₀ and the stiffness k₀ before the step, the energy before it and the
+    /// work on the spring, ½ (k₀ s₀ + k s')·ṡ Δt, less the energy after it are all that is lost: what is not rubbed is released.
+    fn lost<N: Normal, X: Number>(
         touch: &Touch<'_, S, X>,
         slip: S::Tangents<X>,
         elapsed: f64,
         before: &Memory<X>,
         after: &Memory<X>,
-    ) -> X;
+    ) -> [X; 2];
 
     /// Energy ½ k_s s² in the tangential spring (J), from the stiffness k_s (N/m).
     fn energy<X: Number>(memory: &Memory<X>, stiffness: X) -> X;
@@ -59,6 +67,8 @@ pub(crate) struct Frictionless;
 
 impl<S: Geometry> Tangential<S> for Frictionless {
     const ACTIVE: bool = false;
+    const TURNED: bool = false;
+    const MAY_BE_MID_STEP: bool = true;
     const NUMBERS: usize = 0;
     const EXCHANGED: f64 = 1.0;
 
@@ -73,14 +83,14 @@ impl<S: Geometry> Tangential<S> for Frictionless {
         let squared = slip.dot(slip);
         Shear { force: slip * squared.like(0.0), slipping: squared.below(squared) }
     }
-    fn rubbed<N: Normal, X: Number>(
+    fn lost<N: Normal, X: Number>(
         touch: &Touch<'_, S, X>,
         _slip: S::Tangents<X>,
         _elapsed: f64,
         _before: &Memory<X>,
         _after: &Memory<X>,
-    ) -> X {
-        touch.overlap.like(0.0)
+    ) -> [X; 2] {
+        [touch.overlap.like(0.0); 2]
     }
     fn energy<X: Number>(_memory: &Memory<X>, stiffness: X) -> X {
         stiffness.like(0.0)
@@ -93,10 +103,10 @@ pub(crate) enum Cap {
     /// The spring; the dashpot is added only while the contact sticks.
     Spring,
     /// Spring and dashpot together; the spring is reset so that their sum is the limit (Luding 2008, Granular Matter 10,
-    /// 235, eq. 22).
+    /// 235, eq. 22), and relaxed where the dashpot alone exceeds the limit, so that it never pushes surfaces the way they slide.
     Total,
-    /// The same, but that a force beyond the limit is dropped where there is no stretch yet: seen of LAMMPS in its
-    /// evaluation at the start.
+    /// Spring and dashpot together, as LAMMPS does it: the spring may push surfaces the way they slide, and a force beyond the
+    /// limit is dropped where there is no stretch yet, as in its evaluation at the start.
     TotalAsLammps,
 }
 
@@ -126,7 +136,7 @@ impl<X: Number> Bound<X> {
             return self.limit_spring::<S>(stretch, slip, None);
         }
         let (before, mut spring) = (*stretch, *stretch);
-        let mut shear = self.limit_total::<S>(stretch, slip, viscosity);
+        let mut shear = self.limit_total::<S>(cap, stretch, slip, viscosity);
         if cap == Cap::TotalAsLammps {
             let stretched = X::choose(shear.slipping, before.dot(before), zero.like(1.0));
             let kept = zero.below(stretched);
@@ -168,6 +178,7 @@ impl<X: Number> Bound<X> {
     #[inline(always)]
     fn limit_total<S: Geometry>(
         &self,
+        cap: Cap,
         stretch: &mut S::Tangents<X>,
         slip: S::Tangents<X>,
         viscosity: X,
@@ -178,52 +189,84 @@ impl<X: Number> Bound<X> {
         let slipping = (limit * limit).below(squared);
         if limit.anywhere(slipping) {
             force = S::Tangents::<X>::choose(slipping, force * (limit / squared.sqrt()), force);
-            let cut = -(force + slip * viscosity) * (stiffness.like(1.0) / stiffness);
+            let spring = force + slip * viscosity;
+            let mut cut = -spring * (stiffness.like(1.0) / stiffness);
+            if cap == Cap::Total {
+                let zero = limit.like(0.0);
+                cut = S::Tangents::<X>::choose(spring.dot(force).below(zero), cut * zero, cut);
+            }
             *stretch = S::Tangents::<X>::choose(slipping, cut, *stretch);
         }
         Shear { force, slipping }
     }
 }
 
-/// How the stretch of a tangential spring is carried along with a contact that turns.
+/// Transport of the stretch of a tangential spring at a contact that turns.
 pub(crate) trait Carrying<S: Geometry>: Copy + Debug + Send + Sync + 'static {
+    /// Whether the stretch turns with the contact.
+    const TURNED: bool;
     /// Numbers that are remembered of the stretch.
     const NUMBERS: usize;
     /// What they are multiplied by when the roles of first and second grain are exchanged.
     const EXCHANGED: f64;
-    /// The stretch (m) at a contact that has turned to `normal`, from what is remembered.
-    fn carried<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X>;
+    /// The stretch (m) that was remembered, at a contact that has turned since.
+    fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, S, X>) -> S::Tangents<X>;
+    /// The stretch (m) that is remembered of a contact with `normal`.
+    fn held<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X>;
     /// Remembers the stretch (m) of a contact with `normal`.
     fn keep<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>, memory: &mut Memory<X>);
     /// Squared stretch (m²).
     fn squared<X: Number>(memory: &Memory<X>) -> X;
 }
 
-/// The stretch is a number along the tangent and turns with the contact (Cundall & Strack 1979): in the plane only.
+/// The stretch turns with the contact: in the plane as a scalar along the tangent (Cundall & Strack 1979), in space as a vector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned;
 
-impl Carrying<grainbench_scene::space::Plane> for Turned {
+impl Carrying<Plane> for Turned {
+    const TURNED: bool = true;
     const NUMBERS: usize = 1;
     const EXCHANGED: f64 = 1.0;
 
     #[inline(always)]
-    fn carried<X: Number>(
-        memory: &Memory<X>,
-        _normal: crate::geometry::Components<X, 2>,
-    ) -> crate::geometry::Components<X, 1> {
+    fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, Plane, X>) -> Components<X, 1> {
+        <Self as Carrying<Plane>>::held(memory, touch.normal)
+    }
+    #[inline(always)]
+    fn held<X: Number>(memory: &Memory<X>, _normal: Components<X, 2>) -> Components<X, 1> {
         Linear::read(memory)
     }
     #[inline(always)]
-    fn keep<X: Number>(
-        stretch: crate::geometry::Components<X, 1>,
-        _normal: crate::geometry::Components<X, 2>,
-        memory: &mut Memory<X>,
-    ) {
+    fn keep<X: Number>(stretch: Components<X, 1>, _normal: Components<X, 2>, memory: &mut Memory<X>) {
         stretch.write(memory);
     }
     fn squared<X: Number>(memory: &Memory<X>) -> X {
         memory[0] * memory[0]
+    }
+}
+
+impl Carrying<Solid> for Turned {
+    const TURNED: bool = true;
+    const NUMBERS: usize = 3;
+    const EXCHANGED: f64 = -1.0;
+
+    #[inline(always)]
+    fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, Solid, X>) -> Components<X, 3> {
+        let stretch = <Self as Carrying<Solid>>::held(memory, touch.normal);
+        let Some(turn) = touch.turn else { return stretch };
+        Solid::turned(stretch, turn.middle, touch.normal, turn.half_twist)
+    }
+    #[inline(always)]
+    fn held<X: Number>(memory: &Memory<X>, _normal: Components<X, 3>) -> Components<X, 3> {
+        Linear::read(memory)
+    }
+    #[inline(always)]
+    fn keep<X: Number>(stretch: Components<X, 3>, _normal: Components<X, 3>, memory: &mut Memory<X>) {
+        stretch.write(memory);
+    }
+    fn squared<X: Number>(memory: &Memory<X>) -> X {
+        let stretch = Components::<X, 3>::read(memory);
+        stretch.dot(stretch)
     }
 }
 
@@ -233,11 +276,16 @@ impl Carrying<grainbench_scene::space::Plane> for Turned {
 pub(crate) struct Projected;
 
 impl<S: Geometry> Carrying<S> for Projected {
+    const TURNED: bool = false;
     const NUMBERS: usize = <S::Vectors<f64> as Linear<f64>>::COUNT;
     const EXCHANGED: f64 = -1.0;
 
     #[inline(always)]
-    fn carried<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X> {
+    fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, S, X>) -> S::Tangents<X> {
+        <Self as Carrying<S>>::held(memory, touch.normal)
+    }
+    #[inline(always)]
+    fn held<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X> {
         S::tangential(S::Vectors::<X>::read(memory), normal)
     }
     #[inline(always)]
@@ -257,6 +305,8 @@ pub(crate) struct Coulomb<H>(PhantomData<H>);
 
 impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
     const ACTIVE: bool = true;
+    const TURNED: bool = H::TURNED;
+    const MAY_BE_MID_STEP: bool = H::TURNED;
     const NUMBERS: usize = H::NUMBERS;
     const EXCHANGED: f64 = H::EXCHANGED;
 
@@ -270,7 +320,7 @@ impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
     ) -> Shear<S, X> {
         let law = touch.law;
         let elapsed = touch.overlap.like(evaluation.elapsed);
-        let mut stretch = H::carried(memory, touch.normal) + slip * elapsed;
+        let mut stretch = carried::<S, H, N, X>(memory, touch) + slip * elapsed;
         let stiffness = N::tangential_stiffness(touch);
         let viscosity = law.stiffness_damping * stiffness + law.tangential_damping * touch.effective_mass;
         let bound = Bound {
@@ -282,28 +332,49 @@ impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
         H::keep(stretch, touch.normal, memory);
         shear
     }
-    fn rubbed<N: Normal, X: Number>(
+    fn lost<N: Normal, X: Number>(
         touch: &Touch<'_, S, X>,
         slip: S::Tangents<X>,
         elapsed: f64,
         before: &Memory<X>,
         after: &Memory<X>,
-    ) -> X {
-        let [before, after] = [before, after].map(|memory| H::carried(memory, touch.normal));
-        let slid = before + slip * touch.overlap.like(elapsed) - after;
+    ) -> [X; 2] {
+        let half = N::tangential_stiffness(touch) * 0.5;
+        let (turned, after) = (H::carried(before, touch), H::held(after, touch.normal));
+        let (before, slipped) = (carried::<S, H, N, X>(before, touch), slip * touch.overlap.like(elapsed));
+        let slid = before + slipped - after;
         let [sum, slid] = [before + after, slid].map(|tangent| S::along(tangent, touch.normal));
-        N::tangential_stiffness(touch) * 0.5 * sum.dot(slid)
+        let rubbed = half * sum.dot(slid);
+        if !N::CURVED {
+            return [rubbed, touch.overlap.like(0.0)];
+        }
+        let ratio = touch.stiffness_ratio;
+        let lost = turned.dot(turned) * ratio + (turned * ratio + after).dot(slipped) - after.dot(after);
+        [rubbed, half * lost - rubbed]
     }
     fn energy<X: Number>(memory: &Memory<X>, stiffness: X) -> X {
         stiffness * 0.5 * H::squared(memory)
     }
 }
 
+/// The stretch (m) at a contact that has turned and whose stiffness has changed since it was remembered: where it turns with
+/// the contact the force is kept while the stiffness grows.
+#[inline(always)]
+fn carried<S: Geometry, H: Carrying<S>, N: Normal, X: Number>(
+    memory: &Memory<X>,
+    touch: &Touch<'_, S, X>,
+) -> S::Tangents<X> {
+    let stretch = H::carried(memory, touch);
+    if !(H::TURNED && N::CURVED) {
+        return stretch;
+    }
+    let (ratio, one) = (touch.stiffness_ratio, touch.overlap.like(1.0));
+    stretch * X::choose(ratio.below(one), ratio, one)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Components;
-    use grainbench_scene::space::Plane;
 
     /// Above the limit both conventions leave a stretch that gives the limit: of the spring alone, or of the sum.
     #[test]
@@ -318,15 +389,24 @@ mod tests {
         };
         let (force, spring, slipping) = limited(Cap::Spring, 0.2);
         assert!(slipping && (force + limit).abs() < 1e-14 && (spring * stiffness - limit).abs() < 1e-14);
-        let (force, stretch, slipping) = limited(Cap::Total, 0.2);
+        // The dashpot alone, 3·2, is beyond the limit: the spring of LAMMPS pushes the way it slides, and ours relaxes.
+        let (force, stretch, slipping) = limited(Cap::TotalAsLammps, 0.2);
         assert!(slipping && (force + limit).abs() < 1e-14);
         assert!((stretch * stiffness + 2.0 * viscosity - limit).abs() < 1e-14);
-        assert_eq!(limited(Cap::TotalAsLammps, 0.2), (force, stretch, true));
+        assert_eq!(limited(Cap::Total, 0.2), (force, 0.0, true));
 
         // Where there is no stretch yet: −3·2 is beyond the limit.
         let (force, stretch, slipping) = limited(Cap::TotalAsLammps, 0.0);
         assert!(slipping && force == 0.0 && stretch == 0.0);
         assert!((limited(Cap::Total, 0.0).0 + limit).abs() < 1e-14);
+        // Where the dashpot is within the limit, 3·2 of 10, spring and dashpot together are the limit.
+        let looser = Bound { limit: 10.0, ..bound };
+        for cap in [Cap::Total, Cap::TotalAsLammps] {
+            let mut stretch = Components([0.2]);
+            let shear = looser.limit::<Plane>(cap, &mut stretch, slip);
+            assert!(shear.slipping && (shear.force.0[0] + 10.0).abs() < 1e-14);
+            assert!((stretch.0[0] * stiffness + 2.0 * viscosity - 10.0).abs() < 1e-14, "{cap:?}");
+        }
         // Within the limit none of them cuts: −(100·.01 + 3·2/4).
         let bound = Bound { limit: 50.0, ..bound };
         for cap in [Cap::Spring, Cap::Total, Cap::TotalAsLammps] {

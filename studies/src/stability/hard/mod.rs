@@ -17,7 +17,7 @@ use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Ahead, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Ahead, Resolution, RunError, Solver, Unstable, Watch};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
@@ -41,7 +41,7 @@ pub struct HardCase {
 }
 
 /// Solvers that are asked.
-pub const SOLVERS: [&str; 6] = ["dem", "dem:no-tension", "rigid", "mpm", "lammps", "liggghts"];
+pub const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
 /// Steps smaller than the default one that are tried, as parts of it.
 const SMALLER: [f64; 4] = [0.5, 0.25, 0.1, 0.01];
 /// The default step of springs, as a fraction of the critical one.
@@ -189,7 +189,7 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
     let run = if case.goes_on {
         solver.run(scene, &resolution, &mut halfway)
     } else {
-        solver.run(scene, &resolution, &mut ())
+        solver.run(scene, &resolution, &mut Unstable)
     };
     match run {
         Ok(record) => {
@@ -222,6 +222,10 @@ impl Watch for Halfway {
 
     fn progress(&mut self, _done: u64, _total: u64) {}
 
+    fn allows_unstable(&self) -> bool {
+        true
+    }
+
     fn checkpoint_interval(&self) -> Option<u64> {
         Some(self.steps.div_ceil(2))
     }
@@ -243,7 +247,7 @@ fn continues(
         let reason = "it leaves no checkpoints to continue from".to_owned();
         return Err(Stop::Cannot(RunError::Unsupported { solver: solver.name(), reason }));
     };
-    let continued = solver.restart(scene, resolution, &checkpoint, &mut ()).map_err(Stop::Cannot)?;
+    let continued = solver.restart(scene, resolution, &checkpoint, &mut Unstable).map_err(Stop::Cannot)?;
     let differ = end(whole).iter().zip(end(&continued)).filter(|(a, b)| a != b).count();
     if differ > 0 || end(whole).len() != end(&continued).len() {
         return Err(Stop::Failed(Failure::Wrong(format!("{differ} grains end otherwise when the run is continued"))));

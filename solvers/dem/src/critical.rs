@@ -1,0 +1,91 @@
+//! The critical step followed during a run: contacts that stiffen until the time step is too long for them.
+
+use crate::geometry::Geometry;
+use crate::simulation::Simulated;
+use crate::walls::MovingWall;
+use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
+use grainbench_scene::solver::{Broken, Cause, Subject};
+
+/// A contact as it is looked at.
+struct Look<'a> {
+    law: Option<&'a ContactLaw>,
+    /// Slot of a grain.
+    slot: usize,
+    /// Overlap (m).
+    overlap: f64,
+    /// Effective radius (m).
+    radius: f64,
+    /// Larger of the inverse masses (1/kg).
+    inverse_mass: f64,
+}
+
+impl<S: Geometry> Simulated<S> {
+    /// Looks at contacts from time to time, unless unstable steps are allowed: those whose stiffness changes, and all if the
+    /// step is above the critical one of the scene from the start.
+    pub(crate) fn follow_critical_step(&mut self, allow_unstable: bool) {
+        let curved = self.scene.laws.iter().flatten().any(|law| law.springs.kind() == SpringsKind::HertzMindlin);
+        self.follows_critical = !allow_unstable && (curved || self.motion.time_step > self.critical);
+    }
+
+    /// Refuses a contact whose critical step 2√(m/k) is below the time step, with the smaller mass m and the larger stiffness k
+    /// along normal and tangent.
+    pub(crate) fn refuse_stiff_contacts(&self) -> Result<(), Box<Broken>> {
+        let grains = &self.grains;
+        for share in &self.neighbours.shares {
+            for pairs in [&share.across, &share.near] {
+                for at in pairs.own() {
+                    let [one, other] = [pairs.row[at], pairs.partner[at]].map(|slot| slot as usize);
+                    let shift = pairs.shift.get(at).map_or_else(Default::default, S::vector_in_space);
+                    let apart = (grains.position(other) - grains.position(one) - shift).norm();
+                    let [first, second] = [one, other].map(|slot| grains.radius(slot));
+                    if apart < first + second {
+                        self.refuse_stiff(&Look {
+                            law: self.scene.law(grains.material[one], grains.material[other]),
+                            slot: one,
+                            overlap: first + second - apart,
+                            radius: first * second / (first + second),
+                            inverse_mass: grains.inverse_mass(one).max(grains.inverse_mass(other)),
+                        })?;
+                    }
+                }
+            }
+        }
+        self.walls.iter().try_for_each(|wall| self.refuse_stiff_at(wall))
+    }
+
+    fn refuse_stiff_at(&self, wall: &MovingWall) -> Result<(), Box<Broken>> {
+        for (slot, distance) in wall.distances(&self.grains) {
+            let radius = self.grains.radius(slot);
+            if distance < radius {
+                self.refuse_stiff(&Look {
+                    law: self.scene.law(self.grains.material[slot], wall.material()),
+                    slot,
+                    overlap: radius - distance,
+                    radius,
+                    inverse_mass: self.grains.inverse_mass(slot),
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn refuse_stiff(&self, look: &Look<'_>) -> Result<(), Box<Broken>> {
+        let Some(law) = look.law else { return Ok(()) };
+        let (normal, tangential) = law.springs.stiffness(look.overlap, look.radius);
+        let stiffness = normal.max(if law.has_friction() { tangential } else { 0.0 });
+        let critical = 2.0 / (stiffness * look.inverse_mass).sqrt();
+        if self.motion.time_step <= critical {
+            return Ok(());
+        }
+        Err(Box::new(Broken {
+            time: self.time(),
+            step: self.step,
+            subject: Subject::Grain(self.grains.id[look.slot] + 1),
+            position: self.grains.position(look.slot),
+            cause: Cause::Stiffened { stiffness },
+            time_step: self.motion.time_step,
+            critical,
+            advice: format!("a step of at most {:.4e} s, a tenth of that, resolves the contact", 0.1 * critical),
+        }))
+    }
+}

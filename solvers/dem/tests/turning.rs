@@ -1,0 +1,296 @@
+//! Contacts that turn, whose walls turn, or whose stiffness changes: against exact answers in the frame that turns with them.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_dem::convention::Convention;
+use grainbench_dem::solver::Dem;
+use grainbench_scene::record::Record;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Cause, Resolution, RunError, Solver};
+use grainbench_scene::source::SceneSource;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+use std::path::Path;
+use support::{column, last};
+
+fn scene(text: &str) -> Scene {
+    let text = format!("title = 'test'\n{text}");
+    SceneSource::from_text("test", Path::new(""), &text).scene(&|_| Err("no files".to_owned())).unwrap()
+}
+
+fn run(text: &str, fraction: f64) -> Record {
+    Dem::new(Convention::DEFAULT).run(&scene(text), &Resolution::CriticalFraction(fraction), &mut ()).unwrap()
+}
+
+/// Angle (rad) that a grain named `b` goes round the z axis.
+fn way_round(record: &Record) -> f64 {
+    let angles: Vec<f64> = column(record, "b.y").iter().zip(column(record, "b.x")).map(|(y, x)| y.atan2(*x)).collect();
+    angles.windows(2).map(|pair| (pair[1] - pair[0] + TAU + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU).sum()
+}
+
+/// A sphere of m = ρ 4πR³/3 at rest on the wall of a drum that turns at Ω = 10 rad/s: it orbits at Ω with the spin Ω, its
+/// contact pressed by m Ω² (1.1 m − R + δ) = k_n δ, and rolling resistance has nothing to resist.
+fn drum() -> String {
+    let (mass, stiffness) = (2500.0 * 4.0 / 3.0 * 0.5 * TAU * 1e-3, 1.0e7);
+    let place = 1.0 / (1.0 - mass * 100.0 / stiffness);
+    format!(
+        "dimension = 3\nduration = 0.6283185307179586\nmaterials.m.density = 2500.0\n\
+         contacts.c = {{ between = ['m', 'm'], normal_stiffness = {stiffness}, tangential_stiffness = 2857142.857142857, \
+         friction = 1.0, rolling_friction = 0.1 }}\n\
+         grains.b = {{ material = 'm', radius = 0.1, position = [{place}, 0.0, 0.0], velocity = [0.0, {speed}, 0.0], \
+         spin = [0.0, 0.0, 10.0] }}\n\
+         [walls.drum]\nmaterial = 'm'\ncylinder = {{ axis = [[0.0, 0.0, -5.0], [0.0, 0.0, 5.0]], radius = 1.1 }}\n\
+         motion = [{{ spin = [0.0, 0.0, 10.0], centre = [0.0, 0.0, 0.0] }}]\n\
+         [output]\nevery = 0.0031415926535897933\n[probes]\nb = {{ grain = 'b' }}\n",
+        speed = 10.0 * place
+    )
+}
+
+/// Friction acts at the distance R from the centre, δ beyond the wall: places are off by the part δ/R of the angle, and spins by
+/// 2δ/R of Ω, as the rolling spring swings with what the start is off by. Without the wall's spin in the rolling stage the
+/// sphere is driven ahead by a tenth.
+#[test]
+fn a_sphere_rides_on_the_wall_of_a_turning_drum() {
+    let mass = 2500.0 * 4.0 / 3.0 * 0.5 * TAU * 1e-3;
+    let off = mass * 100.0 / 1.0e7 / 0.1;
+    for fraction in [0.1, 0.025] {
+        let record = run(&drum(), fraction);
+        let missing = way_round(&record) / TAU - 1.0;
+        assert!(missing.abs() < off, "{missing:e} of a turn, allowed {off:e}");
+        let spin = last(&record, "b.omega_z");
+        assert!((spin / 10.0 - 1.0).abs() < 2.0 * off, "{spin}");
+    }
+    // LAMMPS and LIGGGHTS take the spin of the grain alone, so that its own turning is resisted.
+    let lammps = Dem::new(Convention::LAMMPS);
+    let record = lammps.run(&scene(&drum()), &Resolution::CriticalFraction(0.1), &mut ()).unwrap();
+    assert!(way_round(&record) / TAU - 1.0 > 0.03, "{}", way_round(&record));
+}
+
+/// A tray under a disc is tilted by .1 rad, less than the .2 rad that rolling resistance holds: relative to the tray the disc
+/// moves by its springs alone, F/k < m g (.1)/k_t + (rolling angle M/k_r = m g R (.1)/k_r) R.
+#[test]
+fn a_disc_stays_on_a_tray_that_is_tilted() {
+    let text = "dimension = 2\ngravity = [0.0, -9.81]\nduration = 1.0\nmaterials.m.density = 2500.0\n\
+         contacts.c = { between = ['m', 'm'], normal_stiffness = 1.0e7, tangential_stiffness = 2857142.857142857, \
+         friction = 1.0, normal_damping = 50.0, tangential_damping = 50.0, rolling_friction = 0.2, rolling_damping = 0.3 }\n\
+         grains.d = { material = 'm', radius = 0.1, position = [0.0, 0.09992295244017071] }\n\
+         walls.tray = { material = 'm', plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }, \
+         motion = [{ spin = -0.1, centre = [0.0, 0.0] }] }\n[output]\nevery = 0.01\n[probes]\nd = { grain = 'd' }\n";
+    let record = run(text, 0.1);
+    let (sine, cosine) = (-0.1_f64).sin_cos();
+    let along = last(&record, "d.x") * cosine + last(&record, "d.y") * sine;
+    let (mass, force) = (2500.0 * 0.5 * TAU * 0.01, 2500.0 * 0.5 * TAU * 0.01 * 9.81 * 0.1);
+    let rolling = 2.25 * 1.0e7 * 0.2 * 0.2 * 0.01;
+    let springs = force / 2_857_142.857 + force * 0.1 / rolling * 0.1;
+    // Twice the static answer for the motion it is set off with, and the centrifugal and Coriolis parts of .1 rad/s.
+    let allowed = 2.0 * springs + mass * 0.01 * 0.1 / 2_857_142.857;
+    assert!(along.abs() < allowed, "{along:e} m along the tray, allowed {allowed:e}; R θ is .01 m");
+}
+
+/// A sphere clamped between two plates that turn about their normal at Ω = 10 rad/s leads them by nothing and stays at r: the
+/// springs that hold it, 2 k_t s = m Ω² r, are stretched outwards and turn with the plates. Springs that do not turn about the
+/// normal let it lead by π m Ω²/k_t = .00314 rad a turn.
+#[test]
+fn a_clamped_sphere_rides_with_its_plates() {
+    let radius = 0.045_707_814_973_408_33;
+    let (height, distance) = (radius - 0.001, 2.0 * (radius - 0.001));
+    let text = format!(
+        "dimension = 3\nduration = 1.2566370614359172\nmaterials.m.density = 2500.0\n\
+         contacts.c = {{ between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e5, friction = 10.0, \
+         tangential_damping = 50.0 }}\n\
+         grains.b = {{ material = 'm', radius = {radius}, position = [1.0, 0.0, {height}], velocity = [0.0, 10.0, 0.0], \
+         spin = [0.0, 0.0, 10.0] }}\n\
+         [walls.low]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}\n\
+         motion = [{{ spin = [0.0, 0.0, 10.0], centre = [0.0, 0.0, 0.0] }}]\n\
+         [walls.high]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0, {distance}], normal = [0.0, 0.0, -1.0] }}\n\
+         motion = [{{ spin = [0.0, 0.0, 10.0], centre = [0.0, 0.0, 0.0] }}]\n\
+         [output]\nevery = 0.006283185307179587\n[probes]\nb = {{ grain = 'b' }}\n"
+    );
+    let record = run(&text, 0.1);
+    let lead = (way_round(&record) - 2.0 * TAU) / 2.0;
+    let place = last(&record, "b.x").hypot(last(&record, "b.y"));
+    // m = 1 kg: the stretch is m Ω²/(2 k_t − m Ω²) of r, and twice that while it is set off.
+    let stretch = 100.0 / (2.0e5 - 100.0);
+    assert!((place - 1.0 - stretch).abs() < stretch, "{place}");
+    // Each turn begins and ends with the swing of that start, 2 Ω times which the Coriolis force turns sideways.
+    assert!(lead.abs() < 0.05 * 0.5 * TAU * 100.0 / 1.0e5, "{lead:e} rad a turn");
+}
+
+/// The scene of a Hertz contact that is driven: times (s) and places (m) of a ball on a floor.
+fn driven(table: &str, duration: f64) -> String {
+    format!(
+        "dimension = 3\nduration = {duration}\nmaterials.glass = {{ density = 2500.0, young_modulus = 1.0e7, \
+         poisson_ratio = 0.25 }}\n\
+         contacts.one = {{ between = ['glass', 'glass'], law = 'hertz', friction = 0.5 }}\n\
+         grains.ball = {{ material = 'glass', radius = 0.005, position = [0.0, 0.0, 0.005] }}\n\
+         driven.ball = {{ grains = 'ball', motion = [{{ table = [{table}] }}] }}\n\
+         walls.floor = {{ material = 'glass', plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }} }}\n\
+         [output]\nevery_cycles = 1\n[probes]\ntouch = {{ contact = ['ball', 'floor'] }}\nball = {{ grain = 'ball' }}\n"
+    )
+}
+
+/// Mindlin's k_t = 8 G* √(R δ) (N/m), G* = G/(2 (2 − ν)) and G = E/(2 (1 + ν)) of two bodies of E = 10 MPa and ν = .25.
+fn mindlin(overlap: f64) -> f64 {
+    8.0 * (1.0e7 / 2.5) / (2.0 * 1.75) * (0.005 * overlap).sqrt()
+}
+
+/// Sheared by 5 µm at δ = 50 µm, pressed to 100 µm, let go: the force keeps F = k_t(50 µm) s while it is pressed, and the
+/// closed cycle yields no work. Without slip nothing else can be lost than what the receding edge releases.
+#[test]
+fn a_closed_cycle_of_a_hertz_contact_yields_no_work() {
+    let press = "[0.0, 0.0, 0.0, 0.0], [0.01, 0.0, 0.0, -5.0e-5], [0.02, 5.0e-6, 0.0, -5.0e-5], \
+                 [0.03, 5.0e-6, 0.0, -1.0e-4], [0.04, 0.0, 0.0, -1.0e-4], [0.05, 0.0, 0.0, 0.0]";
+    // Press, shear, take off load, unshear: what a force without rescaling would gain by.
+    let shear = "[0.0, 0.0, 0.0, 0.0], [0.01, 0.0, 0.0, -1.0e-4], [0.02, 5.0e-6, 0.0, -1.0e-4], \
+                 [0.03, 5.0e-6, 0.0, -5.0e-5], [0.04, 0.0, 0.0, -5.0e-5], [0.05, 0.0, 0.0, 0.0]";
+    for (table, held) in [(press, mindlin(5.0e-5)), (shear, mindlin(5.0e-5))] {
+        let record = run(&driven(table, 0.05), 0.1);
+        let time = &record.series.time;
+        let at = |moment: f64| time.iter().position(|time| *time >= moment - 1e-9).unwrap();
+        let force = column(&record, "touch.shear_force");
+        let expected = held * 5.0e-6;
+        assert!((force[at(0.03)].abs() - expected).abs() < 1e-3 * expected, "{} N for {expected}", force[at(0.03)]);
+        // Force of the floor on the ball (N) and place of the ball (m), snapshot by snapshot.
+        let seen: Vec<(Vector3<f64>, Vector3<f64>)> = record
+            .snapshots
+            .iter()
+            .map(|snapshot| {
+                let contacts = snapshot.told_contacts();
+                let force = contacts.iter().map(|contact| contact.shear_force - contact.normal * contact.normal_force);
+                (force.sum(), snapshot.grains[0].position)
+            })
+            .collect();
+        let work: f64 = seen.windows(2).map(|pair| 0.5 * (pair[0].0 + pair[1].0).dot(&(pair[1].1 - pair[0].1))).sum();
+        let stored = 0.5 * expected * 5.0e-6;
+        assert!(work < 1e-3 * stored && work > -2.0 * stored, "the contact yields {work:e} J of {stored:e} J");
+    }
+}
+
+/// A sphere that bounces between two plates with Hertz and Mindlin contacts: its energy never grows, and what it loses is what
+/// slides and what the receding edge of the contact releases.
+#[test]
+fn hertz_and_mindlin_create_no_energy() {
+    for friction in [1.0, 1000.0] {
+        let text = format!(
+            "dimension = 3\nduration = 3.0\nmaterials.m = {{ density = 2500.0, young_modulus = 1.0e9, poisson_ratio = 0.3 }}\n\
+             contacts.c = {{ between = ['m', 'm'], law = 'hertz', friction = {friction} }}\n\
+             grains.b = {{ material = 'm', radius = 0.1, position = [0.0, 0.0, 0.11], velocity = [0.5, 0.0, -1.0] }}\n\
+             walls.low = {{ material = 'm', plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }} }}\n\
+             walls.high = {{ material = 'm', plane = {{ point = [0.0, 0.0, 0.22], normal = [0.0, 0.0, -1.0] }} }}\n\
+             [output]\nevery = 0.001\n[probes]\nall = {{ system = true }}\nbudget = {{ budget = true }}\n"
+        );
+        let loss = |fraction: f64| {
+            let record = run(&text, fraction);
+            let total: Vec<f64> = column(&record, "all.kinetic_energy")
+                .iter()
+                .zip(column(&record, "all.elastic_energy"))
+                .map(|(kinetic, elastic)| (kinetic + elastic) / column(&record, "all.kinetic_energy")[0])
+                .collect();
+            let most = total.iter().copied().fold(0.0, f64::max);
+            let unbalanced = column(&record, "budget.unbalanced");
+            let off = unbalanced.iter().map(|value| (value / unbalanced[0] - 1.0).abs()).fold(0.0, f64::max);
+            (most, total[total.len() - 1], off)
+        };
+        let [coarse, fine] = [0.1, 0.05].map(loss);
+        // An impact that begins and ends within a step scatters the energy by the square of ω Δt = 2 · fraction.
+        assert!(coarse.0 < 1.0 + 0.04 && fine.0 < 1.0 + 0.01, "μ = {friction}: {coarse:?}, {fine:?}");
+        assert!(coarse.1 < 1.0 && fine.1 < 1.0, "μ = {friction}: {coarse:?}, {fine:?}");
+        // What is left in the tangential spring when a contact ends is in no entry of the budget: with slip it is nothing.
+        assert!(friction > 1.0 || fine.2 < 0.35 * coarse.2, "the budget converges: {coarse:?}, {fine:?}");
+    }
+}
+
+/// A sphere grazes a wall with a tangential dashpot that alone exceeds Coulomb's limit: it slides throughout and loses
+/// μ (1 + e) v_n = 1 m/s of 4, whatever the dashpot. The spring never pushes it on.
+#[test]
+fn an_overdamped_contact_slides_as_any_other() {
+    for damping in [20_000.0, 5000.0, 0.0] {
+        let text = format!(
+            "dimension = 3\nduration = 0.004\nmaterials.glass.density = 2500.0\n\
+             contacts.wall = {{ between = ['glass', 'glass'], normal_stiffness = 2.0e5, \
+             tangential_stiffness = 57142.857142857, friction = 0.5, tangential_damping = {damping} }}\n\
+             grains.ball = {{ material = 'glass', radius = 0.005, position = [0.0, 0.0, 0.0051], velocity = [4.0, 0.0, -1.0] }}\n\
+             walls.floor = {{ material = 'glass', plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }} }}\n\
+             [probes]\nball = {{ grain = 'ball' }}\n"
+        );
+        let record = run(&text, 0.01);
+        let (along, up) = (last(&record, "ball.vx"), last(&record, "ball.vz"));
+        // Friction is μ F_n at every step but the first, in which the spring begins to be stretched.
+        assert!((4.0 - along - 0.5 * (1.0 + up)).abs() < 1e-3, "γ_t = {damping}: {along}, {up}");
+        assert!((up - 1.0).abs() < 0.01 && (along - 3.0).abs() < 0.01, "γ_t = {damping}: {along}, {up}");
+    }
+}
+
+/// An oblique impact of e = .6 that sticks: the contact lasts t_c = 2 acos ζ/(ω_n √(1 − ζ²)), and in it the tangential spring
+/// of an oscillator with ω_t² = 3 k_t/m swings, v_x = v_0 [1 − (1 − cos ω_t t_c)/3], with the spin 2 (v_0 − v_x)/R.
+/// The same damping gives e, and a contact that slides loses μ (1 + e) v_n.
+#[test]
+fn damped_impacts_stick_and_slide_as_their_closed_forms() {
+    let text = |friction: f64| {
+        format!(
+            "dimension = 2\nduration = 0.018\nmaterials.m.density = 2500.0\n\
+             contacts.c = {{ between = ['m', 'm'], normal_stiffness = 1.0e7, tangential_stiffness = 2857142.857142857, \
+             friction = {friction}, restitution = 0.6 }}\n\
+             grains.b = {{ material = 'm', radius = 0.1, position = [0.0, 0.1001], velocity = [0.5, -1.0] }}\n\
+             walls.w = {{ material = 'm', plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}\n\
+             [probes]\nb = {{ grain = 'b' }}\n"
+        )
+    };
+    let mass = 2500.0 * 0.5 * TAU * 0.01;
+    // ζ with exp(−2ζ acos ζ/√(1 − ζ²)) = .6, found apart: .180 858.
+    let ratio = 0.180_858_308_f64;
+    let root = (1.0 - ratio * ratio).sqrt();
+    assert!(((-2.0 * ratio * ratio.acos() / root).exp() - 0.6).abs() < 1e-5);
+    let lasts = 2.0 * ratio.acos() / (root * (1.0e7 / mass).sqrt());
+    let swings = (3.0 * 2_857_142.857 / mass).sqrt();
+    let expected = 0.5 * (1.0 - (1.0 - (swings * lasts).cos()) / 3.0);
+    let errors = [0.02, 0.0025].map(|fraction| {
+        let record = run(&text(1.0e6), fraction);
+        let (along, spin) = (last(&record, "b.vx"), last(&record, "b.omega"));
+        assert!((spin.abs() - 2.0 * (0.5 - along) / 0.1).abs() < 1e-9, "{spin}");
+        [along - expected, last(&record, "b.vy") - 0.6]
+    });
+    // Of first order in the step: the dashpot is half a step late, and the contact begins within a step.
+    assert!(errors[0].iter().all(|error| error.abs() < 0.02), "{errors:?}");
+    assert!(errors[1].iter().all(|error| error.abs() < 0.0025), "{errors:?}");
+    // Friction lacks the start, in which the dashpot pushes and the spring is not stretched yet: it reaches the limit
+    // μ (k v t + c v) at k_t v_t t, which takes 2ζ²/(ρ − 1) of μ m v with ρ = k_t v_t/(μ k v).
+    let friction = 0.05;
+    let steepness = 2_857_142.857 * 0.5 / (friction * 1.0e7);
+    let record = run(&text(friction), 0.0025);
+    let lost = friction * (1.0 + last(&record, "b.vy") - 2.0 * ratio * ratio / (steepness - 1.0));
+    let found = 0.5 - last(&record, "b.vx");
+    assert!((found - lost).abs() < 0.0025 * lost, "{found} for {lost}");
+}
+
+/// A Hertz contact that is so stiff that its critical step is below the time step ends the run with a typed error that says when,
+/// in which grain and what step would do; and goes on where that is allowed. The critical step of a scene is that of an overlap
+/// of R/100: here a ball rests with R/50, whose contact is √2 times as stiff.
+#[test]
+fn a_contact_that_stiffens_beyond_the_step_is_refused() {
+    let modulus = 1.0e7 / (2.0 * (1.0 - 0.09));
+    let (mass, overlap) = (2500.0 * 4.0 / 3.0 * 0.5 * TAU * 1e-3, 0.002_f64);
+    let gravity = 4.0 / 3.0 * modulus * 0.1_f64.sqrt() * overlap.powf(1.5) / mass;
+    let scene = scene(&format!(
+        "dimension = 3\nduration = 0.1\ngravity = [0.0, 0.0, -{gravity}]\n\
+         materials.m = {{ density = 2500.0, young_modulus = 1.0e7, poisson_ratio = 0.3 }}\n\
+         contacts.c = {{ between = ['m', 'm'], law = 'hertz' }}\n\
+         grains.b = {{ material = 'm', radius = 0.1, position = [0.0, 0.0, 0.098] }}\n\
+         walls.low = {{ material = 'm', plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }} }}\n\
+         [probes]\nall = {{ system = true }}\n"
+    ));
+    let run = |dem: Dem, fraction: f64| dem.run(&scene, &Resolution::CriticalFraction(fraction), &mut ());
+    let dem = Dem::new(Convention::DEFAULT);
+    let RunError::Broken(broken) = run(dem, 0.95).unwrap_err() else { panic!("expected a run that broke") };
+    let Cause::Stiffened { stiffness } = broken.cause else { panic!("{broken}") };
+    let expected = 2.0 * modulus * (0.1 * overlap).sqrt();
+    assert!((stiffness / expected - 1.0).abs() < 1e-9 && broken.step == 1, "{broken}");
+    assert!((broken.critical / (2.0 * (mass / stiffness).sqrt()) - 1.0).abs() < 1e-12);
+    assert!(broken.to_string().contains("became so stiff"), "{broken}");
+    run(dem, 0.5).unwrap();
+    assert!(
+        !matches!(run(dem.allowing_unstable_steps(), 0.95), Err(RunError::Broken(broken)) if broken.cause == Cause::Stiffened { stiffness })
+    );
+}
