@@ -7,7 +7,7 @@ mod forms;
 #[path = "turning.rs"]
 mod turning;
 
-use crate::exact::dashpot::lag;
+use crate::exact::dashpot::{no_tension_lag, no_tension_ratio};
 use crate::rows::program_forces::forces;
 use crate::rows::programs::hertz_impact;
 use crate::rows::rigid;
@@ -157,20 +157,20 @@ fn rebound(done: &Done) -> Result<f64, Missing> {
     Ok(-done.last("a.vz")? / done.scene.grains[0].velocity.z)
 }
 
-/// How far a restitution may be off with a dashpot that is half a step late.
+/// Tolerance of a restitution with a dashpot that is half a step late.
 fn late(variant: &str, restitution: f64) -> Tolerance {
     let error = |scene: Scene| {
         let ((k, mass, speed), (overlap, ..)) = (impact(&scene), hertz(&scene));
         let step = STEP.resolution.steps(&scene).map_or(f64::NAN, |(step, _)| step);
-        let (phase, zeta) = ((1.5 * k * overlap.sqrt() / mass).sqrt() * step, damping_ratio(restitution));
-        let ends = 2.5 * zeta * (speed * step / overlap).powf(1.25);
-        restitution * (lag(zeta) * phase + ends)
+        let (phase, zeta) = ((1.5 * k * overlap.sqrt() / mass).sqrt() * step, no_tension_ratio(restitution));
+        let touch = 1.25 * zeta * (speed * step / overlap).powf(1.25);
+        restitution * (no_tension_lag(zeta) * phase + touch)
     };
     computed(
         CASE.variant(variant).map_or(f64::NAN, error),
-        "the dashpot is half a step late, which makes ζ larger by the factor 1 + ζωΔt/2: e π ζ²/(2 (1 − ζ²)^{3/2}) ωΔt with \
-         the frequency at the deepest overlap; touch and release take up to half a step of its force each, \
-         e (5/2) ζ (v Δt/δ_max)^{5/4}",
+        "the dashpot is half a step late, which makes ζ larger by the factor 1 + ζωΔt/2: \
+         e ζ² [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 − ζ²)] ωΔt with the frequency at the deepest overlap; the touch takes up to half a \
+         step of its force, e (5/4) ζ (v Δt/δ_max)^{5/4}, and the release, where the force is zero, nothing",
     )
 }
 
@@ -196,13 +196,14 @@ fn restitution() -> Vec<Claim> {
     DAMPED.into_iter().flat_map(|variant| RESTITUTIONS.map(|restitution| of(variant, restitution))).collect()
 }
 
-/// Force (N) on the sphere of aluminium oxide that meets the plane with e = .5, by hand: k δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇.
+/// Force (N) on the sphere of aluminium oxide that meets the plane with e = .5, by hand: k δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇ where
+/// that pushes, with the ζ of a release at zero force.
 fn damped_force(overlap: f64, rate: f64) -> f64 {
     let (radius, density, modulus) = (0.0025_f64, 4000.0, 380.0e9 / (1.0 - 0.23 * 0.23));
     let stiffness = 4.0 / 3.0 * modulus * radius.sqrt();
     let mass = density * 4.0 / 3.0 * PI * radius.powi(3);
-    let damping = 5.0_f64.sqrt() * damping_ratio(0.5) * (stiffness * mass).sqrt();
-    if overlap > 0.0 { stiffness * overlap.powf(1.5) + damping * overlap.powf(0.25) * rate } else { 0.0 }
+    let damping = 5.0_f64.sqrt() * no_tension_ratio(0.5) * (stiffness * mass).sqrt();
+    if overlap > 0.0 { (stiffness * overlap.powf(1.5) + damping * overlap.powf(0.25) * rate).max(0.0) } else { 0.0 }
 }
 
 /// The contact force that `dem` records is the one that moves the grain: its dashpot takes the velocity half a step back,
@@ -230,7 +231,7 @@ fn force_that_moves() -> Claim {
 }
 
 fn at_angle(variant: &'static str, degrees: f64) -> Run {
-    Run::new(variant, "dem:1979", STEP.resolution).adjusted(&format!("{degrees}° from the normal"), move |scene| {
+    Run::new(variant, "dem", STEP.resolution).adjusted(&format!("{degrees}° from the normal"), move |scene| {
         let velocity = &mut scene.grains[0].velocity;
         let (speed, angle) = (velocity.norm(), degrees.to_radians());
         (velocity.x, velocity.z) = (speed * angle.sin(), -speed * angle.cos());
@@ -242,8 +243,7 @@ fn tangential(done: &Done) -> Result<f64, Missing> {
     Ok(done.last("a.vx")? / done.scene.grains[0].velocity.x)
 }
 
-/// Tangential restitution and spin (rad/s) after an impact that slides throughout, where the limit of friction is that of the
-/// spring: ∫F_spring dt = m(1+e)v, for what the dashpot does cancels over the impact.
+/// Tangential restitution and spin (rad/s) after an impact that slides throughout: ∫F_n dt = m(1+e)v.
 fn sliding(scene: &Scene) -> (f64, f64) {
     let meeting = Meeting::of(scene);
     let [along, spin] = meeting.after(scene, 1.0 + meeting.restitution);

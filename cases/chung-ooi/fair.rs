@@ -1,10 +1,11 @@
 //! What any program with Hertz's springs owes in the eight tests, whatever it leaves to convention: read from places, velocities
 //! and spins of grains at samples, for a program need not tell the forces at contacts.
 
-use super::forms::{Meeting, released_early, restitution};
+use super::forms::{Meeting, restitution};
 use super::turning::{BALLS, PLANE, STICKING, elastic, sliding_along, spinning};
 use super::{CASE, DAMPED, ELASTIC, HERTZ, LEVELS, OBLIQUE, RESTITUTION, SLIDING, STEP};
 use super::{at_angle, hertz, peak, rebound, with_restitution};
+use crate::exact::dashpot::no_tension_restitution;
 use grainbench_harness::prelude::*;
 
 /// Angles of impact from the normal (degrees) of test 4 that any program is asked for.
@@ -128,7 +129,7 @@ fn given_back(run: Run) -> Claim {
         .of(run)
         .equals(RESTITUTION, |done| {
             let (found, ratio) = (rebound(&done[0])?, super::law(&done[0].scene).damping_ratio);
-            let [late, early] = [restitution(ratio), released_early(ratio)];
+            let [late, early] = [restitution(ratio), no_tension_restitution(ratio)];
             Ok(Measured::new(found, if found - late < early - found { late } else { early }, 1.0))
         })
         .within(computed(

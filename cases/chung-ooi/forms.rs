@@ -1,6 +1,7 @@
 //! Closed forms of an impact whose contact slides throughout, and of a dashpot that may not pull.
 
 use super::{impact, law};
+use crate::exact::dashpot::{no_tension_ratio, no_tension_restitution};
 use grainbench_scene::scene::Scene;
 use std::f64::consts::PI;
 
@@ -17,8 +18,6 @@ pub(super) struct Meeting {
     pub(super) restitution: f64,
     /// Ratio e′ of the velocities along the normal where the contact lets go as soon as its force is zero.
     pub(super) early: f64,
-    /// Damping ratio ζ of the law.
-    pub(super) ratio: f64,
     /// ρ = 6 G* s/(μ E* v_n): how much faster the tangential spring grows than Coulomb's limit by the normal one.
     pub(super) steepness: f64,
 }
@@ -26,24 +25,6 @@ pub(super) struct Meeting {
 /// e = exp(−πζ/√(1−ζ²)), of a contact that lets go when the overlap is zero.
 pub(super) fn restitution(ratio: f64) -> f64 {
     (-PI * ratio / (1.0 - ratio * ratio).sqrt()).exp()
-}
-
-/// The same of a contact that lets go when its force is zero: exp(−(ζ/√(1−ζ²)) φ), φ = arg(2ζ²−1 + 2iζ√(1−ζ²)) (Schwager &
-/// Pöschel 2007 for linear springs; Hertz's obey the same oscillator, see the derivation).
-pub(super) fn released_early(ratio: f64) -> f64 {
-    let root = (1.0 - ratio * ratio).sqrt();
-    let phase = (2.0 * ratio * root).atan2(2.0 * ratio * ratio - 1.0);
-    (-ratio / root * phase).exp()
-}
-
-/// Damping ratio whose release at zero force gives e, by bisection.
-fn compensated(restitution: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0 - 1e-9);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if released_early(middle) > restitution { low = middle } else { high = middle }
-    }
-    low
 }
 
 impl Meeting {
@@ -61,22 +42,16 @@ impl Meeting {
             stopping: mass * speed,
             friction: law.friction,
             restitution: restitution(law.damping_ratio),
-            early: released_early(law.damping_ratio),
-            ratio: law.damping_ratio,
+            early: no_tension_restitution(law.damping_ratio),
             steepness,
         }
     }
 
-    /// What sticking at the start takes of friction's impulse in units of μ m* v_n, where the limit is that of spring and
-    /// dashpot: 2ζ²/(ρ−1) (derivation).
-    pub(super) fn start(&self) -> f64 {
-        2.0 * self.ratio.powi(2) / (self.steepness - 1.0)
-    }
-
-    /// The same with the dashpot whose release at zero force gives e, and a spring that is added to by k_s Δs rather than being
-    /// k_s s: 2/3 of the force, as k_s grows with √δ.
+    /// Part of friction's impulse, in units of μ m* v_n, that is lost because the contact sticks at the start, 2ζ²/(2ρ/3 − 1)
+    /// (derivation): of a limit on spring and dashpot, the ζ whose release at zero force gives e, and a spring that is added to
+    /// by k_s Δs, which has 2/3 of the force k_s s, as k_s grows with √δ.
     pub(super) fn latest_start(&self) -> f64 {
-        2.0 * compensated(self.restitution).powi(2) / (2.0 / 3.0 * self.steepness - 1.0)
+        2.0 * no_tension_ratio(self.restitution).powi(2) / (2.0 / 3.0 * self.steepness - 1.0)
     }
 
     /// Friction's impulse on the first grain (N s): μ times `factor` times the one that stops the approach, against the slip.

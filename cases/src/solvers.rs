@@ -38,10 +38,20 @@ pub fn names() -> Vec<String> {
     all().iter().chain(&programs()).map(|solver| solver.name()).collect()
 }
 
-/// The solver of a name. The material point method may be given words that change its setting, such as
+/// Names of earlier versions that are still accepted, and the solvers that they name now.
+const EARLIER_NAMES: [(&str, &str); 1] = [("dem:no-tension", "dem")];
+
+/// The name now of a solver that had another one in earlier versions.
+#[must_use]
+pub fn renamed(name: &str) -> Option<&'static str> {
+    EARLIER_NAMES.into_iter().find(|(earlier, _)| *earlier == name).map(|(_, now)| now)
+}
+
+/// The solver of a name, or of an earlier one. The material point method may be given words that change its setting, such as
 /// `mpm+quadratic+apic`.
 #[must_use]
 pub fn by_name(name: &str) -> Option<Box<dyn Solver>> {
+    let name = renamed(name).unwrap_or(name);
     all().into_iter().chain(programs()).find(|solver| solver.name() == name).or_else(|| varied::by_name(name))
 }
 

@@ -1,4 +1,4 @@
-//! What a time step makes of a dashpot.
+//! Restitution of a contact with a dashpot, and the effect of a time step on it.
 
 use std::f64::consts::PI;
 
@@ -10,9 +10,54 @@ pub fn lag(damping_ratio: f64) -> f64 {
     0.5 * PI * damping_ratio * damping_ratio / (1.0 - damping_ratio * damping_ratio).powf(1.5)
 }
 
+/// Coefficient of restitution of a contact that ends when its force is zero. The oscillator x″ + 2ζ x′ + x = 0 with x = 0 and
+/// x′ = 1 at the start has x″ = 0 at t = 2φ/√(1 − ζ²), cos φ = ζ, and there −x′ = exp(−ζ t). Above critical damping acosh ζ and
+/// √(ζ² − 1) stand for acos ζ and √(1 − ζ²). Source: the damped oscillator (Schwager & Pöschel 2007; Hertz contacts obey it in
+/// δ^{5/4}).
+#[must_use]
+pub fn no_tension_restitution(damping_ratio: f64) -> f64 {
+    (-2.0 * damping_ratio * arc(damping_ratio)).exp()
+}
+
+/// acos ζ/√(1 − ζ²), or acosh ζ/√(ζ² − 1).
+fn arc(damping_ratio: f64) -> f64 {
+    let root = (1.0 - damping_ratio * damping_ratio).abs().sqrt();
+    if damping_ratio < 1.0 { damping_ratio.acos() / root } else { damping_ratio.acosh() / root }
+}
+
+/// Damping ratio of a contact that ends when its force is zero and has a coefficient of restitution, by bisection.
+#[must_use]
+pub fn no_tension_ratio(restitution: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0 / restitution);
+    for _ in 0..80 {
+        let middle = 0.5 * (low + high);
+        if no_tension_restitution(middle) > restitution { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// [`lag`] of a contact that ends when its force is zero: dln e/dζ = −2 [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 − ζ²)].
+#[must_use]
+pub fn no_tension_lag(damping_ratio: f64) -> f64 {
+    damping_ratio * damping_ratio * (arc(damping_ratio) - damping_ratio) / (1.0 - damping_ratio * damping_ratio)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_lag_without_tension_is_what_a_larger_damping_ratio_makes() {
+        for zeta in [0.3, 1.4] {
+            let phase = 1e-6;
+            let larger = no_tension_restitution(zeta * (1.0 + 0.5 * zeta * phase));
+            let lost = (no_tension_restitution(zeta) - larger) / no_tension_restitution(zeta) / phase;
+            assert!((lost / no_tension_lag(zeta) - 1.0).abs() < 1e-3, "{lost} of {}", no_tension_lag(zeta));
+        }
+        for restitution in [0.05, 0.5, 0.98] {
+            assert!((no_tension_restitution(no_tension_ratio(restitution)) / restitution - 1.0).abs() < 1e-12);
+        }
+    }
 
     #[test]
     fn the_lag_is_what_a_larger_damping_ratio_makes() {
