@@ -1,6 +1,7 @@
-//! README shows what the code says: its tables are generated, its pictures are drawn, its scene runs.
+//! Generated parts of README and of the guide: the tables of `guide/src/tables.md` and the figures. The feature matrix of README
+//! is written by hand and checked against the claims; the slope of the guide is checked against its exact answer.
 //!
-//! `UPDATE_README=1 cargo test --release --test readme` writes them anew.
+//! `UPDATE_README=1 cargo test --release --test readme` writes the generated parts again.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -11,7 +12,9 @@ use grainbench::cases::registry::{self, CASES, read_grains};
 use grainbench::cases::runner;
 use grainbench::dem::convention::Convention;
 use grainbench::harness::case::PLAIN;
+use grainbench::harness::claim::Claim;
 use grainbench::harness::course::of_case;
+use grainbench::harness::evidence::Evidence;
 use grainbench::mpm::solver::Mpm;
 use grainbench::reports::plot;
 use grainbench::scene::solver::{Resolution, Solver};
@@ -30,7 +33,7 @@ fn settings_table() -> String {
 }
 
 fn cases_table() -> String {
-    let mut table = "| case | what it is | gates | evidence | solvers |\n|---|---|---|---|---|\n".to_owned();
+    let mut table = "| case | title | claims | evidence | solvers |\n|---|---|---|---|---|\n".to_owned();
     for case in CASES {
         let claims = (case.claims)();
         let list = |words: BTreeSet<String>| words.into_iter().collect::<Vec<_>>().join(", ");
@@ -50,7 +53,7 @@ fn conventions_table() -> String {
     table
 }
 
-/// What the race printed that is kept: `grainbench race` on a quiet machine leaves another `race.json`.
+/// Table of the stored throughput benchmark. `grainbench race` on a quiet machine writes a new `race.json`.
 fn race_table() -> String {
     let kept = std::fs::read_to_string(root("benches/race/race.json")).unwrap();
     serde_json::from_str::<Race>(&kept).unwrap().table().trim_end().to_owned()
@@ -58,11 +61,53 @@ fn race_table() -> String {
 
 #[test]
 fn tables_are_generated() {
+    const CHAPTER: &str = "guide/src/tables.md";
+    let mut chapter = std::fs::read_to_string(root(CHAPTER)).unwrap();
+    for (mark, table) in [
+        ("cases", cases_table()),
+        ("conventions", conventions_table()),
+        ("settings", settings_table()),
+        ("race", race_table()),
+    ] {
+        chapter = with_generated(&chapter, mark, &table);
+    }
+    expect_file(CHAPTER, &chapter);
+}
+
+/// Cells of the feature matrix that name a case without a claim of the column's kind of evidence, as `case: evidence`. An empty
+/// matrix is an error too.
+fn wrong_cells(readme: &str) -> Vec<String> {
+    const COLUMNS: [&[Evidence]; 5] = [
+        &[Evidence::Analytic],
+        &[Evidence::Experiment],
+        &[Evidence::OtherCode],
+        &[Evidence::Paper, Evidence::Prototype],
+        &[Evidence::Convergence],
+    ];
+    let rows = readme.lines().skip_while(|line| !line.starts_with("| physics |")).skip(2);
+    let rows: Vec<&str> = rows.take_while(|line| line.starts_with('|')).collect();
+    assert!(rows.len() > 5, "the feature matrix has {} rows", rows.len());
+    let mut wrong = Vec::new();
+    for row in rows {
+        for (cell, column) in row.split('|').skip(2).zip(COLUMNS) {
+            for name in cell.split('`').skip(1).step_by(2) {
+                let case = CASES.iter().find(|case| case.name == name);
+                let has = |claim: &Claim| column.contains(&claim.evidence());
+                if !case.is_some_and(|case| (case.claims)().iter().any(has)) {
+                    wrong.push(format!("{name}: {}", column[0].word()));
+                }
+            }
+        }
+    }
+    wrong
+}
+
+#[test]
+fn the_feature_matrix_names_cases_with_that_evidence() {
     let readme = std::fs::read_to_string(root("README.md")).unwrap();
-    let readme = with_generated(&readme, "cases", &cases_table());
-    let readme = with_generated(&readme, "settings", &settings_table());
-    let readme = with_generated(&readme, "race", &race_table());
-    expect_file("README.md", &with_generated(&readme, "conventions", &conventions_table()));
+    assert_eq!(wrong_cells(&readme), Vec::<String>::new());
+    let planted = readme.replace("| – | `collision`", "| `collision` | `collision`");
+    assert_eq!(wrong_cells(&planted), ["collision: experiment"], "a wrong cell is found");
 }
 
 #[test]
@@ -73,17 +118,15 @@ fn pictures_are_drawn() {
         let case = registry::by_name(case).unwrap();
         let figures = of_case(case, &runner(case), &(case.claims)()).unwrap();
         let figure = figures.iter().find(|candidate| candidate.name == figure).unwrap();
-        let path = format!("reports/readme/{}-{}.svg", case.name, figure.name);
+        let path = format!("guide/src/{}-{}.svg", case.name, figure.name);
         expect_file(&path, &plot::draw(figure).unwrap());
     }
 }
 
 #[test]
-fn the_scene_runs() {
-    let readme = std::fs::read_to_string(root("README.md")).unwrap();
-    let start = readme.find("<!-- scene -->\n```toml\n").unwrap() + "<!-- scene -->\n```toml\n".len();
-    let text = &readme[start..start + readme[start..].find("```").unwrap()];
-    let source = SceneSource::from_text("README.md", Path::new(""), text);
+fn the_disc_on_the_slope_rolls_or_slips() {
+    let path = "guide/scenes/slope.toml";
+    let source = SceneSource::from_text(path, Path::new(""), &std::fs::read_to_string(root(path)).unwrap());
     for variant in [PLAIN, "icy"] {
         let source = if variant == PLAIN { source.clone() } else { source.clone().variant(variant) };
         let scene = source.scene(&read_grains).unwrap();
