@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# A plan on a real Slurm: two virtual nodes on this machine in a temporary directory, started here and stopped at the end.
-# Tasks are killed, half of an array is cancelled, a node is drained, a disk is full, and in the end the controller does not
-# answer: nothing may be lost, nothing done twice, and the rows are those of a local run but for their times.
+# Tests a plan on a private Slurm with two virtual nodes on this machine, in a temporary directory.
+# The script kills tasks, cancels half of an array, drains a node, fills the disk and stops the controller. No task may be lost
+# or done twice, and the results must equal those of a local run, apart from their times.
 #   .ci/slurm.sh PROGRAM [TASKS]
 set -euo pipefail
 program="$(realpath "$1")"
 tasks="${2:-300}"
 for command in slurmctld slurmd munged sbatch squeue scancel scontrol; do
-    command -v "$command" >/dev/null || { echo "There is no $command here: plans are not tried on Slurm." >&2; exit 1; }
+    command -v "$command" >/dev/null || { echo "$command is missing: plans cannot be tested on Slurm." >&2; exit 1; }
 done
-((EUID == 0)) || { echo "Slurm's nodes are started by root: plans are not tried on Slurm." >&2; exit 1; }
+((EUID == 0)) || { echo "Only root can start the nodes of Slurm: plans cannot be tested on Slurm." >&2; exit 1; }
 
 here="$(mktemp -d)"
 place="$here/slurm"
@@ -68,7 +68,7 @@ for _ in $(seq 60); do
 done
 sinfo
 
-# Some hundred runs of some hundredths of a second; what is done is done, and not taken from before.
+# A few hundred runs of about 0.01 s each, without the cache.
 export GRAINBENCH_CACHE=off
 cd "$here"
 cat >sweep.toml <<SWEEP
@@ -88,14 +88,14 @@ allowed = 0.01
 solver = "dem"
 levels = ["dt=.00003"]
 SWEEP
-# The plan has a small disk of its own, which can be filled.
+# The plan has its own small disk, so that the script can fill it.
 mkdir small
 mount -t tmpfs -o size=$((4 + tasks / 200))m tmpfs small
 chunks=12
 "$program" plan sweep.toml --out here >/dev/null
 "$program" plan sweep.toml --out small/plan --chunks $chunks
 plan=small/plan
-# Who is killed is waited for this long (s).
+# Time until the tasks of a killed worker are free (s).
 sed -i 's/^lease_seconds = .*/lease_seconds = 6.0/' $plan/plan.toml
 "$program" work here
 "$program" collect here >/dev/null
@@ -103,14 +103,14 @@ sed -i 's/^lease_seconds = .*/lease_seconds = 6.0/' $plan/plan.toml
 told() { "$program" status $plan --json | python3 -c "import json, sys; print(json.load(sys.stdin)['$1'])"; }
 wait_for_queue() { while [[ -n "$(squeue --noheader)" ]]; do sleep 0.3; done; }
 wait_for_done() { for _ in $(seq 300); do (($(told done) >= $1)) && return; sleep 0.1; done; }
-# Workers by the leases that they hold.
+# Process ids of the workers, from their leases.
 workers() { python3 -c "
 import glob, json
 for path in glob.glob('$plan/running/*.json'):
     try: print(json.load(open(path))['process'])
     except (OSError, ValueError): pass"; }
 
-# Killed, cancelled, drained.
+# Killed workers, a cancelled half, a drained node.
 "$program" work $plan --on slurm -- --time=10
 killed=0
 for _ in $(seq 200); do
@@ -126,7 +126,7 @@ wait_for_queue
 echo "after $killed kills, half cancelled and a node drained: $(told done) of $tasks"
 (($(told done) < tasks)) || { echo "Nothing was lost: too much was done before." >&2; exit 1; }
 
-# A disk that is full while two work, then a drained node comes back.
+# A full disk while two workers run. Then the drained node returns.
 before="$(told done)"
 "$program" work $plan --on slurm --resubmit
 wait_for_done $((before + 1))
@@ -146,7 +146,7 @@ while (($(told done) < tasks)); do
 done
 "$program" work $plan --on slurm --resubmit | grep -qx "nothing is missing that is not queued or somebody's"
 
-# A controller that does not answer is not an empty queue.
+# A controller that does not answer must not count as an empty queue.
 kill "$(cat "$place/run/slurmctld.pid")"
 for _ in $(seq 50); do squeue >/dev/null 2>&1 || break; sleep 0.2; done
 before="$(wc -l <$plan/slurm/jobs.jsonl)"
@@ -157,7 +157,7 @@ if "$program" work $plan --on slurm --resubmit 2>/dev/null || (($(wc -l <$plan/s
     exit 1
 fi
 
-# Nothing lost, nothing twice, and the same rows.
+# No task is lost or done twice, and the results are equal.
 "$program" collect $plan --out collected >/dev/null
 [[ "$(told done)" == "$tasks" && "$(told twice)" == 0 ]] || { "$program" status $plan >&2; exit 1; }
 # The last column is a time.

@@ -1,7 +1,7 @@
-//! A solver of one's own, and the gates it must pass: one rigid grain on a fixed plane.
+//! A complete solver for one rigid grain on a fixed plane, and its test.
 //!
-//! In every step the friction impulse that would stop the slip is found and cut off at Coulomb's limit. Where the grain
-//! keeps sliding or keeps rolling, acceleration is constant and a step of any length exact.
+//! Each step computes the friction impulse that stops the slip and limits it to the Coulomb limit. While the grain slides or
+//! rolls, its acceleration is constant, so a step of any length is exact.
 
 use grainbench::scene::nalgebra::Vector3;
 use grainbench::scene::record::{Cost, GrainState, Look, Provenance, Record, Snapshot};
@@ -41,7 +41,7 @@ impl Solver for Rigid {
         let onto = -scene.gravity.dot(&normal);
         let along = scene.gravity + normal * onto;
         let arm = -grain.radius * normal;
-        // What an impulse at the contact does to the slip there: it pushes the centre and turns the grain about it.
+        // Change of the slip velocity per impulse at the contact: translation of the centre and rotation about it.
         let mobility = 1.0 / grain.mass + grain.radius.powi(2) / grain.inertia;
         let limit = friction * grain.mass * onto * time_step;
 

@@ -1,12 +1,11 @@
-//! Rounds a state that a run left, as `grainbench simulate --state FILE --rounded` leaves it: for a run of hours that was asked
-//! for the exact one.
+//! Rounds a state file in the same way as `grainbench simulate --state FILE --rounded`, without repeating the run.
 //!
 //! ```text
 //! cargo run --release --example round_state exact.state rounded.state [without-springs|at-rest]
 //! ```
 //!
-//! Without springs it is what a scene with `springs = false` takes of it, in half the room again. At rest it keeps places alone,
-//! in a quarter of that.
+//! `without-springs` keeps what a scene with `springs = false` reads and halves the size. `at-rest` keeps only positions, in a
+//! quarter of that size.
 
 use grainbench::reports::write_file;
 use grainbench::scene::end_state::{EndState, Springs};

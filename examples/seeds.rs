@@ -1,12 +1,12 @@
-//! What draws differ by: the rows of a case's own runs for other seeds, as the table `packings.csv` of the case, which their
-//! tolerances are made from. A claim of several runs is asked for its quantity of the first.
+//! Computes the spread between random packings: the results of a case for other seeds, as its table `packings.csv`. The
+//! tolerances of the case come from this table. For a claim with several runs it uses the first run.
 //!
 //! ```text
 //! cargo run --release --example seeds plane-shear-pressure grains.disc.packed.seed 11 12 13 14 15 16 \
 //!     > cases/plane-shear-pressure/packings.csv
 //! ```
 //!
-//! The seed of the case's own scene is none of them.
+//! Do not include the seed of the case's own scene.
 
 use grainbench::cases::registry::{by_name, read_grains};
 use grainbench::cases::solvers::by_name as solver;

@@ -1,5 +1,5 @@
-//! What packings differ by: the rows of a silo's own run for deposits of other seeds, as the table `packings.csv` of the case,
-//! which their tolerances are made from.
+//! Computes the spread between silo fillings: the results of a silo case for deposits from other seeds, as its table
+//! `packings.csv`. The tolerances of the case come from this table.
 //!
 //! ```text
 //! for seed in 1 2 3 4 5 6 7 8 9 10; do
@@ -9,7 +9,7 @@
 //! cargo run --release --example silo_packings silo-tall states > cases/silo-tall/packings.csv
 //! ```
 //!
-//! `silo-push` begins with the deposits of `silo-wide`.
+//! `silo-push` starts from the deposits of `silo-wide`.
 
 use grainbench::cases::registry::{by_name, read_grains};
 use grainbench::cases::solvers::by_name as solver;

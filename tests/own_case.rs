@@ -147,7 +147,7 @@ fn a_wrong_file_is_refused() {
             "derived: expected one source",
         ),
         (
-            "because = \"friction swings",
+            "because = \"friction oscillates",
             "because = \"\\u001b[2J",
             "because: expected words on one line, found `\\u{1b}[2J",
         ),

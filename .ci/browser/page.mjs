@@ -1,4 +1,4 @@
-// Tries a report in a browser: node page.mjs DIR. What it finds wrong is printed, and it ends with 1.
+// Tests a report in a browser: node page.mjs DIR. It prints the errors and then exits with 1.
 import fs from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
@@ -14,7 +14,7 @@ const pause = (milliseconds) => new Promise((done) => { setTimeout(done, millise
 
 const found = ["chromium", "chromium-browser", "google-chrome"].flatMap((name) => process.env.PATH.split(":").map((at) => path.join(at, name)));
 const executablePath = found.find((at) => fs.existsSync(at));
-if (!executablePath) { console.error("There is no chromium here."); process.exit(1); }
+if (!executablePath) { console.error("chromium is missing."); process.exit(1); }
 const browser = await puppeteer.launch({
   executablePath,
   args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],

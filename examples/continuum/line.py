@@ -1,4 +1,4 @@
-"""A line of masses on springs: a column or a bar that moves along its length alone, by central differences."""
+"""A column or a bar as a line of masses and springs, in one dimension, by central differences."""
 import csv, json, math, sys
 
 scene, out = json.load(open(sys.argv[1])), sys.argv[2]

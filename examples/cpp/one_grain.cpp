@@ -1,4 +1,4 @@
-// One grain on planes: linear springs with dashpots, Coulomb friction; leap-frog, as Cundall and Strack have it.
+// One grain on planes: linear springs with dashpots and Coulomb friction, by the leap-frog scheme of Cundall and Strack.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -17,7 +17,7 @@ Vector cross(Vector a, Vector b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// The numbers that follow a key, from a place in the text on: enough JSON for this scene.
+// Reads the numbers after a key, from a position in the text. This is enough JSON for the scene.
 std::vector<double> numbers(const std::string& text, const std::string& key, size_t count, size_t from = 0) {
     size_t at = text.find("\"" + key + "\":", from);
     if (at == std::string::npos) std::exit(2);

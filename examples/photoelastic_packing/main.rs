@@ -1,10 +1,10 @@
-//! How the packings of the case `photoelastic-packing` are prepared and the motion of their walls is found.
+//! Prepares the packings of the case `photoelastic-packing` and finds the motion of their walls.
 //!
-//! `cargo run --release --example photoelastic_packing FOLDER VARIANT …` prepares the packing of each variant of the
-//! case, by its name, leaves it in FOLDER as a LAMMPS data file and prints the variant for the scene file: where the
-//! walls start and how fast they go. Packings that FOLDER has already, as the case's own folder has `start-1.data.gz`, are
-//! taken as they are, and only the motion of their walls is found. Nothing is chosen by the answer: stage A and the growth of
-//! F_V to stage B are imposed, and F_H/F_V at stage B is what comes out.
+//! `cargo run --release --example photoelastic_packing FOLDER VARIANT …` prepares the packing of each named variant, writes it
+//! to FOLDER as a LAMMPS data file, and prints the variant for the scene file: initial position and speed of the walls. A
+//! packing that exists in FOLDER, such as `start-1.data.gz` in the folder of the case, is used as it is; then only the motion of
+//! its walls is found. No parameter is fitted to the result: stage A and the growth of F_V to stage B are prescribed, and
+//! F_H/F_V at stage B is the result.
 
 mod prepare;
 mod search;

@@ -1,4 +1,4 @@
-"""One grain on planes: linear springs with dashpots, Coulomb friction; leap-frog, as Cundall and Strack have it."""
+"""One grain on planes: linear springs with dashpots and Coulomb friction, by the leap-frog scheme of Cundall and Strack."""
 import csv, json, sys
 
 def plus(a, b, factor=1.0): return [x + factor * y for x, y in zip(a, b)]
