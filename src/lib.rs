@@ -1,8 +1,7 @@
-//! grainbench: how far to trust a solver of granular simulations, and what that trust costs.
+//! Benchmarks for solvers of granular mechanics: accuracy, and its computing cost.
 //!
-//! This façade is what a solver author uses; the crates behind it are for reading. [`judge`] gives a solver of one's
-//! own the gates of the cases, [`conform`] the properties that any solver owes; `examples/own_solver.rs` shows a whole
-//! solver.
+//! This crate is the public interface for authors of solvers. [`judge`] tests a solver with the claims of cases, and
+//! [`conform`] with the conformance properties. `examples/own_solver.rs` is a complete solver.
 
 pub mod check;
 pub mod kept;

@@ -1,7 +1,7 @@
-"""How far to trust a solver of grains, and what that trust costs.
+"""Benchmarks for solvers of granular mechanics: accuracy, and its computing cost.
 
-A solver is a function of a scene; it is judged by the rows of grainbench that are fair to any solver, each with a control of
-wrong physics that must turn it red::
+A solver is a function of a scene. grainbench tests it with the solver-independent claims. Each claim has a negative control with
+wrong physics, for which it must fail::
 
     import grainbench as gb
 

@@ -18,39 +18,36 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(Clone, clap::Args)]
 pub(crate) struct Arguments {
-    /// The case, one variant of it, or a scene of your own.
+    /// Case, variant of a case, or your own scene file.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml", required_unless_present = "all")]
     scene: Option<String>,
-    /// Override one key of the scene, where your run has other numbers than the case: exact answers follow them. May be given
-    /// more than once.
+    /// Override one key of the scene if your run has other numbers than the case; exact solutions follow. Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// Dumps of grains that follow one another, dumps of their contacts (`dump local`) at the same steps beside them; VTK
-    /// files of a step each (`.vtk`, `.vtp`, `.vtu`, `.vtkhdf`), their collection (`.pvd`), or one of all steps (`.vtkhdf`); or
-    /// one CSV table. Plain, gzip or zstd.
+    /// Output files, plain, gzip or zstd: dumps of grains and of contacts (`dump local`) at the same steps, VTK files (`.vtk`,
+    /// `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`), NumPy arrays (`.npz`), or one CSV table.
     #[arg(long, value_name = "FILE", required_unless_present = "all", num_args = 1..)]
     dump: Vec<PathBuf>,
-    /// Everything in this folder: what lies in `DIR/CASE` and `DIR/CASE/VARIANT` is of that.
+    /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "dump", "log", "map"])]
     all: Option<PathBuf>,
-    /// The run's log; a file `log.lammps` or `log.liggghts` beside the first dump where none is named.
+    /// Log of the run; by default `log.lammps` or `log.liggghts` next to the first dump.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
-    /// Time step in seconds, where neither dump nor log tells it.
+    /// Time step in seconds, if neither dump nor log contains it.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     dt: Option<f64>,
-    /// What columns are called in the files, such as `x=xu,omegaz=wz`. Of contacts `id1`, `id2`, `force_x` (on the
-    /// first), and `tangential_x` where it stands apart; `WALL.force_x` is the force of a wall on a grain, `angle` that
-    /// of a disc.
+    /// Names of columns in the files, such as `x=xu,omegaz=wz`. Contacts have `id1`, `id2`, `force_x` (on the first grain) and an
+    /// optional `tangential_x`; `WALL.force_x` is the force of a wall on a grain, and `angle` the angle of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// A part of the run is meant: that the files end before it does is amber and not red.
+    /// Accept output that ends before the run does: amber instead of red.
     #[arg(long)]
     partial: bool,
-    /// Everything that is not green is red.
+    /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
     /// Directory for the report.

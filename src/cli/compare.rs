@@ -19,30 +19,30 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The output that the other is compared with: a dump or a CSV table; plain, gzip or zstd.
+    /// Reference output: a dump or a CSV table; plain, gzip or zstd.
     a: PathBuf,
-    /// The other one, of the same kind.
+    /// Other output of the same kind.
     b: PathBuf,
-    /// Largest difference that passes, as a part of the column's largest magnitude (of coordinates: largest change).
+    /// Largest accepted difference, as a fraction of the column's largest magnitude (for coordinates: of the largest change).
     #[arg(long, value_name = "FRACTION", default_value_t = 1e-6, value_parser = positive, allow_hyphen_values = true)]
     tolerance: f64,
-    /// Only these columns, by the names that the first file has.
+    /// Compare only these columns, with the names of the first file.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     columns: Vec<String>,
-    /// What the second file calls columns of the first, such as `x=xu,fx=f_x`.
+    /// Names of the first file's columns in the second file, such as `x=xu,fx=f_x`.
     #[arg(long, value_name = "FIRST=SECOND,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Time step in seconds, one for both or one for each, where files tell steps and no times.
+    /// Time step in seconds, one for both or one for each, for files without times.
     #[arg(long, value_name = "SECONDS[,SECONDS]", value_delimiter = ',', num_args = 1..=2, value_parser = positive,
           allow_hyphen_values = true)]
     dt: Vec<f64>,
-    /// Samples that one of them lacks are meant: amber and not red.
+    /// Accept samples that exist in one file only: amber instead of red.
     #[arg(long)]
     allow_missing: bool,
-    /// Everything that is not green is red.
+    /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
     /// Directory for the report.

@@ -8,14 +8,14 @@ use std::process::ExitCode;
 /// What `completions` takes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The shell.
+    /// Shell.
     shell: clap_complete::Shell,
 }
 
 /// What `man` takes.
 #[derive(clap::Args)]
 pub(crate) struct ManArguments {
-    /// A directory for the pages of all commands; without it the page of `grainbench` is printed.
+    /// Directory for the pages of all commands; by default the page of `grainbench` is printed.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

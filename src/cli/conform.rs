@@ -20,13 +20,13 @@ use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Solvers, or manifests of programs; all of ours when none is named.
+    /// Solvers, by name or manifest; all built-in solvers by default.
     #[arg(value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
-    /// Everything that is not green is red.
+    /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
     /// Directory for the report.

@@ -21,34 +21,35 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases to measure; all that have an exact answer when none is named.
+    /// Cases to measure; all cases with an exact solution by default.
     #[arg(value_name = "CASE|CASE/VARIANT")]
     pub(crate) cases: Vec<String>,
-    /// Only this solver, or the program of this manifest; may be given more than once.
+    /// Select a solver, by name or manifest; repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Points that take more than twenty seconds too.
+    /// Include points that take more than twenty seconds.
     #[arg(long, alias = "rungs", value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
     pub(crate) levels: String,
-    /// Measure too what a step costs, piece by piece, and of one grain and of ten thousand; so it is where no case is named.
+    /// Measure also the cost of the parts of a step, and of a step with one and with ten thousand grains; always measured if no
+    /// case is named.
     #[arg(long)]
     pub(crate) prices: bool,
-    /// Measure every point anew, also those that were finished before.
+    /// Measure finished points again.
     #[arg(long)]
     fresh: bool,
-    /// Compare with the `results.json` of another session: counts exactly, times with their spread.
+    /// Compare with an earlier `results.json`: counts exactly, times within their spread.
     #[arg(long, value_name = "OLD.json")]
     against: Option<PathBuf>,
-    /// Keep in the tree what the first screen of a page tells of it: all cases and solvers of ours.
+    /// Store the values for the first screen of the page in the source tree: all cases and built-in solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
     keep: bool,
-    /// Directory for the report; finished points are kept in it too.
+    /// Directory for the report and the finished points.
     #[arg(long, value_name = "DIR", default_value = "grainbench-cost")]
     pub(crate) out: PathBuf,
-    /// Print the results as JSON instead of sentences.
+    /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
 }

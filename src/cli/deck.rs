@@ -12,23 +12,23 @@ use std::process::ExitCode;
 /// Time step of scenes that are no case, as a fraction of the critical one.
 const USUAL: Resolution = Resolution::CriticalFraction(0.1);
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A case, a variant of one, or a scene file.
+    /// Case, variant of a case, or scene file.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     scene: String,
-    /// The program: `lammps` or `liggghts`.
+    /// Program: `lammps` or `liggghts`.
     #[arg(long = "for", value_name = "PROGRAM")]
     program: String,
-    /// The scene that exact answers hold for any solver in, where the case judges those in another than its own: a
-    /// stiffer contact, say. `check` knows it by its start.
+    /// Use the scene for which the exact solution holds for any solver, for example with a stiffer contact; `check` recognizes it
+    /// by its initial state.
     #[arg(long, conflicts_with = "set")]
     exact: bool,
-    /// Override one key of the scene; may be given more than once.
+    /// Override one key of the scene; repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// Time step as a fraction of the critical one; the case's default level, or .1, where none is given.
+    /// Time step as a fraction of the critical one; by default the level of the case, or 0.1.
     #[arg(long, value_name = "FRACTION", value_parser = positive, allow_hyphen_values = true, conflicts_with = "time_step")]
     time_step_fraction: Option<f64>,
     /// Time step in seconds.

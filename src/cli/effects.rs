@@ -22,21 +22,21 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases to look at, or a scene of yours; all cases when none is named.
+    /// Cases, or your own scene file; all cases by default.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     cases: Vec<String>,
     #[command(flatten)]
     yours: Yours,
-    /// Do everything anew, also what was finished before.
+    /// Repeat finished parts.
     #[arg(long)]
     fresh: bool,
-    /// Directory for the report; finished pieces are kept in it too.
+    /// Directory for the report and the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-effects")]
     out: PathBuf,
-    /// Print the results as JSON instead of lines.
+    /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
 }
@@ -44,12 +44,12 @@ pub(crate) struct Arguments {
 /// How a scene of somebody's is run.
 #[derive(clap::Args)]
 struct Yours {
-    /// Who runs a scene of yours.
+    /// Solver for your own scene file.
     #[arg(long, value_name = "NAME|SOLVER.toml", default_value = SOLVER)]
     solver: String,
     #[command(flatten)]
     step: Step,
-    /// The least change of what a probe of your scene tells that matters to you, in units of its largest value.
+    /// Smallest relevant change of a probe, as a fraction of its largest value.
     #[arg(long, value_name = "FRACTION", default_value_t = MATTERS, value_parser = positive, allow_hyphen_values = true)]
     matters: f64,
 }

@@ -18,78 +18,78 @@ use grainbench::scene::scene::Dimension;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Directory that `simulate` left, or a dump of grains as LAMMPS and LIGGGHTS write it.
+    /// Directory written by `simulate`, or a LAMMPS or LIGGGHTS dump of grains.
     #[arg(value_name = "DIR|DUMP")]
     source: PathBuf,
-    /// Size of a cell (m): a number for all axes, or one for each; cells are made to fill the box.
+    /// Cell size (m), one number for all axes or one for each axis; it is adjusted to fill the box.
     #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive, required = true)]
     cell: Vec<f64>,
-    /// Dump of the contacts between the grains of a dump (`dump local`), at the same steps.
+    /// Dump of the contacts (`dump local`) at the same steps.
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
-    /// What columns are called in the files, such as `x=xu`; of contacts `id1`, `id2`, `force_x` (on the first) and, where it
-    /// stands apart, `tangential_x`.
+    /// Names of columns in the files, such as `x=xu`; contacts have `id1`, `id2`, `force_x` (on the first grain) and an optional
+    /// `tangential_x`.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Radius of all grains of a dump that does not tell them (m).
+    /// Radius of all grains (m), for a dump without radii.
     #[arg(long, value_name = "METRES", value_parser = positive)]
     radius: Option<f64>,
-    /// Density of all grains of a dump that tells neither mass nor density (kg/m³; kg/m² of discs).
+    /// Density of all grains (kg/m³; kg/m² for discs), for a dump without mass and density.
     #[arg(long, value_name = "DENSITY", value_parser = positive)]
     density: Option<f64>,
-    /// Time of a step of a dump that does not tell the time (s).
+    /// Time step (s), for a dump without times.
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     time_step: Option<f64>,
-    /// 2 for discs in the plane z = 0, 3 for spheres; by default a plane where a directory holds one.
+    /// 2 for discs in the plane z = 0, 3 for spheres; by default the dimension of the stored run.
     #[arg(long, value_name = "2|3", value_parser = whole::<u8>(2, 3))]
     dimension: Option<u8>,
-    /// Lower corner of the cells (m); that of the box by default.
+    /// Lower corner of the cells (m); by default the corner of the box.
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true)]
     low: Vec<f64>,
     /// Upper corner of the cells (m).
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true)]
     high: Vec<f64>,
-    /// First time that is looked at (s).
+    /// First time of the analysis (s).
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     from: Option<f64>,
-    /// Last time that is looked at (s).
+    /// Last time of the analysis (s).
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     to: Option<f64>,
-    /// Takes velocities from where grains were in the frame before, in place of those of the instant.
+    /// Compute velocities from the displacement since the previous frame instead of the instantaneous ones.
     #[arg(long)]
     between: bool,
-    /// Which stress of grains is read: that of the instant, or its mean over the time since the frame before, which is taken
-    /// where nobody asks and a run tells it (`mean-virial`).
+    /// Stress of grains: instantaneous, or the mean since the previous frame, which is the default if the run contains
+    /// `mean-virial`.
     #[arg(long, value_name = "WHICH", value_parser = ["instant", "mean"])]
     stress: Option<String>,
-    /// Follows elements that move with the flow, which begin in boxes of this size (m): a number for all axes, or one for each.
+    /// Track elements that move with the flow and start as boxes of this size (m): one number for all axes or one for each axis.
     #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive)]
     tracers: Vec<f64>,
-    /// Which way up is, for the free surface: y in the plane and z in space by default.
+    /// Upward direction of the free surface; by default y in two dimensions and z in three.
     #[arg(long, value_name = "AXIS", value_parser = ["x", "y", "z", "-x", "-y", "-z"], allow_hyphen_values = true)]
     up: Option<String>,
-    /// Packing fraction below which a cell, and the one under it, are at the surface and left out of means.
+    /// Packing fraction below which means exclude a surface cell and the cell under it.
     #[arg(long, value_name = "FRACTION", value_parser = positive, default_value_t = 0.4)]
     surface: f64,
-    /// Fewest grains or points in a cell that is not left out of means.
+    /// Smallest number of grains or points in a cell that means include.
     #[arg(long, value_name = "NUMBER", default_value_t = 8)]
     fewest: usize,
-    /// Leaves cells out of means whose middle is within `r` of an orifice, such as `x=0,z=0,r=7.5` of a slit along y (m).
+    /// Exclude cells with a centre within `r` of an orifice from means (m), such as `x=0,z=0,r=7.5` for a slit along y.
     #[arg(long, value_name = "x=…,z=…,r=…", allow_hyphen_values = true)]
     orifice: Option<String>,
-    /// Leaves cells out of means that shear less than this, |D₀| (1/s).
+    /// Exclude cells with a smaller shear rate |D₀| from means (1/s).
     #[arg(long, value_name = "RATE", value_parser = positive)]
     flowing: Option<f64>,
-    /// Blocks of frames that intervals are found from.
+    /// Number of blocks of frames for confidence intervals.
     #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = whole(2, u16::MAX))]
     blocks: u16,
-    /// Directory for tables, image data and pictures.
+    /// Directory for tables, image data and figures.
     #[arg(long, value_name = "DIR", default_value = "grainbench-fields")]
     out: PathBuf,
-    /// Writes the tables as Parquet too.
+    /// Write Parquet tables too.
     #[arg(long)]
     parquet: bool,
     /// Print the summary as JSON.

@@ -16,12 +16,12 @@ use std::process::ExitCode;
 /// What it takes.
 #[derive(clap::Args)]
 pub(crate) struct Import {
-    /// The work: `dosta-2024`, the round robin of bulk processes.
+    /// Publication: `dosta-2024`, the round robin of bulk processes.
     #[arg(value_name = "WORK", value_parser = ["dosta-2024"])]
     work: String,
-    /// Directory of the tables, CSV or Parquet: `t,CODE_ICn,…` of the ball's height (m) by code and bed, `t,z` of one run,
-    /// `t,z1_m1,z1_m2,z2_m1,z2_m2` of grains in the drum's zones, `t,count` of grains left in the silo; and the drum's start as
-    /// an `xyz` file, of which a scene is made.
+    /// Directory of CSV or Parquet tables: ball height (m) by code and bed `t,CODE_ICn,…`, one run `t,z`, grains in the zones of
+    /// the drum `t,z1_m1,z1_m2,z2_m1,z2_m2`, grains left in the silo `t,count`; and the initial state of the drum as an `xyz`
+    /// file.
     #[arg(value_name = "DIR")]
     directory: PathBuf,
     /// Directory for numbers and curves.

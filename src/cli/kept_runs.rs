@@ -47,7 +47,7 @@ pub(crate) struct Keep {
     checkpoints: PathBuf,
 }
 
-/// Steps from one checkpoint to the next.
+/// Number of steps between checkpoints.
 const EVERY: u64 = 20_000;
 
 /// Does the runs whose tables are kept with their cases. Each is left whole before the next begins.

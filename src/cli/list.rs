@@ -7,13 +7,13 @@ use grainbench::harness::case::Case;
 use serde::Serialize;
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases whose rows are listed; all when none is named.
+    /// Cases whose rows are listed; all by default.
     #[arg(value_name = "CASE|CASE/VARIANT", requires = "rows")]
     cases: Vec<String>,
-    /// List the rows that are fair to any solver, with their controls, and not the cases.
+    /// List the solver-independent claims with their controls instead of the cases.
     #[arg(long)]
     rows: bool,
     /// Print the list as JSON.

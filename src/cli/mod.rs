@@ -1,4 +1,4 @@
-//! Commands: what can be asked for, and who answers.
+//! The commands of the program.
 
 mod cache;
 mod campaign;
@@ -47,10 +47,10 @@ use std::process::ExitCode;
 /// The version, with the commit that the program is built from.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")");
 
-/// How far to trust a solver of granular simulations, and what that trust costs.
+/// Benchmarks for solvers of granular mechanics: accuracy, and its computing cost.
 ///
-/// Runs benchmark cases, judges their gates, and leaves a page with the results. Without a command: `run`, with the
-/// options below.
+/// Runs benchmark cases, judges their claims and writes a report. Without a command it runs all cases, with the options
+/// below.
 #[derive(Parser)]
 #[command(name = "grainbench", version = VERSION, args_conflicts_with_subcommands = true)]
 struct Cli {
@@ -62,54 +62,54 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// List the cases: title, variants, gates, default level, solvers.
+    /// List the cases: title, variants, number of claims, default level, solvers.
     List(list::Arguments),
-    /// Judge the gates of cases and write the report.
+    /// Run cases and judge their claims.
     Run(run::Arguments),
     /// Simulate one scene and write its record.
     Simulate(simulate::Arguments),
-    /// Write the input of LAMMPS or LIGGGHTS for a case or a scene.
+    /// Write the LAMMPS or LIGGGHTS input for a case or a scene.
     Deck(deck::Arguments),
-    /// Judge what any program left of a case: dumps of LAMMPS' kind, or a CSV table.
+    /// Judge the output of any program for a case or a scene: dumps, VTK files, arrays or a CSV table.
     Check(check::Arguments),
-    /// Read grains or material points as a continuum, cell by cell: packing, stress, friction, rate of shear.
+    /// Compute continuum fields cell by cell: packing fraction, stress, friction, shear rate.
     Fields(fields::Arguments),
-    /// Compare two outputs, column by column.
+    /// Compare two outputs column by column.
     Compare(compare::Arguments),
-    /// Measure what accuracy costs: error against time, each solver over its knobs.
+    /// Measure error against computing time, for each solver over its parameters.
     Cost(cost::Arguments),
-    /// Find the largest stable step of every solver, and try hard cases.
+    /// Find the largest stable time step of each solver, and run difficult cases.
     Stability(stability::Arguments),
-    /// Tell what each effect is worth: each switched off in turn, each absent one compiled in.
+    /// Measure the influence of each physical effect by switching it off or compiling it in.
     Effects(effects::Arguments),
-    /// Plan many runs: gates, costs, limits, or a sweep over the keys of a scene.
+    /// Write a plan of many runs: claims, costs, stability limits, or a parameter sweep.
     Plan(campaign::plan::Arguments),
-    /// Do a plan or a chunk of it, here or by a batch system; what is finished is not done again.
+    /// Do the unfinished tasks of a plan, here or with a batch system.
     Work(campaign::work::Arguments),
-    /// Tell how far a plan is.
+    /// Show the progress of a plan.
     Status(campaign::status::Arguments),
-    /// Make the report of a plan, as if all of it had been run here.
+    /// Make the report of a plan.
     Collect(campaign::collect::Arguments),
-    /// Race with LAMMPS and LIGGGHTS, in turn on the same scenes: grains stepped in a second of processor time.
+    /// Measure throughput beside LAMMPS and LIGGGHTS: particle steps per second of processor time.
     Race(race::Arguments),
-    /// Make the stored runs of LAMMPS and LIGGGHTS, or run these again and compare.
+    /// Build, verify and update stored runs and references.
     #[command(subcommand)]
     Reference(reference::Command),
-    /// Try what every solver owes: conservation, symmetries, free flight, order, determinism.
+    /// Test the conformance properties of solvers: conservation, symmetries, free flight, order, determinism.
     Conform(conform::Arguments),
-    /// Print a scene as programs are given it: everything definite, in SI.
+    /// Print the resolved scene that external solvers receive, in SI units.
     Scene(scene::Arguments),
-    /// Print the JSON schema of scene files, or of the scenes that programs are given.
+    /// Print the JSON schema of scene files or of resolved scenes.
     Schema(schema::Arguments),
-    /// Make page and figures from what a run left, without any solver: of a report again, or pictures of a simulation.
+    /// Make the page and figures of a stored report or simulation, without running a solver.
     Report(report::Arguments),
-    /// Print what a shell needs to complete commands and options.
+    /// Print the completion script of a shell.
     Completions(completions::Arguments),
-    /// Print the manual page, or leave one for each command in a directory.
+    /// Print the manual page, or write one for each command to a directory.
     Man(completions::ManArguments),
 }
 
-/// Reads the command line, does what it says, and says how it went.
+/// Parses the command line, runs the command and returns its exit code.
 pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
     if let Err(reason) = Processor::forced() {

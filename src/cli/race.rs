@@ -36,25 +36,25 @@ const MOST_STEPS: u64 = 600_000;
 /// Most steps of a short one, at whose end kinetic energies are compared: further on collisions have made much of the last bit.
 const MOST_TO_COMPARE: u64 = 1000;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Scenes of grains, by case or file.
     ///
-    /// Where none is named: plane-shear, cooling-gas, nine-discs/kappa-1, impact-bed/late, and three that are no case, discs-400,
+    /// By default: plane-shear, cooling-gas, nine-discs/kappa-1, impact-bed/late, and three scenes that are not cases: discs-400,
     /// spheres and hertz.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     tracks: Vec<String>,
-    /// Laps of each racer on each scene.
+    /// Number of timings for each solver and scene.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole::<u32>(1, 999))]
     rounds: u32,
-    /// Steps of the short and of the long run.
+    /// Number of steps of the short run and of the long run.
     #[arg(long, value_name = "SHORT,LONG", value_parser = steps)]
     steps: Option<[u64; 2]>,
-    /// Only this solver or program, or beside LAMMPS the program of this manifest; may be given more than once.
+    /// Select a solver or program; a manifest adds a program beside LAMMPS. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
-    /// Directory for `race.json`, which keeps every lap, and `race.md`.
+    /// Directory for `race.json` with each timing, and `race.md`.
     #[arg(long, value_name = "DIR", default_value = "grainbench-race")]
     out: PathBuf,
 }

@@ -23,29 +23,28 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
-    /// Make stored runs with the programs that are installed.
+    /// Make stored runs with the installed programs.
     Build(Build),
-    /// Run the programs again and compare with what is stored.
+    /// Run the programs again and compare with the stored runs.
     Verify(Verify),
-    /// Do runs that take minutes and keep with their cases what is read of them, which the main job judges.
+    /// Do the long runs and store their results next to the cases, where `run` judges them.
     Keep(Keep),
-    /// Estimate how far values may be off because cells and steps are finite: three levels of resolution for each row
-    /// whose tolerance is an estimate.
+    /// Estimate discretization errors from three levels of resolution, for each claim with an estimated tolerance.
     Uncertainty(Uncertainty),
-    /// Derive numbers from published data of others that you have, and draw it: the data stays where it is.
+    /// Derive and plot numbers from your copy of third-party data.
     Import(Import),
 }
 
 /// What `uncertainty` takes.
 #[derive(clap::Args)]
 pub(crate) struct Uncertainty {
-    /// Cases; all when none is named.
+    /// Cases; all by default.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Rows that take minutes too; what is stored of them is kept otherwise.
+    /// Include claims that take minutes; otherwise their stored estimates stay unchanged.
     #[arg(long)]
     long: bool,
 }
@@ -53,11 +52,10 @@ pub(crate) struct Uncertainty {
 /// What `build` takes.
 #[derive(clap::Args)]
 pub(crate) struct Build {
-    /// Which: names of their folders, with or without `lammps/` or `liggghts/` in front, or cases; all when none is
-    /// named.
+    /// Stored runs, by folder name with or without `lammps/` or `liggghts/`, or by case; all by default.
     #[arg(value_name = "ID")]
     ids: Vec<String>,
-    /// Directory for the folders of both programs, in place of that among the sources.
+    /// Directory for the stored runs; by default the source tree.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -65,8 +63,7 @@ pub(crate) struct Build {
 /// What `verify` takes.
 #[derive(clap::Args)]
 pub(crate) struct Verify {
-    /// Which: names of their folders, with or without `lammps/` or `liggghts/` in front, or cases; all when none is
-    /// named.
+    /// Stored runs, by folder name with or without `lammps/` or `liggghts/`, or by case; all by default.
     #[arg(value_name = "ID")]
     ids: Vec<String>,
     /// Directory for the report.

@@ -14,21 +14,21 @@ use grainbench::scene::record::Record;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Directory that `run`, `cost`, `stability`, `effects` or `simulate` left.
+    /// Directory written by `run`, `cost`, `stability`, `effects` or `simulate`.
     dir: PathBuf,
-    /// Another directory that `simulate` left, shown beside the first at equal times; may be given more than once.
+    /// Another directory written by `simulate`, shown beside the first one at equal times; repeatable.
     #[arg(long, value_name = "DIR")]
     beside: Vec<PathBuf>,
-    /// Stress c of photoelastic fringes cos((σ₁ − σ₂)/c) in pictures of a simulation; three fringes when absent.
+    /// Stress c of photoelastic fringes cos((σ₁ − σ₂)/c) in figures of a simulation; three fringes by default.
     #[arg(long, value_name = "PA", value_parser = positive, allow_hyphen_values = true)]
     fringe_stress: Option<f64>,
-    /// Only what lies between two times (s), such as `.2..1`; either may be left out.
+    /// Time interval (s), such as `.2..1`; each end is optional.
     #[arg(long, value_name = "FROM..TO", value_parser = window, allow_hyphen_values = true)]
     window: Option<(f64, f64)>,
-    /// The most frames of a film.
+    /// Largest number of frames of a film.
     #[arg(long, value_name = "N", value_parser = whole::<u16>(2, 500))]
     frames: Option<u16>,
 }

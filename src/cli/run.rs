@@ -37,11 +37,11 @@ use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases to run, of the registry or of your own in a folder with `scene.toml` and `claims.toml`; all of the registry when
-    /// none is named. `*`, `?` and `[…]` stand for parts of names: 'incline-*', '*/60deg*'.
+    /// Cases, patterns such as 'incline-*' or '*/60deg*', or folders with `scene.toml` and `claims.toml`; all built-in cases by
+    /// default.
     #[arg(value_name = "CASE|CASE/VARIANT|FOLDER")]
     pub(crate) cases: Vec<String>,
     #[command(flatten)]
@@ -51,21 +51,20 @@ pub(crate) struct Arguments {
 /// Options of a run, which are those of the bare command too.
 #[derive(clap::Args)]
 pub(crate) struct Options {
-    /// Only rows of this solver; may be given more than once. The manifest of a program puts it in the place of the solvers that
-    /// rows fair to any solver name.
+    /// Select the claims of this solver; repeatable. A manifest runs the solver-independent claims with this program.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Only gates at these resolution levels: `default`, `all`, or names such as `dt=.1`.
+    /// Select resolution levels: `default`, `all`, or names such as `dt=.1`.
     #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
-    /// Only rows whose quantity or source has these words in it or is of this pattern, whose kind of evidence it is, or that end
-    /// so (all are run then, and the exit code is that of all). Of several filters of one key one must fit.
+    /// Select rows by quantity, source (substring or pattern), evidence or outcome; filters of one key are alternatives. A filter
+    /// by outcome still runs all claims, and all of them determine the exit code.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
     pub(crate) filter: Vec<String>,
-    /// Only rows that failed in the report of `--out`, or whose control stayed green there.
+    /// Repeat only the failed claims and controls of the report in `--out`.
     #[arg(long, conflicts_with = "keep")]
     rerun_failed: bool,
-    /// Tell which rows and controls end otherwise than in this earlier report.
+    /// Print the rows and controls whose outcome differs from this earlier report.
     #[arg(long, value_name = "DIR|results.json")]
     against: Option<PathBuf>,
     /// Directory for the report.
@@ -74,41 +73,41 @@ pub(crate) struct Options {
     /// Print the results as JSON instead of a table.
     #[arg(long)]
     json: bool,
-    /// Leave the rows as `rows.parquet` beside `rows.csv`.
+    /// Write `rows.parquet` in addition to `rows.csv`.
     #[arg(long)]
     parquet: bool,
-    /// Run `lammps` and `liggghts` even where a run of theirs is stored.
+    /// Run `lammps` and `liggghts` even if a stored run exists.
     #[arg(long)]
     pub(crate) live: bool,
-    /// Directory in which you have data of others that rows begin with, as `reference import` reads it; without it these rows are
-    /// `not-available`, and say where it is to be had.
+    /// Directory with your copy of third-party data, as for `reference import`; without it the claims that need the data are
+    /// `not-available`.
     #[arg(long, value_name = "DIR")]
     pub(crate) data: Option<PathBuf>,
-    /// Everything that is not green is red: amber rows, and programs that are not installed.
+    /// Treat amber results as red, including programs that are not installed.
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Do every run anew, also those that were finished before and are kept outside the tree.
+    /// Ignore the cache of finished runs.
     #[arg(long)]
     fresh: bool,
-    /// Leave out the negative controls.
+    /// Skip the negative controls.
     #[arg(long)]
     pub(crate) no_controls: bool,
-    /// Keep the rows of the program beside its manifest, as `judged.json`: all cases, with their controls.
+    /// Store the results of an external solver in `judged.json` next to its manifest; needs all cases and all controls.
     #[arg(long, requires = "solver", conflicts_with = "no_controls")]
     keep: bool,
-    /// Red is what ends otherwise than it is kept beside the manifest, and not what is red there too.
+    /// Expect the outcomes stored next to the manifest: only a different outcome is red.
     #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "keep"])]
     as_kept: bool,
-    /// Threads of each run; as many runs at once as the machine has cores for. The bits do not depend on it.
+    /// Threads of each run; the results have the same bits for any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
     threads: u16,
-    /// Runs at once; as many as the machine has cores for where none are named.
+    /// Number of simultaneous runs; as many as the cores allow by default.
     #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS))]
     jobs: Option<u16>,
-    /// Print the counts and what failed, and no table.
+    /// Print only the counts and the failed rows.
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
-    /// Tell each row as it is judged, on the standard error.
+    /// Print each row to standard error as soon as it is judged.
     #[arg(short, long)]
     verbose: bool,
 }

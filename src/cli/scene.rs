@@ -8,21 +8,21 @@ use grainbench::reference::outside::{Given, Resolved, SceneFormat};
 use grainbench::scene::solver::Resolution;
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The case, one variant of it, or a scene file.
+    /// Case, variant of a case, or scene file.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     scene: String,
-    /// Override one key of the scene; may be given more than once.
+    /// Override one key of the scene; repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// In which format.
+    /// Format of the output.
     #[arg(long, value_enum, default_value = "json")]
     format: Format,
     #[command(flatten)]
     step: Step,
-    /// In place of a time step, cells of a grid per reference length: what programs are given whose bodies deform.
+    /// Cells of a grid per reference length, instead of a time step, for solvers with deformable bodies.
     #[arg(long, value_name = "NUMBER", value_parser = positive, conflicts_with_all = ["time_step", "time_step_fraction"])]
     cells: Option<f64>,
 }

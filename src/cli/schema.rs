@@ -4,10 +4,10 @@ use super::exit::{Outcome, print_json};
 use grainbench::reference::outside;
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Of the scenes that programs are given (`grainbench scene`).
+    /// Print the schema of resolved scenes (`grainbench scene`).
     #[arg(long)]
     resolved: bool,
 }

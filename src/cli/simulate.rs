@@ -24,49 +24,48 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Scene file.
     #[arg(value_name = "SCENE.toml")]
     scene: PathBuf,
-    /// Solver, by name, or by the manifest of a program.
+    /// Name of a solver, or manifest of an external solver.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: String,
     /// Variant of the scene.
     #[arg(long)]
     variant: Option<String>,
-    /// Override one key of the scene, such as `contacts.all.friction=0.5`; may be given more than once.
+    /// Override one key of the scene, such as `contacts.all.friction=0.5`; repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
     #[command(flatten)]
     step: Step,
-    /// Cells per reference length, of solvers with a grid: per radius, where there are grains; 8 unless given.
+    /// Cells per reference length of a solver with a grid, per radius for grains; 8 by default.
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     cells: Option<f64>,
-    /// Material points per cell and axis, of solvers with a grid; 3 unless given.
+    /// Material points per cell and axis of a solver with a grid; 3 by default.
     #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, 64))]
     points: Option<u32>,
-    /// Courant number c Δt/h, of solvers with a grid; .4 unless given.
+    /// Courant number c Δt/h of a solver with a grid; 0.4 by default.
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     courant: Option<f64>,
-    /// Time steps in each sixtieth of a second, of solvers for rigid bodies; 8 unless given.
+    /// Time steps per 1/60 s of a rigid-body solver; 8 by default.
     #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, u32::MAX))]
     substeps: Option<u32>,
-    /// Iterations of the constraint solver in each time step, of solvers for rigid bodies; 4 unless given.
+    /// Iterations of the constraint solver per time step of a rigid-body solver; 4 by default.
     #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, u32::MAX))]
     iterations: Option<u32>,
-    /// Take a time step of the critical one or above.
+    /// Allow a time step at or above the critical one.
     #[arg(long)]
     allow_unstable: bool,
-    /// Threads of `dem` and `mpm`; all that the machine has where none are named. The record does not depend on it in any
-    /// bit.
+    /// Threads of `dem` and `mpm`; all cores by default. The record has the same bits for any number.
     #[arg(long, value_name = "N", value_parser = whole(1, MOST_THREADS))]
     threads: Option<u16>,
-    /// Leave a checkpoint here every so many steps, each in the place of the one before.
+    /// Write a checkpoint to this file at regular intervals; each one replaces the previous one.
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
-    /// Steps from one checkpoint to the next.
+    /// Number of steps between checkpoints.
     #[arg(
         long,
         value_name = "STEPS",
@@ -75,23 +74,23 @@ pub(crate) struct Arguments {
         requires = "checkpoint"
     )]
     checkpoint_every: u64,
-    /// Continue from this checkpoint of the same run: the record is that of the whole run, in every bit but its times.
+    /// Continue from this checkpoint of the same run; apart from times, the record has the bits of an uninterrupted run.
     #[arg(long, value_name = "FILE")]
     restart: Option<PathBuf>,
-    /// Leave the state at the end here, with what contacts remember, for another scene to begin with (`grains.NAME.state`).
+    /// Write the final state with the contact history, as initial state of another scene (`grains.NAME.state`).
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Round that state, so that it takes half the room: positions to 2⁻³⁶ of a radius, all else to 24 bits.
+    /// Round the state to half the size: positions to 2⁻³⁶ radii, all other numbers to 24 bits.
     #[arg(long, requires = "state")]
     rounded: bool,
     /// Directory for the record.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
-    /// Formats of the snapshots: of runs of up to 200 000 rows of grains, contacts and points dump and vtk, which are text;
-    /// of larger ones Parquet, where the scene asks for snapshots beside the first and the last, and else none.
+    /// Formats of the snapshots; by default dump and vtk up to 200 000 rows of grains, contacts and points. Above that, Parquet
+    /// if the scene requests snapshots in addition to the first and the last, else none.
     #[arg(long, value_name = "FORMAT", value_delimiter = ',')]
     write: Option<Vec<Written>>,
-    /// Print provenance, cost and the end of the run as JSON.
+    /// Print provenance, cost and the final state as JSON.
     #[arg(long)]
     json: bool,
 }

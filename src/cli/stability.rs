@@ -28,25 +28,25 @@ const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
 /// The report is written at most this often.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Assemblies and hard cases, by name or the beginning of one; all when none is named.
+    /// Assemblies and difficult cases, by name or prefix; all by default.
     #[arg(value_name = "CASE")]
     pub(crate) cases: Vec<String>,
-    /// Only this solver, or the program of this manifest; may be given more than once.
+    /// Select a solver, by name or manifest; repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Do everything anew, also what was finished before.
+    /// Repeat finished parts.
     #[arg(long)]
     fresh: bool,
-    /// Keep in the tree what the first screen of a page tells of it: all cases and solvers of ours.
+    /// Store the values for the first screen of the page in the source tree: all cases and built-in solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
     keep: bool,
-    /// Directory for the report; finished pieces are kept in it too.
+    /// Directory for the report and the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-stability")]
     pub(crate) out: PathBuf,
-    /// Print the results as JSON instead of lines.
+    /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
 }

@@ -10,23 +10,23 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf, absolute};
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
     #[arg(value_name = "PLAN")]
     plan: PathBuf,
-    /// Draw the trend beside earlier reports, oldest first: verdicts and counts of each; may be given more than once. Of a plan
-    /// of costs, whose times are compared, the last of them is what `cost --against` takes.
+    /// Plot the trend of verdicts and counts from earlier reports, oldest first; repeatable. A plan of costs compares its times
+    /// with the last one.
     #[arg(long, value_name = "DIR|results.json")]
     against: Vec<PathBuf>,
-    /// Everything that is not green is red.
+    /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
-    /// Of a plan of `run`: leave the rows as `rows.parquet` too. Sweeps always do.
+    /// Write `rows.parquet` too, for a plan of `run`; sweeps always do.
     #[arg(long)]
     parquet: bool,
-    /// Directory for the report; one inside the plan where none is named.
+    /// Directory for the report; by default inside the plan.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the results as JSON.

@@ -10,43 +10,43 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(Clone, clap::Args)]
 pub(crate) struct Arguments {
-    /// What is planned: the gates of cases, what accuracy costs, what stays stable, or the sweep of a file.
+    /// Kind of plan: claims of cases, computing cost, stability limits, or a sweep file.
     #[arg(value_name = "run|cost|stability|SWEEP.toml")]
     pub(crate) what: String,
-    /// Cases, as `run`, `cost` and `stability` take them; all when none is named.
+    /// Cases, as for `run`, `cost` and `stability`; all by default.
     #[arg(value_name = "CASE|CASE/VARIANT")]
     pub(crate) cases: Vec<String>,
-    /// Only this solver, or the program of this manifest; may be given more than once.
+    /// Select a solver, by name or manifest; repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Of `run` only gates at these resolution levels; of `cost` whether points that take more than twenty seconds are there too.
+    /// Resolution levels for `run`; for `cost`, `all` includes points that take more than twenty seconds.
     #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
-    /// Of `run` only these rows, as `run` has it.
+    /// Rows for `run`, as its option `--filter`.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…")]
     pub(crate) filter: Vec<String>,
-    /// Of `run`: leave out the negative controls.
+    /// Skip the negative controls, for `run`.
     #[arg(long)]
     pub(crate) no_controls: bool,
-    /// Of `run`: run `lammps` and `liggghts` even where a run of theirs is stored.
+    /// Run `lammps` and `liggghts` even if a stored run exists, for `run`.
     #[arg(long)]
     pub(crate) live: bool,
-    /// Of `cost`: what a step costs too, piece by piece, and of one grain and of ten thousand; so it is where no case is named.
+    /// Measure also the cost of the parts of a step, and of a step with one and with ten thousand grains, for `cost`.
     #[arg(long)]
     pub(crate) prices: bool,
-    /// Of `cost`: errors and counts alone, of one run each; nothing is timed, so that work can share a machine.
+    /// Measure only errors and counts, for `cost`; without timing, tasks can share a machine.
     #[arg(long, conflicts_with = "prices")]
     pub(crate) counts: bool,
-    /// Chunks that the plan is best divided into; as many as last a minute each where none are named.
+    /// Number of chunks; by default each chunk lasts about a minute.
     #[arg(long, value_name = "N", value_parser = whole(1, chunk::MOST))]
     chunks: Option<u32>,
-    /// Directory for the plan; what was finished in a plan that stands there stays finished.
+    /// Directory for the plan; finished tasks of an existing plan stay finished.
     #[arg(long, value_name = "DIR", default_value = "grainbench-plan")]
     out: PathBuf,
-    /// Print what was planned as JSON.
+    /// Print the plan as JSON.
     #[arg(long)]
     json: bool,
 }

@@ -9,13 +9,13 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
     #[arg(value_name = "PLAN")]
     plan: PathBuf,
-    /// Print it as JSON.
+    /// Print the progress as JSON.
     #[arg(long)]
     json: bool,
 }

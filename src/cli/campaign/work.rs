@@ -21,25 +21,25 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// What the command takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
     #[arg(value_name = "PLAN")]
     plan: PathBuf,
-    /// Which of how many chunks; the whole plan where none is named.
+    /// Chunk and number of chunks; by default the whole plan.
     #[arg(long, value_name = "i/n", conflicts_with = "on")]
     chunk: Option<Chunk>,
-    /// Tasks at once; as many as there are cores where none are named, and one where times are measured.
+    /// Number of simultaneous tasks; by default one for each core, and one if times are measured.
     #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with = "on")]
     jobs: Option<u16>,
-    /// Do again what failed.
+    /// Repeat failed tasks.
     #[arg(long, conflicts_with = "on")]
     again: bool,
     /// Submit the chunks to a batch system instead of working here.
     #[arg(long, value_name = "slurm", value_parser = ["slurm"])]
     on: Option<String>,
-    /// Submit what is missing of a plan that was submitted before.
+    /// Submit the missing chunks of a submitted plan.
     #[arg(long, requires = "on")]
     resubmit: bool,
     /// Options for `sbatch`, after `--`.
