@@ -23,8 +23,8 @@ pub(crate) static CASE: Case = Case {
             with f = 1/3 for a disc and 2/7 for a sphere.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The final velocity does not depend on μ, on stiffness or on damping: alone it would pass a solver with \
-               a wrong friction law. Displacement does depend on μ. One contact, constant load.",
+    weakness: "The final velocity does not depend on friction, stiffness or damping, so that claim alone would pass a solver \
+               with a wrong friction law. The displacement depends on friction. The case has one contact and a constant load.",
     levels: LEVELS,
     default_level: LEVELS[2],
     claims: &claims,

@@ -72,8 +72,8 @@ pub(super) fn claims() -> Vec<Claim> {
     claims.push(
         claim("displacement at .8 s over the rigid one, less 1, R/16", "1")
             .of(run("disc", "mpm", 16.0).slow().known(
-                "a disc that slides fast on springs becomes noisy at twelve and more cells a radius: its centre rises \
-                 from .494 to .504 m, and it gets less far. Where it spins without a contact it does not",
+                "a disc that slides fast on springs becomes noisy at twelve and more cells per radius: its centre rises from \
+                 0.494 to 0.504 m, and its displacement is too small. A disc that rotates without contact has no noise",
             ))
             .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
             .within(judged(0.02, "elasticity; it is worth .015 for the sphere of the prototype"))
@@ -86,8 +86,8 @@ pub(super) fn claims() -> Vec<Claim> {
     claims.push(
         claim("displacement at .8 s over the rigid one, less 1, R/4", "1")
             .of(run("disc", "mpm:2000", 4.0).known(
-                "nodal contact holds the disc up over a patch of about √(2Rh): as the disc turns, new material is \
-                 pressed into the patch, and its normal force and friction are several times the weight's",
+                "nodal contact supports the disc over a region of about √(2Rh): as the disc rotates, it presses new material \
+                 into the region, and normal force and friction are several times those of the weight",
             ))
             .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
             .within(judged(0.05, "what a contact that acts at the surface reaches at this resolution"))

@@ -22,8 +22,8 @@ pub(crate) static CASE: Case = Case {
             velocities.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Flat faces that meet along the grid: a contact that acts at a distance of a cell is late by that over \
-               v, and is not seen otherwise.",
+    weakness: "The faces are flat and aligned with the grid. Contact that starts one cell too early shifts the impact by one \
+               cell over v, and no other claim detects it.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,

@@ -26,8 +26,8 @@ pub(crate) static CASE: Case = Case {
             where the belt stops, it comes to rest.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The final velocity does not depend on μ, on stiffness or on damping; velocity and displacement while it slides \
-               do. One contact, constant load, a belt that moves along itself alone.",
+    weakness: "The final velocity does not depend on friction, stiffness or damping; velocity and displacement during sliding \
+               depend on friction. The case has one contact and a constant load, and the belt moves only along itself.",
     levels: LEVELS,
     default_level: LEVELS[2],
     claims: &claims,

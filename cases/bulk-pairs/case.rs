@@ -14,8 +14,8 @@ pub(crate) static CASE: Case = Case {
             are those of LIGGGHTS, step by step.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One impact a pair, at one speed and spin. LIGGGHTS is run without its dashpot along the tangent, which our law \
-               does not have; what the codes of the paper had is not known here.",
+    weakness: "Each pair has one impact at one speed and one spin. LIGGGHTS runs without its tangential dashpot, which our law \
+               does not have. The tangential dashpots of the published codes are unknown.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

@@ -29,8 +29,8 @@ pub(crate) static CASE: Case = Case {
             the Bessel answer to second order in Δt.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One dimension, frictionless, linear: contacts never open and grains never turn. It tests transport along many \
-               contacts, not their law.",
+    weakness: "The case has one dimension, no friction and linear springs. Contacts never open and grains never rotate. It \
+               tests transport along many contacts and not the contact law.",
     levels: LEVELS,
     default_level: LEVELS[3],
     claims: &claims,
@@ -97,8 +97,8 @@ fn claims() -> Vec<Claim> {
     // Rigid beads have no dispersion, and no unique answer either: many beads touch at once.
     let rigid = claim("velocity of bead 22 at 20/ω₀", "m/s")
         .of(Run::new(PLAIN, "rigid", rigid::DEFAULT).known(
-            "contacts are rigid: an impulse passes through all beads in one step, and how many beads that touch at once share \
-             it is up to the order in which the engine solves them",
+            "contacts are rigid: an impulse passes through all beads in one step, and its distribution over beads in contact \
+             depends on the solution order of the engine",
         ))
         .equals(BESSEL, |done| bead(&done[0], 22, "v22.vx"))
         .within(judged(4e-4, "what a solver with springs reaches, in units of V"))

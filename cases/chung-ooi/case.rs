@@ -36,8 +36,8 @@ pub(crate) static CASE: Case = Case {
             spheres alike and unlike; angular momentum about the contact stays on any branch.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Impacts of one contact. The sliding branch is felt by μ and e alone: any tangential spring that reaches the \
-               limit soon passes, so Mindlin's stiffness is not gated here, only drawn.",
+    weakness: "Each impact has one contact. Only friction and restitution influence the sliding branch: each tangential spring \
+               that reaches the limit soon passes. Mindlin's stiffness is plotted and not tested.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,
@@ -317,7 +317,7 @@ fn rigid() -> Vec<Claim> {
             .refuses(more_friction()),
         claim("tangential restitution at 60°", "1")
             .of(oblique().known(
-                "friction is limited by the impulse that stops the approach; what restitution adds to it is left out",
+                "the friction limit uses the impulse that stops the approach, without the impulse of restitution",
             ))
             .equals(SLIDING, |done| Ok(Measured::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
             .within(judged(2e-5, "what a solver with springs reaches"))

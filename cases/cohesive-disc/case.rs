@@ -17,8 +17,8 @@ pub(crate) static CASE: Case = Case {
             and beyond it the disc slides at the rate that the strength leaves.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Cohesion here is shear strength that needs no load, and only while grains overlap: nothing is said about \
-               tension, which this law does not have.",
+    weakness: "Cohesion is here a shear strength without load, and only for overlapping grains. Tension is not tested, because \
+               this law has none.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,

@@ -19,8 +19,8 @@ pub(crate) static CASE: Case = Case {
             not; momentum is kept to rounding, and angular momentum where the tangential forces act at one point.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Restitution is one number of a head-on impact: damping that depends on the overlap could give the same e at \
-               this speed. Two grains of similar mass; no wall.",
+    weakness: "The restitution is one number of a head-on impact. Damping that depends on the overlap could give the same \
+               value at this speed. The case has two grains of similar mass and no wall.",
     levels: LEVELS,
     default_level: LEVELS[3],
     claims: &claims,

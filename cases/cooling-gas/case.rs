@@ -15,8 +15,8 @@ pub(crate) static CASE: Case = Case {
             LIGGGHTS cool the same gas at the same rate.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "A mean over the gas: what is wrong with one collision in a hundred is not seen. It is a gas of fifteen collisions \
-               a disc; clusters, which come later, are not looked at.",
+    weakness: "The result is a mean over the gas, so an error in one of a hundred collisions is invisible. The gas has fifteen \
+               collisions per disc. Clusters form later and are not tested.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

@@ -13,8 +13,8 @@ pub(crate) static CASE: Case = Case {
             collisions.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "A wrong but conservative force would pass, and so would a grain that passes through another. Few discs \
-               touch at a time.",
+    weakness: "A wrong conservative force would pass, and so would a grain that crosses another grain. Few discs are in \
+               contact at the same time.",
     levels: LEVELS,
     default_level: LEVELS[2],
     claims: &claims,

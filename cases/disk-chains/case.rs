@@ -36,9 +36,9 @@ pub(crate) static CASE: Case = Case {
             a zig-zag that sticks passes it on sooner than one that slips, and so does the line.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "To DEM a disc is one mass on springs: no stress wave inside, and no fringes that run. When a contact is \
-               first felt is a matter of the stiffness that was put in. The paper states its order of speeds for \
-               fringes, and prints no arrival times.",
+    weakness: "In DEM a disc is one mass on springs, without internal stress waves or fringes. The arrival at a contact \
+               depends on the chosen stiffness. The paper gives the order of the speeds from fringes and prints no arrival \
+               times.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,
@@ -161,7 +161,7 @@ fn sooner(variant: &'static str, of: &str) -> Claim {
 fn rigid() -> Claim {
     claim("time until disc 4 moves at a tenth of the striker's speed", "s")
         .of(Run::new("line", "rigid", rigid::DEFAULT).known(
-            "contacts are rigid: an impulse passes through all discs in one step, as if waves were infinitely fast",
+            "contacts are rigid: an impulse passes through all discs in one step, like a wave of infinite speed",
         ))
         .equals(Source::Derived("modes of the assembly (derivation)"), |done| {
             let scene = &done[0].scene;

@@ -104,7 +104,7 @@ pub(super) fn claims() -> Vec<Claim> {
         let because = if solver == BEST {
             "springs that are as soft as .4 cells of material hold the wave up at each of four contacts"
         } else {
-            "nodal contact glues discs over a patch from the start: too fast, and slower with every refinement"
+            "nodal contact joins discs over a region from the start: the wave is too fast, and slower with each refinement"
         };
         claims.push(
             claim(format!("arrival of stress in disc 4, {} cells a diameter", 2.0 * cells), "d/c")
@@ -115,7 +115,8 @@ pub(super) fn claims() -> Vec<Claim> {
         );
     }
     // Finer still, two implementations of it part by a fifteenth, and neither is near the finite elements.
-    let too_fast = "nodal contact glues discs over a patch from the start: too fast, and slower with every refinement";
+    let too_fast = "nodal contact joins discs over a region from the start: the wave is too fast, and slower with each \
+                    refinement";
     claims.push(
         claim("arrival of stress in disc 4, 80 cells a diameter", "d/c")
             .of(run("line", PAPER, grid(40.0, 1), 8.0).known(too_fast).long())

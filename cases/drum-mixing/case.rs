@@ -26,9 +26,9 @@ pub(crate) static CASE: Case = Case {
             to a second, as LIGGGHTS and MUSEN count there; and a small drum turns its bed as LIGGGHTS does.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The published start is not ours to keep: without it the rows that begin with it are `not-available`, and what is \
-               judged is a tenth of a second of a small drum, in which little mixes. Past a second, where the codes differ by \
-               more than a part in a hundred, nothing is judged.",
+    weakness: "The published initial state is not part of the repository. Without it the claims that need it are \
+               `not-available`, and the other claims test 0.1 s of a small drum with little mixing. After 1 s the published \
+               codes differ by more than 1 %, and nothing is tested.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

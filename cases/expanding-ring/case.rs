@@ -28,8 +28,7 @@ pub(crate) static CASE: Case = Case {
             thick, and keeps its amplitude and energy.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Small strain and one mode: of shear little is felt, of large rotation nothing. Two places of the ring stand \
-               for all of it.",
+    weakness: "Small strain and one mode. Shear has little influence and large rotation none. Two points represent the ring.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,

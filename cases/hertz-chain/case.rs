@@ -21,8 +21,8 @@ pub(crate) static CASE: Case = Case {
             chain.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One dimension, no friction, no damping. A wrong E* changes speed and force together and is seen in the \
-               coefficient only by its cube root.",
+    weakness: "One dimension, no friction, no damping. A wrong E* changes speed and force together, and the coefficient \
+               depends only on its cube root.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,

@@ -27,8 +27,8 @@ pub(crate) static CASE: Case = Case {
             his peak pressure.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Hertz speaks of half-spaces and small strains: bodies of 8 b and strains of 5 % leave a per cent or \
-               two, and stresses of material points a cell below the surface are not the traction on it.",
+    weakness: "Hertz's theory assumes half-spaces and small strain. Bodies of 8 b and strains of 5 % leave an error of 1 to 2 \
+               %. The stress of material points one cell below the surface is not the surface traction.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,

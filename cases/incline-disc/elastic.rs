@@ -225,8 +225,8 @@ fn reproduced(slope: Elastic, cells: f64, cited: Cited) -> Claim {
 fn known(slope: Elastic) -> Claim {
     let (cells, allowed) = slope.allowed[1];
     let run = run(slope, "mpm:2000", cells).known(
-        "nodal contact holds the disc up over a patch of about √(2Rh), as if it had a flat side: at these resolutions \
-         it rolls too little or not at all",
+        "nodal contact supports the disc over a region of about √(2Rh), like a flat side: at these resolutions it rolls too \
+         little or not at all",
     );
     claim(format!("displacement at {} s over the rigid one, less 1, against the elastic disc", slope.time), "1")
         .of(run)

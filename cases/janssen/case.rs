@@ -23,8 +23,8 @@ pub(crate) static CASE: Case = Case {
             it; and LAMMPS finds the same from the same fall.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Janssen's law is a model: that the ratio K of stresses is one number over the height is assumed in it, and holds \
-               to some hundredths here. One filling is one draw.",
+    weakness: "Janssen's law is a model. It assumes a constant stress ratio K over the height, which is correct here to a few \
+               per cent. The filling is one random sample.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

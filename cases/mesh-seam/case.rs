@@ -21,8 +21,8 @@ pub(crate) static CASE: Case = Case {
             answer to 1e-9, and at ridges, corners and within corners it feels the solid that the mesh is.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Flat floors and right angles: what a surface of many small angles does to a grain, as a drum of facets does, is \
-               the surface's own answer and is not compared with the smooth one.",
+    weakness: "The floors are flat and the angles are right angles. A surface with many small angles, such as a drum of \
+               facets, has its own solution and is not compared with the smooth one.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,

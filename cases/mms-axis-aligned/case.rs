@@ -24,9 +24,9 @@ pub(crate) static CASE: Case = Case {
     claim: "Displacements converge at second order with smooth basis functions; hat functions stall, as they must.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Periodic and along the grid: no boundary, no shear, no rotation. The order is that of the cell alone, in \
-               steps of a tenth of Courant's and with many points a cell: with the usual step and few points it falls beyond \
-               64 cells.",
+    weakness: "The motion is periodic and along the grid: no boundary, no shear, no rotation. The order is the order in the \
+               cell size, at a tenth of the Courant limit and with many points per cell. With the default step and few points \
+               the order decreases beyond 64 cells.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,

@@ -28,8 +28,8 @@ pub(crate) static CASE: Case = Case {
             that far do not let go of each other, until FLIP's noise has grown.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One material law, no contact, and edges at which nothing happens. The order that is seen with 16 and 32 \
-               cells does not last: with 128 FLIP is eight cells off, and APIC's falls.",
+    weakness: "One material law, no contact, and no motion at the boundaries. The order at 16 and 32 cells does not persist: \
+               with 128 cells FLIP has an error of eight cells, and the order of APIC decreases.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -94,8 +94,8 @@ fn claims() -> Vec<Claim> {
     claims.push(off(
         "root mean square error of the displacement at the largest turn, 1/128 cells".to_owned(),
         run("mpm", LEVELS[3]).long().known(
-            "FLIP keeps what a grid cannot see of the points' velocities: with 128 cells it has grown by the largest turn, \
-             and points are eight cells off. A transfer that drops it goes on to converge",
+            "FLIP keeps velocities of the points that the grid does not resolve. With 128 cells they have grown until the \
+             largest rotation, and points have an error of eight cells. A transfer that removes them converges",
         ),
         judged(0.036 / 8.0, "an eighth of what is allowed with 16 cells: of first order in the cell at least"),
         Control::without_the_error("APIC", KEEPS_NO_NOISE, LEVELS[3].resolution),
@@ -108,8 +108,8 @@ fn claims() -> Vec<Claim> {
     claims.push(back(full(KEEPS_NO_NOISE), judged(7e-3, "discretisation; in units of 1 m"), damped()));
     claims.push(back(
         full("mpm").known(
-            "FLIP keeps what a grid cannot see of the points' velocities: it has grown by the time all is back. A \
-             transfer that drops it converges, and loses the energy of rolling grains instead",
+            "FLIP keeps velocities of the points that the grid does not resolve, and they have grown until the motion has \
+             returned. A transfer that removes them converges but dissipates the energy of rolling grains",
         ),
         judged(1.2e-2, "what APIC reaches"),
         Control::without_the_error("APIC", KEEPS_NO_NOISE, LEVELS[1].resolution),

@@ -37,9 +37,9 @@ pub(crate) static CASE: Case = Case {
             paper's findings on speed of loading, damping, stiffness ratio and friction angle are seen again.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "By symmetry no disc rotates, so neither inertia nor torque arm is felt before the distortion, whose curves \
-               are only compared with words. Contacts never open. A code that treats every disc alike but finds contacts \
-               wrongly in less regular packings would pass.",
+    weakness: "By symmetry no disc rotates, so inertia and lever arm have no influence before the distortion. The curves of \
+               the distortion are compared only with statements of the paper. Contacts never open. A code that treats all \
+               discs alike but detects contacts wrongly in irregular packings would pass.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

@@ -15,8 +15,8 @@ pub(crate) static CASE: Case = Case {
             normal force gives, elastic or damped.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The disc slips all the time, so that the tangential spring's stiffness is not felt, nor what sticking would \
-               remember. One plane wall, one angle.",
+    weakness: "The disc slips all the time, so the tangential stiffness and the history of sticking have no influence. The \
+               case has one plane wall and one angle.",
     levels: LEVELS,
     default_level: LEVELS[2],
     claims: &claims,

@@ -29,8 +29,8 @@ pub(crate) static CASE: Case = Case {
             from the same start. Elastic discs, whose contacts need no stiffness, do as discs on springs do.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The photographed packing is lost: packings from a seed have its sizes, not its places, and single \
-               forces cannot be compared. The range of F_H/F_V is wide, and stage A fixes much of it.",
+    weakness: "The photographed packing is lost. The random packings have its sizes and not its positions, so single forces \
+               cannot be compared. The range of F_H/F_V is wide, and stage A determines much of it.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -216,9 +216,9 @@ const PARTING: Parting =
 const HORIZON: u64 = 620;
 
 /// What keeps LIGGGHTS' own arithmetic from being followed in every digit.
-const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 tells no force of a mesh at step 0; and it keeps the stretch of a contact \
-                             that opens while the pair is on its neighbour list (plane-shear), where discs that only \
-                             touch part and meet again";
+const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 reports no force of a mesh at step 0. It keeps the tangential spring displacement \
+                             of an opened contact while the pair is on its neighbour list (plane-shear), and here discs \
+                             separate and touch again";
 
 /// A run that both programs can do. LIGGGHTS moves walls in three dimensions only.
 fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {

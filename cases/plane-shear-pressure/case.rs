@@ -23,8 +23,8 @@ pub(crate) static CASE: Case = Case {
             from the same start.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "420 discs: walls are ten diameters from the middle, and the mean of one run is one draw of many, \
-               whose spread over packings is what tolerances are made of. No published curve stands beside it.",
+    weakness: "With 420 discs the walls are ten diameters from the middle. The mean of one run is one random sample; the \
+               tolerances come from the spread over packings. There is no published curve to compare with.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

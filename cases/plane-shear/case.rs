@@ -21,9 +21,8 @@ pub(crate) static CASE: Case = Case {
             position does not matter; after that it has the same mean energy, stress and coordination.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Other programs, not an exact answer: an error that all share is not seen. After the horizon the \
-               packing is still being set in motion, so that only differences between runs are statistics, not the \
-               means themselves.",
+    weakness: "The references are other programs and not an exact solution, so a common error is invisible. After the horizon \
+               the packing is still accelerating. Only differences between runs are statistics, and not the means.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -48,9 +47,8 @@ const SUMS: [Sum; 5] = [
 ];
 
 /// What keeps LIGGGHTS' own arithmetic from being followed in every digit.
-const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 keeps the tangential stretch of a contact that opens for as long as the \
-                             pair is on its neighbour list, and goes on with it when the contact closes again \
-                             (derivation)";
+const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 keeps the tangential spring displacement of an opened contact while the pair is on \
+                             its neighbour list, and continues with it when the contact closes again (derivation)";
 
 /// The run of the beginning, at a fine step.
 fn short(solver: &'static str) -> Run {

@@ -42,9 +42,9 @@ pub(crate) static CASE: Case = Case {
             plastic flow and friction, and the method itself takes hardly any of it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The paper's packing is not printed: ours has its sizes, and packings differ by factors of two to \
-               three, so that ratios are compared. Findings of the paper are looked at on half of its grid and over \
-               five packings in the long set; grains of two cells across do not resolve the stress inside them.",
+    weakness: "The packing of the paper is not printed. Ours has its sizes, and packings differ by factors of two to three, so \
+               ratios are compared. The long tier tests findings of the paper on half of its grid and over five packings. \
+               Grains two cells across do not resolve their internal stress.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

@@ -19,9 +19,8 @@ const BEGINNING: f64 = 0.01;
 /// How far the slab is moved along its period: a third, which is a whole number of cells.
 const MOVED: f64 = 1.0 / 3.0;
 
-pub(super) const MAKES_ENERGY: &str = "the 2000 criterion lets go on departure and so makes energy when grains \
-                                       vibrate in contact: plastic and elastic energy exceed the work of the walls \
-                                       from the first per cent of shear on";
+pub(super) const MAKES_ENERGY: &str = "the 2000 criterion ends contact on separation, which adds energy if grains vibrate in \
+                                       contact: plastic and elastic energy exceed the work of the walls from 1 % shear";
 
 fn slab(solver: &'static str) -> Run {
     to_shear(Run::new("seed-1", solver, grid(CELLS)), SHEAR, 0).slow()

@@ -11,15 +11,15 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Duration;
 
-const REACHES: &str = "contact under traction acts from more than half a cell away, and grains of a few cells across \
-                       that are held apart so push through each other instead of sliding";
+const REACHES: &str = "contact under traction acts from more than half a cell away, and grains a few cells across penetrate \
+                       each other instead of sliding";
 
-const NO_VOIDS: &str = "in one velocity field grains are joined as soon as a cell lies between them: the slab flows \
-                        as one body and its pores stay small, while with friction it dilates";
-const OWN_NORMALS: &str = "each body meets the others along a normal of its own (2001): what one gains the other does \
-                           not lose, which makes energy, the more the coarser the grid";
-const PATCHES: &str = "grains flow where they touch, in patches of a cell or two: a finer grid shows more of it, by \
-                       24 % from 75² to 150² and 16 % from there to 300², and the motion is chaotic";
+const NO_VOIDS: &str = "one velocity field joins grains at a distance of one cell: the slab flows as one body and its pores \
+                        stay small; with friction it dilates";
+const OWN_NORMALS: &str = "each body has its own normal (2001): the impulses of two bodies are not equal and opposite, which \
+                           adds energy, more on coarser grids";
+const PATCHES: &str = "grains yield at their contacts, in regions of one or two cells. A finer grid increases the plastic \
+                       strain by 24 % from 75² to 150² and by 16 % from 150² to 300², and the motion is chaotic";
 
 /// A packing to the end on half of the paper's grid.
 pub(super) fn whole(packing: &'static str, solver: &'static str) -> Run {

@@ -22,7 +22,7 @@ pub(crate) static CASE: Case = Case {
             leaves it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One direction of flow and no turn: rates that turn with the material are not seen.",
+    weakness: "One direction of flow and no rotation. Objective stress rates are not tested.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -149,8 +149,8 @@ fn claims() -> Vec<Claim> {
 
 /// The middle is strained as the way of the ram has it.
 fn follows_the_ram(level: &Level) -> Claim {
-    const LAG: &str = "springs give way at the face, and its tracers sink into the block where the face comes a quarter of a \
-                       cell off the nodes that it began at: by .008 of a cell here with eight cells, .05 with sixteen";
+    const LAG: &str = "springs yield at the face, and its tracers sink into the block if the face moves a quarter of a cell \
+                       from its initial nodes: by 0.008 of a cell with eight cells, and by 0.05 with sixteen";
     claim(format!("strain of the middle over the way of the ram, {} cells", level.name), "1")
         .of(Run::new(PLAIN, "mpm", level.resolution).known(LAG))
         .equals(Source::Derived("e = −ln(1 − V t/L): the block is as high as the ram stands (derivation)"), |done| {

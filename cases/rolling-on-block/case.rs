@@ -13,7 +13,7 @@ pub(crate) static CASE: Case = Case {
             accuracy.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The elastic answer comes from a prototype of the same family of methods, not in closed form.",
+    weakness: "The elastic reference is a prototype of the same family of methods and not a closed form.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -60,8 +60,7 @@ fn claims() -> Vec<Claim> {
         claims.push(
             claim("displacement over the rigid one, less 1", "1")
                 .of(Run::new(slope.variant, "mpm:2000", LEVELS[1].resolution).known(
-                    "nodal contact holds the disc up over a patch of about √(2Rh), as if it had a flat side: it rolls \
-                     too little",
+                    "nodal contact supports the disc over a region of about √(2Rh), like a flat side: it rolls too little",
                 ))
                 .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                 .within(required(slope.allowed[1] + slope.reference.uncertainty, ASKED))

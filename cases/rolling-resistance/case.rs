@@ -17,8 +17,8 @@ pub(crate) static CASE: Case = Case {
     claim: "A grain that rolls is slowed down at μ_r g/(1 + i), and stays at rest on a slope up to tan θ = μ_r.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Only the limit of the moment is felt: the stiffness of the rolling spring, which LIGGGHTS and others choose \
-               differently, changes how a grain comes to rest and nothing that is gated here.",
+    weakness: "Only the limit of the rolling moment has an influence. The stiffness of the rolling spring differs between \
+               LIGGGHTS and other codes; it changes the last motion of a grain and no tested quantity.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,

@@ -14,9 +14,9 @@ pub(crate) static CASE: Case = Case {
             packing fraction and coordination are those of LAMMPS and LIGGGHTS as far as one column can tell.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Sums over one column: what is smaller than the spread from column to column is not seen. The load on \
-               the floor and the ratio of stresses have no rows: they spread by a tenth, and friction hardly moves \
-               them in so short a column. The height is that of the centre of mass.",
+    weakness: "The results are sums over one column. An error smaller than the spread between columns is invisible. The load \
+               on the floor and the stress ratio have no claims: they scatter by 10 %, and friction hardly changes them in \
+               such a short column. The height is the height of the centre of mass.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

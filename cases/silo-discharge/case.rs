@@ -18,11 +18,10 @@ pub(crate) static CASE: Case = Case {
             of 2024, and through the smaller orifice at its part of it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The filling is our own; of 100,000 spheres there is a single one, of 40,000 there are five. Of the paper's eight \
-               codes only two are known here by their courses; the mean over all, as others quote it, is 4.7 % below these two. \
-               Rolling friction, which changes rates most, is not in the law. \
-               Wrong physics, grains that slide without friction, is tried with 40,000 spheres alone; the large fillings \
-               refuse the other orifice.",
+    weakness: "The filling is our own: one of 100,000 spheres and five of 40,000. Of the eight published codes only two are \
+               known by their curves; the mean of all, as quoted elsewhere, is 4.7 % below these two. The law has no rolling \
+               friction, which changes the rates most. The control of sliding without friction uses only 40,000 spheres; the \
+               large fillings use the other orifice as control.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

@@ -9,8 +9,8 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 
 const LEVELS: &[Level] = &[cells("R/2", 2.0, 2), cells("R/4", 4.0, 2), cells("R/8", 8.0, 2)];
-const FLAT: &str = "nodal contact acts before surfaces meet and holds the sphere up over a patch of about √(2Rh), \
-                    along normals of its own";
+const FLAT: &str = "nodal contact acts before surfaces touch and supports the sphere over a region of about √(2Rh), along each \
+                    body's own normal";
 
 pub(crate) static CASE: Case = Case {
     name: "sphere-on-block",
@@ -19,8 +19,7 @@ pub(crate) static CASE: Case = Case {
             the papers' contacts at nodes are slow by what they are known for.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The elastic answer comes from a prototype of the same family of methods, on a rigid plane, not in \
-               closed form.",
+    weakness: "The elastic reference is a prototype of the same family of methods, on a rigid plane, and not a closed form.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,

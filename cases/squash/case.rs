@@ -27,8 +27,8 @@ pub(crate) static CASE: Case = Case {
             that the paper's equations give, to rounding.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "One dimension, no friction, no rotation and no contact that opens. It tells the order of operations in \
-               a cycle and nothing about contact detection: a code may pass and still find contacts one step late.",
+    weakness: "One dimension, no friction, no rotation and no opening contact. The case tests the order of operations in a \
+               cycle and not contact detection: a code that detects contacts one step late would pass.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

@@ -23,7 +23,8 @@ pub(crate) static CASE: Case = Case {
             alike.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "At the squeeze of .01 R patches are narrower than cells, and the force hangs on how the grid lies.",
+    weakness: "At a squeeze of 0.01 R the contacts are narrower than a cell, and the force depends on the position of the \
+               grid.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -126,7 +127,8 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("contact force, R/4", "N/m")
             .of(Run::new(PLAIN, "mpm:gap", LEVELS[0].resolution)
-                .known("a node in contact stops a whole cell of surface at once: contacts are about twice too stiff"))
+                .known("a node in contact stops a whole cell of the surface at once: contacts are about twice as stiff as they \
+                        should be"))
             .equals(SOURCE, |done| {
                 let exact = exact(&done[0].scene);
                 Ok(Measured::new(mean_force(&done[0])?, exact, exact))

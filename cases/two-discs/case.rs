@@ -15,8 +15,8 @@ pub(crate) static CASE: Case = Case {
             and turn each other by friction as much as they should.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Restitution and spin are known from an independent prototype of the same family of methods, not in \
-               closed form.",
+    weakness: "Restitution and spin come from an independent prototype of the same family of methods and not from a closed \
+               form.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -116,7 +116,8 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("energy after over before, manufactured by the 2000 criterion", "1")
             .of(run("head-on", "mpm:2000").known(
-                "less than the least of six that the prototype has: it hangs on where discs lie on the grid, which is not told",
+                "lower than the lowest of six results of the prototype: it depends on the position of the discs on the grid, \
+                 which is not reported",
             ))
             .at_least(ENERGY_OF_2000.value, ENERGY_OF_2000.source(), |done| energy(&done[0]))
             .within(exactly("the least of what the prototype has at three resolutions, with two kinds of normals"))
@@ -125,7 +126,7 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("energy after over before", "1")
             .of(run("head-on", "mpm:2000")
-                .known("released on departure, whatever the traction: each release leaves more energy than there was"))
+                .known("contact ends on separation, for any traction: each release adds energy"))
             .holds("conservation of energy", |done| Ok(Measured::new(energy(&done[0])?, 1.0, 1.0)))
             .within(required(5e-3, "what springs at the surface reach"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", grid(8.0))),
@@ -158,7 +159,7 @@ fn three() -> Vec<Claim> {
     let mut claims: Vec<Claim> = ["mpm", "mpm:gap"].map(|solver| of(run("three", solver), alone())).into();
     for solver in ["mpm:2000", "mpm:2001"] {
         let known = run("three", solver)
-            .known("each body meets the common velocity along its own normal: impulses do not add up to nothing");
+            .known("each body matches the common velocity along its own normal: the sum of the impulses is not zero");
         claims.push(of(known, Control::without_the_error("springs at the surface", "mpm", grid(8.0))));
     }
     claims
@@ -182,8 +183,8 @@ fn oblique() -> Vec<Claim> {
         ),
         of(
             Run::new("oblique", "mpm", grid(16.0)).slow().known(
-                "points' own spin, which neighbours do not resist, lets the layer at the surface give way along the \
-                 contact: the spin does not converge to the reference",
+                "the points' own spin, without resistance from neighbours, lets the surface layer yield along the contact: the \
+                 spin does not converge to the reference",
             ),
             "ΩR/v₀ after an oblique impact, μ = .9, 16 cells a radius",
             "what the prototype is certain of",

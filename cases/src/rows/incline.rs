@@ -33,9 +33,9 @@ pub(crate) const fn case(
                 the rigid answer up to the compliance of the contact, and the compliant answer to the step's own error.",
         scene,
         derivation,
-        weakness: "One contact that never opens and whose normal never turns, started at its static overlap: nothing is \
-                   said about impact, about history on a turning contact, or about grains against grains. A wrong μ is \
-                   felt only where the grain slips, a wrong inertia mostly where it rolls: read the slopes together.",
+        weakness: "One contact that never opens, with a constant normal and the static overlap as initial state. Impact, \
+                   history on a rotating contact and contacts between grains are not tested. Wrong friction is visible only if \
+                   the grain slips, and a wrong inertia mostly if it rolls: read the slopes together.",
         levels: LEVELS,
         default_level: LEVELS[2],
         claims,

@@ -49,10 +49,10 @@ pub(crate) const LEVELS: &[Level] = &[
 ];
 
 /// Where these cases are weak.
-pub(crate) const WEAKNESS: &str = "A tenth of the size of the paper's silo, and one deposit of ten, whose spread is what \
-                   tolerances are made of; at its size one deposit of either silo. The friction of the paper is not printed; .5 \
-                   is assumed. The main job judges what is kept of runs; tests do those of a tenth anew, most of them in the \
-                   long set, and those of full size when asked to.";
+pub(crate) const WEAKNESS: &str = "A tenth of the size of the published silo, and one deposit of ten, whose spread gives the \
+                                   tolerances; at full size one deposit of each silo. The friction of the paper is not printed \
+                                   and assumed to be 0.5. `run` judges stored results. The tests repeat the runs at a tenth of \
+                                   the size, most of them in the long tier, and the full-size runs on request.";
 
 /// Names and units of the quantities of silos.
 pub(crate) const GONE: [&str; 2] = ["grains out after 14 τ", "1"];

@@ -65,9 +65,8 @@ const TENTH: &str = "what silos of a tenth of the size were allowed from two to 
 const PROTOTYPE: f64 = 14.0;
 
 /// Why the flow after that is not as the prototype has it.
-const STRAINED: &str = "after 14 τ, where the prototype ends, slow elements are .009 to .018 looser than it: they have been \
-                        strained farther, and φ is a function of |I₀| for elements alone that have come to where they shear \
-                        steadily";
+const STRAINED: &str = "after 14 τ, the end of the prototype, the packing fraction of slow elements is 0.009 to 0.018 lower: \
+                        they have a larger strain, and φ is a function of |I₀| only for elements in steady shear";
 /// φ over |I₀| up to a time beside that of the prototype, in every bin that it has.
 fn over_inertia(of: Quantity, bins: &'static [Cited], until: f64, control: Control) -> Claim {
     of.equals(bins[0].source(), move |done| {
