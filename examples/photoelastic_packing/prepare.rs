@@ -59,7 +59,7 @@ pub(crate) fn prepare(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
     open(scene)
 }
 
-/// Opens the walls until the discs only touch. What they press with goes to zero as a straight line does.
+/// Opens the walls until the discs touch without overlap. The contact forces decrease linearly to zero.
 fn open(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
     let (mut strain, mut before) = (0.0, None);
     for _ in 0..20 {

@@ -58,7 +58,7 @@ pub(crate) fn fraction(scene: &Scene) -> f64 {
     scene.grains.iter().map(|grain| std::f64::consts::PI * grain.radius * grain.radius).sum::<f64>() / (width * height)
 }
 
-/// Runs for a time (s) and shows what stands there every so often (s), until it is told to stop; where it ended.
+/// Runs for a time (s) and reports the state at regular intervals (s) until the callback stops it. Returns the final state.
 pub(crate) fn watch(
     scene: &Scene,
     time: f64,
