@@ -120,7 +120,8 @@ fn follow_piece<S: Space>(
 }
 
 /// F ← (1 + Δt ∇v) F, volume and stress of every point of some runs, of which `gradients` are the velocity gradients
-/// (1/s). With `COUNT` tells of each run what the stresses after the step take on the strain of it, the work of
+/// (1/s). With `COUNT` tells of each run what the stresses after the step take on the strain of it (twice that half-way
+/// through the step, less that on the configuration at its start, on which nodes felt the stress before), the work of
 /// plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume; and that against
 /// viscosity: half of what the viscous stresses before and after the step do on the strain of it.
 ///
@@ -157,7 +158,8 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
         let (mut squares, mut works) = ([0.0; LONGEST], [0.0; LONGEST]);
         if COUNT && L::VISCOUS {
             for (at, work) in works.iter_mut().enumerate().take(range.len()) {
-                let (strain, ratio) = (S::symmetric_part(gradients[at] * time_step), volumes[at] / references[at]);
+                let strain = S::symmetric_part(S::at_midpoint(gradients[at] * time_step));
+                let ratio = volumes[at] / references[at];
                 let density = law.viscous_work::<S>(strain, ratio, deformations[at], stresses[at]);
                 *work = 0.5 * volumes[at] * density;
             }
@@ -200,8 +202,10 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
                         S::restrict_gradient(S::embed_gradient(gradients[place]) - strain_rate);
                 }
                 if COUNT {
-                    let strain = S::symmetric_part(increment);
-                    flow.taken += *volume * S::double_dot(*stress, strain);
+                    let middle = S::at_midpoint(increment);
+                    let strain = S::symmetric_part(middle);
+                    let felt = S::symmetric_part(middle * 2.0 - increment);
+                    flow.taken += *volume * S::double_dot(*stress, felt);
                     if L::VISCOUS {
                         flow.viscous += works[place];
                         let density = law.viscous_work::<S>(strain, ratio.ratio, deformation, *stress);

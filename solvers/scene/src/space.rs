@@ -89,8 +89,14 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn finger(deformation: Self::Matrix) -> Self::Symmetric;
     /// Symmetric part of a gradient.
     fn symmetric_part(gradient: Self::Matrix) -> Self::Symmetric;
+    /// Displacement gradient H of a step on the configuration half-way through it, from that G on the configuration at its
+    /// start: H = G (1 + G/2)⁻¹ (Hughes & Winget 1980). Both are numbers without a unit.
+    ///
+    /// A rotation by θ, 1 + G = R, gives H = 2 (R − 1)(R + 1)⁻¹, which is skew with entries ±2 tan(θ/2): no strain. The
+    /// symmetric part of its G is (cos θ − 1) 1.
+    fn at_midpoint(gradient: Self::Matrix) -> Self::Matrix;
     /// `R σ Rᵀ` with the rotation of the midpoint rule, R = (1 − W/2)⁻¹(1 + W/2), W the skew part of a displacement
-    /// gradient (Hughes & Winget 1980).
+    /// gradient on the configuration half-way through a step (Hughes & Winget 1980).
     fn turned(tensor: Self::Symmetric, increment: Self::Matrix) -> Self::Symmetric;
     /// `a f + b`.
     fn scaled_sum(a: Self::Symmetric, factor: f64, b: Self::Symmetric) -> Self::Symmetric;
@@ -167,6 +173,13 @@ impl Space for Plane {
     #[inline(always)]
     fn symmetric_part(g: Matrix2<f64>) -> [f64; 4] {
         [g.m11, g.m22, 0.0, 0.5 * (g.m12 + g.m21)]
+    }
+    #[inline(always)]
+    fn at_midpoint(g: Matrix2<f64>) -> Matrix2<f64> {
+        // By Cayley and Hamilton: (G + ½ det G 1)/det(1 + G/2).
+        let minor = 0.5 * (g.m11 * g.m22 - g.m12 * g.m21);
+        let inverse = 1.0 / (1.0 + 0.5 * (g.m11 + g.m22 + minor));
+        Matrix2::new((g.m11 + minor) * inverse, g.m12 * inverse, g.m21 * inverse, (g.m22 + minor) * inverse)
     }
     #[inline(always)]
     fn turned([xx, yy, zz, xy]: [f64; 4], increment: Matrix2<f64>) -> [f64; 4] {
@@ -262,6 +275,16 @@ impl Space for Solid {
         Self::restrict_symmetric((g + g.transpose()) * 0.5)
     }
     #[inline(always)]
+    fn at_midpoint(gradient: Matrix3<f64>) -> Matrix3<f64> {
+        // By Cayley and Hamilton: (G − ½ adj G + (½ tr adj G + ¼ det G) 1)/det(1 + G/2); the columns of adj G are products
+        // of the rows of G.
+        let [x, y, z] = [0, 1, 2].map(|row| gradient.row(row).transpose());
+        let adjugate = Matrix3::from_columns(&[y.cross(&z), z.cross(&x), x.cross(&y)]);
+        let (minors, quarter) = (0.5 * adjugate.trace(), 0.25 * x.dot(&y.cross(&z)));
+        let inverse = 1.0 / (1.0 + 0.5 * (gradient.trace() + minors + quarter));
+        (gradient - adjugate * 0.5 + Matrix3::from_diagonal_element(minors + quarter)) * inverse
+    }
+    #[inline(always)]
     fn turned(tensor: [f64; 6], increment: Matrix3<f64>) -> [f64; 6] {
         // R = 1 + (W + W²/2)/(1 + |w|²/4), w the axial vector of W.
         let skew = (increment - increment.transpose()) * 0.5;
@@ -316,7 +339,24 @@ mod tests {
         };
         let embedded = Solid::restrict_symmetric(Plane::embed_symmetric(tensor));
         assert!(same(Plane::turned(tensor, gradient), Solid::turned(embedded, Plane::embed_gradient(gradient))));
+        let middle = Plane::embed_gradient(Plane::at_midpoint(gradient));
+        assert!((middle - Solid::at_midpoint(Plane::embed_gradient(gradient))).norm() < 1e-15);
         assert!(same(Plane::finger(unit), Solid::finger(solid_unit)));
         assert!((Plane::determinant(unit) - Solid::determinant(solid_unit)).abs() < 1e-15);
+    }
+    /// H (1 + G/2) = G for any G, and of a rotation about any axis nothing symmetric is left.
+    #[test]
+    fn a_rotation_has_no_strain_at_the_midpoint() {
+        let gradient = Matrix3::new(0.11, 0.2, -0.3, -0.17, 0.03, 0.25, 0.07, -0.4, -0.2);
+        let middle = Solid::at_midpoint(gradient);
+        assert!((middle * (Matrix3::identity() + gradient * 0.5) - gradient).norm() < 1e-15, "{middle}");
+        for axis in [Vector3::z(), Vector3::new(0.6, -0.48, 0.64)] {
+            let angle = 0.8_f64;
+            let rotation = nalgebra::Rotation3::new(axis * angle).into_inner();
+            let middle = Solid::at_midpoint(rotation - Matrix3::identity());
+            // 2 tan(θ/2) about the axis.
+            let expected = axis.cross_matrix() * (2.0 * (0.5 * angle).tan());
+            assert!((middle - expected).norm() < 1e-15 * 10.0, "{middle}");
+        }
     }
 }

@@ -123,9 +123,9 @@ impl Law for NeoHookean {
     }
 }
 
-/// Neo-Hookean, with a viscous stress beside it: σ + 2η dev D + ζ tr D 1, D the symmetric part of ∇v (1/s). In small strain it is
-/// the solid of Kelvin and Voigt, whose wave of wave number k loses its amplitude at η_L k²/2ρ, η_L = 4η/3 + ζ along it and η
-/// across.
+/// Neo-Hookean, with a viscous stress beside it: σ + 2η dev D + ζ tr D 1, D the symmetric part of ∇v (1/s) on the configuration
+/// half-way through a step, where a rotation has none ([`Space::at_midpoint`]). In small strain it is the solid of Kelvin and
+/// Voigt, whose wave of wave number k loses its amplitude at η_L k²/2ρ, η_L = 4η/3 + ζ along it and η across.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KelvinVoigt {
     /// The elastic part.
@@ -150,7 +150,7 @@ impl Law for KelvinVoigt {
         _stress: S::Symmetric,
         _plastic_strain: &mut Off,
     ) -> S::Symmetric {
-        let strain = S::symmetric_part(increment);
+        let strain = S::symmetric_part(S::at_midpoint(increment));
         let mean = (self.bulk_viscosity - 2.0 / 3.0 * self.shear_viscosity) * S::trace(strain);
         let elastic = self.elastic.stress::<S>(deformation, volume);
         S::scaled_sum(strain, 2.0 * self.shear_viscosity, S::scaled_sum(S::isotropic(mean), 1.0, elastic))
@@ -179,8 +179,10 @@ impl Law for KelvinVoigt {
 
 /// σ̂ = 2G dev D + K tr D 1 with the Jaumann rate σ̂ = σ̇ − Wσ + σW, D and W the symmetric and skew parts of ∇v (1/s).
 ///
-/// The stress is turned by the exact rotation of the midpoint rule (Hughes & Winget 1980), so that rigid rotation
-/// leaves its invariants alone whatever the step.
+/// A step follows it by the midpoint rule (Hughes & Winget 1980): with H = Δt ∇v on the configuration half-way through the
+/// step ([`Space::at_midpoint`]), σ ← R σ Rᵀ + 2G dev ε + K tr ε 1, ε = sym H and R = (1 − W/2)⁻¹(1 + W/2), W = skew H. A rigid
+/// rotation makes no strain and leaves the invariants of the stress alone, whatever the step. On the configuration at the
+/// start of the step a rotation by θ would be a compression by 1 − cos θ, to which a spinning body gives way by growing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hypoelastic {
     /// Bulk modulus K (Pa).
@@ -192,9 +194,10 @@ pub struct Hypoelastic {
 impl Hypoelastic {
     #[inline(always)]
     fn stress<S: Space>(&self, increment: S::Matrix, stress: S::Symmetric) -> S::Symmetric {
-        let strain = S::symmetric_part(increment);
+        let middle = S::at_midpoint(increment);
+        let strain = S::symmetric_part(middle);
         let pressure = (self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus) * S::trace(strain);
-        let turned = S::turned(stress, increment);
+        let turned = S::turned(stress, middle);
         S::scaled_sum(strain, 2.0 * self.shear_modulus, S::scaled_sum(turned, 1.0, S::isotropic(pressure)))
     }
 }

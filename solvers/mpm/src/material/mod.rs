@@ -54,8 +54,8 @@ pub trait Law: Copy + Send + Sync + 'static {
     const LOGARITHM: bool = false;
     /// Whether a part of its stress is viscous.
     const VISCOUS: bool = false;
-    /// The stress after a step with the displacement gradient `increment` = Δt ∇v, from the stress before it and the
-    /// deformation after it, of which `volume` is the determinant.
+    /// Returns the stress after a step with the displacement gradient `increment` = Δt ∇v on the configuration at its start,
+    /// from the stress before it and the deformation after it, of which `volume` is the determinant.
     fn follow<S: Space>(
         &self,
         increment: S::Matrix,
