@@ -18,7 +18,11 @@ struct Whole {
     mass: f64,
     position: Vector3<f64>,
     velocity: Vector3<f64>,
+    /// Angular momentum about the centre of mass (kg m²/s).
+    angular_momentum: Vector3<f64>,
+    /// Spin ω of the rigid motion with that angular momentum, I ω = L (rad/s).
     spin: Vector3<f64>,
+    /// Moment of inertia about the centre of mass, mean over the axes that it can turn about (kg m²).
     inertia: f64,
     /// Kinetic energy of all points (J).
     kinetic: f64,
@@ -33,6 +37,7 @@ impl<S: Space> Simulation<S> {
         let wholes: Vec<Whole> = (0..self.state.bodies.len()).map(|body| self.whole(body)).collect();
         let mut elastic_energy = 0.0;
         let mut inner_kinetic_energy = 0.0;
+        let (mut uneven_rotational_energy, mut uneven_angular_momentum) = (0.0, Vector3::zeros());
         let (mut grains, mut bodies) = (Vec::new(), Vec::new());
         let forces = self.forces(&wholes);
         for (body_at, (body, whole)) in self.state.bodies.iter().zip(&wholes).enumerate() {
@@ -64,8 +69,11 @@ impl<S: Space> Simulation<S> {
                     force: forces[body_at].0,
                 }),
             }
-            let rigid = whole.mass * whole.velocity.norm_squared() + inertia * whole.spin.norm_squared();
+            let turning = whole.spin.dot(&whole.angular_momentum);
+            let rigid = whole.mass * whole.velocity.norm_squared() + turning;
             inner_kinetic_energy += whole.kinetic - 0.5 * rigid;
+            uneven_rotational_energy += 0.5 * (turning - inertia * whole.spin.norm_squared());
+            uneven_angular_momentum += whole.angular_momentum - whole.spin * inertia;
         }
         let points = if with_points {
             self.state.bodies.iter().flat_map(|body| body.part.points.clone().map(|at| self.point(body, at))).collect()
@@ -78,6 +86,8 @@ impl<S: Space> Simulation<S> {
             touching: Some([contacts.len(), slipping]),
             elastic_energy: elastic_energy + self.spring_energy(),
             inner_kinetic_energy,
+            uneven_rotational_energy,
+            uneven_angular_momentum,
             spots: self.spots(),
             driven: self.boundary.driven.groups.iter().map(|group| S::embed(group.force)).collect(),
             budget: self.budget(elastic_energy),
@@ -169,7 +179,8 @@ impl<S: Space> Simulation<S> {
         if body + 1 == self.state.bodies.len() {
             self.looked = self.step;
         }
-        Whole { mass, position, velocity, spin, inertia, kinetic, angle, plastic_strain: flowed / mass }
+        let (angular_momentum, plastic_strain) = (angular, flowed / mass);
+        Whole { mass, position, velocity, angular_momentum, spin, inertia, kinetic, angle, plastic_strain }
     }
 
     /// Velocity of a point at the time of the look, half a step on.

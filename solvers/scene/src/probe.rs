@@ -230,7 +230,8 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
             let kinetic = of_grains + (of_bodies + look.inner_kinetic_energy);
             let inertia = |grain: &GrainState| scene.grains[grain.id as usize - 1].inertia;
             let of_grains: f64 = snapshot.grains.iter().map(|grain| half_squared(inertia(grain), &grain.spin)).sum();
-            let rotational = of_grains + bodies.iter().map(|body| half_squared(body.inertia, &body.spin)).sum::<f64>();
+            let of_bodies: f64 = bodies.iter().map(|body| half_squared(body.inertia, &body.spin)).sum();
+            let rotational = of_grains + (of_bodies + look.uneven_rotational_energy);
             let height = |mass: f64, position: &Vector3<f64>| -mass * scene.gravity.dot(position);
             let of_grains: f64 = snapshot.grains.iter().map(|grain| height(grain.mass, &grain.position)).sum();
             let gravitational = of_grains + bodies.iter().map(|body| height(body.mass, &body.position)).sum::<f64>();
@@ -244,6 +245,7 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
                 momentum += velocity * *mass;
                 angular += position.cross(&(velocity * *mass)) + spin * *inertia;
             }
+            angular += look.uneven_angular_momentum;
             let total = kinetic + rotational + look.elastic_energy + gravitational;
             let mut all = vec![kinetic, rotational, look.elastic_energy, gravitational, total];
             all.extend(vector(&momentum));

@@ -314,6 +314,10 @@ pub struct Look {
     pub elastic_energy: f64,
     /// Kinetic energy beyond that of the rigid motion of grains and bodies (J).
     pub inner_kinetic_energy: f64,
+    /// Energy of rotation ½ ω·Iω with the tensors I of inertia, beyond ½ I ω² with the scalars I of grains and bodies (J).
+    pub uneven_rotational_energy: f64,
+    /// Angular momentum Iω with the tensors I of inertia, beyond that with the scalars I of grains and bodies (kg m²/s).
+    pub uneven_angular_momentum: Vector3<f64>,
     /// The material at the places that probes ask for, in the order of [`Scene::spots`].
     pub spots: Vec<PointState>,
     /// Force of the other grains on each group of driven ones (N), in the order of [`Scene::driven`]; empty where it is
@@ -332,6 +336,8 @@ impl Look {
             snapshot,
             elastic_energy,
             inner_kinetic_energy: 0.0,
+            uneven_rotational_energy: 0.0,
+            uneven_angular_momentum: Vector3::zeros(),
             spots: Vec::new(),
             driven: Vec::new(),
             budget: None,

@@ -36,17 +36,23 @@ fn energies_and_momenta() {
     let grains = Snapshot::of_grains(&scene, 0, 0.0, vec![disc]);
     let snapshot = Snapshot { bodies: vec![body], contacts: Some(Vec::new()), ..grains };
     let mut recorder = Recorder::new(&scene, 1.0, 1);
-    recorder.take(&scene, Look { inner_kinetic_energy: 11.0, ..Look::of_rigid(snapshot, 13.0) });
+    let look = Look {
+        inner_kinetic_energy: 11.0,
+        uneven_rotational_energy: 3.0,
+        uneven_angular_momentum: Vector3::new(0.0, 0.0, -8.0),
+        ..Look::of_rigid(snapshot, 13.0)
+    };
+    recorder.take(&scene, look);
     let series = recorder.finish().0;
     for (column, expected) in [
         ("kinetic_energy", 20_611.0),
-        ("rotational_energy", 2264.0),
+        ("rotational_energy", 2267.0),
         ("elastic_energy", 13.0),
         ("gravitational_energy", 29_600.0),
-        ("total_energy", 52_488.0),
+        ("total_energy", 52_491.0),
         ("momentum_x", 4060.0),
         ("momentum_y", 4980.0),
-        ("angular_momentum", -1164.0),
+        ("angular_momentum", -1172.0),
         ("contacts", 0.0),
         ("largest_spin", 6.0),
     ] {
