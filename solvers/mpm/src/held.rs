@@ -44,15 +44,19 @@ impl Held {
         Self { sides }
     }
 
-    /// What the mirror image brings to the nodes inside, before velocities are known.
-    pub(crate) fn fold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>]) {
+    /// Adds to the nodes inside what the mirror image brings, before velocities are known.
+    ///
+    /// The mirror image of gravity (m/s²) points the other way: on the mass m that comes from beyond a side acts a force of m
+    /// times the image of gravity. Where nodes are accelerated by gravity, with all their mass, the difference is added here.
+    pub(crate) fn fold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>], gravity: S::Vector) {
         for side in &self.sides {
+            let pull = side.mirrored::<S>(gravity) - gravity;
             side.each_beyond(&bodies[side.body].part.window, |beyond, inside| {
                 let from = nodes[beyond];
                 let to = &mut nodes[inside];
                 to.mass += from.mass;
                 to.velocity += side.mirrored::<S>(from.velocity);
-                to.change += side.mirrored::<S>(from.change);
+                to.change += side.mirrored::<S>(from.change) + pull * from.mass;
                 nodes[beyond].mass = to_mass(nodes[inside].mass, from.mass);
             });
         }

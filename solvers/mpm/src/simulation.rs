@@ -84,7 +84,9 @@ impl<S: Space> Simulation<S> {
     pub(crate) fn begin(&mut self) -> Result<(), Box<Broken>> {
         let team = self.state.team.clone();
         team.lead(|| self.settle())?;
-        self.set_moving();
+        let Self { critical, scheme, .. } = *self;
+        let moving = team.lead(|| self.set_moving());
+        moving.map_err(|failure| failure.told(0, scheme.time_step, critical))?;
         self.open_accounts();
         Ok(())
     }
@@ -145,14 +147,14 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Gives every field its window.
-    fn place_windows(&mut self) -> Result<(), Failure> {
+    pub(crate) fn place_windows(&mut self) -> Result<(), Failure> {
         let Self { scheme, state, grid, .. } = self;
         let placed = grid.place_windows(&mut state.bodies, scheme.has_one_field());
         placed.map_err(|(place, cause)| state.failure(place, state.bodies[place].part.points.start, cause))
     }
 
     /// Gives every thread its share, and takes the points to the nodes.
-    fn scatter(&mut self) {
+    pub(crate) fn scatter(&mut self) {
         let Self { scheme, state, grid, contacts, .. } = self;
         state.find_runs(scheme.setting.basis, &grid.lattice);
         cut_nodes(&mut state.shares, &state.bodies, grid.used, scheme.has_one_field());
@@ -222,7 +224,7 @@ impl<S: Space> Simulation<S> {
         }
         let asked = Asked { accounts: accounts.as_mut(), touches: record };
         contacts.push(scheme, state, grid, boundary, asked, cost);
-        boundary.held.fold(&state.bodies, &mut grid.nodes);
+        boundary.held.fold(&state.bodies, &mut grid.nodes, surroundings.gravity);
         if let Some(accounts) = accounts {
             accounts.note_forces(&state.team, grid);
             if surroundings.damping > 0.0 {

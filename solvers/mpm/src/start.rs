@@ -1,9 +1,12 @@
 //! How a run starts: pressed, settled, set moving.
 
+use crate::basis::with_basis;
+use crate::failure::Failure;
+use crate::nodes::Grid;
 use crate::scheme::Surroundings;
 use crate::simulation::Simulation;
 use crate::state::State;
-use crate::stress_at_start;
+use crate::{stress_at_start, transfer};
 use grainbench_scene::record::Owner;
 use grainbench_scene::solver::Broken;
 use grainbench_scene::space::Space;
@@ -38,12 +41,14 @@ impl<S: Space> Simulation<S> {
         state.find_all_bounds(&mut contacts.tracers);
     }
 
-    /// Gives every point the velocity that the scene asks for, half a step before the clock starts, so that every step
-    /// is alike: what balances the bodies at rest does so then too, and gravity beyond that acts from the start.
-    pub(crate) fn set_moving(&mut self) {
+    /// Gives every point the velocity that the scene asks for, half a step before the clock starts: v − a Δt/2, with the
+    /// acceleration a of the first step ([`Simulation::accelerations`]), so that every step is alike.
+    ///
+    /// # Errors
+    /// When bodies reach farther than a grid can.
+    pub(crate) fn set_moving(&mut self) -> Result<(), Failure> {
         let half = 0.5 * self.scheme.time_step;
-        let balanced = self.scene.start.settle.map_or_else(Vector3::zeros, |settle| settle.gravity);
-        let lag = (self.scene.gravity - balanced) * half;
+        let accelerations = self.accelerations()?;
         let State { bodies, points, before, .. } = &mut self.state;
         before.resize(points.len(), S::ORIGIN);
         for body in bodies.iter() {
@@ -72,6 +77,7 @@ impl<S: Space> Simulation<S> {
                         block.velocity_at(position) + Vector3::new(wave, 0.0, 0.0)
                     }
                 };
+                let lag = S::embed(accelerations[at]) * half;
                 let mut behind = if body.driven.is_some() { velocity } else { velocity - lag };
                 if let Some(motion) = &self.scene.start.manufactured {
                     velocity += motion.velocity(&medium, position, 0.0);
@@ -81,5 +87,42 @@ impl<S: Space> Simulation<S> {
                 before[at] = S::restrict(behind * 3.0 - velocity * 2.0);
             }
         }
+        Ok(())
+    }
+
+    /// Returns the acceleration of every point at the start (m/s²).
+    ///
+    /// Bodies that have settled are in balance: gravity beyond what they settled under acts on them. All others move by
+    /// gravity and by the stress that they start with, as the nodes i that reach a point feel them: a = Σ N_i (f_i/m_i + g),
+    /// f_i = −Σ V σ ∇N_i over the points, with no acceleration across held sides. A body whose stress bears its weight rests.
+    fn accelerations(&mut self) -> Result<Vec<S::Vector>, Failure> {
+        let start = &self.scene.start;
+        let balanced = start.settle.map_or_else(Vector3::zeros, |settle| settle.gravity);
+        let pull = S::restrict(self.scene.gravity - balanced);
+        let is_stressed = start.settle.is_none() && stress_at_start::is_given(&self.scene);
+        let is_held = self.state.bodies.iter().any(|body| body.held.is_some()) && pull != S::ORIGIN;
+        let mut accelerations = vec![pull; self.state.points.len()];
+        if !(is_stressed || is_held) {
+            return Ok(accelerations);
+        }
+        self.place_windows()?;
+        self.scatter();
+        let Self { scheme, state, grid, boundary, .. } = self;
+        let nodes = &mut grid.nodes[..grid.used];
+        if !is_stressed {
+            nodes.iter_mut().for_each(|node| node.change = S::ORIGIN);
+        }
+        boundary.held.fold(&state.bodies, nodes, pull);
+        for node in nodes.iter_mut().filter(|node| node.mass > 0.0) {
+            node.change = node.change * (1.0 / node.mass) + pull;
+        }
+        boundary.held.hold(&state.bodies, &mut grid.nodes);
+        let Grid { lattice, nodes, .. } = grid;
+        for body in &state.bodies {
+            with_basis!(scheme.setting.basis, B => {
+                transfer::gather_changes::<S, B>(lattice, &body.part, &state.points, nodes, &mut accelerations);
+            });
+        }
+        Ok(accelerations)
     }
 }

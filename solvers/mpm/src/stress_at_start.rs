@@ -44,6 +44,11 @@ pub(crate) fn refusal(scene: &Scene) -> Option<String> {
     })
 }
 
+/// Returns true if a body starts with a stress.
+pub(crate) fn is_given(scene: &Scene) -> bool {
+    scene.start.initial_pressure.is_some() || scene.bodies.iter().any(|body| body.stress.is_some())
+}
+
 fn state_under(law: &Material, stress: &Matrix3<f64>, dimensions: usize) -> Option<Material3> {
     with_law!(law, law => law.under_stress(stress, dimensions))
 }

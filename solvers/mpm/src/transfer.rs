@@ -167,3 +167,18 @@ pub(crate) fn scatter_body_force<S: Space, B: Basis>(
         stencil.each::<S, B>(&part.window, |node| nodes[node.slot].change += force * node.weight);
     }
 }
+
+/// Sets a vector of each point of a part to Σ N_i Δv_i over the changes of the nodes that reach it.
+pub(crate) fn gather_changes<S: Space, B: Basis>(
+    lattice: &Lattice,
+    part: &Part,
+    points: &Points<S>,
+    nodes: &[Node<S>],
+    changes: &mut [S::Vector],
+) {
+    for at in part.points.clone() {
+        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
+        changes[at] = S::ORIGIN;
+        stencil.each::<S, B>(&part.window, |node| changes[at] += nodes[node.slot].change * node.weight);
+    }
+}

@@ -1,0 +1,81 @@
+//! Bodies that start with the stress of their weight: nothing moves.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod support;
+
+use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
+use grainbench_scene::solver::Resolution;
+use support::{column, try_run};
+
+/// Density (kg/m³), gravity (m/s²), Young's modulus (Pa), Poisson's ratio, height (m).
+const DENSITY: f64 = 1800.0;
+const GRAVITY: f64 = 9.81;
+const YOUNG: f64 = 1e6;
+const POISSON: f64 = 0.3;
+const HEIGHT: f64 = 1.0;
+
+/// Soil in a smooth box under K₀ stress: σ_yy = ρg(y − H) and σ_xx = K₀ σ_yy, K₀ = ν/(1 − ν), which `sign` times the gradient
+/// gives, from half-way up.
+fn soil(law: &str, sign: f64) -> String {
+    let (middle, gradient) = (-0.5 * DENSITY * GRAVITY * HEIGHT, sign * DENSITY * GRAVITY);
+    let beside = POISSON / (1.0 - POISSON);
+    format!(
+        "dimension = 2\nduration = 0.2\ngravity = [0.0, -{GRAVITY}]\nreference_length = {HEIGHT}\n\
+         materials.m = {{ density = {DENSITY}, young_modulus = {YOUNG}, poisson_ratio = {POISSON}, {law} }}\n\
+         [bodies.soil]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [1.0, {HEIGHT}] }}\n\
+         fixed = ['y-low']\nsliding = ['x-low', 'x-high']\nstress = [[{}, 0.0], [0.0, {middle}]]\n\
+         stress_gradient = {{ y = [[{}, 0.0], [0.0, {gradient}]] }}\n\
+         [output]\nevery = 0.01\n[probes]\ntop.point = {{ body = 'soil', at = [0.5, 0.99] }}\n\
+         middle.point = {{ body = 'soil', at = [0.02, 0.5] }}\nall.system = true\n",
+        beside * middle,
+        beside * gradient
+    )
+}
+
+/// Settlement of the top without the stress, ρgH²/2M, M = E(1 − ν)/(1 + ν)(1 − 2ν) (m).
+fn settlement() -> f64 {
+    let modulus = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON));
+    0.5 * DENSITY * GRAVITY * HEIGHT * HEIGHT / modulus
+}
+
+/// The largest displacement of two points (m) in .2 s, in which a wave goes through the height five times; and the steps.
+fn moved(change: impl FnOnce(&mut Setting), text: &str, cells: f64, points: u32) -> (f64, f64) {
+    let record = try_run("mpm", change, text, Resolution::grid(cells, points)).unwrap();
+    let columns = ["top.ux", "top.uy", "middle.ux", "middle.uy"];
+    let most = columns.iter().flat_map(|name| column(&record, name)).fold(0.0, |most: f64, now| most.max(now.abs()));
+    (most, record.cost.steps as f64)
+}
+
+/// With three points to a cell the sums over points are the integrals of the basis functions times the linear stress, and
+/// nothing but rounding moves: the spacing of numbers at the height, in every step.
+#[test]
+fn stress_of_the_weight_keeps_soil_at_rest() {
+    let soft = soil("constitutive = 'hypoelastic'", 1.0);
+    for basis in [Basis::Linear, Basis::Quadratic, Basis::Gimp] {
+        for stress_update in [StressUpdate::First, StressUpdate::ModifiedLast] {
+            for cells in [4.0, 8.0, 10.0] {
+                let change = |setting: &mut Setting| {
+                    let transfer =
+                        if basis == Basis::Quadratic { setting.transfer } else { Transfer::Flip { pic: 0.0 } };
+                    *setting = Setting { basis, stress_update, transfer, ..*setting };
+                };
+                let (found, steps) = moved(change, &soft, cells, 3);
+                assert!(found <= steps * f64::EPSILON * HEIGHT, "{basis}, {stress_update:?}, {cells} cells: {found} m");
+            }
+        }
+    }
+    for law in ["constitutive = 'neo-hookean'", "constitutive = 'von-mises', yield_stress = 1e5"] {
+        let (found, steps) = moved(|_| (), &soil(law, 1.0), 8.0, 3);
+        assert!(found <= steps * f64::EPSILON * HEIGHT, "{law}: {found} m");
+    }
+}
+
+/// Two points to a cell leave what the midpoint rule leaves of the free surface, of the order of the square of a cell. Under a
+/// gradient of the other sign the stress is off by −2ρg(y − H/2) from that of the weight: the middle swings about a place that is
+/// ρgH²/4M lower, half of the settlement.
+#[test]
+fn the_sign_of_a_stress_gradient_is_felt() {
+    let [right, wrong] = [1.0, -1.0].map(|sign| moved(|_| (), &soil("constitutive = 'hypoelastic'", sign), 8.0, 2).0);
+    assert!(right < settlement() / 64.0, "{right} m");
+    assert!(wrong > 0.5 * settlement(), "{wrong} m");
+}
