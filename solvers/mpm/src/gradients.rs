@@ -1,4 +1,4 @@
-//! Velocity gradients at points.
+//! Velocity gradients at points, and where these velocities take the points.
 
 use crate::basis::Basis;
 use crate::patch::{Copies, Patch};
@@ -8,31 +8,40 @@ use grainbench_lanes::{FourKernel, FourLanes, Wide};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
-/// Velocity gradients (1/s) at the points of some runs of a body.
-pub(crate) struct Gradients<'a, S: Space, B, N, V> {
+/// Velocity gradients (1/s) at the points of some runs of a body; with `MOVE` also x_p + Δt Σ N_i(x_p) v_i, where the points are
+/// next (m).
+pub(crate) struct Gradients<'a, S: Space, B, N, V, const MOVE: bool> {
     ground: Ground<'a, S>,
     nodes: &'a [N],
     /// Velocity of a node (m/s).
     velocity: V,
     gradients: &'a mut [S::Matrix],
+    /// Next positions (m), counted as the positions of the ground are.
+    next: &'a mut [S::Vector],
+    /// Time step Δt (s).
+    time_step: f64,
     basis: PhantomData<B>,
 }
 
-impl<'a, S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Gradients<'a, S, B, N, V> {
+impl<'a, S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> Gradients<'a, S, B, N, V, MOVE> {
     pub(crate) const fn new(
         ground: Ground<'a, S>,
         nodes: &'a [N],
         velocity: V,
         gradients: &'a mut [S::Matrix],
+        next: &'a mut [S::Vector],
+        time_step: f64,
     ) -> Self {
-        Self { ground, nodes, velocity, gradients, basis: PhantomData }
+        Self { ground, nodes, velocity, gradients, next, time_step, basis: PhantomData }
     }
 }
 
-impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Gradients<'_, S, B, N, V> {
+impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> FourKernel
+    for Gradients<'_, S, B, N, V, MOVE>
+{
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { ground, nodes, velocity, gradients, .. } = self;
+        let Self { ground, nodes, velocity, gradients, next, time_step, .. } = self;
         let zero = Wide::splat(lanes, 0.0);
         let first = ground.runs.first().map_or(0, |run| run.start);
         // Never read unless copied to.
@@ -43,12 +52,13 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Gradien
             for batch in run.batches() {
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let [values, slopes] = stencil.along_x();
-                let mut gradient = [[zero; 3]; 3];
+                let (mut gradient, mut around) = ([[zero; 3]; 3], [zero; 3]);
                 for row in 0..Patch::rows::<S, B>() {
                     let across = stencil.across::<S, B>(row);
                     let nodes = &seen[patch.row::<S, B>(row)];
                     let nodes = [velocity(&nodes[0]), velocity(&nodes[1]), velocity(&nodes[B::WIDTH - 1])];
-                    for (component, gradient) in gradient.iter_mut().enumerate().take(S::DIMENSION) {
+                    let sums = gradient.iter_mut().zip(&mut around).enumerate().take(S::DIMENSION);
+                    for (component, (gradient, around)) in sums {
                         let mut velocity = [zero; 3];
                         for (velocity, node) in velocity.iter_mut().zip(nodes) {
                             *velocity = Wide::splat(lanes, S::component(node, component));
@@ -57,12 +67,23 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Gradien
                         let velocities = weighted::<B, _>(velocity, values);
                         gradient[0] = gradient[0] + along * across.value;
                         gradient[1] = gradient[1] + velocities * across.slope[0];
+                        if MOVE {
+                            *around = *around + velocities * across.value;
+                        }
                         if S::DIMENSION == 3 {
                             gradient[2] = gradient[2] + velocities * across.slope[1];
                         }
                     }
                 }
                 batch.counted_from(first).write_matrices::<S, L>(gradient, gradients);
+                if MOVE {
+                    let batch = batch.counted_from(ground.first);
+                    let mut position = batch.vectors::<S, L>(lanes, ground.position);
+                    for (position, around) in position.iter_mut().zip(around).take(S::DIMENSION) {
+                        *position = *position + around * time_step;
+                    }
+                    batch.write_vectors::<S, L>(position, next);
+                }
             }
         }
     }

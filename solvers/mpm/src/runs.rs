@@ -108,6 +108,18 @@ impl<'a, S: Space> Ground<'a, S> {
         Self { lattice, part, runs, first: points.first, deformation: points.deformation, position: points.position }
     }
 
+    /// Of points that are lent, with their next positions (m).
+    #[inline(always)]
+    pub(crate) fn and_next(
+        lattice: &'a Lattice,
+        part: &'a Part,
+        runs: &'a [Run],
+        points: &'a mut Lent<'_, S>,
+    ) -> (Self, &'a mut [S::Vector]) {
+        let Lent { first, deformation, position, next, .. } = points;
+        (Self { lattice, part, runs, first: *first, deformation, position }, next)
+    }
+
     /// The nodes around a batch of a run.
     #[inline(always)]
     pub(crate) fn stencil<B: Basis, L: FourLanes>(&self, lanes: L, run: &Run, batch: Batch) -> Stencil<Wide<L>> {

@@ -24,6 +24,11 @@ impl Scheme {
         self.setting.stress_update == StressUpdate::ModifiedLast
     }
 
+    /// Whether points move with the velocities that they bring to the nodes once more.
+    pub(crate) fn moves_with_stress(&self) -> bool {
+        self.setting.moves_with_stress && self.is_projected()
+    }
+
     /// Whether stresses follow before nodes take the step.
     pub(crate) fn has_stress_first(&self) -> bool {
         self.setting.stress_update == StressUpdate::First

@@ -90,16 +90,20 @@ fn follow_piece<S: Space>(
     let Body { part, law, owner, .. } = &bodies[piece.body];
     let mut broken = None;
     for runs in runs::in_groups(&runs[piece.runs.clone()]) {
-        let ground = Ground::lent(lattice, part, runs, points);
+        let (ground, next) = Ground::and_next(lattice, part, runs, points);
+        macro_rules! find_gradients {
+            ($B:ty, $nodes:expr, $velocity:expr, $move:literal) => {{
+                let (nodes, velocity) = ($nodes, $velocity);
+                let find = Gradients::<S, $B, _, _, $move>::new(ground, nodes, velocity, gradients, next, time_step);
+                processor.run_by_four(find);
+            }};
+        }
         with_basis!(setting.basis, B => match velocities {
-            Velocities::Stepped => {
-                let velocity = |node: &Node<S>| node.velocity;
-                processor.run_by_four(Gradients::<S, B, _, _>::new(ground, nodes, velocity, gradients));
+            Velocities::Stepped => find_gradients!(B, nodes, |node: &Node<S>| node.velocity, false),
+            Velocities::Projected if scheme.moves_with_stress() => {
+                find_gradients!(B, projected, |velocity: &S::Vector| *velocity, true);
             }
-            Velocities::Projected => {
-                let velocity = |velocity: &S::Vector| *velocity;
-                processor.run_by_four(Gradients::<S, B, _, _>::new(ground, projected, velocity, gradients));
-            }
+            Velocities::Projected => find_gradients!(B, projected, |velocity: &S::Vector| *velocity, false),
         });
         macro_rules! update {
             ($law:ident, $count:literal) => {{
