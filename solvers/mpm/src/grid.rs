@@ -310,3 +310,47 @@ impl Stencil<f64> {
         self.along(node, |axis| &axis.slope)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basis::{Gimp, Linear, Quadratic};
+    use grainbench_scene::space::Solid;
+
+    /// Cells of 1, 2 and 3 m: a field that is linear in the place has its gradient everywhere, from the functions node by node and
+    /// from those by rows.
+    fn keeps_a_gradient<B: Basis>() {
+        let inverse = [1.0, 1.0 / 2.0, 1.0 / 3.0];
+        let lattice = Lattice { cell: [1.0, 2.0, 3.0], inverse, origin: [0.3, -0.2, 0.1], period: [None; 3] };
+        let slope = Vector3::new(2.0, -3.0, 5.0);
+        for position in [Vector3::new(4.1, 7.3, -2.2), Vector3::new(0.35, -0.9, 3.6)] {
+            let stencil = Stencil::new::<Solid, B>(&lattice, position, [0.2; 3]);
+            let field = |node: [i32; 3]| slope.dot(&lattice.place::<Solid>(node));
+            let window = Window { low: stencil.base(), size: [3; 3], ..Window::default() };
+            let mut by_nodes = Vector3::zeros();
+            stencil.each::<Solid, B>(&window, |node| {
+                by_nodes += stencil.gradient(&node) * field(window.node(node.slot));
+            });
+            assert!((by_nodes - slope).norm() < 1e-12, "{by_nodes}");
+            let [values, slopes] = stencil.along_x();
+            let mut by_rows = Vector3::zeros();
+            for row in 0..B::WIDTH * B::WIDTH {
+                let across = stencil.across::<Solid, B>(row);
+                for i in 0..B::WIDTH {
+                    let offset = [i, row % B::WIDTH, row / B::WIDTH].map(|place| place as i32);
+                    let value = field([0, 1, 2].map(|axis| stencil.base()[axis] + offset[axis]));
+                    let [y, z] = across.slope;
+                    by_rows += Vector3::new(slopes[i] * across.value, values[i] * y, values[i] * z) * value;
+                }
+            }
+            assert!((by_rows - slope).norm() < 1e-12, "{by_rows}");
+        }
+    }
+
+    #[test]
+    fn gradients_are_divided_by_the_cell_along_their_axis() {
+        keeps_a_gradient::<Linear>();
+        keeps_a_gradient::<Quadratic>();
+        keeps_a_gradient::<Gimp>();
+    }
+}

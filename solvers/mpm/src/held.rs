@@ -158,6 +158,7 @@ impl Side {
 #[cfg(test)]
 mod tests {
     use crate::options::{Basis, Setting, Transfer};
+    use crate::simulation::Simulation;
     use crate::trial::prepared;
     use grainbench_scene::space::Plane;
     use nalgebra::Vector2;
@@ -193,6 +194,62 @@ mod tests {
                 assert!((found.mass - mass).abs() < 1e-13, "{kind}, node {x}: {} kg for {mass}", found.mass);
                 assert!((found.velocity - velocity).norm() < 1e-13, "{kind}, node {x}: {:?}", found.velocity);
             }
+        }
+    }
+
+    /// Momenta that points bring to the nodes once more are folded before they are divided by the mass, which has been: they make
+    /// the velocities that momenta and masses folded together make.
+    #[test]
+    fn a_held_side_folds_momenta_before_they_are_divided() {
+        let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
+        for kind in ["sliding", "fixed"] {
+            let text = format!(
+                "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\
+                 materials.m = {{ density = 2.0, young_modulus = 1.0, poisson_ratio = 0.0 }}\n\
+                 [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [6.0, 8.0] }}\n{kind} = ['x-low']\n\
+                 velocity = [3.0, 5.0]\n"
+            );
+            let (mut simulation, _) = prepared::<Plane>(setting, &text, 1.0, 2);
+            simulation.begin().expect("it starts");
+            simulation.place_windows().expect("it fits");
+            simulation.scatter();
+            let Simulation { state, grid, boundary, .. } = &mut simulation;
+            grid.project();
+            boundary.held.fold(&state.bodies, &mut grid.nodes, Vector2::zeros());
+            boundary.hold_projected(state, grid);
+            let window = state.bodies[0].part.window;
+            for x in 1..6 {
+                let slot = window.slot([x, 4, 0]);
+                let expected = grid.nodes[slot].velocity / grid.nodes[slot].mass;
+                assert!((grid.projected[slot] - expected).norm() < 1e-14, "{kind}, {x}: {}", grid.projected[slot]);
+            }
+            let beside = grid.projected[window.slot([1, 4, 0])];
+            assert!((beside.x - 3.0 * (1.0 - 1.0 / 32.0)).abs() < 1e-13, "{kind}: {beside}");
+        }
+    }
+
+    /// The mirror image of gravity points the other way: on the node beside a side, of the 2 kg of its cell 1/32 of half a cell
+    /// from beyond, acts the weight of the others less that of these. Along a side that slides all of it acts.
+    #[test]
+    fn a_held_side_mirrors_gravity() {
+        let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
+        for (kind, along) in [("sliding", 7.0), ("fixed", 7.0 * (1.0 - 1.0 / 32.0))] {
+            let text = format!(
+                "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\
+                 materials.m = {{ density = 2.0, young_modulus = 1.0, poisson_ratio = 0.0 }}\n\
+                 [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [6.0, 8.0] }}\n{kind} = ['x-low']\n"
+            );
+            let (mut simulation, _) = prepared::<Plane>(setting, &text, 1.0, 2);
+            simulation.begin().expect("it starts");
+            simulation.place_windows().expect("it fits");
+            simulation.scatter();
+            let Simulation { state, grid, boundary, .. } = &mut simulation;
+            let gravity = Vector2::new(3.0, 7.0);
+            boundary.held.fold(&state.bodies, &mut grid.nodes, gravity);
+            let node = grid.nodes[state.bodies[0].part.window.slot([1, 4, 0])];
+            let found = node.change / node.mass + gravity;
+            let expected = Vector2::new(3.0 * (1.0 - 1.0 / 32.0), along);
+            assert!((found - expected).norm() < 1e-13, "{kind}: {found}");
         }
     }
 }
