@@ -5,7 +5,8 @@
 //!
 //! - v_p ← keep v_p + Σ N_i(x_p) Δv_i, where points keep their velocity (Brackbill & Ruppel 1986), or Σ N_i(x_p) v_i;
 //!   keep is what damping leaves ([`Damping`]);
-//! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m);
+//! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m); where points move with the velocities of the stress, later from those
+//!   ([`crate::gradients`]);
 //! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), where points carry an affine part (1/s)
 //!   (Jiang et al. 2015);
 //! - and once more to the nodes, for MUSL, p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with these (Sulsky, Zhou &
@@ -47,18 +48,20 @@ pub(crate) fn gather<S: Space>(
     });
     team.each(parts, |number, (mut points, projected)| {
         macro_rules! gather {
-            ($B:ty, $T:ty, $transfer:expr, $part:expr, $runs:expr, $project:literal) => {{
+            ($B:ty, $T:ty, $transfer:expr, $part:expr, $runs:expr, $project:literal, $move:literal) => {{
                 let (transfer, part, runs, basis) = ($transfer, $part, $runs, PhantomData::<$B>);
                 let (points, projected) = (&mut points, Summed::new(shares[number].alone_from, projected));
-                let gather: Gather<'_, '_, S, $B, $T, $project> =
+                let gather: Gather<'_, '_, S, $B, $T, $project, $move> =
                     Gather { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, basis };
                 processor.run_by_four(gather);
             }};
             ($B:ty, $T:ty, $transfer:expr, $part:expr, $runs:expr) => {
-                if scheme.is_projected() {
-                    gather!($B, $T, $transfer, $part, $runs, true)
+                if scheme.moves_with_stress() {
+                    gather!($B, $T, $transfer, $part, $runs, true, false)
+                } else if scheme.is_projected() {
+                    gather!($B, $T, $transfer, $part, $runs, true, true)
                 } else {
-                    gather!($B, $T, $transfer, $part, $runs, false)
+                    gather!($B, $T, $transfer, $part, $runs, false, true)
                 }
             };
         }
@@ -101,9 +104,9 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
     });
 }
 
-/// Velocity and next position of a body's points from its nodes; and, with `PROJECT`, the momentum of the points with
-/// their new velocity back to the nodes (MUSL).
-struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool> {
+/// Velocity of a body's points from its nodes; with `MOVE`, their next position; and, with `PROJECT`, the momentum of the points
+/// with their new velocity back to the nodes (MUSL).
+struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool, const MOVE: bool> {
     lattice: &'a Lattice,
     part: &'a Part,
     runs: &'a [Run],
@@ -117,7 +120,9 @@ struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool> {
     basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> FourKernel for Gather<'_, '_, S, B, T, PROJECT> {
+impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> FourKernel
+    for Gather<'_, '_, S, B, T, PROJECT, MOVE>
+{
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
         let Self { lattice, part, runs, transfer, time_step, keep, points, nodes, mut projected, .. } = self;
@@ -148,7 +153,9 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> FourKernel for Gather
                         }
                         let velocities = weighted::<B, _>(velocity, values);
                         let changes = weighted::<B, _>(changed, values);
-                        around[component] = around[component] + velocities * across.value;
+                        if MOVE || T::AROUND {
+                            around[component] = around[component] + velocities * across.value;
+                        }
                         change[component] = change[component] + changes * across.value;
                         if T::AFFINE {
                             let along = weighted::<B, _>(T::source(velocity, changed), affine);
@@ -163,14 +170,18 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool> FourKernel for Gather
                     }
                 }
                 let before = batch.vectors::<S, L>(lanes, points.velocity);
-                let position = batch.vectors::<S, L>(lanes, points.position);
-                let (mut velocity, mut next) = (before, position);
+                let mut velocity = before;
                 for axis in 0..S::DIMENSION {
                     velocity[axis] = transfer.taken(before[axis] * keep, around[axis], change[axis]);
-                    next[axis] = position[axis] + around[axis] * time_step;
                 }
                 batch.write_vectors::<S, L>(velocity, points.velocity);
-                batch.write_vectors::<S, L>(next, points.next);
+                if MOVE {
+                    let mut next = batch.vectors::<S, L>(lanes, points.position);
+                    for (next, around) in next.iter_mut().zip(around).take(S::DIMENSION) {
+                        *next = *next + around * time_step;
+                    }
+                    batch.write_vectors::<S, L>(next, points.next);
+                }
                 let mut affine = [[zero; 3]; 3];
                 if T::AFFINE {
                     let mut before = batch.matrices::<S, L>(lanes, points.affine);

@@ -11,6 +11,8 @@ use std::ops::Range;
 pub(crate) trait Transfer: Copy + Send + 'static {
     /// Whether points carry the affine part of the velocity, or its spin.
     const AFFINE: bool;
+    /// Whether points take on the velocity of the nodes itself, and not its change alone.
+    const AROUND: bool;
     /// A component of a point's velocity after the step, from what damping leaves of that before, the velocity of the
     /// nodes around it and their change but for damping.
     fn taken<N: Number>(&self, before: N, around: N, change: N) -> N;
@@ -30,6 +32,7 @@ pub(crate) struct Flip {
 
 impl Transfer for Flip {
     const AFFINE: bool = false;
+    const AROUND: bool = true;
 
     #[inline(always)]
     fn taken<N: Number>(&self, before: N, around: N, change: N) -> N {
@@ -52,6 +55,7 @@ pub(crate) struct Apic;
 
 impl Transfer for Apic {
     const AFFINE: bool = true;
+    const AROUND: bool = true;
 
     #[inline(always)]
     fn taken<N: Number>(&self, _before: N, around: N, _change: N) -> N {
@@ -78,6 +82,7 @@ pub(crate) struct Spin;
 
 impl Transfer for Spin {
     const AFFINE: bool = true;
+    const AROUND: bool = false;
 
     #[inline(always)]
     fn taken<N: Number>(&self, before: N, _around: N, change: N) -> N {
