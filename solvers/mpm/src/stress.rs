@@ -124,8 +124,7 @@ fn follow_piece<S: Space>(
 }
 
 /// F ← (1 + Δt ∇v) F, volume and stress of every point of some runs, of which `gradients` are the velocity gradients
-/// (1/s). With `COUNT` tells of each run what the stresses after the step take on the strain of it (twice that half-way
-/// through the step, less that on the configuration at its start, on which nodes felt the stress before), the work of
+/// (1/s). With `COUNT` tells of each run what the stresses after the step take on the strain of it, the work of
 /// plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume; and that against
 /// viscosity: half of what the viscous stresses before and after the step do on the strain of it.
 ///
@@ -206,12 +205,10 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
                         S::restrict_gradient(S::embed_gradient(gradients[place]) - strain_rate);
                 }
                 if COUNT {
-                    let middle = S::at_midpoint(increment);
-                    let strain = S::symmetric_part(middle);
-                    let felt = S::symmetric_part(middle * 2.0 - increment);
-                    flow.taken += *volume * S::double_dot(*stress, felt);
+                    flow.taken += *volume * S::double_dot(*stress, S::symmetric_part(increment));
                     if L::VISCOUS {
                         flow.viscous += works[place];
+                        let strain = S::symmetric_part(S::at_midpoint(increment));
                         let density = law.viscous_work::<S>(strain, ratio.ratio, deformation, *stress);
                         flow.viscous += 0.5 * *volume * density;
                     }
