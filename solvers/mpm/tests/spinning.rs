@@ -82,16 +82,19 @@ fn a_box_keeps_its_angular_momentum() {
         spin = [0.2, 10.0, 0.0]\n[output]\nevery = 0.01\n[probes]\nbox.body = 'box'\nall.system = true\n";
     let record = run("mpm", text, 4.0, 2);
     let momentum = ["x", "y", "z"].map(|axis| column(&record, &format!("all.angular_momentum_{axis}")));
-    // Seeding by points at the middle of their cells lacks 1/(12 n²) of a side's second moment, n points along it.
-    let seeding = 1.0 / (12.0 * 8.0 * 8.0) * 4.0;
-    for (axis, expected) in [0.005, 0.5, 0.0].into_iter().enumerate() {
-        assert!((momentum[axis][0] - expected).abs() < seeding * expected + 1e-12, "{:?}", momentum[axis]);
-        // The lumped mass of the grid: as in free flight of a sphere.
+    // Points in the middles of n parts of a side have 1 − 1/n² of its second moment: spaced by an eighth of the shortest.
+    let [x, y, z] = [0.3_f64, 0.2, 0.1].map(|side| side * side - 0.0125 * 0.0125);
+    let inertia = [y + z, x + z, x + y].map(|squares| 0.5 * squares);
+    for (axis, spin) in [0.2, 10.0, 0.0].into_iter().enumerate() {
+        let expected = inertia[axis] * spin;
+        assert!((momentum[axis][0] - expected).abs() < 1e-12, "{:?} for {expected}", momentum[axis]);
+        // Lumped mass at nodes keeps angular momentum to the square of the cell over the body, of which four make its least side.
         let worst = momentum[axis].iter().map(|now| (now - momentum[axis][0]).abs()).fold(0.0, f64::max);
-        assert!(worst < 5e-3 * 0.5, "axis {axis}: {worst}");
+        assert!(worst < 0.5 / 64.0, "axis {axis}: {worst}");
     }
     let rotational = column(&record, "all.rotational_energy")[0];
-    assert!((rotational / 2.5005 - 1.0).abs() < seeding, "{rotational}");
+    let expected = 0.5 * (inertia[0] * 0.2 * 0.2 + inertia[1] * 10.0 * 10.0);
+    assert!((rotational / expected - 1.0).abs() < 1e-12, "{rotational} for {expected}");
     let kinetic = column(&record, "all.kinetic_energy");
     assert!(kinetic[0].abs() < 1e-12 * rotational && kinetic.iter().all(|&now| now > -1e-12), "{kinetic:?}");
     assert!((last(&record, "box.omega_y") / 10.0 - 1.0).abs() < 0.05);
