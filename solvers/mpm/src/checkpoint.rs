@@ -5,6 +5,7 @@
 
 use crate::accounts::{Accounts, Sums};
 use crate::contact::friction::Friction;
+use crate::guard::Watched;
 use crate::ledger::Tally;
 use crate::points::Points;
 use crate::simulation::Simulation;
@@ -30,6 +31,8 @@ struct Kept<S: Space> {
     cost: Counts,
     /// The energy budget, where it is asked for, and what contacts told of the last step.
     accounts: Option<(Sums, Tally)>,
+    /// The energy of a closed run, where it is watched.
+    watched: Option<Watched>,
     recorder: Recorder,
 }
 
@@ -47,6 +50,7 @@ impl<S: Space> Simulation<S> {
             step: self.step,
             cost: self.cost,
             accounts: self.accounts.as_ref().map(|accounts| (accounts.sums, accounts.tally)),
+            watched: self.watched,
             recorder: recorder.clone(),
         };
         Checkpoint::keep(identity, self.step, &kept)
@@ -80,6 +84,7 @@ impl<S: Space> Simulation<S> {
         state.find_all_bounds(&mut contacts.tracers);
         self.looked = kept.looked;
         (self.step, self.cost) = (kept.step, kept.cost);
+        (self.is_fresh, self.watched) = (false, kept.watched);
         self.open_accounts();
         if let (Some(Accounts { sums, tally, .. }), Some(kept)) = (&mut self.accounts, kept.accounts) {
             (*sums, *tally) = kept;

@@ -17,10 +17,21 @@ pub(crate) struct Failure {
 impl Failure {
     /// The same with when it was and what may help, of a run with a time step and a critical one (s).
     pub(crate) fn told(self, step: u64, time_step: f64, critical: f64) -> Box<Broken> {
-        let advice = if time_step > critical {
-            format!("the step was above the limit h/c; {:.4e} s is stable for most scenes", 0.5 * critical)
-        } else {
-            "the step is within h/c: look at velocities, at the stress update, or refine the grid".to_owned()
+        let advice = match self.cause {
+            Cause::GainedEnergy { .. } => {
+                "halve the time step: what a step that is too long makes falls with it; what is left comes from the method, \
+                 of which APIC damps most"
+                    .to_owned()
+            }
+            Cause::StartsInside { strain, allowed, .. } => format!(
+                "cells {:.1} times as large would do, since the strain is that of the overlap over a cell; or bodies that start \
+                 apart and are pressed together by what drives them",
+                strain / allowed
+            ),
+            _ if time_step > critical => {
+                format!("the step was above the limit h/c; {:.4e} s is stable for most scenes", 0.5 * critical)
+            }
+            _ => "the step is within h/c: look at velocities, at the stress update, or refine the grid".to_owned(),
         };
         Box::new(Broken {
             time: step as f64 * time_step,

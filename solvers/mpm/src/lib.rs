@@ -31,6 +31,7 @@ mod failure;
 mod gather;
 mod gradients;
 mod grid;
+mod guard;
 mod held;
 mod ledger;
 mod limits;

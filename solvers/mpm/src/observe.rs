@@ -197,7 +197,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    fn elastic_energy(&self, body: &Body) -> f64 {
+    pub(crate) fn elastic_energy(&self, body: &Body) -> f64 {
         let range = body.part.points.clone();
         with_law!(&body.law, law => range.map(|at| self.state.points.reference_volume[at] * law.energy(&self.state_of(at))).sum())
     }

@@ -13,6 +13,7 @@ use crate::damping::Damping;
 use crate::failure::Failure;
 use crate::gather::gather;
 use crate::grid::Lattice;
+use crate::guard::Watched;
 use crate::ledger::Tally;
 use crate::nodes::{Grid, Velocities};
 use crate::options::Setting;
@@ -39,6 +40,10 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) contacts: Contacts<S>,
     /// The energy budget, where it is asked for.
     pub(crate) accounts: Option<Accounts<S>>,
+    /// The energy of a closed run, once it is watched.
+    pub(crate) watched: Option<Watched>,
+    /// Whether no step has been taken yet.
+    pub(crate) is_fresh: bool,
     /// Time that the fastest wave takes through a cell (s).
     pub(crate) critical: f64,
     pub(crate) step: u64,
@@ -69,6 +74,8 @@ impl<S: Space> Simulation<S> {
             grid: Grid::new(lattice),
             scene: scene.clone(),
             accounts: None,
+            watched: None,
+            is_fresh: true,
             critical,
             step: 0,
             settling: false,
@@ -88,6 +95,7 @@ impl<S: Space> Simulation<S> {
         let moving = team.lead(|| self.set_moving());
         moving.map_err(|failure| failure.told(0, scheme.time_step, critical))?;
         self.open_accounts();
+        self.watch_energy();
         Ok(())
     }
 
@@ -117,7 +125,7 @@ impl<S: Space> Simulation<S> {
         self.cost.steps += 1;
         self.cost.particle_steps += self.state.points.len() as u64;
         self.cost.bytes = self.cost.bytes.max(self.bytes() as u64);
-        Ok(())
+        self.check()
     }
 
     /// The stages of a cycle, one after another.
@@ -134,7 +142,7 @@ impl<S: Space> Simulation<S> {
             self.stress_first()?;
         }
         self.body_force(time);
-        self.spring_forces(record);
+        self.spring_forces(record || self.wants_touches());
         self.step_nodes();
         self.gather();
         self.move_on(if self.scheme.is_projected() { Velocities::Projected } else { Velocities::Stepped })

@@ -165,6 +165,26 @@ fn neo_hookean_energy_gives_its_stress() {
     }
 }
 
+/// ρ₀c² of a wave along n is the second derivative of the energy of (1 + ε n ⊗ n) F by ε, for n along each axis.
+#[test]
+fn waves_are_as_fast_as_the_energy_says() {
+    let law = NeoHookean { lame: 3.0, shear_modulus: 2.0 };
+    for stretch in [[1.0, 1.0], [1.3, 0.8], [0.5, 0.9], [0.7, 1.6]] {
+        let deformation = Matrix3::from_diagonal(&Vector3::new(stretch[0], stretch[1], 1.0));
+        let fastest = (0..3).map(|axis| {
+            let energy = |by: f64| {
+                let mut more = Matrix3::<f64>::identity();
+                more[(axis, axis)] += by;
+                law.energy(&State { deformation: more * deformation, ..State::default() })
+            };
+            (energy(1e-4) - 2.0 * energy(0.0) + energy(-1e-4)) / 1e-8
+        });
+        let fastest = fastest.fold(0.0, f64::max);
+        let found = law.wave_modulus(deformation.determinant(), &(deformation * deformation.transpose()));
+        assert!((found / fastest - 1.0).abs() < 1e-6, "{stretch:?}: {found} for {fastest}");
+    }
+}
+
 /// The state under a stress is one from which the law gives that stress, and without rotation: of a pressure, of shear, and of a
 /// third of the moduli.
 #[test]

@@ -135,7 +135,11 @@ fn hats_with_stress_last_break_typed() {
     let RunError::Broken(broken) = error else { panic!("{error}") };
     let typed = matches!(
         broken.cause,
-        Cause::LeftCell { .. } | Cause::Inverted { .. } | Cause::CollapsedCell { .. } | Cause::NotFinite
+        Cause::LeftCell { .. }
+            | Cause::Inverted { .. }
+            | Cause::CollapsedCell { .. }
+            | Cause::NotFinite
+            | Cause::GainedEnergy { .. }
     );
     assert!(typed && broken.step < 2000, "{broken}");
 }

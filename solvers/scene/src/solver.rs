@@ -264,6 +264,29 @@ pub enum Cause {
         /// Volume after the step over volume before.
         volume_ratio: f64,
     },
+    /// A material point has become so stiff that a wave takes less than a time step through a cell.
+    Stiffened {
+        /// Time that the fastest wave takes through a cell now (s).
+        crossing: f64,
+        /// The same at the start (s).
+        at_start: f64,
+    },
+    /// A closed run has gained energy that nothing supplied.
+    GainedEnergy {
+        /// Energy gained since the start (J; J/m of discs).
+        gained: f64,
+        /// Largest gain that passes (J; J/m of discs).
+        allowed: f64,
+    },
+    /// A surface starts so deep in another one that it is thrown out.
+    StartsInside {
+        /// Overlap (m).
+        depth: f64,
+        /// Strain of the surface layer that bears the springs of the overlap.
+        strain: f64,
+        /// Largest strain that passes.
+        allowed: f64,
+    },
     /// Bodies have spread farther than a grid can follow.
     LeftGrid {
         /// Cells that would be needed.
@@ -311,6 +334,21 @@ impl fmt::Display for Cause {
             Self::CollapsedCell { volume_ratio } => {
                 write!(formatter, "its cell collapsed: one step changed its volume by a factor {volume_ratio:.3e}")
             }
+            Self::Stiffened { crossing, at_start } => write!(
+                formatter,
+                "it was deformed until the fastest wave took {crossing:.4e} s through a cell, {at_start:.4e} s at the start, and \
+                 less than the time step"
+            ),
+            Self::GainedEnergy { gained, allowed } => write!(
+                formatter,
+                "it moves fastest in a run that has gained {gained:.4e} J since the start, which nothing supplied, more than \
+                 {allowed:.4e} J"
+            ),
+            Self::StartsInside { depth, strain, allowed } => write!(
+                formatter,
+                "it starts {depth:.4e} m inside another surface, which springs push out with a strain of {strain:.3} in a shock, \
+                 more than {allowed}"
+            ),
             Self::LeftGrid { cells } => write!(formatter, "it left the grid, which would need {cells:.3e} cells"),
             Self::CameIntoGrain { other, ratio } => write!(
                 formatter,

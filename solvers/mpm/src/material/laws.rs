@@ -86,6 +86,12 @@ impl Law for NeoHookean {
         self.stress::<S>(deformation, volume)
     }
 
+    /// λ (1 − ln J) + G (1 + b_nn), with the largest sum of a row of |b| in the place of the largest b_nn.
+    fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64 {
+        let stretch = finger.row_iter().map(|row| row.abs().sum()).fold(0.0, f64::max);
+        self.lame * (1.0 - ln(volume_ratio)) + self.shear_modulus * (1.0 + stretch)
+    }
+
     /// W = λ/2 ln²J + G/2 (tr b − 3 − 2 ln J).
     fn energy(&self, state: &State) -> f64 {
         let log = ln(state.deformation.determinant());
@@ -168,6 +174,10 @@ impl Law for KelvinVoigt {
         S::double_dot(S::scaled_sum(elastic, -1.0, stress), strain)
     }
 
+    fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64 {
+        self.elastic.wave_modulus(volume_ratio, finger)
+    }
+
     fn energy(&self, state: &State) -> f64 {
         self.elastic.energy(state)
     }
@@ -215,6 +225,11 @@ impl Law for Hypoelastic {
         _plastic_strain: &mut Off,
     ) -> S::Symmetric {
         self.stress::<S>(increment, stress)
+    }
+
+    /// J (K + 4G/3): the moduli are those of the stress in space, and the density falls with J.
+    fn wave_modulus(&self, volume_ratio: f64, _finger: &Matrix3<f64>) -> f64 {
+        volume_ratio * (self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus)
     }
 
     fn energy(&self, state: &State) -> f64 {
@@ -285,6 +300,10 @@ impl Law for VonMises {
     #[inline(always)]
     fn flow_stress(&self, plastic_strain: f64) -> f64 {
         self.yield_stress + self.hardening_modulus * plastic_strain
+    }
+
+    fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64 {
+        self.elastic.wave_modulus(volume_ratio, finger)
     }
 
     fn energy(&self, state: &State) -> f64 {

@@ -106,6 +106,11 @@ pub trait Law: Copy + Send + Sync + 'static {
     ) -> f64 {
         0.0
     }
+    /// Returns ρ₀c² (Pa) of the fastest longitudinal wave, ρ₀ the density at the start and c its speed in space (m/s), of
+    /// material with a volume ratio and the left Cauchy–Green tensor b = F Fᵀ; from above where b has shear.
+    ///
+    /// For a wave along n it is the second derivative of the elastic energy of (1 + ε n ⊗ n) F per volume at the start by ε.
+    fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64;
     /// Elastic energy per volume at the start (J/m³).
     fn energy(&self, state: &State) -> f64;
     /// The state without rotation and plastic strain in which a stress (Pa) acts along the axes that can deform: the first
