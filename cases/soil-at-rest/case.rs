@@ -1,0 +1,54 @@
+//! Soil that starts with the stress of its own weight.
+
+use grainbench_harness::prelude::*;
+use grainbench_scene::body::BlockShape;
+
+const LEVELS: &[Level] = &[cells("H/4", 4.0, 3), cells("H/8", 8.0, 3), cells("H/10", 10.0, 3)];
+const SOURCE: Source = Source::Derived("∂σ_yy/∂y = ρg bears the weight (derivation)");
+
+pub(crate) static CASE: Case = Case {
+    name: "soil-at-rest",
+    title: "Soil at rest",
+    claim: "Soil that starts with the stress of its own weight does not move, on any grid.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "A state of rest: it tells the start, the sign of the stress and held sides, and nothing of motion.",
+    levels: LEVELS,
+    default_level: LEVELS[1],
+    claims: &claims,
+    figures: no_more,
+    home: &crate::registry::HOME,
+};
+
+/// Height (m), and the sinking of its top under the weight without the stress, ρgH²/2M (m).
+fn soil(scene: &Scene) -> Option<[f64; 2]> {
+    let body = scene.bodies.first()?;
+    let BlockShape::Box { low, high } = body.shape else { return None };
+    let height = high.y - low.y;
+    let modulus = scene.deformable.first().copied().flatten()?.longitudinal_modulus();
+    Some([height, 0.5 * body.density * -scene.gravity.y * height * height / modulus])
+}
+
+fn claims() -> Vec<Claim> {
+    let all = LEVELS.iter().map(|level| ("hypoelastic", *level)).chain([("rubber", LEVELS[1])]);
+    all.map(|(law, level)| {
+        claim(format!("largest displacement, {law}, cells of {}", level.name), "m")
+            .of(Run::new(law, "mpm", level.resolution))
+            .equals(SOURCE, |done| {
+                let [_, sinking] = soil(&done[0].scene).ok_or_else(|| Missing("soil in a box".to_owned()))?;
+                let columns = ["middle.ux", "middle.uy", "top.ux", "top.uy"].map(|name| done[0].column(name));
+                let mut most = 0.0_f64;
+                for column in columns {
+                    most = column?.iter().fold(most, |most, now| most.max(now.abs()));
+                }
+                Ok(Measured::new(most, 0.0, sinking))
+            })
+            .within(required(1e-9, "a rounding of the height in each of up to 10⁴ steps, in units of the sinking under the weight"))
+            .refuses(Control::scene("the gradient of the stress with the other sign", |scene| {
+                let stress = scene.bodies.iter_mut().filter_map(|body| body.stress.as_mut());
+                stress.for_each(|stress| stress.gradient.iter_mut().for_each(|gradient| *gradient = -*gradient));
+            }))
+            .fair_to_any_continuum()
+    })
+    .collect()
+}
