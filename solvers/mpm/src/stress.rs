@@ -175,7 +175,7 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
                 *logarithm = ln(ratio);
             }
         }
-        if L::YIELDS {
+        if L::TRIES {
             for ((stress, gradient), square) in stresses.iter_mut().zip(gradients).zip(&mut squares) {
                 (*stress, *square) = law.trial::<S>(*gradient * time_step, *stress);
             }
@@ -192,7 +192,7 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
                 let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
                 let before = (*volume, plastic_strain.value());
                 *volume = references[place] * ratio.ratio;
-                *stress = if L::YIELDS {
+                *stress = if L::TRIES {
                     law.flow::<S>((*stress, squares[place]), &mut plastic_strain)
                 } else {
                     law.follow::<S>(increment, ratio, deformation, *stress, &mut plastic_strain)

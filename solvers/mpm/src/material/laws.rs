@@ -215,6 +215,8 @@ impl Hypoelastic {
 impl Law for Hypoelastic {
     type PlasticStrain = Off;
 
+    const TRIES: bool = true;
+
     #[inline(always)]
     fn follow<S: Space>(
         &self,
@@ -225,6 +227,11 @@ impl Law for Hypoelastic {
         _plastic_strain: &mut Off,
     ) -> S::Symmetric {
         self.stress::<S>(increment, stress)
+    }
+
+    #[inline(always)]
+    fn trial<S: Space>(&self, increment: S::Matrix, stress: S::Symmetric) -> (S::Symmetric, f64) {
+        (self.stress::<S>(increment, stress), 0.0)
     }
 
     /// J (K + 4G/3): the moduli are those of the stress in space, and the density falls with J.
@@ -259,7 +266,7 @@ pub struct VonMises {
 
 impl Law for VonMises {
     type PlasticStrain = f64;
-    const YIELDS: bool = true;
+    const TRIES: bool = true;
 
     #[inline(always)]
     fn follow<S: Space>(

@@ -74,9 +74,10 @@ pub trait Law: Copy + Send + Sync + 'static {
         plastic_strain.write(own, 0);
         state.stress = Solid::embed_symmetric(stress);
     }
-    /// Whether it yields, by what [`Law::trial`] and [`Law::flow`] say: the first is found for many points at once.
-    const YIELDS: bool = false;
-    /// The stress after a step if nothing flows, and 3/2 s:s of it, s = dev σ (Pa²), of laws that yield.
+    /// Whether its stress is that of [`Law::trial`], found for many points at once, and then of [`Law::flow`].
+    const TRIES: bool = false;
+    /// The stress after a step if nothing flows, and 3/2 s:s of it, s = dev σ (Pa²), of laws that yield; of others that is not
+    /// read.
     #[inline(always)]
     fn trial<S: Space>(&self, _increment: S::Matrix, stress: S::Symmetric) -> (S::Symmetric, f64) {
         (stress, 0.0)
