@@ -317,8 +317,8 @@ mod tests {
     use crate::basis::{Gimp, Linear, Quadratic};
     use grainbench_scene::space::Solid;
 
-    /// Cells of 1, 2 and 3 m: a field that is linear in the place has its gradient everywhere, from the functions node by node and
-    /// from those by rows.
+    /// Cells of 1, 2 and 3 m: a field that is linear in the place has its gradient everywhere, from the functions node by node
+    /// and from those by rows.
     fn keeps_a_gradient<B: Basis>() {
         let inverse = [1.0, 1.0 / 2.0, 1.0 / 3.0];
         let lattice = Lattice { cell: [1.0, 2.0, 3.0], inverse, origin: [0.3, -0.2, 0.1], period: [None; 3] };

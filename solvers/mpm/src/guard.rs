@@ -43,8 +43,8 @@ fn is_closed(scene: &Scene) -> bool {
     rests && scene.driven.is_empty() && scene.start.manufactured.is_none()
 }
 
-/// Returns true if contact makes no energy by its design. The methods of the papers do: nodes are stopped before surfaces meet, and
-/// released with more than they had (up to 1.8 times the energy of a collision).
+/// Returns true if contact makes no energy by its design. The methods of the papers do: nodes are stopped before surfaces meet,
+/// and released with more than they had (up to 1.8 times the energy of a collision).
 fn keeps_energy(contact: Contact) -> bool {
     !matches!(contact, Contact::Kinematic | Contact::Traction)
 }

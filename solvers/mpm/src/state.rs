@@ -36,7 +36,7 @@ pub(crate) struct State<S: Space> {
 impl<S: Space> State<S> {
     pub(crate) fn new(bodies: Vec<Body>, points: Points<S>, team: Team) -> Self {
         let shares = vec![Share::new(); team.members()];
-        Self { bodies, points, before: Vec::new(), shares, team }
+        Self { bodies, before: points.velocity.clone(), points, shares, team }
     }
 
     /// Has other threads share the work.

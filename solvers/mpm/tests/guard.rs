@@ -22,7 +22,8 @@ fn bar(tension: f64, duration: f64) -> String {
         "dimension = 2\nduration = {duration}\nreference_length = 0.05\n\
          materials.m = {{ density = 1000.0, young_modulus = 4.8e6, poisson_ratio = 0.0 }}\n\
          [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [0.5, 0.05] }}\nfixed = ['x-low', 'x-high']\n\
-         stress = [[{:?}, 0.0], [0.0, 0.0]]\nwave = {{ amplitude = 0.02 }}\n[output]\nevery = 0.005\n[probes]\nall.system = true\n",
+         stress = [[{:?}, 0.0], [0.0, 0.0]]\nwave = {{ amplitude = 0.02 }}\n[output]\nevery = 0.005\n\
+         [probes]\nall.system = true\n",
         tension * 4.8e6
     )
 }
@@ -82,8 +83,8 @@ fn an_overlap_at_the_start_is_told() {
     assert!(try_run("mpm", |_| (), &pair(0.01), at).is_ok());
 }
 
-/// GIMP with the stress updated last is stable up to .5 h/c and makes energy at .7: a disc that flies and turns breaks up without a
-/// point that leaves its cell, and the energy tells. At .4 it flies on.
+/// GIMP with the stress updated last is stable up to .5 h/c and makes energy at .7: a disc that flies and turns breaks up without
+/// a point that leaves its cell, and the energy tells. At .4 it flies on.
 #[test]
 fn energy_from_nowhere_is_told() {
     let text = "dimension = 2\nduration = 30.0\nmaterials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
@@ -97,4 +98,16 @@ fn energy_from_nowhere_is_told() {
     let Cause::GainedEnergy { gained, allowed } = found.cause else { panic!("{found}") };
     assert!(gained > allowed && found.to_string().contains("nothing supplied"), "{found}");
     assert!(try_run("mpm", last, text, at(0.4)).is_ok());
+}
+
+/// A run that ends while it settles is told as any other, with what it looked like.
+#[test]
+fn an_overlap_is_told_while_bodies_settle() {
+    let text = "dimension = 2\nduration = 0.01\nlargest_initial_overlap = 0.5\nsettle = { duration = 0.1, damping = 1.0 }\n\
+        materials.m = { density = 1.0, young_modulus = 1.0, poisson_ratio = 0.3 }\n\
+        contacts.m = { between = ['m', 'm'], law = 'coulomb' }\n\
+        grains.a = { material = 'm', radius = 1.0, position = [0.0, 0.0] }\n\
+        grains.b = { material = 'm', radius = 1.0, position = [1.9, 0.0] }\n[probes]\nall.system = true\n";
+    let found = broken(try_run("mpm", |_| (), text, Resolution::grid(8.0, 2)).unwrap_err());
+    assert!(matches!(found.cause, Cause::StartsInside { .. }), "{found}");
 }
