@@ -18,8 +18,8 @@ const SINKING: Plate = Plate {
 pub(crate) static CASE: Case = Case {
     name: "heavy-cantilever",
     title: "A heavy cantilever",
-    claim: "A strip whose weight is ten times EI/L³ per length comes to rest as the elastica says, .70 of its length below its clamp, \
-            and stays there though its upper face is under tension.",
+    claim: "A strip whose weight is ten times EI/L³ per length comes to rest as the elastica says, .70 of its length below its \
+            clamp, and stays there though its upper face is under tension.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Strain of a tenth at the clamp, which the elastica does not know. One place of the strip stands for all of it.",

@@ -13,8 +13,8 @@ const SOURCE: Source = Source::Derived("Lamé's rotating annulus in plane strain
 pub(crate) static CASE: Case = Case {
     name: "spinning-ring",
     title: "A spinning ring",
-    claim: "A ring that spins keeps its angular momentum and grows by what centrifugal forces ask for, whether its stress follows from \
-            the deformation or is added up from step to step.",
+    claim: "A ring that spins keeps its angular momentum and grows by what centrifugal forces ask for, whether its stress follows \
+            from the deformation or is added up from step to step.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "In the plane, small strain, one turn. The sum over all points sees no error that leaves the second moment alone.",
@@ -107,8 +107,8 @@ fn claims() -> Vec<Claim> {
                 })
                 .within(computed(
                     0.01 + 2.0 * growth,
-                    "twice of the half per cent of a period at four cells through a ring (expanding-ring), and twice the growth for \
-                     what is not linear",
+                    "twice of the half per cent of a period at four cells through a ring (expanding-ring), and twice the growth \
+                     for what is not linear",
                 ))
                 .refuses(Control::scene("five per cent denser", |scene| {
                     scene.bodies.iter_mut().for_each(|body| body.density *= 1.05);
