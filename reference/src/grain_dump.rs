@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use crate::observer::Names;
 use crate::pair_forces::PairColumns;
 use crate::read::dump::DumpReader;
+use crate::read::ids::Ids;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
 
@@ -26,6 +27,8 @@ pub struct Beside {
     pub time_step: Option<f64>,
     /// Whether grains are discs in the plane.
     pub plane: bool,
+    /// Takes the whole frames of a file that is cut off.
+    pub partial: bool,
 }
 
 /// Dumps of grains, one after the other, with dumps of their contacts beside them.
@@ -34,6 +37,8 @@ pub struct GrainDump {
     contacts: Option<(DumpReader<'static>, String)>,
     file: String,
     beside: Beside,
+    ids: Ids,
+    cut: Option<String>,
     rows: DumpSnapshot,
     entries: DumpSnapshot,
 }
@@ -63,6 +68,8 @@ impl GrainDump {
             contacts: contacts.map(named).transpose()?,
             file: path.to_string_lossy().into_owned(),
             beside,
+            ids: Ids::default(),
+            cut: None,
             rows: DumpSnapshot::default(),
             entries: DumpSnapshot::default(),
         })
@@ -73,14 +80,22 @@ impl GrainDump {
     /// # Errors
     /// When a file breaks off or holds something else, lacks what is needed, or contacts are of other steps or grains.
     pub fn read(&mut self) -> Result<Option<Snapshot>, ReadError> {
-        if !self.grains.read(&mut self.rows)? {
-            return Ok(None);
+        match self.grains.read(&mut self.rows) {
+            Ok(true) => {}
+            Ok(false) => return Ok(None),
+            Err(error) if error.is_cut() && self.beside.partial => {
+                self.cut = Some(error.to_string());
+                return Ok(None);
+            }
+            Err(error) => return Err(error),
         }
         if self.rows.kind != DumpKind::Atoms {
             let expected = "a dump of grains, `ITEM: ATOMS` (one of contacts goes beside it)";
             return Err(ReadError::at(&self.file, self.rows.first_line, expected, "entries"));
         }
+        self.check_units()?;
         let columns = self.columns()?;
+        self.ids.check(&self.file, &self.rows, columns.id)?;
         let mut grains: Vec<GrainState> =
             (0..self.rows.rows()).map(|row| self.grain(row, &columns)).collect::<Result<_, _>>()?;
         grains.sort_by_key(|grain| grain.id);
@@ -94,7 +109,7 @@ impl GrainDump {
             step: self.rows.step,
             time: time.unwrap_or(f64::NAN),
             bounds,
-            periodic: self.rows.periodic,
+            periodic: self.periodic()?,
             grains,
             contacts: None,
             walls: Vec::new(),
@@ -105,6 +120,33 @@ impl GrainDump {
             snapshot.contacts = Some(contacts_of(&snapshot, reader, &mut self.entries, file, &self.beside.names)?);
         }
         Ok(Some(snapshot))
+    }
+
+    /// Where the dump is cut off, if that was allowed.
+    #[must_use]
+    pub fn cut(&self) -> Option<&str> {
+        self.cut.as_deref()
+    }
+
+    /// Refuses lengths that are not metres, and not without dimension.
+    fn check_units(&self) -> Result<(), ReadError> {
+        match self.rows.units.as_deref() {
+            None | Some("si" | "lj") => Ok(()),
+            Some(other) => Err(ReadError::at(&self.file, 1, "the units `si` or `lj`", quoted(other))),
+        }
+    }
+
+    /// Which axes are periodic. Along those that a tilt couples, images are not one box length away along one axis.
+    fn periodic(&self) -> Result<[bool; 3], ReadError> {
+        let [xy, xz, yz] = self.rows.tilt.map(|tilt| tilt != 0.0);
+        let tilted = [xy || xz, xy || yz, xz || yz];
+        let [x, y, z] = self.rows.periodic;
+        let is_crossed = [x, y, z].into_iter().zip(tilted).any(|(periodic, tilted)| periodic && tilted);
+        if is_crossed && self.contacts.is_some() {
+            let expected = "a box with right angles where contacts cross periodic boundaries";
+            return Err(ReadError::at(&self.file, self.rows.first_line, expected, "a tilted one"));
+        }
+        Ok([x && !tilted[0], y && !tilted[1], z && !tilted[2]])
     }
 
     fn missing(file: &str, snapshot: &DumpSnapshot, what: &str) -> ReadError {

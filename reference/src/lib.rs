@@ -6,6 +6,7 @@
 /// The folder of this crate: literature, prototypes, stored runs and estimated uncertainties lie in it.
 pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
+mod clock;
 pub mod comparison;
 mod deadline;
 pub mod deck;
@@ -28,5 +29,5 @@ pub use read::dump::DumpReader;
 pub use read::log::{Log, LoggedRun, LoopTime, parse_log, read_log};
 pub use read::numbers::{NotFinite, NumberColumn};
 pub use read::read_error::ReadError;
-pub use read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
+pub use read::snapshot::{Coordinate, DumpKind, DumpSnapshot, Numbering};
 pub use read::table::{Table, parse_table, read_table};

@@ -9,6 +9,7 @@ use crate::deck::Stepping;
 use crate::pair_forces::{PairForce, PairForces};
 use crate::read::contacts::{Forces, contacts};
 use crate::read::digits::Digits;
+use crate::read::ids::Ids;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
 
@@ -161,7 +162,10 @@ impl<'s> Observer<'s> {
                     Vector3::from_fn(|axis, _| told(columns[axis]).unwrap_or(if axes[axis] { f64::NAN } else { 0.0 }))
                 };
                 let position = columns.position.map(|coordinate| {
-                    coordinate.map_or(0.0, |at| at.of(row) + value(row, Some(at.column), at.scale()))
+                    let open = |at: &Coordinate| -> f64 {
+                        at.parts().map(|(column, scale)| value(row, Some(column), scale)).sum()
+                    };
+                    coordinate.map_or(0.0, |at| at.of(row) + open(&at))
                 });
                 GrainState {
                     position: Vector3::from(position),
@@ -253,6 +257,7 @@ impl<'s> Observer<'s> {
         }
         let mut order: Vec<usize> = (0..rows).collect();
         let Some(id) = columns.id else { return Ok(order.into_iter().enumerate().collect()) };
+        Ids::default().check(file, snapshot, id)?;
         let id = |row: usize| snapshot.row(row)[id];
         order.sort_by(|&a, &b| id(a).total_cmp(&id(b)));
         if !may_leave {

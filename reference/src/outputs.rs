@@ -7,12 +7,13 @@ use grainbench_scene::record::{Column, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 
+use crate::clock::Clock;
 use crate::observer::{Names, Observed, Observer};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
-use crate::read::log::{Log, read_log};
+use crate::read::log::read_log;
 use crate::read::read_error::{ReadError, one_line, quoted};
-use crate::read::snapshot::{DumpKind, DumpSnapshot};
+use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
 use crate::run_files::{RunFile, Snapshots, in_order, kind, shown};
 
@@ -22,7 +23,7 @@ const MOST_NAMED: usize = 3;
 /// Which files, and what they do not say themselves.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// Dumps that follow one another, files of VTK's of a moment each or a collection of them, or one table.
+    /// Dumps that follow one another, files of a moment each (VTK, tables of grains) or a collection of them, or one table.
     pub files: Vec<PathBuf>,
     /// The log of the run.
     pub log: Option<PathBuf>,
@@ -30,8 +31,14 @@ pub struct Sources {
     pub names: Names,
     /// Time step (s), where no file says it.
     pub time_step: Option<f64>,
+    /// Time between frames (s) of files that are numbered by frames and tell no times.
+    pub frame_interval: Option<f64>,
     /// Most rows that a snapshot of the scene can have; any number where none is said.
     pub most_rows: Option<u64>,
+    /// Takes the whole frames of a file that is cut off.
+    pub partial: bool,
+    /// Counts steps and times from the first sample.
+    pub from_first: bool,
 }
 
 /// Why outputs cannot be taken for a run.
@@ -39,7 +46,21 @@ pub struct Sources {
 pub enum OutputError {
     /// A file is damaged, or lacks something.
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(ReadError),
+    /// A file is cut off, as a killed job leaves it.
+    #[error("{0} (--partial judges the whole frames in front of it)")]
+    Cut(ReadError),
+    /// Files are numbered by frames, and no file says their times.
+    #[error("{}: expected a column `Time` (s) in the file, or --frame-interval, found numbers of frames only", one_line(.0))]
+    NoFrameTime(String),
+    /// The time step that was given is not that of the files.
+    #[error("--dt: expected the time step of the files, {}, found {given} s", steps_in_words(*.told))]
+    OtherTimeStep {
+        /// The shortest and the longest of the files (s).
+        told: [f64; 2],
+        /// What was given (s).
+        given: f64,
+    },
     /// No file says how long a step is.
     #[error("{}: expected times in the file (`ITEM: TIME`), a log that tells the time step, or --dt, found none", one_line(.0))]
     NoTime(String),
@@ -64,6 +85,27 @@ pub enum OutputError {
     NoGrains(String),
 }
 
+impl From<ReadError> for OutputError {
+    fn from(error: ReadError) -> Self {
+        if error.is_cut() { Self::Cut(error) } else { Self::Read(error) }
+    }
+}
+
+/// Time steps in words: one, or the shortest and the longest (s).
+#[must_use]
+pub fn steps_in_words([shortest, longest]: [f64; 2]) -> String {
+    if shortest == longest { format!("{shortest} s") } else { format!("{shortest} s to {longest} s") }
+}
+
+/// The sample that counts as time 0 where it is not at step 0 and time 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Origin {
+    /// Its step or number.
+    pub step: u64,
+    /// Its time (s), where it is known.
+    pub time: Option<f64>,
+}
+
 /// What the files are.
 #[derive(Debug, Clone)]
 pub struct Outputs {
@@ -73,13 +115,30 @@ pub struct Outputs {
     /// Of the columns of each, to its end.
     digits: Vec<Vec<Digits>>,
     table: Option<Table>,
-    log: Option<Log>,
-    /// Time step (s), where it is known.
-    time_step: Option<f64>,
+    /// Times of the steps, where they are known.
+    clock: Option<Clock>,
+    /// The first and the last step.
+    ends: [u64; 2],
+    /// The first sample, which counts as time 0.
+    origin: Origin,
+    /// Errors of the files that are cut off.
+    cuts: Vec<String>,
     /// Most significant digits of any number.
     significant: u32,
     /// Ids of the grains, in their order.
     ids: Vec<u64>,
+}
+
+/// What the snapshots of all files show.
+#[derive(Default)]
+struct Survey {
+    /// Steps and times (s) of snapshots that tell both.
+    timed: Vec<(u64, f64)>,
+    units: Option<String>,
+    /// The first snapshot of grains: its number and its time (s).
+    first: Option<Origin>,
+    /// The first and the last step.
+    ends: Option<[u64; 2]>,
 }
 
 impl Outputs {
@@ -89,73 +148,138 @@ impl Outputs {
     /// A file is damaged, or they do not fit together.
     pub fn survey(sources: Sources) -> Result<Self, OutputError> {
         let log = sources.log.as_deref().map(read_log).transpose()?;
+        if let (Some(log), Some(path)) = (&log, &sources.log) {
+            log.units.as_deref().map_or(Ok(()), |units| check_units(path, units))?;
+        }
         let mut outputs = Self {
             files: Vec::new(),
             digits: Vec::new(),
             table: None,
-            log,
-            time_step: None,
+            clock: None,
+            ends: [0; 2],
+            origin: Origin { step: 0, time: None },
+            cuts: Vec::new(),
             significant: 0,
             ids: Vec::new(),
             sources,
         };
+        let of_log = log.as_ref().and_then(Clock::of_log);
         if let [file] = &outputs.sources.files[..]
             && kind(file)?.is_table()
         {
             let table = read_table(file)?;
             outputs.significant = table.digits().significant();
+            let told = table_step(&table, &outputs.sources.names).map(Clock::constant);
+            outputs.ends = steps_of(&table, &outputs.sources.names);
+            let time = time_column(&table, &outputs.sources.names).and_then(|at| table.values(at).next());
+            if outputs.sources.from_first {
+                outputs.origin = Origin { step: outputs.ends[0], time };
+            }
             outputs.table = Some(table);
-            let logged = outputs.log.as_ref().and_then(logged_step);
-            let told = outputs.table.as_ref().and_then(|table| table_step(table, &outputs.sources.names));
-            outputs.time_step = outputs.sources.time_step.or(logged).or(told);
+            outputs.set_clock(of_log, told)?;
             return Ok(outputs);
         }
-        let (mut first, mut last, mut units) = (None, None, None);
         if let Some(table) = first_table(&outputs.sources.files)? {
             return Err(OutputError::MixedFiles(shown(table)));
         }
         outputs.files = in_order(&outputs.sources.files)?;
-        for file in &outputs.files {
-            let mut reader = Snapshots::open(file, outputs.sources.most_rows.unwrap_or(u64::MAX))?;
-            let mut snapshot = DumpSnapshot::default();
-            while reader.read(&mut snapshot)? {
-                if snapshot.kind == DumpKind::Atoms && outputs.ids.is_empty() {
-                    outputs.ids = ids(&snapshot, &outputs.sources.names);
-                }
-                if let Some(time) = snapshot.time {
-                    first = first.or(Some((snapshot.step, time)));
-                    last = Some((snapshot.step, time));
-                }
-                if let Some(said) = &snapshot.units
-                    && units.as_ref() != Some(said)
-                {
-                    check_units(&file.path, said)?;
-                    units = Some(said.clone());
-                }
-            }
-            outputs.significant = outputs.significant.max(snapshot.digits().significant());
-            outputs.digits.push(snapshot.columns.iter().map(|column| column.digits).collect());
+        let mut survey = Survey::default();
+        for file in outputs.files.clone() {
+            let digits = outputs.look(&file, &mut survey)?;
+            outputs.digits.push(digits);
         }
         share(&mut outputs.digits, outputs.files.iter().all(RunFile::is_of_a_moment));
-        if let (Some(of_dump), Some(log), Some(path)) = (&units, &outputs.log, &outputs.sources.log)
+        if let (Some(of_dump), Some(log), Some(path)) = (&survey.units, &log, &outputs.sources.log)
             && let Some(of_log) = log.units.as_ref().filter(|of_log| *of_log != of_dump)
         {
             let (of_dump, of_log) = (of_dump.clone(), of_log.clone());
             return Err(OutputError::MixedUnits { log: shown(path), of_dump, of_log });
         }
-        let from_times = first.zip(last).and_then(|((step, time), (last_step, last_time))| {
-            (last_step > step).then(|| (last_time - time) / (last_step - step) as f64)
-        });
-        let from_log = outputs.log.as_ref().and_then(logged_step);
-        let from_times = from_times.filter(|_| outputs.files.iter().all(RunFile::tells_steps));
-        outputs.time_step = outputs.sources.time_step.or(from_log).or(from_times);
+        outputs.ends = survey.ends.unwrap_or_default();
+        outputs.set_clock(of_log, Clock::of_samples(&survey.timed))?;
+        if let Some(first) = survey.first.filter(|_| outputs.sources.from_first) {
+            let of_clock = || outputs.clock.as_ref().map(|clock| clock.between(0, first.step));
+            outputs.origin = Origin { time: first.time.or_else(of_clock), ..first };
+        }
         Ok(outputs)
     }
 
-    /// Time step (s), where it is known.
+    /// Reads a file to its end: what its snapshots show, and the digits of its columns.
+    fn look(&mut self, file: &RunFile, survey: &mut Survey) -> Result<Vec<Digits>, OutputError> {
+        let mut reader = Snapshots::open(file, self.sources.most_rows.unwrap_or(u64::MAX))?;
+        let mut snapshot = DumpSnapshot::default();
+        loop {
+            match reader.read(&mut snapshot) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(error) if error.is_cut() && self.sources.partial => {
+                    self.cuts.push(error.to_string());
+                    break;
+                }
+                Err(error) => return Err(error.into()),
+            }
+            if snapshot.kind == DumpKind::Atoms {
+                if self.ids.is_empty() {
+                    self.ids = ids(&snapshot, &self.sources.names);
+                }
+                survey.first.get_or_insert(Origin { step: snapshot.step, time: self.told_time(&snapshot) });
+            }
+            if snapshot.numbering != Numbering::Frames {
+                let [first, _] = survey.ends.unwrap_or([snapshot.step; 2]);
+                survey.ends = Some([first, snapshot.step]);
+            }
+            if let Some(time) = snapshot.time.filter(|_| snapshot.numbering == Numbering::Steps) {
+                survey.timed.push((snapshot.step, time));
+            }
+            if let Some(said) = &snapshot.units
+                && survey.units.as_ref() != Some(said)
+            {
+                check_units(&file.path, said)?;
+                survey.units = Some(said.clone());
+            }
+        }
+        self.significant = self.significant.max(snapshot.digits().significant());
+        Ok(snapshot.columns.iter().map(|column| column.digits).collect())
+    }
+
+    /// Takes the time steps of the log, of the files, or those given, which must not differ from what files say.
+    fn set_clock(&mut self, of_log: Option<Clock>, of_files: Option<Clock>) -> Result<(), OutputError> {
+        let [first, last] = self.ends;
+        let given = self.sources.time_step;
+        for (told, tolerance) in [(&of_log, 0.0), (&of_files, 1e-3)] {
+            if let (Some(told), Some(given)) = (told, given)
+                && !told.is_constant(given, first, last, tolerance)
+            {
+                return Err(OutputError::OtherTimeStep { told: told.range(first, last), given });
+            }
+        }
+        self.clock = given.map(Clock::constant).or(of_log).or(of_files);
+        Ok(())
+    }
+
+    /// The longest time step (s), where it is known.
     #[must_use]
     pub fn time_step(&self) -> Option<f64> {
-        self.time_step
+        self.time_steps().map(|[_, longest]| longest)
+    }
+
+    /// The shortest and the longest time step (s), where they are known.
+    #[must_use]
+    pub fn time_steps(&self) -> Option<[f64; 2]> {
+        self.clock.as_ref().map(|clock| clock.range(self.ends[0], self.ends[1]))
+    }
+
+    /// The sample that counts as time 0, where it is not at step 0 and time 0.
+    #[must_use]
+    pub fn origin(&self) -> Option<Origin> {
+        let is_late = self.origin.time.map_or(self.origin.step > 0, |time| time.abs() > 0.0);
+        is_late.then_some(self.origin)
+    }
+
+    /// Where files are cut off; their whole frames alone were read.
+    #[must_use]
+    pub fn cuts(&self) -> &[String] {
+        &self.cuts
     }
 
     /// Most significant digits of any number: the precision that the files were printed with.
@@ -187,33 +311,65 @@ impl Outputs {
             return self.observe_table(scene, table);
         }
         let mut observer = Observer::new(scene).with_pairs(self.contacts(scene)?);
-        let mut last = None;
-        let mut any = false;
+        let mut last: Option<u64> = None;
         for (file, digits) in self.files.iter().zip(&self.digits) {
             let name = shown(&file.path);
             let mut reader = Snapshots::open(file, u64::MAX)?;
             let mut snapshot = DumpSnapshot::default();
-            while reader.read(&mut snapshot)? {
+            while self.next(&mut reader, &mut snapshot)? {
+                let number = snapshot.step;
                 // Where one dump continues another, its first snapshot is the last of that.
-                if snapshot.kind == DumpKind::Entries || last == Some(snapshot.step) {
+                if snapshot.kind == DumpKind::Entries || last == Some(number) {
                     continue;
                 }
-                if let Some(before) = last.filter(|before| snapshot.step < *before) {
+                if let Some(before) = last.filter(|before| number < *before) {
                     let expected = format!("a step after {before}, where the file in front of it ends");
-                    return Err(ReadError::at(&name, snapshot.first_line, expected, snapshot.step.to_string()).into());
+                    return Err(ReadError::at(&name, snapshot.first_line, expected, number.to_string()).into());
                 }
-                let time = match (snapshot.time, self.time_step) {
-                    (Some(time), _) => time,
-                    (None, Some(step)) => snapshot.step as f64 * step,
-                    (None, None) => return Err(OutputError::NoTime(name)),
-                };
+                let time = self.time(&name, &snapshot)?;
+                snapshot.step = self.step(&snapshot, time);
                 observer.take(&name, &snapshot, &self.sources.names, time, Some(digits), last.is_none())?;
-                last = Some(snapshot.step);
-                any = true;
+                last = Some(number);
             }
         }
         let named = self.sources.files.first().map(|file| shown(file)).unwrap_or_default();
-        if any { Ok(observer.finish()) } else { Err(OutputError::NoGrains(named)) }
+        if last.is_some() { Ok(observer.finish()) } else { Err(OutputError::NoGrains(named)) }
+    }
+
+    /// Reads the next snapshot; false at the end of the file, or where it is cut off and that was reported.
+    fn next(&self, reader: &mut Snapshots, snapshot: &mut DumpSnapshot) -> Result<bool, OutputError> {
+        match reader.read(snapshot) {
+            Err(error) if error.is_cut() && self.sources.partial => Ok(false),
+            read => Ok(read?),
+        }
+    }
+
+    /// The time of a snapshot (s) as its file tells it.
+    fn told_time(&self, snapshot: &DumpSnapshot) -> Option<f64> {
+        let of_frames = || {
+            let interval = self.sources.frame_interval.filter(|_| snapshot.numbering != Numbering::Steps)?;
+            Some(snapshot.step as f64 * interval)
+        };
+        snapshot.time.or_else(of_frames)
+    }
+
+    /// The time of a snapshot (s) since the first one.
+    fn time(&self, name: &str, snapshot: &DumpSnapshot) -> Result<f64, OutputError> {
+        match (self.told_time(snapshot), &self.clock) {
+            (Some(time), _) => Ok(time - self.origin.time.unwrap_or_default()),
+            (None, _) if snapshot.numbering == Numbering::Frames => Err(OutputError::NoFrameTime(name.to_owned())),
+            (None, Some(clock)) => Ok(clock.between(self.origin.step, snapshot.step)),
+            (None, None) => Err(OutputError::NoTime(name.to_owned())),
+        }
+    }
+
+    /// The step of a snapshot since the first one; where its number may be that of a frame, from its time (s).
+    fn step(&self, snapshot: &DumpSnapshot, time: f64) -> u64 {
+        let is_told = snapshot.numbering != Numbering::Steps && self.told_time(snapshot).is_some();
+        match self.time_step().filter(|_| is_told) {
+            Some(time_step) => (time / time_step).round() as u64,
+            None => snapshot.step - self.origin.step.min(snapshot.step),
+        }
     }
 
     /// What dumps of contacts tell of the pairs that the scene asks for.
@@ -222,10 +378,11 @@ impl Outputs {
         for (file, digits) in self.files.iter().zip(&self.digits) {
             let mut reader = Snapshots::open(file, u64::MAX)?;
             let mut snapshot = DumpSnapshot::default();
-            while pairs.is_asked() && reader.read(&mut snapshot)? {
+            while pairs.is_asked() && self.next(&mut reader, &mut snapshot)? {
                 if snapshot.kind != DumpKind::Entries {
                     break;
                 }
+                snapshot.step = snapshot.step.saturating_sub(self.origin.step);
                 pairs.take(&shown(&file.path), &snapshot, &self.sources.names, Some(digits))?;
             }
         }
@@ -239,13 +396,19 @@ impl Outputs {
         let names = &self.sources.names;
         let time = time_column(table, names);
         let step = table.column(names.of("step"));
-        let times: Vec<f64> = match (time, step, self.time_step) {
-            (Some(time), _, _) => table.values(time).collect(),
-            (None, Some(step), Some(length)) => table.values(step).map(|step| step * length).collect(),
+        let first = self.origin.step;
+        let times: Vec<f64> = match (time, step, &self.clock) {
+            (Some(time), _, _) => {
+                let start = self.origin.time.unwrap_or_default();
+                table.values(time).map(|time| time - start).collect()
+            }
+            (None, Some(step), Some(clock)) => {
+                table.values(step).map(|step| clock.between(first, step as u64)).collect()
+            }
             (None, _, _) => return Err(OutputError::NoTime(name)),
         };
-        let steps = match (step, self.time_step) {
-            (Some(step), _) => table.values(step).map(|step| step as u64).collect(),
+        let steps = match (step, self.time_step()) {
+            (Some(step), _) => table.values(step).map(|step| (step as u64).saturating_sub(first)).collect(),
             (None, Some(length)) => times.iter().map(|time| (time / length).round() as u64).collect(),
             (None, None) => (0..times.len() as u64).collect(),
         };
@@ -298,6 +461,12 @@ fn table_step(table: &Table, names: &Names) -> Option<f64> {
     (length.is_finite() && length > 0.0).then_some(length)
 }
 
+/// The first and the last step of a table.
+fn steps_of(table: &Table, names: &Names) -> [u64; 2] {
+    let step = table.column(names.of("step")).map(|at| table.values(at).map(|step| step as u64).collect::<Vec<_>>());
+    step.and_then(|steps| Some([*steps.first()?, *steps.last()?])).unwrap_or_default()
+}
+
 /// Files of one moment each show together how their columns were printed.
 fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
     let Some((first, rest)) = digits.split_first().filter(|_| are_of_a_moment) else { return };
@@ -330,19 +499,4 @@ fn first_table(files: &[PathBuf]) -> Result<Option<&PathBuf>, ReadError> {
 
 fn check_units(file: &Path, units: &str) -> Result<(), OutputError> {
     if ["si", "lj"].contains(&units) { Ok(()) } else { Err(OutputError::Units(shown(file), units.to_owned())) }
-}
-
-/// The time step that a log tells: of the command, of the column `Dt`, or of the columns `Time` and `Step`.
-fn logged_step(log: &Log) -> Option<f64> {
-    let of_columns = || {
-        let thermo = &log.runs.last()?.thermo;
-        let last = |name: &str| thermo.column(name).and_then(|at| thermo.values(at).last());
-        last("Dt").or_else(|| {
-            let all = |name: &str| -> Option<Vec<f64>> { Some(thermo.values(thermo.column(name)?).collect()) };
-            let (time, step) = (all("Time")?, all("Step")?);
-            let ends = |list: &[f64]| Some(list.last()? - list.first()?);
-            Some(ends(&time)? / ends(&step)?)
-        })
-    };
-    log.time_step.or_else(of_columns).filter(|step| step.is_finite() && *step > 0.0)
 }

@@ -5,7 +5,8 @@ use crate::read::format::{Beginning, FORMATS, Format, Holds, Moments, ToldBy, du
 use crate::read::line_reader::LineReader;
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
-use crate::read::snapshot::DumpSnapshot;
+use crate::read::snapshot::{DumpSnapshot, Numbering};
+use crate::read::table::header;
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -35,11 +36,6 @@ impl Kind {
     pub(crate) const fn is_table(self) -> bool {
         matches!(self, Self::Table)
     }
-
-    /// Whether it is a dump of LAMMPS' kind.
-    pub(crate) fn is_dump(self) -> bool {
-        matches!(self, Self::Grains(format) if std::ptr::eq(format, &dump::FORMAT))
-    }
 }
 
 /// What a file is by its beginning; an empty one does not say, and the reader of dumps then will.
@@ -68,14 +64,27 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
         return Ok(kind);
     }
     let mut lines = LineReader::new(BufReader::new(opened()?), &name)?;
+    let mut has_comments = false;
     while let Some(line) = lines.next_line()? {
         if !line.text.trim().is_empty() {
-            let is_it =
-                |format: &&&Format| matches!(format.told_by, ToldBy::Line(begins) if line.text.starts_with(begins));
+            let names = header(line.text).1;
+            let is_it = |format: &&&Format| match format.told_by {
+                ToldBy::Line(begins) => line.text.starts_with(begins),
+                ToldBy::Names(is_it) => is_it(&names),
+                ToldBy::Beginning(_) => false,
+            };
+            if line.text.trim_start().starts_with('#') {
+                has_comments = true;
+                continue;
+            }
+            // The reader of dumps says why an .xyz file, which begins with a count, is not read.
+            if line.text.trim().parse::<u64>().is_ok() {
+                return Ok(Kind::Grains(&dump::FORMAT));
+            }
             return Ok(FORMATS.iter().find(is_it).map_or(Kind::Table, |format| Kind::Grains(format)));
         }
     }
-    Ok(Kind::Grains(&dump::FORMAT))
+    Ok(if has_comments { Kind::Table } else { Kind::Grains(&dump::FORMAT) })
 }
 
 /// A file, and which moment it is of where it holds one only.
@@ -100,11 +109,6 @@ impl RunFile {
     /// Whether it holds one moment alone.
     pub(crate) const fn is_of_a_moment(&self) -> bool {
         self.moment.is_some()
-    }
-
-    /// Whether its steps are those of the run: what stands in a name may be a number of files.
-    pub(crate) const fn tells_steps(&self) -> bool {
-        self.format.tells_steps
     }
 }
 
@@ -159,6 +163,7 @@ pub(crate) struct Snapshots {
     moments: Box<dyn Moments>,
     /// The moment that the file is of and its name, where it holds one only.
     only: Option<(Moment, String)>,
+    numbering: Numbering,
     read: usize,
 }
 
@@ -166,12 +171,19 @@ impl Snapshots {
     /// Of a file, whose snapshots may have so many rows.
     pub(crate) fn open(file: &RunFile, most_rows: u64) -> Result<Self, ReadError> {
         let only = file.moment.map(|moment| (moment, shown(&file.path)));
-        Ok(Self { moments: (file.format.open)(&file.path, most_rows)?, only, read: 0 })
+        let numbering = file.format.numbering;
+        Ok(Self { moments: (file.format.open)(&file.path, most_rows)?, only, numbering, read: 0 })
     }
 
     /// Reads the next snapshot in the place of the last; false at the end of the file.
     pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        let Some((moment, name)) = &self.only else { return self.moments.read(snapshot) };
+        let Some((moment, name)) = &self.only else {
+            let is_there = self.moments.read(snapshot)?;
+            if is_there && self.numbering == Numbering::Files {
+                snapshot.numbering = Numbering::Files;
+            }
+            return Ok(is_there);
+        };
         let mut next = DumpSnapshot::default();
         let is_there = self.moments.read(&mut next)?;
         if is_there != (self.read == 0) {
@@ -180,7 +192,8 @@ impl Snapshots {
         }
         self.read += 1;
         if is_there {
-            *snapshot = DumpSnapshot { step: moment.step, time: next.time.or(moment.time), ..next };
+            let numbering = self.numbering;
+            *snapshot = DumpSnapshot { step: moment.step, numbering, time: next.time.or(moment.time), ..next };
         }
         Ok(is_there)
     }

@@ -70,6 +70,35 @@ fn scaled_coordinates_count_from_the_side_of_the_box() {
     assert!((uncertainty - 6e-6).abs() < 1e-12, "{uncertainty}");
 }
 
+/// Tilts .03 and .01, sides .1, .08 and .06 from (0, 0, 0): LAMMPS prints the box around the tilted one.
+#[test]
+fn scaled_coordinates_of_a_tilted_box_follow_its_tilts() {
+    let text = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n-0.01 0.13 0.03\n0 0.08 -0.01\n\
+                0 0.06 0.0\nITEM: ATOMS id xs ys zs xu\n1 0.125 0.25 0.5 0.02\n";
+    let snapshot = &all(text.as_bytes()).unwrap()[0];
+    let of = |name: &str, axis| snapshot.coordinate_named(name, axis).unwrap().of(snapshot.row(0));
+    assert!((of("xs", 0) - (0.125 * 0.1 + 0.25 * 0.03 - 0.5 * 0.01)).abs() < 1e-15, "{}", of("xs", 0));
+    assert!((of("ys", 1) - 0.25 * 0.08).abs() < 1e-15 && (of("zs", 2) - 0.03).abs() < 1e-15);
+    assert_eq!(of("xu", 0), 0.02);
+    // Without the other scaled coordinate nobody can tell.
+    let text = text.replace("xs ys zs xu", "xs a zs xu");
+    assert!(all(text.as_bytes()).unwrap()[0].coordinate_named("xs", 0).is_none());
+}
+
+/// The error of a file that ends in the middle says so; that of a damaged one does not.
+#[test]
+fn a_cut_is_told_from_damage() {
+    let sound = sound();
+    for cut in 1..sound.len() {
+        if let Err(error) = all(&sound.as_bytes()[..cut]) {
+            assert!(error.is_cut() || sound.as_bytes()[cut - 1] == b'\n', "{cut}: {error}");
+        }
+    }
+    for damaged in [sound.replace("1e-3", "x"), sound.replace("ITEM: UNITS", "ITEM: UNIT")] {
+        assert!(!all(damaged.as_bytes()).unwrap_err().is_cut());
+    }
+}
+
 #[test]
 fn unpacks_gzip_and_zstd_by_their_first_bytes() {
     let plain = fs::read(data("lammps-nine.dump")).unwrap();
@@ -147,7 +176,11 @@ fn names_the_place_of_every_fault() {
         ("id no whole number", with("-1.5 1", "-1.5 1.5")),
         ("step goes back", twice(&sound.replacen("10\n", "9\n", 1)).into_bytes()),
         ("units change", format!("{sound}{}", sound.replacen("si", "lj", 1)).into_bytes()),
-        ("triclinic", with("BOUNDS pp ff mm", "BOUNDS xy xz yz pp ff mm")),
+        ("a general triclinic box", with("BOUNDS pp ff mm", "BOUNDS abc origin pp ff mm")),
+        ("a tilt short", with("BOUNDS pp ff mm", "BOUNDS xy xz yz pp ff mm")),
+        ("an .xyz file", b"1\nAtoms. Timestep: 0\n1 0 0 0.02\n".to_vec()),
+        ("a binary dump", b"\xf6\xff\xff\xff\xff\xff\xff\xffDUMPCUSTOM\x01".to_vec()),
+        ("a negative id", with("-1.5 1", "-1.5 -1")),
         ("upside down", with("0 10", "10 0")),
         ("odd boundaries", with("pp ff mm", "pp ff")),
         ("no bounds", with("ITEM: BOX BOUNDS pp ff mm\n0 10\n-1 1\n0 5\n", "")),

@@ -5,12 +5,13 @@ use std::path::Path;
 use std::vec;
 
 use super::Options;
+use super::column::Printed;
 use crate::observer::Names;
-use crate::read::digits::Digits;
-use crate::read::dump::DumpReader;
+use crate::read::ids::Ids;
 use crate::read::read_error::ReadError;
-use crate::read::snapshot::DumpSnapshot;
+use crate::read::snapshot::{DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
+use crate::run_files::{RunFile, Snapshots, in_order};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -45,20 +46,25 @@ pub(super) struct Frames {
     /// The columns that are told, by our names.
     wanted: Vec<String>,
     number: u64,
+    ids: Ids,
+    partial: bool,
+    /// Where the file is cut off, if that was allowed.
+    pub(super) cut: Option<String>,
     from: From,
 }
 
 enum From {
-    Dump { reader: Box<DumpReader<'static>>, snapshot: DumpSnapshot },
+    Grains { files: vec::IntoIter<RunFile>, reader: Option<Snapshots>, snapshot: DumpSnapshot },
     Table { table: Table, step: Option<usize>, time: Option<usize>, rows: vec::IntoIter<usize> },
 }
 
 impl Frames {
     /// Of a file: of the first (0) or the second (1) of two.
-    pub(super) fn open(path: &Path, is_dump: bool, which: usize, options: &Options) -> Result<Self, ReadError> {
+    pub(super) fn open(path: &Path, is_grains: bool, which: usize, options: &Options) -> Result<Self, ReadError> {
         let names = if which == 1 { options.names.clone() } else { Names::default() };
-        let from = if is_dump {
-            From::Dump { reader: Box::new(DumpReader::open(path)?), snapshot: DumpSnapshot::default() }
+        let from = if is_grains {
+            let files = in_order(&[path.to_owned()])?.into_iter();
+            From::Grains { files, reader: None, snapshot: DumpSnapshot::default() }
         } else {
             let table = read_table(path)?;
             let time = ["time", "t"].into_iter().find_map(|name| table.column(names.of(name)));
@@ -66,7 +72,8 @@ impl Frames {
             From::Table { step, time, rows: rows.into_iter(), table }
         };
         let (file, time_step) = (path.to_string_lossy().into_owned(), options.time_steps[which]);
-        Ok(Self { file, time_step, names, wanted: Vec::new(), number: 0, from })
+        let (wanted, ids, partial) = (Vec::new(), Ids::default(), options.partial);
+        Ok(Self { file, time_step, names, wanted, number: 0, ids, partial, cut: None, from })
     }
 
     /// Asks for these columns from now on, by our names.
@@ -82,7 +89,7 @@ impl Frames {
             renamed.map_or_else(|| theirs.to_owned(), |(ours, _)| ours.clone())
         };
         match &self.from {
-            From::Dump { snapshot, .. } => {
+            From::Grains { snapshot, .. } => {
                 let axes: Vec<_> = (0..3).filter_map(|axis| Some((axis, self.coordinate(snapshot, axis)?))).collect();
                 let mut names: Vec<String> = axes.iter().map(|(axis, _)| AXES[*axis].to_owned()).collect();
                 let others = snapshot.columns.iter().enumerate().filter(|(at, column)| {
@@ -111,8 +118,8 @@ impl Frames {
         let number = self.number;
         self.number += 1;
         match &mut self.from {
-            From::Dump { reader, snapshot } => {
-                if !reader.read(snapshot)? {
+            From::Grains { .. } => {
+                if !self.next_snapshot()? {
                     return Ok(None);
                 }
             }
@@ -127,8 +134,42 @@ impl Frames {
                 return Ok(Some(Frame { place, ids: None, values }));
             }
         }
-        let From::Dump { snapshot, .. } = &self.from else { return Ok(None) };
+        let From::Grains { snapshot, .. } = &self.from else { return Ok(None) };
+        if let Some(id) = snapshot.column(self.names.of("id")) {
+            self.ids.check(&self.file, snapshot, id)?;
+        }
         Ok(Some(self.of_snapshot(snapshot, number)))
+    }
+
+    /// Reads the next snapshot; false behind the last, or where the file is cut off and that is allowed.
+    fn next_snapshot(&mut self) -> Result<bool, ReadError> {
+        let From::Grains { files, reader, snapshot } = &mut self.from else { return Ok(false) };
+        loop {
+            let open = match reader {
+                Some(open) => open,
+                None => match files.next() {
+                    Some(file) => reader.insert(Snapshots::open(&file, u64::MAX)?),
+                    None => return Ok(false),
+                },
+            };
+            match open.read(snapshot) {
+                Ok(true) => return Ok(true),
+                Ok(false) => *reader = None,
+                Err(error) if error.is_cut() && self.partial => {
+                    self.cut = Some(error.to_string());
+                    *reader = None;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// The unit system that the file names.
+    pub(super) fn units(&self) -> Option<&str> {
+        match &self.from {
+            From::Grains { snapshot, .. } => snapshot.units.as_deref(),
+            From::Table { .. } => None,
+        }
     }
 
     fn of_snapshot(&self, snapshot: &DumpSnapshot, number: u64) -> Frame {
@@ -145,7 +186,9 @@ impl Frames {
             let at = snapshot.column(self.names.of(name));
             order.iter().map(|&row| at.map_or(f64::NAN, |at| snapshot.row(row)[at])).collect()
         });
-        let time = snapshot.time.or_else(|| Some(snapshot.step as f64 * self.time_step?));
+        let of_step =
+            || Some(snapshot.step as f64 * self.time_step.filter(|_| snapshot.numbering != Numbering::Frames)?);
+        let time = snapshot.time.or_else(of_step);
         Frame {
             place: Place { step: Some(snapshot.step), time, number, line: snapshot.first_line },
             ids: id.map(|id| order.iter().map(|&row| snapshot.row(row)[id]).collect()),
@@ -153,23 +196,28 @@ impl Frames {
         }
     }
 
-    /// What the printed digits of a column leave open at a value, once all was read.
-    pub(super) fn open_at(&self, name: &str, value: f64) -> f64 {
+    /// With which digits the file prints a column, once all was read.
+    pub(super) fn printed(&self, name: &str) -> Printed {
         match &self.from {
-            From::Dump { snapshot, .. } => {
-                let of_file: Digits = snapshot.digits();
+            From::Grains { snapshot, .. } => {
+                let of_file = snapshot.digits();
                 let axis = AXES.iter().position(|axis| *axis == name);
                 if let Some(coordinate) = axis.and_then(|axis| self.coordinate(snapshot, axis)) {
-                    let printed = if coordinate.scale() == 1.0 { value } else { 1.0 };
                     let digits = snapshot.columns[coordinate.column].digits;
-                    return coordinate.scale() * digits.uncertainty(printed, &of_file);
+                    let scale = Some(coordinate.parts().map(|(_, scale)| scale.abs()).sum());
+                    return Printed { digits, of_file, scale: scale.filter(|scale| *scale != 1.0) };
                 }
                 let at = snapshot.column(self.names.of(name));
-                at.map_or(0.0, |at| snapshot.columns[at].digits.uncertainty(value, &of_file))
+                at.map_or(Printed::default(), |at| Printed {
+                    digits: snapshot.columns[at].digits,
+                    of_file,
+                    scale: None,
+                })
             }
             From::Table { table, .. } => {
+                let of_file = table.digits();
                 let at = table.column(self.names.of(name));
-                at.map_or(0.0, |at| table.columns[at].digits.uncertainty(value, &table.digits()))
+                at.map_or(Printed::default(), |at| Printed { digits: table.columns[at].digits, of_file, scale: None })
             }
         }
     }

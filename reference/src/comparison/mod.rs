@@ -9,10 +9,10 @@ use std::path::Path;
 use crate::observer::Names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::run_files::kind;
-use column::Column;
+use column::{Column, Printed};
 use frames::{Frame, Frames, Place};
 
-pub use column::Difference;
+pub use column::{Difference, Sample};
 
 /// What is compared of two outputs.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +23,8 @@ pub struct Options {
     pub names: Names,
     /// Time steps (s) of both, where files tell steps and no times.
     pub time_steps: [Option<f64>; 2],
+    /// Takes the whole frames of a file that is cut off.
+    pub partial: bool,
 }
 
 /// By what samples of two outputs are matched.
@@ -61,6 +63,10 @@ impl Key {
 pub struct Comparison {
     /// Column by column.
     pub differences: Vec<Difference>,
+    /// Columns that one of them has and the other has not.
+    pub lonely: [Vec<String>; 2],
+    /// Where each is cut off, if that was allowed.
+    pub cuts: [Option<String>; 2],
     /// By what samples were matched.
     pub key: Key,
     /// How many samples of the first were compared.
@@ -88,23 +94,19 @@ const ONE_TIME: f64 = 1e-6;
 pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Comparison, ReadError> {
     let name = second.to_string_lossy().into_owned();
     let kinds = [kind(first)?, kind(second)?];
-    if let Some(which) = kinds.iter().position(|kind| !kind.is_table() && !kind.is_dump()) {
-        let name = [first, second][which].to_string_lossy();
-        return Err(ReadError::at(&name, 1, "a dump or a table", kinds[which].words()));
-    }
     if kinds[0].is_table() != kinds[1].is_table() {
         let expected = format!("{}, as the other file is", kinds[0].words());
         return Err(ReadError::at(&name, 1, expected, kinds[1].words()));
     }
-    let open = |which: usize| Frames::open([first, second][which], kinds[0].is_dump(), which, options);
-    let (columns, places) = survey([open(0)?, open(1)?], options)?;
+    let open = |which: usize| Frames::open([first, second][which], !kinds[0].is_table(), which, options);
+    let Survey { columns, printed, lonely, places, cuts } = survey([open(0)?, open(1)?], options)?;
     let key = key(&places).ok_or_else(|| {
         let expected = format!("{} rows, as in the other file, or a column `step` or `time`", places[0].len());
         ReadError::at(&name, 1, expected, places[1].len().to_string())
     })?;
     let mut files = [open(0)?, open(1)?];
     files.iter_mut().for_each(|frames| frames.want(&columns));
-    let columns: Vec<Column> = columns.iter().map(|name| Column::new(name)).collect();
+    let columns: Vec<Column> = columns.iter().zip(printed).map(|(name, printed)| Column::new(name, printed)).collect();
     let mut walk = Walk { key, columns, bends: Vec::new(), compared: 0, interpolated: 0, last: f64::NAN };
     walk.go(&mut files)?;
     if walk.compared == 0 {
@@ -118,17 +120,37 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
     let interval = interval(0).max(interval(1));
     let samples = [places[0].len() as u64, places[1].len() as u64];
     let (compared, interpolated, last_compared) = (walk.compared, walk.interpolated, walk.last);
-    let differences = walk.finish(&files);
-    Ok(Comparison { differences, key, compared, interpolated, samples, last: ends, last_compared, interval })
+    let differences = walk.finish();
+    let last = ends;
+    Ok(Comparison { differences, lonely, cuts, key, compared, interpolated, samples, last, last_compared, interval })
 }
 
-/// The columns that are compared, and where the samples of each stand.
-fn survey(mut files: [Frames; 2], options: &Options) -> Result<(Vec<String>, [Vec<Place>; 2]), ReadError> {
+/// What both files hold.
+struct Survey {
+    /// The columns that are compared.
+    columns: Vec<String>,
+    /// With which digits each file prints them.
+    printed: Vec<[Printed; 2]>,
+    /// Columns that one of them has and the other has not.
+    lonely: [Vec<String>; 2],
+    /// Where the samples of each stand.
+    places: [Vec<Place>; 2],
+    cuts: [Option<String>; 2],
+}
+
+/// Reads both files to their ends.
+fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError> {
     let mut places: [Vec<Place>; 2] = Default::default();
     for (frames, places) in files.iter_mut().zip(&mut places) {
         while let Some(frame) = frames.next()? {
             places.push(frame.place);
         }
+    }
+    if let (Some(one), Some(other)) = (files[0].units(), files[1].units())
+        && one != other
+    {
+        let expected = format!("the units {} of the other file", quoted(one));
+        return Err(ReadError::at(&files[1].file, 1, expected, quoted(other)));
     }
     let [a, b] = [files[0].columns(), files[1].columns()];
     let missing = |of: usize, expected: String| {
@@ -145,7 +167,12 @@ fn survey(mut files: [Frames; 2], options: &Options) -> Result<(Vec<String>, [Ve
     if columns.is_empty() {
         return Err(missing(1, format!("a column of {}", quoted(&a.join(" ")))));
     }
-    Ok((columns, places))
+    let printed = columns.iter().map(|name| [files[0].printed(name), files[1].printed(name)]).collect();
+    let alone = |of: &[String], other: &[String]| -> Vec<String> {
+        of.iter().filter(|name| is_asked(name) && !other.contains(name)).cloned().collect()
+    };
+    let (lonely, cuts) = ([alone(&a, &b), alone(&b, &a)], files.map(|file| file.cut));
+    Ok(Survey { columns, printed, lonely, places, cuts })
 }
 
 /// By what samples are matched: by steps where the file with fewer has none of its own and they are at the same times,
@@ -253,18 +280,10 @@ impl Walk {
 
     /// Differences with what digits leave open, and an eighth of the second difference where values were interpolated:
     /// the error of a straight line between two samples.
-    fn finish(self, files: &[Frames; 2]) -> Vec<Difference> {
+    fn finish(self) -> Vec<Difference> {
         let interpolated = self.interpolated > 0;
         let with_bends = self.columns.into_iter().zip(self.bends);
-        let differences = with_bends.map(|(column, bend)| {
-            let of_digits: f64 = files
-                .iter()
-                .zip(column.magnitudes)
-                .map(|(file, magnitude)| file.open_at(&column.difference.name, magnitude))
-                .sum();
-            column.finish(of_digits + if interpolated { bend / 8.0 } else { 0.0 })
-        });
-        differences.collect()
+        with_bends.map(|(column, bend)| column.finish(if interpolated { bend / 8.0 } else { 0.0 })).collect()
     }
 }
 

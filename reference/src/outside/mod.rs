@@ -307,7 +307,8 @@ fn observe_grains(
             files.extend(contacts.map(|name| plain_file(folder, name)).transpose()?);
             let rows = scene.grains.len() * (16 + scene.walls.len());
             let time_step = Some(stepping.time_step);
-            let sources = Sources { files, log: None, names, time_step, most_rows: Some(rows as u64) };
+            let most_rows = Some(rows as u64);
+            let sources = Sources { files, names, time_step, most_rows, ..Sources::default() };
             Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(told)
         }
     };

@@ -44,11 +44,22 @@ pub(crate) struct Blocks<'r> {
     end: usize,
     at_end: bool,
     number: u64,
+    /// Whether the line that was handed out last had a line end.
+    ended: bool,
 }
 
 impl<'r> Blocks<'r> {
     pub(crate) fn new(reader: Box<dyn Read + 'r>, name: &str) -> Self {
-        Self { reader, name: name.to_owned(), buffer: vec![0; BLOCK], start: 0, end: 0, at_end: false, number: 0 }
+        Self {
+            reader,
+            name: name.to_owned(),
+            buffer: vec![0; BLOCK],
+            start: 0,
+            end: 0,
+            at_end: false,
+            number: 0,
+            ended: true,
+        }
     }
 
     /// How errors call the input.
@@ -59,6 +70,11 @@ impl<'r> Blocks<'r> {
     /// The number of the line that was handed out last; 0 before the first.
     pub(crate) fn number(&self) -> u64 {
         self.number
+    }
+
+    /// The error, marked as a cut where the line that was handed out last has no line end.
+    pub(crate) fn cut_if_unended(&self, error: ReadError) -> ReadError {
+        if self.ended { error } else { error.cut() }
     }
 
     /// The next line; none at the end of the input.
@@ -88,6 +104,7 @@ impl<'r> Blocks<'r> {
         let bytes = &self.buffer[self.start..self.start + length];
         self.start += length + usize::from(ended);
         self.number += 1;
+        self.ended = ended;
         Ok(Some(RawLine { file: &self.name, number: self.number, bytes, ended }))
     }
 

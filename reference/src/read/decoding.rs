@@ -9,21 +9,25 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
-/// Compressions that are recognised in order to say so, rather than to complain about bytes that are no text.
-const UNREADABLE: [(&[u8], &str); 3] = [
-    (&[0xfd, b'7', b'z', b'X', b'Z', 0], "xz (unpack it with `xz -dk`)"),
-    (b"BZh", "bzip2 (unpack it with `bzip2 -dk`)"),
-    (b"PK\x03\x04", "zip (unpack it with `unzip`)"),
+/// Beginnings of files that are recognised in order to say so, rather than to complain about bytes that are no text.
+const UNREADABLE: [(&[u8], &str); 5] = [
+    (&[0xfd, b'7', b'z', b'X', b'Z', 0], "a file compressed by xz (unpack it with `xz -dk`)"),
+    (b"BZh", "a file compressed by bzip2 (unpack it with `bzip2 -dk`)"),
+    (b"PK\x03\x04", "a file compressed by zip (unpack it with `unzip`)"),
+    (b"\xf8\xff\xff\xff\xff\xff\xff\xffDUMPATOM", BINARY_DUMP),
+    (b"\xf6\xff\xff\xff\xff\xff\xff\xffDUMPCUSTOM", BINARY_DUMP),
 ];
+const BINARY_DUMP: &str =
+    "a binary dump of LAMMPS (write it as text: a file name of `dump` that does not end in `.bin`)";
 
 /// The longest of the marks above.
-const MARK: u64 = 6;
+const MARK: u64 = 18;
 
 /// What the first bytes of an input announce.
 pub(crate) enum Decoded<'r> {
     /// Text, decompressed on the way where it was gzip or zstd.
     Text(Box<dyn Read + 'r>),
-    /// A compression that is not read here, by name.
+    /// A form that is not read here, in words.
     Unreadable(&'static str),
 }
 

@@ -16,6 +16,10 @@ pub struct Digits {
     decimals: Option<(u32, u32)>,
     /// Whether a number ended in a zero behind the point, which a general format never leaves.
     padded: bool,
+    /// Whether a number had other digits behind the point than one zero.
+    has_fraction: bool,
+    /// Whether a number had an exponent.
+    has_exponent: bool,
     /// Whether the numbers were single ones (f32), however many digits were printed of them.
     single: bool,
 }
@@ -40,7 +44,8 @@ impl Digits {
     /// Takes the text of one number into account.
     #[inline]
     pub(crate) fn see(&mut self, text: &[u8]) {
-        if self.looked_at < LOOKED_AT || text.len() > self.longest {
+        let is_first_fraction = !self.has_fraction && !text.ends_with(b".0") && text.contains(&b'.');
+        if self.looked_at < LOOKED_AT || text.len() > self.longest || is_first_fraction {
             self.look(text);
         }
     }
@@ -56,6 +61,8 @@ impl Digits {
         let counted = digits.skip_while(|byte| **byte == b'0').count();
         self.significant = self.significant.max(u32::try_from(counted).unwrap_or(u32::MAX));
         let point = mantissa.iter().position(|byte| *byte == b'.');
+        self.has_exponent |= exponent.is_some();
+        self.has_fraction |= point.is_some_and(|point| &mantissa[point..] != b".0");
         if exponent.is_none() {
             self.padded |= point.is_some() && mantissa.last() == Some(&b'0');
             let behind = point.map_or(0, |point| mantissa.len() - point - 1);
@@ -71,7 +78,8 @@ impl Digits {
     /// column is taken to have been printed with as many as the file shows elsewhere, six at most, which is the usual.
     #[must_use]
     pub fn uncertainty(&self, value: f64, of_file: &Digits) -> f64 {
-        if value == 0.0 && !self.padded {
+        let is_padded = self.is_padded(of_file);
+        if value == 0.0 && !is_padded {
             return 0.0;
         }
         let shown = self.significant.max(of_file.significant.min(USUAL)).clamp(1, 17);
@@ -83,13 +91,27 @@ impl Digits {
             0.5 * 10_f64.powf(leading + 1.0 - f64::from(shown))
         };
         let printed = match self.decimals {
-            Some((fewest, most)) if fewest == most && self.padded => {
+            Some((fewest, most)) if fewest == most && is_padded => {
                 general.max(0.5 * 10_f64.powi(-(most.min(400) as i32)))
             }
             _ => general,
         };
         // The nearest of single numbers is at most this far away.
         if self.single { printed.max(0.5 * f64::from(f32::EPSILON) * value.abs()) } else { printed }
+    }
+
+    /// Half a unit of the last printed place of `value`; a whole number of a column of whole numbers has none.
+    #[must_use]
+    pub fn half_unit(&self, value: f64, of_file: &Digits) -> f64 {
+        let is_whole = matches!(self.decimals, Some((_, 0))) && !self.has_exponent;
+        if is_whole { 0.0 } else { self.uncertainty(value, of_file) }
+    }
+
+    /// Returns whether zeros at the end are digits that were printed. A column of `0.0` and `2.0` alone in a file with more
+    /// digits elsewhere is not rounded to tenths: programs write whole numbers so.
+    fn is_padded(&self, of_file: &Digits) -> bool {
+        let has_more = of_file.has_exponent || of_file.decimals.is_some_and(|(_, most)| most > 1);
+        self.padded && (self.has_fraction || !has_more)
     }
 
     /// What both have shown.
@@ -99,6 +121,8 @@ impl Digits {
         self.longest = self.longest.max(other.longest);
         self.significant = self.significant.max(other.significant);
         self.padded |= other.padded;
+        self.has_fraction |= other.has_fraction;
+        self.has_exponent |= other.has_exponent;
         self.single |= other.single;
         self.decimals = match (self.decimals, other.decimals) {
             (Some(one), Some(two)) => Some((one.0.min(two.0), one.1.max(two.1))),
@@ -132,6 +156,25 @@ mod tests {
         // Few digits of a column are believed to be more where the file has more.
         close(of(&["0.5"]).uncertainty(0.5, &digits), 0.5e-6);
         close(of(&["0.5"]).uncertainty(0.5, &of(&["0.12345678901234567"])), 0.5e-6);
+    }
+
+    /// Python writes zero as `0.0`: in a file with more digits elsewhere that is no number of tenths.
+    #[test]
+    fn a_whole_number_with_a_point_is_not_rounded_to_tenths() {
+        let of_file = of(&["0.0", "0.02125", "1e-05"]);
+        assert_eq!(of(&["0.0", "0.0"]).uncertainty(0.0, &of_file), 0.0);
+        close(of(&["0.0", "0.4"]).uncertainty(0.0, &of_file), 0.05);
+        close(of(&["0.0"]).uncertainty(0.0, &of(&["0.0", "0.4"])), 0.05);
+        let mut long = of(&["0.0"; 64]);
+        long.see(b"0.4");
+        close(long.uncertainty(0.0, &of_file), 0.05);
+    }
+
+    #[test]
+    fn whole_numbers_have_no_half_unit() {
+        let whole = of(&["3", "4"]);
+        assert_eq!(whole.half_unit(3.0, &whole), 0.0);
+        close(of(&["3", "4.5"]).half_unit(3.0, &of(&["4.5"])), 0.05);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::read::blocks::Blocks;
 use crate::read::dump_header::DumpHeader;
+use crate::read::ids::Ids;
 use crate::read::line_reader::blocks;
 use crate::read::numbers::{NotFinite, RowForm};
 use crate::read::read_error::{ReadError, quoted};
@@ -19,8 +20,7 @@ pub struct DumpReader<'r> {
     last_step: Option<u64>,
     /// Most rows of a snapshot.
     most_rows: u64,
-    /// Ids of a snapshot with their rows, kept for their memory.
-    ids: Vec<(u64, u32)>,
+    ids: Ids,
 }
 
 impl DumpReader<'static> {
@@ -43,7 +43,7 @@ impl<'r> DumpReader<'r> {
     pub fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
         let form = RowForm { separator: None, not_finite: NotFinite::default() };
         let most_rows = u64::MAX;
-        Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, most_rows, ids: Vec::new() })
+        Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, most_rows, ids: Ids::default() })
     }
 
     /// Refuses snapshots of more rows than can belong to a scene.
@@ -66,7 +66,8 @@ impl<'r> DumpReader<'r> {
     /// The file breaks off, holds something else than text, goes back in time, names an atom twice, or says something
     /// that is not understood; see [`ReadError`].
     pub fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        let Some(header) = DumpHeader::read(&mut self.blocks)? else {
+        let header = DumpHeader::read(&mut self.blocks).map_err(|error| self.blocks.cut_if_unended(error))?;
+        let Some(header) = header else {
             if self.last_step.is_none() {
                 return Err(self.error("a dump, `ITEM: TIMESTEP` first", "an empty file"));
             }
@@ -93,7 +94,7 @@ impl<'r> DumpReader<'r> {
         snapshot.time = header.time;
         snapshot.units.clone_from(&self.units);
         snapshot.kind = header.kind;
-        (snapshot.bounds, snapshot.periodic) = (header.bounds, header.periodic);
+        (snapshot.bounds, snapshot.tilt, snapshot.periodic) = (header.bounds, header.tilt, header.periodic);
         snapshot.first_line = self.blocks.number() + 1;
         // The declared count is a claim; memory follows the rows that are really there.
         snapshot.values.clear();
@@ -102,14 +103,17 @@ impl<'r> DumpReader<'r> {
             return Err(ReadError::at(self.blocks.name(), self.blocks.number(), expected, header.rows.to_string()));
         }
         for row in 0..header.rows {
-            self.read_row(row, header.rows, snapshot)?;
+            let read = self.read_row(row, header.rows, snapshot);
+            read.map_err(|error| self.blocks.cut_if_unended(error))?;
             if snapshot.values.len() > MOST_NUMBERS {
                 let expected = format!("at most {MOST_NUMBERS} numbers in a snapshot");
                 return Err(ReadError::at(self.blocks.name(), self.blocks.number(), expected, "more"));
             }
         }
         if snapshot.kind == DumpKind::Atoms {
-            self.check_ids(snapshot)?;
+            if let Some(column) = snapshot.column("id") {
+                self.ids.check(self.blocks.name(), snapshot, column)?;
+            }
         }
         Ok(true)
     }
@@ -118,7 +122,7 @@ impl<'r> DumpReader<'r> {
         let place = || format!("row {} of {rows}", row + 1);
         let number = self.blocks.number();
         let Some(line) = self.blocks.next_line()? else {
-            return Err(ReadError::at(self.blocks.name(), number.max(1), place(), "the end of the file"));
+            return Err(ReadError::at(self.blocks.name(), number.max(1), place(), "the end of the file").cut());
         };
         if line.bytes.starts_with(b"ITEM:") {
             let found = quoted(line.text()?.text.trim_end());
@@ -134,34 +138,6 @@ impl<'r> DumpReader<'r> {
         Ok(())
     }
 
-    /// Refuses ids that are none, and an id that stands twice.
-    fn check_ids(&mut self, snapshot: &DumpSnapshot) -> Result<(), ReadError> {
-        let Some(column) = snapshot.column("id") else { return Ok(()) };
-        let fault = |row: u32, expected: &str, found: String| {
-            let line = snapshot.first_line + u64::from(row);
-            ReadError::at(self.blocks.name(), line, expected, found)
-        };
-        self.ids.clear();
-        let mut sorted = true;
-        for (row, value) in (0..).zip(snapshot.values(column)) {
-            if !(0.0..=LARGEST_WHOLE).contains(&value) || value.fract() != 0.0 {
-                return Err(fault(row, "a whole number in the column `id`", value.to_string()));
-            }
-            let id = value as u64;
-            sorted &= self.ids.last().is_none_or(|(last, _)| *last < id);
-            self.ids.push((id, row));
-        }
-        if sorted {
-            return Ok(());
-        }
-        self.ids.sort_unstable();
-        let twice = self.ids.windows(2).find(|pair| pair[0].0 == pair[1].0);
-        match twice {
-            Some(pair) => Err(fault(pair[1].1, "an id that no row above has", format!("{} once more", pair[1].0))),
-            None => Ok(()),
-        }
-    }
-
     fn error(&self, expected: &str, found: &str) -> ReadError {
         ReadError::at(self.blocks.name(), self.blocks.number().max(1), expected, found)
     }
@@ -169,6 +145,3 @@ impl<'r> DumpReader<'r> {
 
 /// Most numbers that are read of a snapshot (half a gigabyte).
 const MOST_NUMBERS: usize = 1 << 26;
-
-/// Whole numbers up to here are numbers of their own in f64.
-const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;

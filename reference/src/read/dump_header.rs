@@ -21,6 +21,8 @@ pub(crate) struct DumpHeader {
     pub(crate) kind: DumpKind,
     pub(crate) rows: u64,
     pub(crate) bounds: ([f64; 3], [f64; 3]),
+    /// Tilts `xy`, `xz` and `yz` of the box.
+    pub(crate) tilt: [f64; 3],
     pub(crate) periodic: [bool; 3],
     pub(crate) columns: Vec<NumberColumn>,
 }
@@ -33,7 +35,15 @@ struct Parts {
     units: Option<(String, u64)>,
     /// The count, and the word that stands for a row.
     rows: Option<(u64, String)>,
-    bounds: Option<([f64; 3], [f64; 3], [bool; 3])>,
+    bounds: Option<Bounds>,
+}
+
+/// The box and its boundaries.
+struct Bounds {
+    low: [f64; 3],
+    high: [f64; 3],
+    tilt: [f64; 3],
+    periodic: [bool; 3],
 }
 
 impl DumpHeader {
@@ -52,7 +62,7 @@ impl DumpHeader {
             }
             any = true;
             let Some(item) = text.strip_prefix("ITEM: ") else {
-                return Err(line.error("a line `ITEM: …`", quoted(text)));
+                return Err(not_an_item(line, text));
             };
             match item.split_whitespace().collect::<Vec<_>>()[..] {
                 ["TIMESTEP"] => parts.read_step(blocks)?,
@@ -67,8 +77,8 @@ impl DumpHeader {
                     parts.rows = Some((rows, word));
                 }
                 ["BOX", "BOUNDS", ref words @ ..] => {
-                    let periodic = boundaries(line, words)?;
-                    parts.read_bounds(blocks, periodic)?;
+                    let (periodic, is_tilted) = boundaries(line, words)?;
+                    parts.read_bounds(blocks, periodic, is_tilted)?;
                 }
                 [word, ref columns @ ..] if parts.rows.as_ref().is_some_and(|(_, rows)| rows == word) => {
                     return parts.finish(line, word, columns).map(Some);
@@ -98,17 +108,21 @@ impl Parts {
         Ok(())
     }
 
-    fn read_bounds(&mut self, blocks: &mut Blocks<'_>, periodic: [bool; 3]) -> Result<(), ReadError> {
-        let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+    fn read_bounds(&mut self, blocks: &mut Blocks<'_>, periodic: [bool; 3], is_tilted: bool) -> Result<(), ReadError> {
+        let (mut low, mut high, mut tilt) = ([0.0; 3], [0.0; 3], [0.0; 3]);
         for axis in 0..3 {
-            let what = format!("the bounds of the box along {}, two numbers", ["x", "y", "z"][axis]);
-            [low[axis], high[axis]] = one(blocks, &what, |fields| Ok([fields.finite(&what)?, fields.finite(&what)?]))?;
+            let numbers = if is_tilted { "two numbers and a tilt" } else { "two numbers" };
+            let what = format!("the bounds of the box along {}, {numbers}", ["x", "y", "z"][axis]);
+            [low[axis], high[axis], tilt[axis]] = one(blocks, &what, |fields| {
+                let tilt = |fields: &mut Fields<'_>| if is_tilted { fields.finite(&what) } else { Ok(0.0) };
+                Ok([fields.finite(&what)?, fields.finite(&what)?, tilt(fields)?])
+            })?;
             if low[axis] > high[axis] {
                 let (expected, found) = ("a lower bound that is not above the upper", format!("{:?}", low[axis]));
                 return Err(ReadError::at(blocks.name(), blocks.number(), expected, found));
             }
         }
-        self.bounds = Some((low, high, periodic));
+        self.bounds = Some(Bounds { low, high, tilt, periodic });
         Ok(())
     }
 
@@ -119,7 +133,7 @@ impl Parts {
         };
         let (step, step_line) = self.step.ok_or_else(|| needed("TIMESTEP"))?;
         let (rows, _) = self.rows.ok_or_else(|| needed("NUMBER OF ATOMS"))?;
-        let (low, high, periodic) = self.bounds.ok_or_else(|| needed("BOX BOUNDS"))?;
+        let Bounds { low, high, tilt, periodic } = self.bounds.ok_or_else(|| needed("BOX BOUNDS"))?;
         let kind = if word == "ATOMS" { DumpKind::Atoms } else { DumpKind::Entries };
         if columns.is_empty() {
             return Err(line.error(format!("names of columns behind `ITEM: {word}`"), "none"));
@@ -138,6 +152,7 @@ impl Parts {
             kind,
             rows,
             bounds: (low, high),
+            tilt,
             periodic,
             columns,
         })
@@ -152,15 +167,26 @@ impl Parts {
     }
 }
 
-/// Which axes are periodic, from the words behind `BOX BOUNDS`; old files have none.
-fn boundaries(line: Line<'_>, words: &[&str]) -> Result<[bool; 3], ReadError> {
+/// The error of a line that is no item: a count alone on the first line is that of an .xyz file.
+fn not_an_item(line: Line<'_>, text: &str) -> ReadError {
+    if line.number == 1 && text.trim().parse::<u64>().is_ok() {
+        let expected = "a dump with ids and times, such as `dump … custom … id type x y z vx vy vz` writes";
+        return line.error(expected, "an .xyz file, which has neither");
+    }
+    line.error("a line `ITEM: …`", quoted(text))
+}
+
+/// Which axes are periodic, from the words behind `BOX BOUNDS` (old files have none), and whether the box is tilted.
+fn boundaries(line: Line<'_>, words: &[&str]) -> Result<([bool; 3], bool), ReadError> {
     let known = |word: &&str| word.len() == 2 && word.bytes().all(|byte| b"pfsm".contains(&byte));
     match *words {
-        [] => Ok([false; 3]),
-        [x, y, z] if [x, y, z].iter().all(known) => Ok([x, y, z].map(|word| word == "pp")),
-        ["xy", "xz", "yz", ..] | ["abc", "origin", ..] => {
-            let found = format!("{} (a triclinic box is not read)", quoted(&words.join(" ")));
-            Err(line.error("a box with right angles", found))
+        [] => Ok(([false; 3], false)),
+        ["xy", "xz", "yz"] => Ok(([false; 3], true)),
+        ["xy", "xz", "yz", x, y, z] if [x, y, z].iter().all(known) => Ok(([x, y, z].map(|word| word == "pp"), true)),
+        [x, y, z] if [x, y, z].iter().all(known) => Ok(([x, y, z].map(|word| word == "pp"), false)),
+        ["abc", "origin", ..] => {
+            let found = format!("{}, a general triclinic box", quoted(&words.join(" ")));
+            Err(line.error("a box with right angles, or one with the tilts `xy xz yz`", found))
         }
         _ => Err(line.error("three boundaries such as `pp ff ff` behind `BOX BOUNDS`", quoted(&words.join(" ")))),
     }
@@ -181,5 +207,5 @@ fn one<T>(
 }
 
 fn missing(blocks: &Blocks<'_>, what: &str) -> ReadError {
-    ReadError::at(blocks.name(), blocks.number().max(1), what, "the end of the file")
+    ReadError::at(blocks.name(), blocks.number().max(1), what, "the end of the file").cut()
 }

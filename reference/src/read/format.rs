@@ -1,7 +1,7 @@
 //! What a format of files with snapshots of grains owes. A new one is a file in `formats`, where it is found.
 
 use super::read_error::ReadError;
-use super::snapshot::DumpSnapshot;
+use super::snapshot::{DumpSnapshot, Numbering};
 use std::path::{Path, PathBuf};
 
 /// The moments of a file that was opened.
@@ -14,8 +14,8 @@ pub(crate) struct Format {
     pub(crate) words: &'static str,
     /// What tells that a file is of it.
     pub(crate) told_by: ToldBy,
-    /// Whether the steps that a file of it tells are those of the run.
-    pub(crate) tells_steps: bool,
+    /// How its snapshots are numbered, where a file does not say otherwise.
+    pub(crate) numbering: Numbering,
     /// What a file of it holds.
     pub(crate) holds: fn(&Path) -> Result<Holds, ReadError>,
     /// Opens a file of it, whose snapshots may have so many rows.
@@ -29,6 +29,8 @@ pub(crate) enum ToldBy {
     Beginning(fn(&Beginning<'_>) -> bool),
     /// How its first line that is not blank begins, if the beginning did not tell another format.
     Line(&'static str),
+    /// The names of columns in its first line that is neither blank nor a comment.
+    Names(fn(&[&str]) -> bool),
 }
 
 /// The first bytes of a file.

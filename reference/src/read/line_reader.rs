@@ -35,10 +35,7 @@ impl<'l> Line<'l> {
 pub(crate) fn blocks<'r>(reader: impl BufRead + 'r, name: &str) -> Result<Blocks<'r>, ReadError> {
     match decoded(reader).map_err(|error| ReadError::reading(name, 1, error))? {
         Decoded::Text(reader) => Ok(Blocks::new(reader, name)),
-        Decoded::Unreadable(compression) => {
-            let found = format!("a file compressed by {compression}");
-            Err(ReadError::at(name, 1, "plain text, gzip or zstd", found))
-        }
+        Decoded::Unreadable(found) => Err(ReadError::at(name, 1, "plain text, gzip or zstd", found)),
     }
 }
 

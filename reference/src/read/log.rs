@@ -15,8 +15,19 @@ pub struct LoggedRun {
     /// What was printed, by the names that the program gives the columns: `Step`, `Time`, `KinEng`, … Releases order
     /// and align them differently.
     pub thermo: Table,
+    /// Time step of the run, where the log repeats the command `timestep` with a number before it.
+    pub time_step: Option<f64>,
     /// How it ended; none where the log breaks off.
     pub end: Option<LoopTime>,
+}
+
+impl LoggedRun {
+    /// Returns the first step that was printed.
+    #[must_use]
+    pub fn first_step(&self) -> Option<u64> {
+        let first = self.thermo.values(self.thermo.column("Step")?).next()?;
+        (first >= 0.0).then_some(first as u64)
+    }
 }
 
 /// The line `Loop time of … on … procs for … steps with … atoms`.
@@ -75,7 +86,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
                 Some("Loop") => {
                     let end = Some(loop_time(line)?);
                     let thermo = Table::new(std::mem::take(columns), std::mem::take(values));
-                    log.runs.push(LoggedRun { thermo, end });
+                    log.runs.push(LoggedRun { thermo, time_step: log.time_step, end });
                     expected = Expected::Text;
                 }
                 // A blank line, a warning.
@@ -112,7 +123,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
         };
     }
     if let Expected::Rows(columns, values) = expected {
-        log.runs.push(LoggedRun { thermo: Table::new(columns, values), end: None });
+        log.runs.push(LoggedRun { thermo: Table::new(columns, values), time_step: log.time_step, end: None });
     }
     if log.runs.is_empty() {
         let found = if lines.number() == 0 { "an empty file" } else { "none" };

@@ -14,6 +14,8 @@ pub(crate) mod dump;
 mod dump_header;
 mod fields;
 pub(crate) mod format;
+pub(crate) mod grain_table;
+pub(crate) mod ids;
 pub(crate) mod line_reader;
 pub(crate) mod log;
 pub(crate) mod npz;

@@ -20,6 +20,7 @@ pub struct ReadError {
     column: Option<usize>,
     expected: String,
     found: String,
+    is_cut: bool,
     #[source]
     source: Option<io::Error>,
 }
@@ -32,8 +33,14 @@ impl ReadError {
             column: None,
             expected: expected.into(),
             found: found.into(),
+            is_cut: false,
             source: None,
         }
+    }
+
+    /// Marks an input that ends in the middle of something, as a killed job leaves it.
+    pub(crate) fn cut(self) -> Self {
+        Self { is_cut: true, ..self }
     }
 
     pub(crate) fn with_column(mut self, column: usize) -> Self {
@@ -44,7 +51,8 @@ impl ReadError {
     /// A failure of the operating system or of the decompressor while line `line` was being read.
     pub(crate) fn reading(file: &str, line: u64, source: io::Error) -> Self {
         let found = one_line(&source.to_string());
-        Self { source: Some(source), ..Self::at(file, line, "readable data", found) }
+        let is_cut = source.kind() == io::ErrorKind::UnexpectedEof;
+        Self { source: Some(source), is_cut, ..Self::at(file, line, "readable data", found) }
     }
 
     /// A file that could not be opened.
@@ -56,6 +64,12 @@ impl ReadError {
     #[must_use]
     pub fn file(&self) -> &str {
         &self.file
+    }
+
+    /// Returns whether the input ends in the middle of something: what stands in front of that is whole.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// The line, counted from 1; none if the file could not be opened.

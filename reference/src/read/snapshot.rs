@@ -13,19 +13,35 @@ pub enum DumpKind {
     Entries,
 }
 
+/// How snapshots are numbered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Numbering {
+    /// By steps of the run.
+    #[default]
+    Steps,
+    /// By numbers in the names of files: steps, or a count of files.
+    Files,
+    /// By a count of frames.
+    Frames,
+}
+
 /// One snapshot of a dump, in the units of its file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DumpSnapshot {
-    /// The step.
+    /// The step, or another number by which snapshots are in order.
     pub step: u64,
+    /// How snapshots are numbered.
+    pub numbering: Numbering,
     /// The time, where the file says it.
     pub time: Option<f64>,
     /// The unit system by name, where the file has said it here or before.
     pub units: Option<String>,
     /// What the rows are.
     pub kind: DumpKind,
-    /// The lower and the upper corner of the box.
+    /// The lower and the upper corner of the box; of a tilted one, of the box with right angles around it.
     pub bounds: ([f64; 3], [f64; 3]),
+    /// Tilts `xy`, `xz` and `yz` of the box.
+    pub tilt: [f64; 3],
     /// Which axes are periodic.
     pub periodic: [bool; 3],
     /// The columns, in the order of the file.
@@ -61,29 +77,43 @@ impl DumpSnapshot {
         self.values.iter().skip(column).step_by(self.columns.len().max(1)).copied()
     }
 
-    /// A coordinate along an axis (0, 1, 2): which column has it, and how it is got from there.
+    /// A coordinate along an axis (0, 1, 2): which columns have it, and how it is got from there.
     #[must_use]
     pub fn coordinate(&self, axis: usize) -> Option<Coordinate> {
-        let name = *["x", "y", "z"].get(axis)?;
-        for (suffix, scaled) in [("", false), ("u", false), ("s", true), ("su", true)] {
-            if let Some(column) = self.column(&format!("{name}{suffix}")) {
-                return Some(self.coordinate_in(column, axis, scaled));
-            }
-        }
-        None
+        ["", "u", "s", "su"].into_iter().find_map(|suffix| self.coordinate_named(&column_name(axis, suffix), axis))
     }
 
     /// A coordinate along an axis from a column of any name; `xs`, `xsu` and so on are scaled.
     #[must_use]
     pub fn coordinate_named(&self, name: &str, axis: usize) -> Option<Coordinate> {
-        let scaled = ["xs", "ys", "zs", "xsu", "ysu", "zsu"].contains(&name);
-        Some(self.coordinate_in(self.column(name)?, axis, scaled))
+        let column = self.column(name)?;
+        match ["s", "su"].into_iter().find(|suffix| name == column_name(axis, suffix)) {
+            Some(suffix) => self.scaled(column, axis, suffix),
+            None => Some(Coordinate { column, origin: 0.0, scale: 1.0, tilted: [None; 2] }),
+        }
     }
 
-    fn coordinate_in(&self, column: usize, axis: usize, scaled: bool) -> Coordinate {
-        let (low, high) = (self.bounds.0[axis], self.bounds.1[axis]);
-        let (origin, scale) = if scaled { (low, high - low) } else { (0.0, 1.0) };
-        Coordinate { column, origin, scale }
+    /// Corners of the box itself: those of the box around it less what the tilts add.
+    fn corners(&self) -> ([f64; 3], [f64; 3]) {
+        let (mut low, mut high) = self.bounds;
+        let [xy, xz, yz] = self.tilt;
+        let along_x = [0.0, xy, xz, xy + xz];
+        low[0] -= along_x.into_iter().fold(0.0, f64::min);
+        high[0] -= along_x.into_iter().fold(0.0, f64::max);
+        (low[1], high[1]) = (low[1] - yz.min(0.0), high[1] - yz.max(0.0));
+        (low, high)
+    }
+
+    /// A scaled coordinate: x = xlo + xs lx + ys xy + zs xz, y = ylo + ys ly + zs yz, z = zlo + zs lz.
+    fn scaled(&self, column: usize, axis: usize, suffix: &str) -> Option<Coordinate> {
+        let [xy, xz, yz] = self.tilt;
+        let tilts = [[0.0, xy, xz], [0.0, 0.0, yz], [0.0; 3]][axis];
+        let mut tilted = [None; 2];
+        for (other, tilt) in tilts.into_iter().enumerate().filter(|(_, tilt)| *tilt != 0.0) {
+            tilted[other - 1] = Some((self.column(&column_name(other, suffix))?, tilt));
+        }
+        let (low, high) = self.corners();
+        Some(Coordinate { column, origin: low[axis], scale: high[axis] - low[axis], tilted })
     }
 
     /// What all columns of numbers show together of the format.
@@ -94,25 +124,41 @@ impl DumpSnapshot {
     }
 }
 
-/// How a coordinate is got from a column: scaled ones count from the lower side of the box in parts of its length.
+/// Name of the column of a coordinate: the letter of the axis and a suffix.
+fn column_name(axis: usize, suffix: &str) -> String {
+    format!("{}{suffix}", ["x", "y", "z"].get(axis).copied().unwrap_or_default())
+}
+
+/// How a coordinate is got from columns: scaled ones count from the lower side of the box in parts of its length, and in a
+/// tilted box in parts of the tilts too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
     /// The column.
     pub column: usize,
     origin: f64,
     scale: f64,
+    /// Other columns and the tilts that they are multiplied by.
+    tilted: [Option<(usize, f64)>; 2],
 }
 
 impl Coordinate {
     /// The coordinate of a row of [`DumpSnapshot::row`].
     #[must_use]
     pub fn of(&self, row: &[f64]) -> f64 {
-        self.origin + self.scale * row.get(self.column).copied().unwrap_or(f64::NAN)
+        let value = |column: usize| row.get(column).copied().unwrap_or(f64::NAN);
+        let tilted: f64 = self.tilted.iter().flatten().map(|(column, tilt)| tilt * value(*column)).sum();
+        let straight = self.origin + self.scale * value(self.column);
+        if tilted == 0.0 { straight } else { straight + tilted }
     }
 
     /// What the coordinate changes by where the column changes by one.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale
+    }
+
+    /// The columns that the coordinate is got from, and what it changes by where each changes by one.
+    pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
+        [(self.column, self.scale)].into_iter().chain(self.tilted.into_iter().flatten())
     }
 }

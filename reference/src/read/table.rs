@@ -72,6 +72,13 @@ pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     parse_table(BufReader::new(file), &name)
 }
 
+/// The separator of a line of names, and the names.
+pub(crate) fn header(line: &str) -> (u8, Vec<&str>) {
+    let separator = [b',', b';', b'\t'].into_iter().find(|byte| line.contains(char::from(*byte))).unwrap_or(b',');
+    let fields = line.trim_end().split(char::from(separator));
+    (separator, fields.map(|field| field.trim().trim_matches('"')).collect())
+}
+
 /// Reads a table: a line of names, then a line of numbers a row, separated by commas, semicolons or tabs, whichever the
 /// first line has. Lines that begin with `#` and empty lines are passed over. `name` is what errors call it.
 ///
@@ -97,10 +104,9 @@ pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError>
             continue;
         }
         let line = line.text()?;
-        form.separator =
-            Some([b',', b';', b'\t'].into_iter().find(|byte| line.text.contains(char::from(*byte))).unwrap_or(b','));
-        for field in line.text.trim_end().split(char::from(form.separator.unwrap_or(b','))) {
-            let field = field.trim().trim_matches('"');
+        let (separator, names) = header(line.text);
+        form.separator = Some(separator);
+        for field in names {
             if field.is_empty() || field.parse::<f64>().is_ok() {
                 return Err(line.error("a line with the names of the columns", quoted(line.text)));
             }

@@ -4,7 +4,7 @@ use crate::read::dump::DumpReader;
 use crate::read::format::{Format, Holds, Moments, ToldBy};
 use crate::read::line_reader::LineReader;
 use crate::read::read_error::ReadError;
-use crate::read::snapshot::DumpSnapshot;
+use crate::read::snapshot::{DumpSnapshot, Numbering};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
@@ -12,7 +12,7 @@ use std::path::Path;
 pub(crate) static FORMAT: Format = Format {
     words: "a dump",
     told_by: ToldBy::Line("ITEM:"),
-    tells_steps: true,
+    numbering: Numbering::Steps,
     holds: |path| Ok(Holds::Course(first_step(path))),
     open: |path, most_rows| Ok(Box::new(DumpReader::open(path)?.at_most(most_rows))),
 };

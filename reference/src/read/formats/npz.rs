@@ -2,6 +2,7 @@
 
 use crate::read::format::{ByPlace, Format, Holds, ToldBy, check_grains};
 use crate::read::npz::{MARK, read_course};
+use crate::read::snapshot::Numbering;
 
 pub(crate) static FORMAT: Format = Format {
     words: "arrays of NumPy's",
@@ -9,7 +10,7 @@ pub(crate) static FORMAT: Format = Format {
     told_by: ToldBy::Beginning(|of| {
         of.bytes.starts_with(MARK) && of.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))
     }),
-    tells_steps: false,
+    numbering: Numbering::Files,
     holds: |_| Ok(Holds::Course(None)),
     open: |path, most_rows| {
         let course = read_course(path)?;

@@ -2,12 +2,13 @@
 
 use crate::read::format::{Format, Holds, ToldBy};
 use crate::read::read_error::ReadError;
+use crate::read::snapshot::Numbering;
 use crate::read::vtk::{self, Kind};
 
 pub(crate) static FORMAT: Format = Format {
     words: "a file of VTK's",
     told_by: ToldBy::Beginning(|of| vtk::kind(of.unpacked) == Some(Kind::Collection)),
-    tells_steps: false,
+    numbering: Numbering::Files,
     holds: |path| vtk::read_collection(path).map(Holds::List),
     open: |path, _| Err(ReadError::at(&path.to_string_lossy(), 1, "grains", "a list of files that lists another")),
 };

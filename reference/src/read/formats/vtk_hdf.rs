@@ -1,12 +1,13 @@
 //! Points of VTK's in HDF5.
 
 use crate::read::format::{ByPlace, Format, Holds, ToldBy, check_grains};
+use crate::read::snapshot::Numbering;
 use crate::read::vtk;
 
 pub(crate) static FORMAT: Format = Format {
     words: "a file of VTK's",
     told_by: ToldBy::Beginning(|of| of.bytes.starts_with(vtk::MARK)),
-    tells_steps: false,
+    numbering: Numbering::Files,
     holds: |path| Ok(if vtk::has_steps(path)? { Holds::Course(None) } else { Holds::Moment }),
     open: |path, most_rows| {
         let moments = vtk::read_moments(path)?;

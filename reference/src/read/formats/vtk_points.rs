@@ -1,12 +1,13 @@
 //! Points of VTK's, legacy or XML.
 
 use crate::read::format::{ByPlace, Format, Holds, ToldBy};
+use crate::read::snapshot::Numbering;
 use crate::read::vtk::{self, Kind};
 
 pub(crate) static FORMAT: Format = Format {
     words: "a file of VTK's",
     told_by: ToldBy::Beginning(|of| vtk::kind(of.unpacked) == Some(Kind::Points)),
-    tells_steps: false,
+    numbering: Numbering::Files,
     holds: |_| Ok(Holds::Moment),
     open: |path, _| {
         let path = path.to_owned();

@@ -40,7 +40,8 @@ impl<'b> Bytes<'b> {
         let word: Vec<u8> = rest[start..].iter().copied().take_while(|byte| !byte.is_ascii_whitespace()).collect();
         let found =
             if word.is_empty() { "the end of the file".to_owned() } else { quoted(&String::from_utf8_lossy(&word)) };
-        self.error_at(self.at + start, expected, found)
+        let error = self.error_at(self.at + start, expected, found);
+        if word.is_empty() { error.cut() } else { error }
     }
 
     /// The next line, without its end; none at the end of the file.
@@ -71,7 +72,7 @@ impl<'b> Bytes<'b> {
             }
             None => {
                 let found = format!("the end of the file after {}", self.all.len().saturating_sub(self.at));
-                Err(self.error_at(self.all.len(), format!("{count} bytes"), found))
+                Err(self.error_at(self.all.len(), format!("{count} bytes"), found).cut())
             }
         }
     }

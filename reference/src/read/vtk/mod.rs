@@ -12,6 +12,7 @@ mod xml;
 
 pub(crate) use collection::read_collection;
 pub(crate) use hdf::{MARK, has_steps, read_moments};
+pub(crate) use points::{component, is_id};
 
 use super::decoding::{Decoded, decoded};
 use super::read_error::ReadError;
@@ -72,10 +73,7 @@ fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
     let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
     let reader = match decoded(BufReader::new(file)).map_err(|error| ReadError::reading(&name, 1, error))? {
         Decoded::Text(reader) => reader,
-        Decoded::Unreadable(compression) => {
-            let found = format!("a file compressed by {compression}");
-            return Err(ReadError::at(&name, 1, "a plain file, gzip or zstd", found));
-        }
+        Decoded::Unreadable(found) => return Err(ReadError::at(&name, 1, "a plain file, gzip or zstd", found)),
     };
     let mut bytes = Vec::new();
     reader.take(MOST + 1).read_to_end(&mut bytes).map_err(|error| ReadError::reading(&name, 1, error))?;

@@ -36,18 +36,32 @@ const ID: [&str; 4] = ["id", "particle_id", "particleid", "particle id"];
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// Returns whether programs call the number of a grain by this name.
+pub(crate) fn is_id(name: &str) -> bool {
+    ID.contains(&name.to_lowercase().as_str())
+}
+
+/// The column of a component of a vector, by the name that dumps give it.
+pub(crate) fn component(vector: &str, axis: usize) -> String {
+    let lower = vector.to_lowercase();
+    let is = |names: &[&str]| names.contains(&lower.as_str());
+    let axis = AXES.get(axis).copied().unwrap_or_default();
+    if is(&VELOCITY) {
+        format!("v{axis}")
+    } else if is(&SPIN) {
+        format!("omega{axis}")
+    } else {
+        format!("{vector}_{axis}")
+    }
+}
+
 impl Array {
     /// The names of its columns.
     fn columns(&self) -> Vec<String> {
-        let lower = self.name.to_lowercase();
-        let is = |names: &[&str]| names.contains(&lower.as_str());
-        let vector = |prefix: &str| AXES.map(|axis| format!("{prefix}{axis}")).to_vec();
         match self.components {
-            1 if is(&ID) => vec!["id".to_owned()],
+            1 if is_id(&self.name) => vec!["id".to_owned()],
             1 => vec![self.name.clone()],
-            3 if is(&VELOCITY) => vector("v"),
-            3 if is(&SPIN) => vector("omega"),
-            3 => vector(&format!("{}_", self.name)),
+            3 => (0..3).map(|axis| component(&self.name, axis)).collect(),
             other => (0..other).map(|at| format!("{}_{at}", self.name)).collect(),
         }
     }

@@ -1,0 +1,139 @@
+//! Times of the steps of a run whose time step may change from one `run` of its log to the next.
+
+use crate::read::log::{Log, LoggedRun};
+
+/// Relative difference above which two time steps are not one.
+const ONE_STEP: f64 = 1e-6;
+
+/// The time step from a step on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Part {
+    from: u64,
+    time_step: f64,
+}
+
+/// The time steps of a run (s).
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Clock(Vec<Part>);
+
+impl Clock {
+    /// Returns the clock of a run with one time step (s).
+    pub(crate) fn constant(time_step: f64) -> Self {
+        Self(vec![Part { from: 0, time_step }])
+    }
+
+    /// Reads the time steps of the runs of a log; none where one of its runs does not say it.
+    pub(crate) fn of_log(log: &Log) -> Option<Self> {
+        let mut parts: Vec<Part> = Vec::new();
+        for run in &log.runs {
+            let Some(from) = run.first_step() else { continue };
+            let next = of_run(run, from)?;
+            // A run that begins at an earlier step has set its steps back: what was before has no steps any more.
+            parts.retain(|part| part.from < from);
+            parts.extend(next);
+        }
+        parts.dedup_by(|next, before| next.time_step.total_cmp(&before.time_step).is_eq());
+        (!parts.is_empty()).then_some(Self(parts))
+    }
+
+    /// Returns the clock of samples with steps and times (s), in their order; none where steps do not grow with times.
+    pub(crate) fn of_samples(samples: &[(u64, f64)]) -> Option<Self> {
+        let ends = samples.first().zip(samples.last()).filter(|(first, last)| last.0 > first.0)?;
+        let mean = (ends.1.1 - ends.0.1) / (ends.1.0 - ends.0.0) as f64;
+        let mut parts = Vec::new();
+        for pair in samples.windows(2).filter(|pair| pair[1].0 > pair[0].0) {
+            parts.push(Part { from: pair[0].0, time_step: (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0) as f64 });
+        }
+        // Times are printed with few digits: steps that differ by less than a thousandth are one.
+        if parts.iter().all(|part| (part.time_step - mean).abs() <= 1e-3 * mean) {
+            parts = vec![Part { from: 0, time_step: mean }];
+        }
+        parts.iter().all(|part| part.time_step > 0.0).then_some(Self(parts))
+    }
+
+    /// Time from one step to a later one (s).
+    pub(crate) fn between(&self, first: u64, last: u64) -> f64 {
+        let parts = self.parts(first, last);
+        parts.map(|(steps, time_step)| steps as f64 * time_step).sum()
+    }
+
+    /// The shortest and the longest time step between two steps (s).
+    pub(crate) fn range(&self, first: u64, last: u64) -> [f64; 2] {
+        let steps = self.parts(first, last).filter(|(steps, _)| *steps > 0).map(|(_, time_step)| time_step);
+        let [shortest, longest] =
+            steps.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], step| [low.min(step), high.max(step)]);
+        let first = self.0.first().map_or(f64::NAN, |part| part.time_step);
+        if longest > 0.0 { [shortest, longest] } else { [first; 2] }
+    }
+
+    /// Returns whether the time step is this one (s) from one step to another.
+    pub(crate) fn is_constant(&self, time_step: f64, first: u64, last: u64, tolerance: f64) -> bool {
+        let tolerance = tolerance.max(ONE_STEP) * time_step;
+        self.range(first, last).into_iter().all(|step| (step - time_step).abs() <= tolerance)
+    }
+
+    /// Steps of each part between two steps, and its time step; the first part holds before it begins too.
+    fn parts(&self, first: u64, last: u64) -> impl Iterator<Item = (u64, f64)> {
+        self.0.iter().enumerate().map(move |(at, part)| {
+            let from = if at == 0 { 0 } else { part.from };
+            let until = self.0.get(at + 1).map_or(u64::MAX, |next| next.from);
+            (last.min(until).saturating_sub(first.max(from)), part.time_step)
+        })
+    }
+}
+
+/// The time steps of one run: of its command, of the column `Dt`, or of the columns `Time` and `Step`.
+fn of_run(run: &LoggedRun, from: u64) -> Option<Vec<Part>> {
+    let thermo = &run.thermo;
+    let column = |name: &str| -> Option<Vec<f64>> { Some(thermo.values(thermo.column(name)?).collect()) };
+    let is_step = |step: &f64| step.is_finite() && *step > 0.0;
+    let samples: Option<Vec<(u64, f64)>> = column("Step")
+        .zip(column("Time"))
+        .map(|(steps, times)| steps.into_iter().zip(times).map(|(step, time)| (step as u64, time)).collect());
+    let timed = samples.as_deref().and_then(Clock::of_samples).map(|clock| clock.0);
+    let last_dt = || column("Dt").and_then(|steps| steps.last().copied()).filter(is_step);
+    match (run.time_step.filter(is_step), timed) {
+        // A step that changes during the run follows from its times alone.
+        (_, Some(timed)) if timed.len() > 1 => Some(timed),
+        (Some(time_step), _) => Some(vec![Part { from, time_step }]),
+        (None, timed) => last_dt().map(|time_step| vec![Part { from, time_step }]).or_else(|| {
+            timed.map(|timed| vec![Part { from, time_step: timed.first().map_or(f64::NAN, |part| part.time_step) }])
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::read::log::parse_log;
+
+    fn clock(text: &str) -> Clock {
+        Clock::of_log(&parse_log(text.as_bytes(), "log").unwrap()).unwrap()
+    }
+
+    #[test]
+    fn each_run_has_its_own_time_step() {
+        let two = "timestep 1e-5\nStep KinEng\n0 0\n4000 0\nLoop time of 1 on 1 procs for 4000 steps with 1 atoms\n\
+                   timestep 2e-5\nStep KinEng\n4000 0\n7000 0\nLoop time of 1 on 1 procs for 3000 steps with 1 atoms\n";
+        let clock = clock(two);
+        assert!((clock.between(0, 4000) - 0.04).abs() < 1e-15);
+        assert!((clock.between(0, 7000) - 0.1).abs() < 1e-15);
+        assert!((clock.between(3000, 5000) - 0.03).abs() < 1e-15);
+        assert_eq!(clock.range(0, 7000), [1e-5, 2e-5]);
+        assert_eq!(clock.range(4000, 7000), [2e-5, 2e-5]);
+    }
+
+    /// The column `Time` alone tells the step, and how it changes.
+    #[test]
+    fn times_of_the_log_tell_the_time_step() {
+        let changing = clock("Step Time\n0 0\n100 0.1\n200 0.3\n");
+        assert_eq!(changing.range(0, 200), [0.001, 0.2 / 100.0]);
+        // The steps were set back: the first run is of another time.
+        let set_back = clock(
+            "timestep 1\nStep KinEng\n0 0\n900 0\nLoop time of 1 on 1 procs for 9 steps with 1 atoms\n\
+                              timestep 2\nStep KinEng\n0 0\n100 0\n",
+        );
+        assert_eq!(set_back.range(0, 900), [2.0, 2.0]);
+    }
+}

@@ -1,0 +1,126 @@
+//! Tables of grains as snapshots: rows of one step or time together, columns by the names that dumps give them.
+
+use crate::read::numbers::NumberColumn;
+use crate::read::read_error::ReadError;
+use crate::read::snapshot::{DumpSnapshot, Numbering};
+use crate::read::table::{Table, read_table};
+use crate::read::vtk::{component, is_id};
+use std::path::Path;
+
+/// How ParaView marks the components of a vector: in a table of one moment, and in one of all.
+const COMPONENTS: [[&str; 3]; 2] = [[":0", ":1", ":2"], ["_X", "_Y", "_Z"]];
+
+/// What ParaView calls the positions.
+const POINTS: &str = "points";
+
+/// Returns whether columns of these names are those of grains: ids and coordinates.
+pub(crate) fn is_of_grains(names: &[&str]) -> bool {
+    let names: Vec<String> = names.iter().map(|name| column_name(name)).collect();
+    let has = |name: &str| names.iter().any(|other| other == name);
+    let is_of_points = names.iter().any(|name| name.eq_ignore_ascii_case("point id"));
+    has("x") && has("y") && (has("id") || is_of_points)
+}
+
+/// The name that dumps give a column.
+fn column_name(name: &str) -> String {
+    for suffixes in COMPONENTS {
+        let Some((vector, axis)) =
+            (0..3).find_map(|axis| Some((name.strip_suffix(suffixes[axis]).filter(|name| !name.is_empty())?, axis)))
+        else {
+            continue;
+        };
+        if vector.eq_ignore_ascii_case(POINTS) {
+            return ["x", "y", "z"][axis].to_owned();
+        }
+        return component(vector, axis);
+    }
+    if is_id(name) { "id".to_owned() } else { name.to_owned() }
+}
+
+/// Grains at one moment.
+pub(crate) struct Moment {
+    pub(crate) step: u64,
+    /// Whether the table has a step or a time of it.
+    pub(crate) is_keyed: bool,
+    pub(crate) snapshot: DumpSnapshot,
+}
+
+/// Where a table has steps, frames and times.
+struct Keys {
+    step: Option<usize>,
+    frame: Option<usize>,
+    time: Option<usize>,
+}
+
+impl Keys {
+    fn of(table: &Table) -> Self {
+        let column = |names: &[&str]| names.iter().find_map(|name| table.column(name));
+        Self { step: column(&["step"]), frame: column(&["TimeStep"]), time: column(&["Time", "time", "t", "time (s)"]) }
+    }
+
+    /// The numbers that rows of one moment share.
+    fn of_row(&self, row: &[f64]) -> [Option<f64>; 2] {
+        [self.step.or(self.frame), self.time].map(|at| at.map(|at| row[at]))
+    }
+}
+
+/// Reads the moments of the table at a path.
+///
+/// # Errors
+/// The file cannot be read, has two columns of one meaning, or goes back in time.
+pub(crate) fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
+    let name = path.to_string_lossy();
+    let table = read_table(path)?;
+    let keys = Keys::of(&table);
+    let columns = columns(&name, &table)?;
+    let mut moments: Vec<Moment> = Vec::new();
+    let mut row = 0;
+    while row < table.rows() {
+        let key = keys.of_row(table.rows_from(row, 1));
+        let rows = (row..table.rows()).take_while(|&other| keys.of_row(table.rows_from(other, 1)) == key).count();
+        let line = row as u64 + 2;
+        let before = row.checked_sub(1).map(|last| keys.of_row(table.rows_from(last, 1)));
+        if let Some([number, time]) = before.filter(|before| goes_back(*before, key)) {
+            let expected = format!("a moment after {:?}", time.or(number).unwrap_or_default());
+            return Err(ReadError::at(&name, line, expected, format!("{:?}", key[1].or(key[0]).unwrap_or_default())));
+        }
+        let step = match key[0] {
+            Some(step) if step >= 0.0 && step.fract() == 0.0 => step as u64,
+            Some(step) => return Err(ReadError::at(&name, line, "a step, a whole number from 0", step.to_string())),
+            None => moments.len() as u64,
+        };
+        moments.push(Moment {
+            step,
+            is_keyed: key != [None; 2],
+            snapshot: DumpSnapshot {
+                step,
+                numbering: if keys.step.is_some() { Numbering::Steps } else { Numbering::Frames },
+                time: key[1],
+                columns: columns.clone(),
+                first_line: line,
+                values: table.rows_from(row, rows).to_vec(),
+                ..DumpSnapshot::default()
+            },
+        });
+        row += rows;
+    }
+    Ok(moments)
+}
+
+fn goes_back(before: [Option<f64>; 2], key: [Option<f64>; 2]) -> bool {
+    before.into_iter().zip(key).any(|pair| matches!(pair, (Some(before), Some(now)) if now < before))
+}
+
+/// The columns by the names that dumps give them.
+fn columns(file: &str, table: &Table) -> Result<Vec<NumberColumn>, ReadError> {
+    let mut columns: Vec<NumberColumn> = Vec::new();
+    for column in &table.columns {
+        let name = column_name(&column.name);
+        if columns.iter().any(|other| other.name == name) {
+            let expected = format!("one column of the meaning `{name}`");
+            return Err(ReadError::at(file, 1, expected, format!("`{}` beside another", column.name)));
+        }
+        columns.push(NumberColumn { name, ..column.clone() });
+    }
+    Ok(columns)
+}

@@ -1,0 +1,42 @@
+//! Ids of grains: whole numbers, each once in a snapshot.
+
+use crate::read::read_error::ReadError;
+use crate::read::snapshot::DumpSnapshot;
+
+/// Whole numbers up to here are numbers of their own in f64.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+
+/// Ids of a snapshot with their rows; the memory is kept from one snapshot to the next.
+#[derive(Debug, Default)]
+pub(crate) struct Ids(Vec<(u64, u32)>);
+
+impl Ids {
+    /// Refuses a column of ids with a number that is not whole, is negative, or occurs twice.
+    pub(crate) fn check(&mut self, file: &str, snapshot: &DumpSnapshot, column: usize) -> Result<(), ReadError> {
+        let fault = |row: u32, expected: String, found: String| {
+            ReadError::at(file, snapshot.first_line + u64::from(row), expected, found)
+        };
+        self.0.clear();
+        let mut sorted = true;
+        for (row, value) in (0..).zip(snapshot.values(column)) {
+            if !(0.0..=LARGEST_WHOLE).contains(&value) || value.fract() != 0.0 {
+                let name = &snapshot.columns[column].name;
+                return Err(fault(row, format!("a whole number from 0 in the column `{name}`"), value.to_string()));
+            }
+            let id = value as u64;
+            sorted &= self.0.last().is_none_or(|(last, _)| *last < id);
+            self.0.push((id, row));
+        }
+        if sorted {
+            return Ok(());
+        }
+        self.0.sort_unstable();
+        let twice = self.0.windows(2).find(|pair| pair[0].0 == pair[1].0);
+        match twice {
+            Some(pair) => {
+                Err(fault(pair[1].1, "an id that no row above has".to_owned(), format!("{} once more", pair[1].0)))
+            }
+            None => Ok(()),
+        }
+    }
+}
