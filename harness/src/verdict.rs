@@ -157,12 +157,15 @@ impl Verdict {
         }
     }
 
-    /// The row, unless as much is allowed as its scale is: what may be off by as much as it is itself tells nothing.
+    /// The row, unless it passes with an allowed error above a part of its scale: amber, with the reason.
     #[must_use]
-    pub fn unless_all_passes(self) -> Self {
-        if self.outcome == Outcome::Pass && self.allowed >= 1.0 {
-            let times = format!("cannot tell: {:.3} times what it is measured by is allowed", self.allowed);
-            return self.left(Outcome::NoReference, times);
+    pub fn unless_wider_than(self, most: f64) -> Self {
+        if self.outcome == Outcome::Pass && self.allowed > most {
+            let [allowed, most] = [self.allowed, most].map(|part| 100.0 * part);
+            return self.left(
+                Outcome::NoReference,
+                format!("cannot tell: an error of {allowed:.3} % of the scale is allowed, above {most} %"),
+            );
         }
         self
     }

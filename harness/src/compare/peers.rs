@@ -4,6 +4,7 @@
 use super::pointwise::largest;
 use crate::expect::{Measured, larger, weight};
 use grainbench_scene::record::Series;
+use std::collections::VecDeque;
 
 /// One of the runs.
 pub struct Peer {
@@ -21,16 +22,70 @@ pub struct Compared<'a> {
     pub name: &'a str,
     /// Its unit.
     pub unit: &'a str,
+    /// Scale that differences are divided by.
+    pub scale: f64,
     /// Samples that both have.
-    pub samples: usize,
-    /// The worst of them.
-    pub measured: Measured,
-    /// By how much the runs differ, as a part of the scale.
-    pub between: f64,
-    /// What half the time step changes, as a part of the scale.
-    pub halved: f64,
+    pub samples: Vec<Sample>,
     /// Largest uncertainty of what was observed, as a part of the scale.
     pub open: f64,
+}
+
+/// One sample of a column beside the nearest run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time (s).
+    pub time: f64,
+    /// Value that was observed.
+    pub found: f64,
+    /// Value of the nearest run.
+    pub expected: f64,
+    /// By how much the runs differ around this time, as a part of the scale.
+    pub between: f64,
+    /// Change by half the time step around this time, as a part of the scale.
+    pub halved: f64,
+}
+
+/// The sample that decides on a column.
+pub struct Decisive {
+    /// The sample.
+    pub sample: Sample,
+    /// Largest |error| that passes there.
+    pub allowed: f64,
+    /// How many samples allow more than [`WIDE`].
+    pub wide: usize,
+    /// Time of the first sample outside (s).
+    pub first_outside: Option<f64>,
+}
+
+/// Largest allowed error, as a part of the scale, by which a sample can be judged.
+pub const WIDE: f64 = 0.05;
+
+impl Compared<'_> {
+    /// The sample with the largest error in units of what is allowed. Where none is outside, samples that allow more than
+    /// [`WIDE`] are passed over as long as there are others.
+    #[must_use]
+    pub fn decisive(&self, allowed: impl Fn(&Sample) -> f64) -> Option<Decisive> {
+        let ratio = |sample: &Sample| weight((sample.found - sample.expected) / self.scale) / allowed(sample);
+        let is_wide = |sample: &Sample| allowed(sample) > WIDE;
+        let worst = |samples: &mut dyn Iterator<Item = &Sample>| {
+            samples.max_by(|a, b| weight(ratio(a)).total_cmp(&weight(ratio(b)))).copied()
+        };
+        let outside = |sample: &&Sample| weight(ratio(sample)) > 1.0;
+        let first_outside = self.samples.iter().find(outside).map(|sample| sample.time);
+        let sample = match first_outside {
+            Some(_) => worst(&mut self.samples.iter()),
+            None => worst(&mut self.samples.iter().filter(|sample| !is_wide(sample)))
+                .or_else(|| worst(&mut self.samples.iter())),
+        }?;
+        let wide = self.samples.iter().filter(|sample| is_wide(sample)).count();
+        Some(Decisive { sample, allowed: allowed(&sample), wide, first_outside })
+    }
+
+    /// What was measured at a sample.
+    #[must_use]
+    pub fn measured(&self, sample: &Sample) -> Measured {
+        Measured::new(sample.found, sample.expected, self.scale)
+    }
 }
 
 /// Compares the columns of an observed series that `is_compared` takes and that every run has. `scale` says what
@@ -68,21 +123,91 @@ pub fn against<'a>(
         let scale = scale_in(nearest, &column.unit);
         let (times, found, expected) = together(observed, &observed.values[at], &nearest.series, &column.name)?;
         let own = nearest.series.column(&column.name)?;
-        let between = peers.iter().filter_map(|peer| together(&nearest.series, own, &peer.series, &column.name));
-        let halved = with_half.map_or(0.0, |(peer, half)| {
-            apart(peer.series.column(&column.name).unwrap_or_default(), half.column(&column.name).unwrap_or_default())
+        let others = peers.iter().filter_map(|peer| together(&nearest.series, own, &peer.series, &column.name));
+        let between: Vec<Envelope> = others.map(|(times, a, b)| Envelope::of(times, &a, &b)).collect();
+        let halved = with_half.map(|(peer, half)| {
+            let of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
+            Envelope::of(peer.series.time.clone(), &of(&peer.series), &of(half))
         });
+        let sample = |((time, found), expected): ((&f64, &f64), &f64)| Sample {
+            time: *time,
+            found: *found,
+            expected: *expected,
+            between: between.iter().map(|envelope| envelope.at(*time)).fold(0.0, larger) / scale,
+            halved: halved.as_ref().map_or(0.0, |envelope| envelope.at(*time)) / scale,
+        };
         (scale > 0.0).then(|| Compared {
             name: &column.name,
             unit: &column.unit,
-            samples: times.len(),
-            measured: Measured::worst_of(&times, &found, &expected, scale),
-            between: between.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale,
-            halved: halved / scale,
+            scale,
+            samples: times.iter().zip(&found).zip(&expected).map(sample).collect(),
             open: largest(&uncertainty[at]) / scale,
         })
     });
     Some((&nearest.name, compared.collect()))
+}
+
+/// How far two runs are apart in the course of time.
+struct Envelope {
+    times: Vec<f64>,
+    values: Vec<f64>,
+}
+
+/// Half the width of the window of an envelope, as a part of the course.
+const WINDOW: f64 = 0.01;
+
+impl Envelope {
+    /// Of two runs at times they share (s): at each time the largest difference of the samples around it, or √2 times the root
+    /// mean square of all up to there, which is the amplitude of what oscillates. What differs at an impact alone does not
+    /// widen what is allowed long after it.
+    fn of(times: Vec<f64>, a: &[f64], b: &[f64]) -> Self {
+        let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
+        let count = off.len();
+        let half = ((WINDOW * count as f64) as usize).max(1);
+        let mut sums = vec![0.0; count + 1];
+        for (at, off) in off.iter().enumerate() {
+            sums[at + 1] = sums[at] + off * off;
+        }
+        let largest = windowed(&off, half);
+        let value = |at: usize| {
+            let end = (at + half + 1).min(count);
+            larger(largest[at], (2.0 * sums[end] / end as f64).sqrt())
+        };
+        Self { values: (0..count).map(value).collect(), times }
+    }
+
+    /// The value at the sample nearest to a time (s).
+    fn at(&self, time: f64) -> f64 {
+        let next = self.times.partition_point(|other| *other < time).min(self.values.len().saturating_sub(1));
+        let before = next.saturating_sub(1);
+        let is_nearer = |a: usize, b: usize| (self.times[a] - time).abs() < (self.times[b] - time).abs();
+        match self.values.len() {
+            0 => 0.0,
+            _ if is_nearer(before, next) => self.values[before],
+            _ => self.values[next],
+        }
+    }
+}
+
+/// The largest of the values from `half` places before each to `half` behind it; not a number where one is not.
+fn windowed(values: &[f64], half: usize) -> Vec<f64> {
+    let mut queue: VecDeque<usize> = VecDeque::new();
+    let mut found = Vec::with_capacity(values.len());
+    for at in 0..values.len() + half {
+        if at < values.len() {
+            while queue.back().is_some_and(|&last| weight(values[last]) <= weight(values[at])) {
+                queue.pop_back();
+            }
+            queue.push_back(at);
+        }
+        if let Some(middle) = at.checked_sub(half) {
+            while queue.front().is_some_and(|&first| first + half < middle) {
+                queue.pop_front();
+            }
+            found.push(queue.front().map_or(0.0, |&first| values[first]));
+        }
+    }
+    found
 }
 
 /// Times (s) that two series share, and the values of a column there; none where fewer than two are shared.
@@ -138,7 +263,9 @@ mod tests {
             let scale = |largest: &dyn Fn(&str) -> f64, unit: &str| largest(unit);
             let (nearest, compared) = against(&observed, &[vec![0.0; 3]], peers, |_| true, scale)?;
             let column = compared.first()?;
-            Some((nearest.to_owned(), column.measured.error(), column.between, column.halved))
+            let worst = column.decisive(|_| 1e-6)?.sample;
+            let last = column.samples.last()?;
+            Some((nearest.to_owned(), column.measured(&worst).error(), last.between, last.halved))
         };
         let peers =
             [peer("lost", [0.0, f64::NAN, 2.0], None), peer("sound", [0.0, 1.5, 2.0], Some([0.0, f64::NAN, 2.0]))];
@@ -147,5 +274,20 @@ mod tests {
             nearest == "sound" && (error + 0.25).abs() < 1e-15 && between.is_nan() && halved.is_nan()
         }));
         assert!(against_all(&peers[..1]).is_some_and(|(_, error, ..)| error.is_nan()));
+    }
+
+    /// A run whose half step differs at an impact alone is not judged as loosely long after it.
+    #[test]
+    fn what_is_allowed_follows_the_course() {
+        let mut off = vec![0.0; 1000];
+        off[300] = 1.0;
+        let times: Vec<f64> = (0..1000).map(f64::from).collect();
+        let envelope = Envelope::of(times, &off, &vec![0.0; 1000]);
+        assert_eq!((envelope.at(0.0), envelope.at(280.0)), (0.0, 0.0));
+        assert!([291.0, 300.0, 309.0].iter().all(|&at| envelope.at(at) == 1.0));
+        assert!(envelope.at(400.0) < 0.08 && envelope.at(999.0) < 0.05);
+        assert!(
+            windowed(&[0.0, f64::NAN, 0.0, 0.0], 1)[2].is_nan() && windowed(&[0.0, f64::NAN, 0.0, 0.0], 1)[3] == 0.0
+        );
     }
 }
