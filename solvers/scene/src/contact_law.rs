@@ -222,6 +222,18 @@ impl Springs {
 }
 
 impl ContactLaw {
+    /// Coefficient of restitution e = exp(−πζ/√(1 − ζ²)) of the damping ratio.
+    #[must_use]
+    pub fn restitution(&self) -> f64 {
+        libm::exp(-PI * self.damping_ratio / (1.0 - self.damping_ratio * self.damping_ratio).sqrt())
+    }
+
+    /// Sets the damping ratio ζ = −ln e/√(π² + ln² e) that gives a coefficient of restitution.
+    pub fn set_restitution(&mut self, restitution: f64) {
+        let log = libm::log(restitution);
+        self.damping_ratio = -log / (PI * PI + log * log).sqrt();
+    }
+
     /// Whether a tangential force can act: it needs strength to be limited to.
     #[must_use]
     pub fn has_friction(&self) -> bool {
@@ -323,18 +335,18 @@ impl ContactSpec {
             let found = restitution.to_string();
             return Err(check.error(&key("restitution"), "a coefficient above 0 and at most 1", &found));
         }
-        let log = libm::log(restitution);
-        let law = ContactLaw {
+        let mut law = ContactLaw {
             springs: Springs::Absent,
             friction,
             cohesion: number("cohesion", self.cohesion, "force (N)")?,
             stiffness_damping: number("stiffness_damping", self.stiffness_damping, "time (s)")?,
             normal_damping: number("normal_damping", self.normal_damping, "rate (1/s)")?,
             tangential_damping: number("tangential_damping", self.tangential_damping, "rate (1/s)")?,
-            damping_ratio: -log / (PI * PI + log * log).sqrt(),
+            damping_ratio: 0.0,
             rolling_friction: number("rolling_friction", self.rolling_friction, "coefficient")?,
             rolling_damping: number("rolling_damping", self.rolling_damping, "damping ratio")?,
         };
+        law.set_restitution(restitution);
         let springs = match self.law {
             LawKind::Linear => self.linear(name, check, law.has_friction())?,
             LawKind::Hertz => self.hertz(name, around)?,

@@ -123,12 +123,12 @@ impl Effect {
             Self::Friction => of_law(scene, "friction", |law| law.friction),
             Self::Cohesion => of_law(scene, "cohesion", |law| law.cohesion),
             Self::Hertz => of_law(scene, "youngs_modulus", ContactLaw::effective_modulus),
-            Self::Restitution => of_law(scene, "restitution", |law| law.damping_ratio),
+            Self::Restitution => of_law(scene, "restitution", restitution),
             Self::RollingResistance => of_law(scene, "rolling_friction", |law| law.rolling_friction),
             Self::ContactDamping => [
                 ("normal_damping", (|law| law.normal_damping) as fn(&ContactLaw) -> f64),
                 ("stiffness_damping", |law| law.stiffness_damping),
-                ("restitution", |law| law.damping_ratio),
+                ("restitution", restitution),
                 ("tangential_damping", |law| if law.has_friction() { law.tangential_damping } else { 0.0 }),
             ]
             .into_iter()
@@ -297,6 +297,11 @@ fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Optio
     })
 }
 
+/// Coefficient of restitution as the scene has it, to twelve digits; 0 without its dashpot.
+fn restitution(law: &ContactLaw) -> f64 {
+    if law.damping_ratio == 0.0 { 0.0 } else { (1e12 * law.restitution()).round() / 1e12 }
+}
+
 /// Gives linear springs a tangential one too, as stiff as the normal one.
 const fn bear_shear(law: &mut ContactLaw) {
     if let Springs::Linear { normal, tangential } = &mut law.springs {
@@ -327,6 +332,18 @@ fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    /// The scene says a coefficient of restitution, not a damping ratio.
+    #[test]
+    fn restitution_is_told_as_the_scene_has_it() {
+        let mut law = ContactLaw::default();
+        for coefficient in [0.05, 0.5, 0.7, 0.99] {
+            law.set_restitution(coefficient);
+            assert_eq!(restitution(&law), coefficient);
+        }
+        law.set_restitution(1.0);
+        assert_eq!(restitution(&law), 0.0);
+    }
 
     use super::*;
     use crate::source::SceneSource;

@@ -22,8 +22,17 @@ pub struct Idle {
     pub same: bool,
     /// Particle-steps and contact evaluations with it over those without it.
     pub counts: f64,
-    /// Time of the loop with it over that without it, the median of runs in turn.
-    pub time: f64,
+    /// Time of the loop with it over that without it, the median of runs in turn; none of runs that are too short to time.
+    pub time: Option<f64>,
+}
+
+/// Shortest run whose time is compared (s): below it a ratio is that of the machine's noise.
+const SHORTEST: f64 = 0.1;
+
+/// Ratio of the times of two runs; none where one of them is too short to time.
+pub(super) fn ratio_of_times(with: &Record, without: &Record) -> Option<f64> {
+    let [with, without] = [with, without].map(|record| record.cost.wall_seconds);
+    (with >= SHORTEST && without >= SHORTEST).then(|| with / without)
 }
 
 /// Tries an effect in a scene that does not call for it, in so many runs in turn as there is `patience` for; none where
@@ -57,25 +66,24 @@ pub fn try_idly(
         Ok((time_step, _)) => Resolution::TimeStep(time_step),
         Err(_) => *resolution,
     };
-    let mut ratios: Vec<f64> = Vec::new();
+    let mut ratios: Vec<Option<f64>> = Vec::new();
     let mut records = [None, None];
     let start = Instant::now();
     while ratios.len() < FEWEST || (ratios.len() < MOST && start.elapsed() < patience) {
-        let mut times = [0.0; 2];
         for (at, scene) in [&plain, &idle].into_iter().enumerate() {
-            let record = solver.run(scene, &resolution, &mut ())?;
-            times[at] = record.cost.wall_seconds.max(f64::MIN_POSITIVE);
-            records[at] = Some(record);
+            records[at] = Some(solver.run(scene, &resolution, &mut ())?);
         }
-        ratios.push(times[1] / times[0]);
+        let [Some(without), Some(with)] = &records else { return Ok(None) };
+        ratios.push(ratio_of_times(with, without));
     }
-    ratios.sort_by(f64::total_cmp);
+    let mut timed: Vec<f64> = ratios.iter().copied().flatten().collect();
+    timed.sort_by(f64::total_cmp);
     let [Some(without), Some(with)] = records else { return Ok(None) };
     let work = |record: &Record| record.cost.work() as f64;
     Ok(Some(Idle {
         same: same(&without, &with),
         counts: work(&with) / work(&without).max(1.0),
-        time: ratios[ratios.len() / 2],
+        time: timed.get(timed.len() / 2).copied().filter(|_| timed.len() == ratios.len()),
     }))
 }
 

@@ -1,6 +1,6 @@
 //! The ledger of a case.
 
-use super::idle::{Idle, try_idly};
+use super::idle::{Idle, ratio_of_times, try_idly};
 use crate::identity;
 use crate::result_cache::ResultCache;
 use grainbench_harness::case::Case;
@@ -160,9 +160,8 @@ impl Ledger {
             let with = self.runner.run(run);
             if let (Ok(with), Ok(without)) = (with, self.run_without(run, piece.effect)) {
                 let work = |record: &Record| record.cost.work() as f64;
-                let time = |record: &Record| record.cost.wall_seconds;
                 entry.counts = Some(work(&with.record) / work(&without.record).max(1.0));
-                entry.time = Some(time(&with.record) / time(&without.record).max(f64::MIN_POSITIVE));
+                entry.time = ratio_of_times(&with.record, &without.record);
             }
         }
         entry
@@ -233,7 +232,7 @@ impl Ledger {
                 entry.worth = Worth::NotInert;
             }
             entry.counts.get_or_insert(idle.counts);
-            entry.time.get_or_insert(idle.time);
+            entry.time = entry.time.or(idle.time);
             entry.tried.push(solver.to_owned());
         }
         (!entry.tried.is_empty()).then_some(entry)

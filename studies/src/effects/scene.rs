@@ -1,6 +1,6 @@
 //! What each effect is worth in a scene that no case is made of: what changes of what its probes tell, and what that costs.
 
-use super::idle::try_idly;
+use super::idle::{ratio_of_times, try_idly};
 use grainbench_reports::study::effects::{Entry, Shift, Worth};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
@@ -91,14 +91,14 @@ impl Asked<'_> {
         };
         if let Some(record) = record {
             entry.counts = Some(whole.cost.work() as f64 / (record.cost.work() as f64).max(1.0));
-            entry.time = Some(whole.cost.wall_seconds / record.cost.wall_seconds.max(f64::MIN_POSITIVE));
+            entry.time = ratio_of_times(whole, &record);
         }
     }
 
     fn idly(&self, effect: Effect, entry: &mut Entry) -> Option<()> {
         let idle = try_idly(self.solver, self.scene, &self.resolution, effect, PATIENCE).ok()??;
         entry.worth = if idle.same { Worth::Inert } else { Worth::NotInert };
-        (entry.counts, entry.time) = (Some(idle.counts), Some(idle.time));
+        (entry.counts, entry.time) = (Some(idle.counts), idle.time);
         entry.tried.push(self.solver.name());
         Some(())
     }
