@@ -331,9 +331,9 @@ fn outputs_are_compared_in_time_where_their_steps_differ() {
     assert!(rows[2]["allowed"].as_f64().unwrap() < 1.2 * (1e-5 + 9.0 * 0.003 * 0.003 / 8.0), "{}", rows[2]);
     let (code, rows) = compared(&["a.csv", "off.csv", "--tolerance", "1e-5", "--columns", "x"]);
     assert_eq!((code, count(&rows, "fail"), rows.len()), (1, 1, 3), "{rows:#?}");
-    // A column printed `0.0` cannot be told from one of 0.04: half a unit of what is printed is as much.
+    // `0.0` in a file with more digits elsewhere is a whole number, not one of tenths.
     let (code, rows) = compared(&["a.csv", "off.csv", "--columns", "f"]);
-    assert_eq!((code, &rows[2]["verdict"]), (1, &"no-reference".into()), "{rows:#?}");
+    assert_eq!((code, &rows[2]["verdict"]), (1, &"fail".into()), "{rows:#?}");
     let (code, rows) = compared(&["a.csv", "short.csv"]);
     assert_eq!((code, count(&rows[..2], "fail"), count(&rows[2..], "pass")), (1, 2, 2), "{rows:#?}");
     let (code, rows) = compared(&["a.csv", "short.csv", "--allow-missing"]);
@@ -341,4 +341,39 @@ fn outputs_are_compared_in_time_where_their_steps_differ() {
     assert_eq!(compared(&["a.csv", "named.csv", "--tolerance", "1e-5", "--map", "x=way,f=g,time=t"]).0, 0);
     let refused = refusal(directory.path(), &["compare", "a.csv", "b.csv", "--columns", "y"]);
     assert!(refused.contains("expected the column `y`, found `x f`"), "{refused}");
+}
+
+/// Digits are those of each row: few of them cannot hide a difference, and never hide a row.
+#[test]
+fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
+    let directory = tempfile::tempdir().unwrap();
+    let compared = |a: &str, b: &str, more: &[&str]| {
+        fs::write(directory.path().join("a.csv"), a).unwrap();
+        fs::write(directory.path().join("b.csv"), b).unwrap();
+        let answer = grainbench(directory.path(), &[&["compare", "a.csv", "b.csv", "--json"], more].concat());
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        (answer.code.unwrap(), results["verdicts"].as_array().unwrap()[2..].to_vec())
+    };
+    let verdicts =
+        |rows: &[Value]| rows.iter().map(|row| row["verdict"].as_str().unwrap().to_owned()).collect::<Vec<_>>();
+    // Whole numbers are exact.
+    let (code, rows) = compared("step,n\n0,3\n1,3\n", "step,n\n0,3\n1,4\n", &[]);
+    assert_eq!((code, verdicts(&rows)), (1, vec!["fail".to_owned()]), "{rows:#?}");
+    // The small value has as many places as it shows, whatever the large one beside it leaves open.
+    let (code, rows) = compared("step,v\n0,1.2e6\n1,0.02\n", "step,v\n0,1.2e6\n1,3.5\n", &[]);
+    assert_eq!((code, verdicts(&rows)), (1, vec!["fail".to_owned()]), "{rows:#?}");
+    // Digits that leave more than a twentieth of the scale open are told, and are no success.
+    let (code, rows) = compared("step,v\n0,0.1\n1,0.4\n", "step,v\n0,0.1\n1,0.44\n", &[]);
+    assert_eq!((code, verdicts(&rows)), (1, vec!["no-reference".to_owned()]), "{rows:#?}");
+    assert!(rows[0]["detail"].as_str().unwrap().starts_with("cannot tell: "), "{rows:#?}");
+    // What one has alone is listed; kinds alone are no comparison.
+    let (code, rows) = compared("step,type,v\n0,1,2.5\n", "step,type,w\n0,1,2.5\n", &[]);
+    assert_eq!(
+        (code, verdicts(&rows)),
+        (1, ["pass", "no-reference", "no-reference"].map(str::to_owned).to_vec()),
+        "{rows:#?}"
+    );
+    assert_eq!(rows[1]["detail"], "only a.csv has it");
+    // An option that takes one value takes one.
+    assert_eq!(compared("step,v\n0,0.5\n", "step,v\n0,0.5\n", &["--dt", "1e-5", "--allow-missing"]).0, 0);
 }

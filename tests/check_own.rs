@@ -169,3 +169,148 @@ fn files_that_do_not_tell_are_refused() {
         "at least one file",
     );
 }
+
+/// A file of the ball that bounces along a floor.
+fn of_ball(name: &str) -> String {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "ball", name].iter().collect();
+    path.display().to_string()
+}
+
+/// Exit code, rows, and the message of `check` on files of the ball.
+fn ball(files: &[&str], more: &[&str]) -> (Option<i32>, Vec<Value>, String) {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = of_ball(if files[0].starts_with("same-ids") { "two-balls.toml" } else { "ball.toml" });
+    let files: Vec<String> = files.iter().map(|file| of_ball(file)).collect();
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let words = [&["check", &scene, "--json", "--dump"], &files[..], more].concat();
+    let answer = grainbench(directory.path(), &words);
+    let rows = serde_json::from_str(&answer.out).map(|results: Value| results["verdicts"].as_array().unwrap().clone());
+    (answer.code, rows.unwrap_or_default(), answer.err)
+}
+
+fn fails(rows: &[Value]) -> usize {
+    count(rows, |row| row["verdict"] == "fail")
+}
+
+/// Two runs of one log with time steps of their own: by the log, by the times of the file, and by both.
+#[test]
+fn each_run_of_a_log_has_its_own_time_step() {
+    let log = of_ball("twosteps.log.gz");
+    for (file, more) in [
+        ("twosteps.dump.gz", &["--log", &log][..]),
+        ("twosteps-time.dump.gz", &["--log", &log]),
+        ("twosteps-time.dump.gz", &[]),
+    ] {
+        let (code, rows, err) = ball(&[file], more);
+        assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
+        assert_eq!(rows[1]["resolution"], "dt=0.00001 s to 0.00002 s", "{}", rows[1]);
+    }
+    let (code, _, err) = ball(&["twosteps.dump.gz"], &["--log", &log, "--dt", "1e-5"]);
+    assert!(code == Some(2) && err.contains("expected the time step of the files, 0.00001 s to 0.00002 s"), "{err}");
+    // As many steps of 10 µs throughout are another motion.
+    assert_eq!(ball(&["twosteps.dump.gz"], &["--dt", "2e-5"]).0, Some(1));
+}
+
+#[test]
+fn a_run_that_starts_late_counts_from_its_first_sample() {
+    let (code, rows, err) = ball(&["late-start.dump.gz"], &["--dt", "1e-5"]);
+    assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
+    assert!(rows[0]["because"].as_str().unwrap().contains("first sample, step 3000000000 (t = 30000"), "{}", rows[0]);
+    // A sample that is not the start of the scene is not taken for it.
+    let directory = tempfile::tempdir().unwrap();
+    let mut text = String::new();
+    let file = fs::File::open(of_ball("late-start.dump.gz")).unwrap();
+    std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(file), &mut text).unwrap();
+    let second = text.split_inclusive("ITEM: TIMESTEP\n").skip(2).collect::<String>();
+    fs::write(directory.path().join("later"), format!("ITEM: TIMESTEP\n{second}")).unwrap();
+    let answer = grainbench(directory.path(), &["check", &of_ball("ball.toml"), "--dump", "later", "--dt", "1e-5"]);
+    assert!(answer.code == Some(2) && answer.err.contains("in a first sample at step 3000000200"), "{}", answer.err);
+}
+
+#[test]
+fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
+    let (code, _, err) = ball(&["cut-off.dump.gz"], &["--dt", "1e-5"]);
+    assert!(code == Some(2) && err.contains("(--partial judges the whole frames in front of it)"), "{err}");
+    let (code, rows, _) = ball(&["cut-off.dump.gz"], &["--dt", "1e-5", "--partial"]);
+    assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{rows:#?}");
+    assert_eq!(rows[0]["verdict"], "known");
+    assert!(rows[0]["detail"].as_str().unwrap().contains("cut-off.dump.gz:361: expected a step"), "{}", rows[0]);
+    let directory = tempfile::tempdir().unwrap();
+    let cut = of_ball("cut-off.dump.gz");
+    for words in [&["compare", &cut, &cut][..], &["fields", &cut, "--cell", "0.02", "--time-step", "1e-5"]] {
+        assert_eq!(grainbench(directory.path(), words).code, Some(2));
+        let answer = grainbench(directory.path(), &[words, &["--partial"]].concat());
+        assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
+        assert!((answer.out + &answer.err).contains("cut-off.dump.gz:361: expected a step"));
+    }
+}
+
+/// `TimeStep` of ParaView's tables is the number of a frame, `Time` is in seconds; a table a time tells no times.
+#[test]
+fn tables_of_grains_are_read_as_grains() {
+    let (code, rows, err) = ball(&["paraview-all.csv.gz"], &["--dt", "1e-5"]);
+    assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
+    let series =
+        ["series/ball_0.csv", "series/ball_1.csv", "series/ball_2.csv", "series/ball_3.csv", "series/ball_4.csv"];
+    let (code, _, err) = ball(&series, &["--dt", "1e-5"]);
+    assert!(code == Some(2) && err.contains("or --frame-interval, found numbers of frames only"), "{err}");
+    let (code, rows, err) = ball(&series, &["--dt", "1e-5", "--frame-interval", "0.002", "--partial"]);
+    assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
+    let (code, rows, _) = ball(&series, &["--dt", "1e-5", "--frame-interval", "0.003", "--partial"]);
+    assert!(code == Some(1) && fails(&rows) > 0);
+}
+
+#[test]
+fn an_id_that_occurs_twice_is_an_error() {
+    let (code, _, err) = ball(&["same-ids/zero_0.vtk", "same-ids/zero_200.vtk"], &["--dt", "1e-5"]);
+    assert!(code == Some(2) && err.contains("expected an id that no row above has, found 0 once more"), "{err}");
+    let directory = tempfile::tempdir().unwrap();
+    for (ids, said) in
+        [("1,1", "found 1 once more"), ("-1,2", "expected a whole number from 0 in the column `id`, found -1")]
+    {
+        let [a, b] = [&ids[..ids.len() - 2], &ids[ids.len() - 1..]];
+        let text = format!("step,id,x,y,z\n0,{a},0,0,0\n0,{b},0.5,0,0\n");
+        fs::write(directory.path().join("grains.csv"), text).unwrap();
+        let answer = grainbench(directory.path(), &["compare", "grains.csv", "grains.csv"]);
+        assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
+    }
+}
+
+/// Lengths in centimetres are no metres, in whatever reader.
+#[test]
+fn other_units_are_refused() {
+    let (code, _, err) = ball(&["cgs.dump.gz"], &["--dt", "1e-5"]);
+    assert!(code == Some(2) && err.contains("expected the units `si`"), "{err}");
+    let directory = tempfile::tempdir().unwrap();
+    let cgs = of_ball("cgs.dump.gz");
+    let answer = grainbench(directory.path(), &["fields", &cgs, "--cell", "1"]);
+    assert!(
+        answer.code == Some(2) && answer.err.contains("expected the units `si` or `lj`, found `cgs`"),
+        "{}",
+        answer.err
+    );
+    let answer = grainbench(directory.path(), &["compare", &of_ball("twosteps-time.dump.gz"), &cgs]);
+    assert!(
+        answer.code == Some(2) && answer.err.contains("expected the units `si` of the other file"),
+        "{}",
+        answer.err
+    );
+    assert_eq!(grainbench(directory.path(), &["compare", &cgs, &cgs]).code, Some(0));
+}
+
+/// Above the critical step our own solvers would not hold: what they leave is no measure.
+#[test]
+fn a_time_step_above_the_critical_one_is_refused() {
+    let text = "time,ball.x,ball.y,ball.z\n0,0,0,0.02\n0.004,0.0008,0,0.0179215\n";
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("coarse.csv"), text).unwrap();
+    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--dt", "2e-3", "--partial"];
+    let answer = grainbench(directory.path(), &words);
+    // 2√(m/k) with m = 4/3 π r³ ρ = 1.309 g and k = 10⁴ N/m.
+    assert!(
+        answer.code == Some(2) && answer.err.contains("= 7.235981e-4 s; found 0.002 s, 2.764 of it"),
+        "{}",
+        answer.err
+    );
+    assert_ne!(grainbench(directory.path(), &[&words[..], &["--allow-unstable"]].concat()).code, Some(2));
+}

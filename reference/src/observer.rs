@@ -253,7 +253,8 @@ impl<'s> Observer<'s> {
         let may_leave = self.scene.stays.removal.is_some() && rows < grains;
         if rows != grains && !may_leave {
             let expected = format!("as many grains as the scene has, {grains}, at step {}", snapshot.step);
-            return wrong(expected, format!("{rows}"));
+            let hint = if rows < grains { " (where grains leave, the scene has `removal`)" } else { "" };
+            return wrong(expected, format!("{rows}{hint}"));
         }
         let mut order: Vec<usize> = (0..rows).collect();
         let Some(id) = columns.id else { return Ok(order.into_iter().enumerate().collect()) };

@@ -1,10 +1,12 @@
 //! How much of the run some outputs cover: what was not seen to its end is not judged.
 
+use super::at;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::{Bound, Expected, Measured};
 use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
+use grainbench_reference::outputs::Outputs;
 use grainbench_reports::number;
 use grainbench_scene::scene::{Duration, Scene};
 
@@ -12,6 +14,7 @@ use grainbench_scene::scene::{Duration, Scene};
 const PRINTED: f64 = 1e-6;
 
 /// How far outputs reach into the run of a scene.
+#[derive(Clone, Copy)]
 pub(super) struct Covered {
     /// Time of the last sample (s).
     pub(super) reached: f64,
@@ -40,6 +43,12 @@ impl Covered {
         Self { reached: time.last().copied().unwrap_or_default(), whole, slack, samples: time.len() }
     }
 
+    /// The same of a part of the samples.
+    pub(super) fn by(self, observed: &Observed) -> Self {
+        let time = &observed.series.time;
+        Self { reached: time.last().copied().unwrap_or_default(), samples: time.len(), ..self }
+    }
+
     /// Whether the end was seen.
     pub(super) fn is_whole(&self) -> bool {
         self.whole.is_some_and(|whole| self.reached >= whole - self.slack)
@@ -61,17 +70,26 @@ impl Covered {
     }
 
     /// The row that says it: red where less than the whole was seen, amber where that is meant.
-    pub(super) fn row(&self, partial: bool, row: Verdict) -> Verdict {
+    pub(super) fn row(&self, partial: bool, outputs: &Outputs, row: Verdict) -> Verdict {
         let row = Verdict {
             evidence: Evidence::Invariant,
             source: "duration of the scene".to_owned(),
             tolerance: Made::Exact,
-            because: "what was not seen to its end is not judged; half a step, and digits of the time".to_owned(),
+            because: format!(
+                "what was not seen to its end is not judged; half a step, and digits of the time{}",
+                outputs
+                    .origin()
+                    .map(|origin| format!("; times count from the first sample, {}", at(origin)))
+                    .unwrap_or_default()
+            ),
             ..row
         };
         let Some(whole) = self.whole else { return row.left(Outcome::NoReference, self.why_not().unwrap_or_default()) };
         let end = Expected::Bound(Bound::AtLeast(whole));
         let row = Verdict { allowed: self.slack / whole, ..row }.judged(&Measured::new(self.reached, end, whole));
+        if let [cut, ..] = outputs.cuts() {
+            return row.left(Outcome::Known, format!("whole frames before a cut are meant (--partial): {cut}"));
+        }
         match (row.outcome, partial) {
             (Outcome::Fail, true) => row.left(Outcome::Known, "a part of the run is meant (--partial)"),
             (Outcome::Fail, false) => {

@@ -4,25 +4,30 @@
 mod covered;
 mod exact;
 mod figures;
+mod horizon;
 mod ours;
+mod power;
 mod stored;
 mod subject;
 
+pub use power::{Power, is_of_power};
 pub use subject::Subject;
 
 use covered::Covered;
 use exact::exact;
 use figures::figures;
+use grainbench_harness::compare::peers::{Compared, Decisive, Peer, Sample, WIDE};
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Measured;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
-use grainbench_reference::outputs::{OutputError, Outputs};
+use grainbench_reference::outputs::{Origin, OutputError, Outputs, steps_in_words};
 use grainbench_reports::{Section, number};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{ProbeTarget, Scene};
 use grainbench_scene::solver::Resolution;
-use ours::{compare, ours};
+use ours::{Plan, ours};
+use power::Made;
 use subject::Candidate;
 use thiserror::Error;
 
@@ -45,6 +50,20 @@ pub enum NotChecked {
         /// The variants that start so.
         variants: String,
     },
+    /// The time step is above the critical one.
+    #[error(
+        "{file}: expected a time step up to the critical one of the scene, 2√(m_min/k_max) = {critical:.6e} s; found {step} s, \
+         {:.3} of it (--allow-unstable judges it all the same)",
+        .step / .critical
+    )]
+    Unstable {
+        /// The files.
+        file: String,
+        /// Critical time step (s).
+        critical: f64,
+        /// Longest time step of the files (s).
+        step: f64,
+    },
     /// They are of another scene.
     #[error("{file}: expected the start of a scene of {case}, {expected}; found {found}")]
     OtherScene {
@@ -59,6 +78,17 @@ pub enum NotChecked {
     },
 }
 
+/// What of outputs is judged, and how.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Outputs that end before the run does are meant.
+    pub partial: bool,
+    /// Takes time steps above the critical one.
+    pub allow_unstable: bool,
+    /// How far the power of the check is looked for.
+    pub power: Power,
+}
+
 /// How far a start may be off, in radii, beside the printed digits.
 const START: f64 = 1e-9;
 /// Judges outputs of a case's scene, of one variant or of whichever they start as, or of a scene of the user's own.
@@ -67,8 +97,8 @@ const START: f64 = 1e-9;
 /// meant, and claims of the whole run are not judged.
 ///
 /// # Errors
-/// When the files cannot be read, or start as no scene of the case does.
-pub fn check(subject: &Subject<'_>, outputs: &Outputs, partial: bool) -> Result<Section, NotChecked> {
+/// When the files cannot be read, start as no scene of the case does, or have a time step above the critical one.
+pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Result<Section, NotChecked> {
     let mut first_miss = None;
     let mut matching: Vec<(Candidate, Observed)> = Vec::new();
     for candidate in subject.candidates()? {
@@ -82,7 +112,7 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, partial: bool) -> Result<
             }
             (Err(_), Some(_)) => continue,
         };
-        match misplaced(&candidate.scene, &observed) {
+        match misplaced(&candidate.scene, outputs, &observed) {
             None => matching.push((candidate, observed)),
             Some((expected, found)) if first_miss.is_none() => {
                 first_miss =
@@ -99,7 +129,8 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, partial: bool) -> Result<
     }
     if let Some((candidate, observed)) = matching.first_mut() {
         let covered = Covered::of(&candidate.scene, outputs.time_step(), observed);
-        return Ok(section(subject, candidate, outputs, observed, &covered, partial));
+        refuse_unstable(&candidate.scene, outputs, options)?;
+        return Ok(section(subject, candidate, outputs, observed, &covered, options));
     }
     Err(first_miss.unwrap_or_else(|| NotChecked::OtherScene {
         file: outputs.name(),
@@ -110,11 +141,9 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, partial: bool) -> Result<
 }
 
 /// Where the first grain that does not start as in the scene should be, and where it is.
-fn misplaced(scene: &Scene, observed: &Observed) -> Option<(String, String)> {
-    let time = observed.series.time.first().copied()?;
-    if time.abs() > 0.0 {
-        return Some(("at time 0".to_owned(), format!("a first sample at {time} s")));
-    }
+fn misplaced(scene: &Scene, outputs: &Outputs, observed: &Observed) -> Option<(String, String)> {
+    let late = outputs.origin().map(|origin| format!("a first sample at {}", at(origin)));
+    let mut is_placed = false;
     for (at, column) in observed.series.columns.iter().enumerate() {
         let (probe, quantity) = column.name.rsplit_once('.')?;
         let probe = scene.probes.iter().find(|other| other.name == probe)?;
@@ -126,10 +155,30 @@ fn misplaced(scene: &Scene, observed: &Observed) -> Option<(String, String)> {
         let (expected, radius) = (scene.grains[grain].position[axis], scene.grains[grain].radius);
         let (found, open) = (observed.series.values[at][0], observed.uncertainty[at][0]);
         if (found - expected).abs() > open + START * radius {
-            return Some((format!("{} = {expected:?} m", column.name), format!("{found:?} m")));
+            let late = late.map(|late| format!(" in {late}")).unwrap_or_default();
+            return Some((format!("{} = {expected:?} m", column.name), format!("{found:?} m{late}")));
         }
+        is_placed = true;
     }
-    None
+    // Only a sample that is seen to be the start of the scene can count as time 0.
+    late.filter(|_| !is_placed).map(|late| ("at time 0".to_owned(), late))
+}
+
+/// Step and time of a first sample, in words.
+fn at(origin: Origin) -> String {
+    let time = origin.time.map(|time| format!(" (t = {time} s)")).unwrap_or_default();
+    format!("step {}{time}", origin.step)
+}
+
+/// Refuses time steps above the critical one of a scene: our own solvers would not hold.
+fn refuse_unstable(scene: &Scene, outputs: &Outputs, options: Options) -> Result<(), NotChecked> {
+    let critical = scene.critical_time_step();
+    match outputs.time_step() {
+        Some(step) if step > critical && !options.allow_unstable => {
+            Err(NotChecked::Unstable { file: outputs.name(), critical, step })
+        }
+        _ => Ok(()),
+    }
 }
 
 fn section(
@@ -138,12 +187,16 @@ fn section(
     outputs: &Outputs,
     observed: &Observed,
     covered: &Covered,
-    partial: bool,
+    options: Options,
 ) -> Section {
     let file = outputs.name();
-    let step = outputs.time_step();
+    let steps = outputs.time_steps();
     let row = |quantity: String, unit: &str| {
-        let resolution = step.map_or_else(|| "step not told".to_owned(), |step| Resolution::TimeStep(step).to_string());
+        let resolution = match steps {
+            None => "step not told".to_owned(),
+            Some([shortest, longest]) if shortest == longest => Resolution::TimeStep(longest).to_string(),
+            Some(steps) => format!("dt={}", steps_in_words(steps)),
+        };
         Verdict {
             variant: candidate.variant.clone(),
             solver: file.clone(),
@@ -153,26 +206,19 @@ fn section(
             ..Verdict::open(subject.name(), quantity, unit)
         }
     };
-    let mut verdicts = vec![covered.row(partial, row("time of the last sample".to_owned(), "s"))];
+    let mut verdicts = vec![covered.row(options.partial, outputs, row("time of the last sample".to_owned(), "s"))];
     verdicts.extend(candidate.claims.iter().map(|claim| exact(claim, candidate, outputs, observed, covered, &row)));
-    let (compared, figures) = step.map_or_else(
-        || (Err("the files do not tell the time step (--dt gives it)".to_owned()), Vec::new()),
-        |step| match ours(&candidate.scene, step, observed) {
-            Ok(ours) => (
-                Ok(compare(&candidate.scene, &ours, outputs, observed, covered, &row)),
-                figures(&ours, &file, observed),
-            ),
-            Err(reason) => (Err(reason), Vec::new()),
-        },
-    );
-    match compared {
-        Ok(rows) => verdicts.extend(rows),
-        Err(reason) => {
-            let quantity = "comparison with our solvers".to_owned();
-            let row = Verdict { because: "none was made".to_owned(), ..row(quantity, "1") };
-            verdicts.push(row.left(Outcome::NoReference, reason));
+    let unknown = || "the files do not tell the time step (--dt gives it)".to_owned();
+    let plan = steps.ok_or_else(unknown).and_then(|steps| Plan::new(observed, steps));
+    let (verdicts_of_ours, figures) = match plan.and_then(|plan| against_ours(&candidate.scene, plan)) {
+        Ok(of_ours) => {
+            let made = of_ours.made(candidate, outputs, observed, covered);
+            let power = if subject.case().is_some() { Power::Off } else { options.power };
+            (rows_of_ours(&made, power, &row), figures(&of_ours.peers, &file, observed))
         }
-    }
+        Err(reason) => (vec![no_comparison(&row, reason)], Vec::new()),
+    };
+    verdicts.extend(verdicts_of_ours);
     if let Some(case) = subject.as_stored() {
         verdicts.extend(stored::compare(case, candidate, outputs, observed, &row));
     }
@@ -197,10 +243,103 @@ fn section(
     }
 }
 
-/// The row of what was found, its tolerance widened by what the printed digits leave open. What may be off by as much as
-/// it is itself tells nothing.
+/// Our runs of a scene.
+struct OfOurs {
+    plan: Plan,
+    peers: Vec<Peer>,
+    /// Time (s) up to which the run can be predicted; none where that is its end.
+    horizon: Option<f64>,
+}
+
+impl OfOurs {
+    fn made<'c>(
+        &'c self,
+        candidate: &'c Candidate,
+        outputs: &'c Outputs,
+        observed: &'c Observed,
+        covered: &'c Covered,
+    ) -> Made<'c> {
+        let (plan, ours, horizon, scene) = (&self.plan, &self.peers, self.horizon, &candidate.scene);
+        Made { scene, plan, ours, horizon, outputs, observed, covered }
+    }
+}
+
+fn against_ours(scene: &Scene, plan: Plan) -> Result<OfOurs, String> {
+    let peers = ours(scene, &plan)?;
+    let horizon = horizon::find(scene, &plan, &peers)?;
+    Ok(OfOurs { plan, peers, horizon })
+}
+
+/// The rows against our runs: sample by sample up to the horizon, by means after it, and what they could not have seen.
+fn rows_of_ours(made: &Made<'_>, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
+    let mut rows = made.compare(made.observed, row);
+    if rows.is_empty() {
+        let reason = "fewer than two samples are at times of our runs, or nothing that is compared was told";
+        rows.push(no_comparison(row, reason.to_owned()));
+    }
+    rows.extend(made.power(power, row));
+    rows
+}
+
+fn no_comparison(row: &dyn Fn(String, &str) -> Verdict, reason: String) -> Verdict {
+    let row = Verdict { because: "none was made".to_owned(), ..row("comparison with our solvers".to_owned(), "1") };
+    row.left(Outcome::NoReference, reason)
+}
+
+/// The row of what was found, its tolerance widened by what the printed digits leave open. One that allows more than a
+/// twentieth of its scale is never green.
 fn judged(row: Verdict, open: f64, outputs: &Outputs, found: &Measured) -> Verdict {
-    widened(row, open, outputs).judged(found).unless_all_passes()
+    widened(row, open, outputs).judged(found).unless_wider_than(WIDE)
+}
+
+/// What a column may be off by beside the digits.
+struct Beside {
+    /// In any case, as a part of the scale.
+    floor: f64,
+    /// How many times the change by half the time step.
+    times: f64,
+    /// What differs between the runs, in words.
+    conventions: &'static str,
+}
+
+/// Part of the samples that may allow too much for the others to speak for a column.
+const FEW: f64 = 0.1;
+
+/// The row of a column that is judged at each sample by what its runs leave open around that time.
+fn judged_in_time(row: Verdict, of: &Compared<'_>, beside: &Beside, outputs: &Outputs) -> Verdict {
+    let allowed = |sample: &Sample| beside.floor + sample.between + beside.times * sample.halved;
+    let Some(decisive) = of.decisive(|sample| allowed(sample) + of.open) else {
+        return row.left(Outcome::NoReference, "there is no sample");
+    };
+    let Decisive { sample, wide, first_outside, .. } = decisive;
+    let times = if beside.times == 1.0 { String::new() } else { format!(", taken {} times", beside.times) };
+    let because = format!(
+        "around t = {} s {} differ by {}, half the step by {}{times}, and {} beside",
+        number::significant(sample.time, 6),
+        beside.conventions,
+        number::fraction(sample.between),
+        number::fraction(sample.halved),
+        number::fraction(beside.floor)
+    );
+    let row = widened(Verdict { allowed: allowed(&sample), because, ..row }, of.open, outputs);
+    let row = row.judged(&of.measured(&sample));
+    let count = of.samples.len();
+    match (row.outcome, first_outside) {
+        (Outcome::Fail, Some(time)) => {
+            let how = if row.error.is_none() { "not a number (NaN) from" } else { "first outside at" };
+            Verdict { detail: Some(format!("{how} t = {time:.6} s")), ..row }
+        }
+        (Outcome::Pass, _) if wide as f64 > FEW * count as f64 => {
+            let most = 100.0 * WIDE;
+            let reason = format!("cannot tell: {wide} of {count} samples allow an error above {most} % of the scale");
+            row.left(Outcome::NoReference, reason)
+        }
+        (Outcome::Pass, _) if wide > 0 => {
+            let because = format!("{}; {wide} of {count} samples allow too much and are passed over", row.because);
+            Verdict { because, ..row }
+        }
+        _ => row,
+    }
 }
 
 /// The row with its tolerance widened by what the printed digits leave open.

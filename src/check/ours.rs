@@ -1,5 +1,6 @@
 //! Against what our solvers make of the same scene.
 
+use super::Beside;
 use super::covered::Covered;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
@@ -8,11 +9,14 @@ use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::Verdict;
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::Outputs;
-use grainbench_reports::number;
+use grainbench_scene::record::Record;
 use grainbench_scene::refined::refined;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Solver;
 
+/// Our conventions, the default one first.
+const CONVENTIONS: [Convention; 4] =
+    [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS, Convention::LIGGGHTS];
 /// What our solvers owe each other beside what is measured: a millionth of the scale.
 const FLOOR: f64 = 1e-6;
 /// Most particle-steps that one of our solvers is run for: about half an hour.
@@ -20,38 +24,68 @@ const MOST_WORK: f64 = 2e10;
 /// Most values of our runs that are compared.
 const MOST_SAMPLES: u64 = 2_000_000;
 
-/// What our conventions make of a scene over the time of some outputs, one of them with half the time step too.
-pub(super) fn ours(scene: &Scene, step: f64, observed: &Observed) -> Result<Vec<Peer>, String> {
-    let steps = &observed.series.step;
-    let (Some(&last), true) = (steps.last(), steps.windows(2).all(|pair| pair[0] < pair[1])) else {
-        return Err("the steps do not grow".to_owned());
-    };
-    let off = |(step_, time): (&u64, &f64)| (*step_ as f64 * step - time).abs() > 1e-6 * step.max(*time);
-    if let Some(at) = steps.iter().zip(&observed.series.time).position(off) {
-        return Err(format!("the time {} s is no whole number of steps of {step} s", observed.series.time[at]));
+/// How our solvers follow the samples of some outputs.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    /// Time step (s).
+    pub(super) step: f64,
+    /// Steps to the last sample, and between samples.
+    counts: [u64; 2],
+    /// Steps of the finer run for each step: two, or as many as reach the shortest step of the outputs.
+    parts: u64,
+}
+
+impl Plan {
+    /// Finds the time step of which all times of the samples are multiples: the longest of the outputs (s), or the shortest.
+    pub(super) fn new(observed: &Observed, [shortest, longest]: [f64; 2]) -> Result<Self, String> {
+        let times = &observed.series.time;
+        if !times.windows(2).all(|pair| pair[0] < pair[1]) {
+            return Err("the times do not grow".to_owned());
+        }
+        let off = |step: f64| {
+            let is_off = |time: &f64| ((time / step).round() * step - time).abs() > 1e-6 * step.max(*time);
+            times.iter().copied().find(is_off)
+        };
+        let step = match (off(longest), off(shortest)) {
+            (None, _) => longest,
+            (_, None) => shortest,
+            (Some(time), _) => return Err(format!("the time {time} s is no whole number of steps of {longest} s")),
+        };
+        let steps: Vec<u64> = times.iter().map(|time| (time / step).round() as u64).collect();
+        let last = steps.last().copied().ok_or_else(|| "there is no sample".to_owned())?;
+        let interval = steps.iter().fold(0, |all, &step| common_divisor(all, step)).max(1);
+        if last / interval > MOST_SAMPLES {
+            return Err(format!("{} samples are more than {MOST_SAMPLES}", last / interval));
+        }
+        let parts = ((step / shortest * (1.0 - 1e-6)).ceil() as u64).max(2);
+        Ok(Self { step, counts: [last, interval], parts })
     }
-    let interval = steps.iter().fold(0, |all, &step| common_divisor(all, step)).max(1);
-    if last / interval > MOST_SAMPLES {
-        return Err(format!("{} samples are more than {MOST_SAMPLES}", last / interval));
+
+    /// Work of the comparison with our solvers, in units of one run.
+    pub(super) const fn work(&self) -> u64 {
+        CONVENTIONS.len() as u64 + self.parts
     }
-    let work = last as f64 * scene.grains.len() as f64;
-    if work > MOST_WORK {
-        return Err(format!("{last} steps of {step} s are more than our solvers are run for here"));
-    }
-    let run = |convention: Convention, halves: u64| {
+
+    /// Runs a scene with a convention, with so many steps for each one.
+    pub(super) fn run(&self, scene: &Scene, convention: Convention, parts: u64) -> Result<Record, String> {
         let scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
-        let (scene, resolution) = refined(&scene, step, [last, interval], halves);
-        let record = Dem::new(convention).run(&scene, &resolution, &mut ());
-        record.map(|record| record.series).map_err(|error| error.to_string())
-    };
+        let (scene, resolution) = refined(&scene, self.step, self.counts, parts);
+        Dem::new(convention).run(&scene, &resolution, &mut ()).map_err(|error| error.to_string())
+    }
+}
+
+/// Runs our conventions on a scene over the time of some outputs, one of them with finer time steps too.
+pub(super) fn ours(scene: &Scene, plan: &Plan) -> Result<Vec<Peer>, String> {
+    let [last, _] = plan.counts;
+    if last as f64 * scene.grains.len() as f64 > MOST_WORK {
+        return Err(format!("{last} steps of {} s are more than our solvers are run for here", plan.step));
+    }
     let peer = |convention: Convention| {
-        let half_step = (convention == Convention::LAMMPS).then(|| run(convention, 2)).transpose()?;
-        Ok(Peer { name: convention.name.to_owned(), series: run(convention, 1)?, half_step })
+        let run = |parts: u64| plan.run(scene, convention, parts).map(|record| record.series);
+        let half_step = (convention == Convention::LAMMPS).then(|| run(plan.parts)).transpose()?;
+        Ok(Peer { name: convention.name.to_owned(), series: run(1)?, half_step })
     };
-    [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS, Convention::LIGGGHTS]
-        .map(peer)
-        .into_iter()
-        .collect()
+    CONVENTIONS.map(peer).into_iter().collect()
 }
 
 fn common_divisor(a: u64, b: u64) -> u64 {
@@ -112,15 +146,8 @@ fn column(
     let row = Verdict {
         source: format!("{nearest}, the nearest of our conventions, at the file's time step"),
         tolerance: Made::Computed,
-        allowed: FLOOR + of.between + times * of.halved,
-        because: format!(
-            "conventions differ by {}, half the step by {}{}, and {} beside",
-            number::fraction(of.between),
-            number::fraction(of.halved),
-            if times > 1.0 { format!(", taken {times} times") } else { String::new() },
-            number::fraction(FLOOR)
-        ),
         ..row(format!("{}, {}", of.name, covered.words()), of.unit)
     };
-    super::judged(row, of.open, outputs, &of.measured)
+    let beside = Beside { floor: FLOOR, times, conventions: "conventions" };
+    super::judged_in_time(row, of, &beside, outputs)
 }

@@ -5,7 +5,7 @@ use super::provenance::provenance;
 use super::run::{exit_code, is_judged};
 use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
-use grainbench::check::{Subject, check as judge};
+use grainbench::check::{Options, Power, Subject, check as judge, is_of_power};
 use grainbench::harness::verdict;
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources};
@@ -28,7 +28,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
     /// Output files, plain, gzip or zstd: dumps of grains and of contacts (`dump local`) at the same steps, VTK files (`.vtk`,
-    /// `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`), NumPy arrays (`.npz`), or one CSV table.
+    /// `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`), NumPy arrays (`.npz`), CSV tables of grains as ParaView writes them (one a time, or one
+    /// of all times), or one CSV table of probes.
     #[arg(long, value_name = "FILE", required_unless_present = "all", num_args = 1..)]
     dump: Vec<PathBuf>,
     /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`.
@@ -40,13 +41,23 @@ pub(crate) struct Arguments {
     /// Time step in seconds, if neither dump nor log contains it.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     dt: Option<f64>,
+    /// Time between files or frames in seconds, if their numbers count frames and nothing gives their times.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    frame_interval: Option<f64>,
     /// Names of columns in the files, such as `x=xu,omegaz=wz`. Contacts have `id1`, `id2`, `force_x` (on the first grain) and an
     /// optional `tangential_x`; `WALL.force_x` is the force of a wall on a grain, and `angle` the angle of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Accept output that ends before the run does: amber instead of red.
+    /// Accept output that ends before the run does: amber instead of red. The whole frames of a truncated file are judged.
     #[arg(long)]
     partial: bool,
+    /// Accept a time step above the critical one.
+    #[arg(long)]
+    allow_unstable: bool,
+    /// Search for changes of the scene that the output would not reveal: none, within three times the work of the comparison, or
+    /// all.
+    #[arg(long, value_name = "HOW", default_value = "limited", value_parser = ["off", "limited", "full"])]
+    power: String,
     /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
@@ -90,7 +101,10 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     }
     // That a file reaches the end says nothing of what is in it: each output must have a row of a quantity that is judged.
     let mut sections = report.sections.iter();
-    let is_told = sections.all(|section| section.verdicts.iter().skip(1).any(is_judged));
+    let is_told = sections.all(|section| {
+        let mut rows = section.verdicts.iter().skip(1);
+        rows.any(|row| is_judged(row) && !is_of_power(row))
+    });
     if is_told { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
 }
 
@@ -116,10 +130,19 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         log: arguments.log.clone().or_else(beside),
         names: Names(arguments.map.clone()),
         time_step: arguments.dt,
+        frame_interval: arguments.frame_interval,
         most_rows: Some(most_rows(&subject)?),
+        partial: arguments.partial,
+        from_first: true,
     };
     let outputs = Outputs::survey(sources).map_err(Fault::input)?;
-    let section = judge(&subject, &outputs, arguments.partial).map_err(Fault::input)?;
+    let power = match arguments.power.as_str() {
+        "off" => Power::Off,
+        "full" => Power::Full,
+        _ => Power::Limited,
+    };
+    let options = Options { partial: arguments.partial, allow_unstable: arguments.allow_unstable, power };
+    let section = judge(&subject, &outputs, options).map_err(Fault::input)?;
     Ok((section, outputs.name()))
 }
 

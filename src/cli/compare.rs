@@ -5,11 +5,13 @@ use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::provenance::provenance;
 use super::run::{exit_code, is_judged};
 use super::value::{path_and_value, positive};
+use grainbench::harness::compare::peers::WIDE;
 use grainbench::harness::evidence::Evidence;
 use grainbench::harness::expect::{Bound, Expected, Measured};
 use grainbench::harness::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
 use grainbench::harness::tolerance::Made;
 use grainbench::harness::verdict::{self, Verdict};
+use grainbench::reference::ReadError;
 use grainbench::reference::comparison::{self, Comparison, Difference, Key};
 use grainbench::reference::observer::Names;
 use grainbench::reports::measured::Measurements;
@@ -22,7 +24,7 @@ use std::time::Instant;
 /// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Reference output: a dump or a CSV table; plain, gzip or zstd.
+    /// Reference output: grains in any format that `check` reads, or a CSV table; plain, gzip or zstd.
     a: PathBuf,
     /// Other output of the same kind.
     b: PathBuf,
@@ -36,11 +38,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FIRST=SECOND,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
     /// Time step in seconds, one for both or one for each, for files without times.
-    #[arg(long, value_name = "SECONDS[,SECONDS]", value_delimiter = ',', num_args = 1..=2, value_parser = positive,
-          allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS[,SECONDS]", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
     dt: Vec<f64>,
-    /// Accept samples that exist in one file only: amber instead of red.
-    #[arg(long)]
+    /// Accept samples that exist in one file only: amber instead of red. The whole frames of a truncated file are compared.
+    #[arg(long, visible_alias = "partial")]
     allow_missing: bool,
     /// Treat amber results as red.
     #[arg(long)]
@@ -56,12 +57,19 @@ pub(crate) struct Arguments {
 /// Compares and writes the report.
 pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
+    if arguments.dt.len() > 2 {
+        let found = arguments.dt.len();
+        return Err(Fault::input(format!(
+            "--dt: expected one time step for both files or one for each, found {found}"
+        )));
+    }
     let options = comparison::Options {
         columns: arguments.columns.clone(),
         names: Names(arguments.map.clone()),
         time_steps: [arguments.dt.first().copied(), arguments.dt.last().copied()],
+        partial: arguments.allow_missing,
     };
-    let comparison = comparison::compare(&arguments.a, &arguments.b, &options).map_err(Fault::input)?;
+    let comparison = comparison::compare(&arguments.a, &arguments.b, &options).map_err(unreadable)?;
     check_writable(&arguments.out)?;
     let section = section(arguments, &comparison);
     let [a, b] = names(arguments);
@@ -80,7 +88,29 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         print(&format!("{}{counts}\n{}\n", rows(&report), arguments.out.join("index.html").display()))?;
     }
     let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
-    if columns.any(is_judged) { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
+    if columns.any(|row| is_judged(row) && !is_label(row)) {
+        Ok(exit_code(&report, arguments.strict))
+    } else {
+        Ok(ExitCode::from(RED))
+    }
+}
+
+/// Names of columns that sort grains into kinds: that they are alike is no comparison.
+const LABELS: [&str; 3] = ["type", "mol", "proc"];
+
+fn is_label(row: &Verdict) -> bool {
+    LABELS.iter().any(|label| row.quantity == quantity(label))
+}
+
+/// What the row of a column is called.
+fn quantity(column: &str) -> String {
+    format!("column {column}, worst")
+}
+
+/// The fault of a file that cannot be read; one that is cut off can, as far as it goes.
+fn unreadable(error: ReadError) -> Fault {
+    let hint = if error.is_cut() { " (--partial compares the whole frames in front of it)" } else { "" };
+    Fault::input(format!("{error}{hint}"))
 }
 
 /// What the two outputs are called: as their files are, or with their folders where those are called alike.
@@ -108,6 +138,7 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
         verdicts: shared(comparison, arguments.allow_missing, &a, &b)
             .into_iter()
             .chain(comparison.differences.iter().map(|of| row(of, comparison.key, arguments.tolerance, &a, &b)))
+            .chain(lonely(comparison, &a, &b))
             .collect(),
         controls: Vec::new(),
         runs: Vec::new(),
@@ -147,9 +178,35 @@ fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Ve
     // Of a file that is sampled at other times, those of the first are what counts.
     let least = if comparison.key == Key::Time { comparison.samples[0] as f64 } else { fewest };
     [
-        row("samples that were compared".to_owned(), "1", comparison.compared as f64, least, 0.0),
+        cut(comparison, row("samples that were compared".to_owned(), "1", comparison.compared as f64, least, 0.0)),
         row(format!("last {} that was compared", comparison.key.word()), unit, comparison.last_compared, end, slack),
     ]
+}
+
+/// The row of the samples, which is not green where a file is cut off.
+fn cut(comparison: &Comparison, row: Verdict) -> Verdict {
+    match comparison.cuts.iter().flatten().next() {
+        Some(cut) if row.outcome == verdict::Outcome::Pass => {
+            row.left(verdict::Outcome::Known, format!("whole frames before a cut are meant (--partial): {cut}"))
+        }
+        _ => row,
+    }
+}
+
+/// A row for each column that one of the outputs has alone.
+fn lonely(comparison: &Comparison, a: &str, b: &str) -> Vec<Verdict> {
+    let names =
+        comparison.lonely.iter().zip([a, b]).flat_map(|(names, file)| names.iter().map(move |name| (name, file)));
+    let row = |(name, file): (&String, &str)| {
+        let row = Verdict {
+            solver: b.to_owned(),
+            because: "what only one of them has is not compared".to_owned(),
+            source: a.to_owned(),
+            ..Verdict::open("compare", quantity(name), "1")
+        };
+        row.left(verdict::Outcome::NoReference, format!("only {file} has it"))
+    };
+    names.map(row).collect()
 }
 
 fn row(of: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
@@ -165,15 +222,16 @@ fn row(of: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
         ),
         evidence: Evidence::OtherCode,
         source: a.to_owned(),
-        ..Verdict::open("compare", format!("column {}, worst", of.name), "1")
+        ..Verdict::open("compare", quantity(&of.name), "1")
     };
-    let first = of.course.iter().find(|(_, off)| off.is_nan() || off / of.scale > row.allowed);
+    let first = of.course.iter().find(|sample| sample.beyond_digits / of.scale > tolerance);
     let row = row.judged(&Measured::new(of.second, of.first, of.scale));
     match (row.outcome, first) {
-        (verdict::Outcome::Fail, Some((at, _))) => {
-            Verdict { detail: Some(format!("first outside at {} {at}", key.word())), ..row }
+        (verdict::Outcome::Fail, Some(sample)) => {
+            Verdict { detail: Some(format!("first outside at {} {}", key.word(), sample.at)), ..row }
         }
-        _ => row.unless_all_passes(),
+        _ if open > tolerance => row.unless_wider_than(WIDE),
+        _ => row,
     }
 }
 
@@ -185,8 +243,8 @@ fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
         let points: Vec<(f64, f64)> = of
             .course
             .iter()
-            .filter(|(_, off)| *off > 0.0 && off.is_finite())
-            .map(|(step, off)| (*step, off / of.scale))
+            .filter(|sample| sample.off > 0.0 && sample.off.is_finite())
+            .map(|sample| (sample.at, sample.off / of.scale))
             .collect();
         if !points.is_empty() && curves.len() < MOST {
             curves.push(Curve { label: of.name.clone(), stroke: Stroke::Line, points });

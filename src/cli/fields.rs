@@ -1,6 +1,6 @@
 //! `grainbench fields`: grains or material points read as a continuum, cell by cell.
 
-use super::exit::{Fault, Outcome, check_writable, print, print_json};
+use super::exit::{Fault, Outcome, check_writable, print, print_json, say};
 use super::value::{path_and_value, positive, whole};
 use grainbench::fields::column::COLUMNS;
 use grainbench::fields::contact_stress::Stress;
@@ -8,6 +8,7 @@ use grainbench::fields::course::Course;
 use grainbench::fields::grid::Grid;
 use grainbench::fields::mask::{Masks, Orifice};
 use grainbench::fields::trails::Trails;
+use grainbench::reference::ReadError;
 use grainbench::reference::grain_dump::{Beside, GrainDump};
 use grainbench::reference::observer::Names;
 use grainbench::reports::elements::{Summary, write_elements};
@@ -43,6 +44,9 @@ pub(crate) struct Arguments {
     /// Time step (s), for a dump without times.
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     time_step: Option<f64>,
+    /// Use the whole frames of a truncated dump; the cut is reported.
+    #[arg(long)]
+    partial: bool,
     /// 2 for discs in the plane z = 0, 3 for spheres; by default the dimension of the stored run.
     #[arg(long, value_name = "2|3", value_parser = whole::<u8>(2, 3))]
     dimension: Option<u8>,
@@ -194,6 +198,7 @@ fn of_dump(
         density: arguments.density,
         time_step: arguments.time_step,
         plane: arguments.dimension == Some(2),
+        partial: arguments.partial,
     };
     if (arguments.from.is_some() || arguments.to.is_some()) && arguments.time_step.is_none() {
         // A dump may tell the time; where it does not, a window of times would silently hold nothing.
@@ -203,10 +208,19 @@ fn of_dump(
         }
     }
     let mut dump = GrainDump::open(path, arguments.contacts.as_deref(), beside).map_err(Fault::input)?;
-    while let Some(snapshot) = dump.read().map_err(Fault::input)? {
+    while let Some(snapshot) = dump.read().map_err(unreadable)? {
         take(snapshot)?;
     }
+    if let Some(cut) = dump.cut() {
+        say("warning", &format!("whole frames before a cut alone (--partial): {cut}"));
+    }
     Ok(())
+}
+
+/// The fault of a dump that cannot be read; one that is cut off can, as far as it goes.
+fn unreadable(error: ReadError) -> Fault {
+    let hint = if error.is_cut() { " (--partial takes the whole frames in front of it)" } else { "" };
+    Fault::input(format!("{error}{hint}"))
 }
 
 /// Whether a snapshot of ours is of a plane: nothing is beside z = 0, in a box from −½ to ½.

@@ -1,0 +1,260 @@
+//! Power of a check: which changes of the scene the given output would reveal. Our solver runs the scene with one effect changed,
+//! and what it leaves is judged as if it were the output.
+
+use super::covered::Covered;
+use super::horizon;
+use super::ours::{Plan, compare, is_compared};
+use grainbench_dem::convention::Convention;
+use grainbench_harness::compare::peers::{Peer, together};
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::expect::{Bound, Expected, Measured};
+use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_reference::observer::Observed;
+use grainbench_reference::outputs::Outputs;
+use grainbench_reports::number;
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::effect::Effect;
+use grainbench_scene::record::Series;
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::Scene;
+
+/// How far the power of a check is looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Power {
+    /// Not at all.
+    Off,
+    /// In at most three times the work of the comparison with our solvers.
+    #[default]
+    Limited,
+    /// Every effect in every size.
+    Full,
+}
+
+/// Source of the rows that say it.
+const SOURCE: &str = "our solver on the scene with one effect changed";
+/// Most work, in units of the comparison with our solvers.
+const MOST_WORK: u64 = 3;
+/// Relative changes of coefficients, from the smallest.
+const SIZES: [f64; 2] = [0.1, 0.25];
+/// Most names of columns that a row lists.
+const MOST_NAMES: usize = 8;
+
+/// Returns whether a row says what a check could reveal, and not what it found.
+#[must_use]
+pub fn is_of_power(row: &Verdict) -> bool {
+    row.source == SOURCE
+}
+
+/// An effect, with changes of growing size.
+struct Family {
+    name: String,
+    sizes: Vec<Size>,
+}
+
+/// Changes of one size, all of which must be revealed.
+struct Size {
+    /// Relative change.
+    amount: f64,
+    words: String,
+    scenes: Vec<Scene>,
+}
+
+/// What became of a family.
+enum Found {
+    /// The smallest size that is revealed, with the larger ones.
+    Revealed(f64),
+    /// Not even the largest size is revealed.
+    Hidden,
+    /// It was not tried, for this reason.
+    NotTried(String),
+}
+
+/// A check that was made, to be made again of other output.
+pub(super) struct Made<'c> {
+    pub(super) scene: &'c Scene,
+    pub(super) plan: &'c Plan,
+    pub(super) ours: &'c [Peer],
+    /// Time (s) up to which the run can be predicted; none where that is its end.
+    pub(super) horizon: Option<f64>,
+    pub(super) outputs: &'c Outputs,
+    pub(super) observed: &'c Observed,
+    pub(super) covered: &'c Covered,
+}
+
+impl Made<'_> {
+    /// Compares output with our runs: sample by sample up to the horizon, and by means after it.
+    pub(super) fn compare(&self, observed: &Observed, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
+        let mut seen = observed.clone();
+        if let Some(horizon) = self.horizon {
+            seen.keep(seen.series.time.partition_point(|&time| time <= horizon));
+        }
+        let mut rows = compare(self.scene, self.ours, self.outputs, &seen, &self.covered.by(&seen), row);
+        rows.extend(
+            self.horizon.into_iter().flat_map(|from| horizon::beyond(self.scene, self.ours, observed, from, row)),
+        );
+        rows
+    }
+
+    /// Returns a row for each effect of the scene, one of effects that were not tried, and one of columns that were not judged.
+    pub(super) fn power(&self, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
+        if power == Power::Off {
+            return Vec::new();
+        }
+        let row = |quantity: String| Verdict {
+            evidence: Evidence::Invariant,
+            source: SOURCE.to_owned(),
+            ..row(quantity, "1")
+        };
+        let mut left = if power == Power::Full { u64::MAX } else { MOST_WORK * self.plan.work() };
+        let (mut rows, mut not_tried) = (Vec::new(), Vec::new());
+        for family in families(self.scene) {
+            match self.find(&family, &mut left) {
+                Found::NotTried(why) => not_tried.push(format!("{} ({why})", family.name)),
+                found => rows.push(told(
+                    &family,
+                    &found,
+                    row(format!("{}: smallest change that this output reveals", family.name)),
+                )),
+            }
+        }
+        if !not_tried.is_empty() {
+            let row = Verdict { because: "none was made".to_owned(), ..row("effects not tried".to_owned()) };
+            rows.push(row.left(Outcome::NoReference, not_tried.join("; ")));
+        }
+        rows.extend(self.unjudged().map(|names| {
+            let because = "a wrong value there cannot be seen".to_owned();
+            let row = Verdict { because, ..row("columns of probes not judged".to_owned()) };
+            row.left(Outcome::NoReference, names)
+        }));
+        rows
+    }
+
+    /// Finds the smallest size that is revealed, from the largest down: what hides a large change hides a small one.
+    fn find(&self, family: &Family, left: &mut u64) -> Found {
+        let mut smallest = None;
+        for size in family.sizes.iter().rev() {
+            let is_revealed = self.is_revealed(size, left);
+            match (is_revealed, smallest) {
+                (Ok(true), _) => smallest = Some(size.amount),
+                (Ok(false), None) => return Found::Hidden,
+                (Err(why), None) => return Found::NotTried(why),
+                (Ok(false) | Err(_), Some(_)) => break,
+            }
+        }
+        smallest.map_or_else(|| Found::NotTried("it has no smaller value".to_owned()), Found::Revealed)
+    }
+
+    fn is_revealed(&self, size: &Size, left: &mut u64) -> Result<bool, String> {
+        for scene in &size.scenes {
+            if self.plan.step > scene.critical_time_step() {
+                return Err("the time step would be above the critical one".to_owned());
+            }
+            *left = left.checked_sub(1).ok_or_else(|| "--power full has no limit of time".to_owned())?;
+            let record = self.plan.run(scene, Convention::DEFAULT, 1)?;
+            if !self.is_red(&record.series) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Returns whether a run would be red if it were the output: at the same times, with the same columns and digits.
+    fn is_red(&self, series: &Series) -> bool {
+        let mut seen = Observed { series: Series::default(), uncertainty: Vec::new(), snapshots: Vec::new() };
+        (seen.series.step, seen.series.time) = (self.observed.series.step.clone(), self.observed.series.time.clone());
+        let columns = self.observed.series.columns.iter().zip(&self.observed.series.values);
+        for ((column, values), open) in columns.zip(&self.observed.uncertainty) {
+            let theirs = together(&self.observed.series, values, series, &column.name).map(|(_, _, theirs)| theirs);
+            if let Some(theirs) = theirs.filter(|theirs| theirs.len() == values.len()) {
+                seen.series.columns.push(column.clone());
+                seen.series.values.push(theirs);
+                seen.uncertainty.push(open.clone());
+            }
+        }
+        let row = |quantity: String, unit: &str| Verdict::open("power", quantity, unit);
+        self.compare(&seen, &row).iter().any(|row| row.outcome == Outcome::Fail)
+    }
+
+    /// The columns of the scene's probes that are not compared; none where all are.
+    fn unjudged(&self) -> Option<String> {
+        let columns = Recorder::new(self.scene, 1.0, 1).finish().0.columns;
+        let is_judged = |name: &str| is_compared(name) && self.observed.series.column(name).is_some();
+        let names: Vec<String> =
+            columns.into_iter().map(|column| column.name).filter(|name| !is_judged(name)).collect();
+        let more = names.len().saturating_sub(MOST_NAMES);
+        let first = names.iter().take(MOST_NAMES).cloned().collect::<Vec<_>>().join(", ");
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        (!names.is_empty()).then(|| first + &more)
+    }
+}
+
+/// The row of a family that was tried.
+fn told(family: &Family, found: &Found, row: Verdict) -> Verdict {
+    let sizes: Vec<&str> = family.sizes.iter().map(|size| size.words.as_str()).collect();
+    let row = Verdict { because: format!("tried: {}", sizes.join(", ")), ..row };
+    let largest = family.sizes.last();
+    match (found, largest) {
+        (Found::Revealed(amount), Some(largest)) => {
+            let most = Expected::Bound(Bound::AtMost(largest.amount));
+            row.judged(&Measured::new(*amount, most, 1.0))
+        }
+        (_, largest) => {
+            let words = largest.map_or("any change", |largest| &largest.words);
+            row.left(Outcome::NoReference, format!("{}: {words} cannot be told from this output", family.name))
+        }
+    }
+}
+
+/// The effects of a scene that have sizes, and those that can only be left out.
+fn families(scene: &Scene) -> Vec<Family> {
+    let has = |is_on: &dyn Fn(&ContactLaw) -> bool| scene.laws.iter().flatten().any(is_on);
+    let mut families = Vec::new();
+    let mut scaled = |name: &str, change: &dyn Fn(&mut ContactLaw, f64)| {
+        families.push(Family {
+            name: name.to_owned(),
+            sizes: SIZES.iter().map(|&size| both(scene, size, change)).collect(),
+        });
+    };
+    if has(&|law| law.friction > 0.0) {
+        scaled("friction", &|law, factor| law.friction *= factor);
+    }
+    if has(&|law| law.damping_ratio > 0.0) {
+        scaled("restitution", &|law, factor| law.set_restitution((law.restitution() * factor).min(1.0)));
+    }
+    if has(&|law| law.normal_damping > 0.0 || law.stiffness_damping > 0.0) {
+        scaled("contact damping", &|law, factor| {
+            (law.normal_damping, law.stiffness_damping) = (law.normal_damping * factor, law.stiffness_damping * factor);
+            law.tangential_damping *= factor;
+        });
+    }
+    if has(&|law| law.springs.constants()[0] > 0.0) {
+        let with = |factor: f64| changed(scene, |law| law.springs = law.springs.scaled([factor; 2]));
+        let words = "stiffness × 2 and ÷ 2".to_owned();
+        let size = Size { amount: 1.0, words, scenes: vec![with(0.5), with(2.0)] };
+        families.push(Family { name: "stiffness".to_owned(), sizes: vec![size] });
+    }
+    let is_scaled = |effect: &Effect| matches!(effect, Effect::Friction | Effect::ContactDamping);
+    for effect in Effect::switches().filter(|effect| !is_scaled(effect) && effect.is_on(scene)) {
+        let mut without = scene.clone();
+        effect.switch_off(&mut without);
+        let size = Size { amount: 1.0, words: effect.absence().to_owned(), scenes: vec![without] };
+        families.push(Family { name: effect.word().to_owned(), sizes: vec![size] });
+    }
+    families
+}
+
+/// A change of one relative size in both directions.
+fn both(scene: &Scene, size: f64, change: &dyn Fn(&mut ContactLaw, f64)) -> Size {
+    let with = |factor: f64| changed(scene, |law| change(law, factor));
+    Size {
+        amount: size,
+        words: format!("±{}", number::fraction(size)),
+        scenes: vec![with(1.0 - size), with(1.0 + size)],
+    }
+}
+
+fn changed(scene: &Scene, change: impl Fn(&mut ContactLaw)) -> Scene {
+    let mut scene = scene.clone();
+    scene.change_laws(change);
+    scene
+}
