@@ -43,7 +43,10 @@ fn claims() -> Vec<Claim> {
                 }
                 Ok(Measured::new(most, 0.0, sinking))
             })
-            .within(required(1e-9, "a rounding of the height in each of 10⁴ steps, in units of the sinking under the weight"))
+            .within(required(
+                1e-9,
+                "a rounding of the height in each of 10⁴ steps, in units of the sinking under the weight",
+            ))
             .refuses(Control::scene("the gradient of the stress with the other sign", |scene| {
                 let stress = scene.bodies.iter_mut().filter_map(|body| body.stress.as_mut());
                 stress.for_each(|stress| stress.gradient.iter_mut().for_each(|gradient| *gradient = -*gradient));

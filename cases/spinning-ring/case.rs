@@ -60,9 +60,8 @@ impl Ring {
         let [inner, outer] = self.radii;
         let part = (outer - inner) / f64::from(PARTS);
         let middles = (0..PARTS).map(|at| inner + (f64::from(at) + 0.5) * part);
-        let (grown, all) = middles.fold((0.0, 0.0), |(grown, all), r| {
-            (grown + 2.0 * self.displacement(r) * r * r, all + r.powi(3))
-        });
+        let (grown, all) =
+            middles.fold((0.0, 0.0), |(grown, all), r| (grown + 2.0 * self.displacement(r) * r * r, all + r.powi(3)));
         grown / all
     }
 }

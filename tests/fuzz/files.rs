@@ -355,6 +355,9 @@ fn of_two(lot: &mut Lot) -> Answer {
         names: Names::default(),
         time_step: Some(1e-5),
         most_rows: Some(MOST_ROWS),
+        frame_interval: None,
+        from_first: lot.draw(any::<bool>()),
+        partial: lot.draw(any::<bool>()),
     };
     static SCENE: OnceLock<Scene> = OnceLock::new();
     let observed = Outputs::survey(sources).and_then(|outputs| outputs.observe(SCENE.get_or_init(scene)));

@@ -82,7 +82,7 @@ impl<S: Geometry> Simulated<S> {
             step: self.step,
             subject: Subject::Grain(self.grains.id[look.slot] + 1),
             position: self.grains.position(look.slot),
-            cause: Cause::Stiffened { stiffness },
+            cause: Cause::StiffContact { stiffness },
             time_step: self.motion.time_step,
             critical,
             advice: format!("a step of at most {:.4e} s, a tenth of that, resolves the contact", 0.1 * critical),

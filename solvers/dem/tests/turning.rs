@@ -284,13 +284,13 @@ fn a_contact_that_stiffens_beyond_the_step_is_refused() {
     let run = |dem: Dem, fraction: f64| dem.run(&scene, &Resolution::CriticalFraction(fraction), &mut ());
     let dem = Dem::new(Convention::DEFAULT);
     let RunError::Broken(broken) = run(dem, 0.95).unwrap_err() else { panic!("expected a run that broke") };
-    let Cause::Stiffened { stiffness } = broken.cause else { panic!("{broken}") };
+    let Cause::StiffContact { stiffness } = broken.cause else { panic!("{broken}") };
     let expected = 2.0 * modulus * (0.1 * overlap).sqrt();
     assert!((stiffness / expected - 1.0).abs() < 1e-9 && broken.step == 1, "{broken}");
     assert!((broken.critical / (2.0 * (mass / stiffness).sqrt()) - 1.0).abs() < 1e-12);
     assert!(broken.to_string().contains("became so stiff"), "{broken}");
     run(dem, 0.5).unwrap();
     assert!(
-        !matches!(run(dem.allowing_unstable_steps(), 0.95), Err(RunError::Broken(broken)) if broken.cause == Cause::Stiffened { stiffness })
+        !matches!(run(dem.allowing_unstable_steps(), 0.95), Err(RunError::Broken(broken)) if broken.cause == Cause::StiffContact { stiffness })
     );
 }

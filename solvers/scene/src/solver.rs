@@ -238,7 +238,7 @@ pub enum Cause {
         radius: f64,
     },
     /// A contact became so stiff that the time step is above the critical one.
-    Stiffened {
+    StiffContact {
         /// Stiffness of its springs (N/m).
         stiffness: f64,
     },
@@ -318,7 +318,7 @@ impl fmt::Display for Cause {
             Self::Runaway { moved, radius } => {
                 write!(formatter, "it moved {moved:.3e} m in one step, more than its radius {radius:.3e} m")
             }
-            Self::Stiffened { stiffness } => {
+            Self::StiffContact { stiffness } => {
                 write!(
                     formatter,
                     "a contact of it became so stiff, {stiffness:.3e} N/m, that the time step is above the critical one"
