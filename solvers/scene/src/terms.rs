@@ -14,6 +14,8 @@ pub struct Terms {
     pub less: &'static [Less],
     /// Whether scenes in space are run beside those in the plane, which take some methods long.
     pub in_space: bool,
+    /// Whether runs that watch the energy take 10⁵ steps instead of some thousands.
+    pub long: bool,
 }
 
 /// A claim about the order in the time step, for smooth motion without dashpots.
@@ -53,12 +55,13 @@ impl Terms {
         }),
         less: &[],
         in_space: true,
+        long: false,
     };
 
     /// No claim about the order.
     #[must_use]
     pub const fn at(resolution: Resolution) -> Self {
-        Self { resolution, order: None, less: &[], in_space: true }
+        Self { resolution, order: None, less: &[], in_space: true, long: false }
     }
 
     /// The same of a method that owes less.
@@ -71,6 +74,12 @@ impl Terms {
     #[must_use]
     pub const fn in_the_plane(self) -> Self {
         Self { in_space: false, ..self }
+    }
+
+    /// The terms with long runs where the energy is watched.
+    #[must_use]
+    pub const fn at_length(self) -> Self {
+        Self { long: true, ..self }
     }
 
     /// What is owed less of a quantity.
