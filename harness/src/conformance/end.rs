@@ -34,7 +34,7 @@ impl End {
         Self::read(scene, &solver.run(scene, resolution, &mut ())?)
     }
 
-    fn read(scene: &Scene, record: &Record) -> Result<Self, NoEnd> {
+    pub(super) fn read(scene: &Scene, record: &Record) -> Result<Self, NoEnd> {
         let missing = |what: &str| NoEnd::Record(format!("the record has no {what}"));
         let last = record.snapshots.last().ok_or_else(|| missing("snapshot"))?;
         if last.grains.len() != scene.grains.len() || last.step == 0 {

@@ -26,6 +26,10 @@ pub enum Flaw {
     Anisotropic,
     /// The first grain in the list is treated otherwise than the rest.
     Listed,
+    /// Walls turn slower than they are told; without walls that turn, grains do.
+    SlowerWalls,
+    /// Velocities and forces on walls grow during a run.
+    Pumped,
     /// The end is off by the first order in the time step.
     FirstOrder,
     /// No run is like the one before.
@@ -44,6 +48,8 @@ impl Flaw {
             Self::Handed => "velocities turned to one side by a billionth",
             Self::Anisotropic => "velocities along x larger by a billionth",
             Self::Listed => "the first grain in the list faster by a billionth",
+            Self::SlowerWalls => "walls, or grains without walls, that turn slower by a hundredth",
+            Self::Pumped => "velocities, and forces on walls, that double over a run",
             Self::FirstOrder => "positions and velocities off by the first order in the step",
             Self::Irreproducible => "a velocity that differs by a rounding from run to run",
             Self::Restarted => "a velocity that differs by a rounding after a restart",
@@ -52,6 +58,7 @@ impl Flaw {
 
     fn spoil(self, scene: &mut Scene, run: u64) {
         let flat = scene.dimension == Dimension::Two;
+        let turns = scene.walls.iter().any(|wall| wall.motion.is_moving());
         for grain in &mut scene.grains {
             match self {
                 Self::Drag => grain.velocity *= 1.0 - SIZE,
@@ -59,8 +66,13 @@ impl Flaw {
                 Self::Handed if flat => grain.velocity += SIZE * Vector3::z().cross(&grain.velocity),
                 Self::Handed => grain.velocity += SIZE * grain.radius * grain.spin,
                 Self::Anisotropic => grain.velocity.x *= 1.0 + SIZE,
-                Self::Listed | Self::FirstOrder | Self::Irreproducible | Self::Restarted => {}
+                Self::SlowerWalls if !turns => grain.spin *= 1.0 - LARGE,
+                _ => {}
             }
+        }
+        if self == Self::SlowerWalls {
+            let phases = scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases);
+            phases.for_each(|phase| phase.spin *= 1.0 - LARGE);
         }
         if let Some(grain) = scene.grains.first_mut() {
             match self {
@@ -68,6 +80,24 @@ impl Flaw {
                 Self::Irreproducible => grain.velocity *= 1.0 + run as f64 * 4.0 * f64::EPSILON,
                 _ => {}
             }
+        }
+    }
+}
+
+/// Lets velocities, spins and forces on walls grow to twice as much at the end.
+fn pump(record: &mut Record) {
+    let end = record.snapshots.last().map_or(1.0, |last| last.time);
+    for snapshot in &mut record.snapshots {
+        let factor = 1.0 + snapshot.time / end;
+        for grain in &mut snapshot.grains {
+            grain.velocity *= factor;
+            grain.spin *= factor;
+        }
+    }
+    let series = &mut record.series;
+    for (column, values) in series.columns.iter().zip(&mut series.values) {
+        if column.name.contains(".force_") {
+            values.iter_mut().zip(&series.time).for_each(|(value, time)| *value *= 1.0 + time / end);
         }
     }
 }
@@ -98,6 +128,14 @@ impl Solver for Flawed<'_> {
         self.solver.name()
     }
 
+    fn has_springs(&self) -> bool {
+        self.solver.has_springs()
+    }
+
+    fn deforms(&self) -> bool {
+        self.solver.deforms()
+    }
+
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         let mut scene = scene.clone();
         self.flaw.spoil(&mut scene, self.runs.fetch_add(1, Ordering::Relaxed));
@@ -111,6 +149,9 @@ impl Solver for Flawed<'_> {
                 grain.position *= 1.0 + share;
                 grain.velocity *= 1.0 + share;
             });
+        }
+        if self.flaw == Flaw::Pumped {
+            pump(&mut record);
         }
         Ok(record)
     }

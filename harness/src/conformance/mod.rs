@@ -10,14 +10,17 @@ mod galilean;
 mod mirror;
 mod momentum;
 mod moved;
+mod objectivity;
 mod once;
 mod order;
+mod passivity;
 mod permutation;
 mod rerun;
 mod restart;
 mod rotation;
 mod row;
 mod scenes;
+mod turning;
 
 use once::Once;
 use row::Rows;
@@ -69,13 +72,15 @@ impl Property {
 }
 
 /// Every property.
-pub const ALL: [Property; 9] = [
+pub const ALL: [Property; 11] = [
     momentum::PROPERTY,
     galilean::PROPERTY,
     mirror::PROPERTY,
     rotation::PROPERTY,
     permutation::PROPERTY,
     free_flight::PROPERTY,
+    objectivity::PROPERTY,
+    passivity::PROPERTY,
     order::PROPERTY,
     rerun::PROPERTY,
     restart::PROPERTY,
@@ -104,7 +109,7 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
             let start = Instant::now();
             let flaw = property.flaw(terms);
             // Runs that are wrong may be finished ones too: they are there to be told apart.
-            let [flawed, again] = [Flawed::new(kept, flaw), Flawed::again(kept, flaw)];
+            let [flawed, again] = [Flawed::new(&once, flaw), Flawed::again(kept, flaw)];
             // What a method owes less excuses no flaw.
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;

@@ -25,6 +25,14 @@ impl Solver for Once<'_> {
         self.solver.name()
     }
 
+    fn has_springs(&self) -> bool {
+        self.solver.has_springs()
+    }
+
+    fn deforms(&self) -> bool {
+        self.solver.deforms()
+    }
+
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((.., record)) = known.iter().find(|(of, at, _)| of == scene && at == resolution) {

@@ -1,12 +1,14 @@
 //! Smooth motion converges with the order that the solver claims.
 
-use super::end::End;
+use super::end::{End, NoEnd};
 use super::row::{Found, Rows};
-use super::{Flaw, Property, scenes};
+use super::scenes::Named;
+use super::{Flaw, Property, scenes, turning};
 use crate::evidence::Evidence;
 use crate::expect::{Bound, Expected, Measured};
 use crate::tolerance::{ASYMPTOTIC, Made, asymptotic};
 use crate::verdict::Verdict;
+use grainbench_scene::solver::Resolution;
 
 pub(super) const PROPERTY: Property = Property {
     name: "order",
@@ -20,18 +22,27 @@ pub(super) const PROPERTY: Property = Property {
 
 /// No rows where no order is claimed.
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {
-    let (solver, terms) = (rows.solver, rows.terms);
+    let terms = rows.terms;
     let Some(order) = terms.order else { return Vec::new() };
-    rows.each(scenes::held(), &order.levels[0], ("order in the time step of the end", "1"), |named| {
-        let run = |at: usize| End::of(solver, &named.scene, &order.levels[at]);
-        let ends = [run(0)?, run(1)?, run(2)?];
-        // The solver's own finer runs stand for the exact answer, so that no convention of a law is judged.
-        let (coarse, fine) = (ends[0].apart(&ends[1]), ends[1].apart(&ends[2]));
-        let expected = Expected::Bound(Bound::Order(order.expected));
-        Ok(Found {
-            measured: Measured::new((coarse / fine).log2(), expected, 1.0),
-            allowed: asymptotic(order.expected).of(&[]),
-            made: Made::Required,
-        })
+    let held = rows.each(scenes::held(), &order.levels[0], QUANTITY, |named| observed(rows, named, order.levels));
+    // Walls that turn take longer, and show the order at longer steps.
+    let levels = [4.0, 2.0, 1.0].map(|factor| terms.resolution.coarser(factor).unwrap_or(terms.resolution));
+    let turning = rows.each(turning::smooth(), &levels[0], QUANTITY, |named| observed(rows, named, levels));
+    [held, turning].concat()
+}
+
+const QUANTITY: (&str, &str) = ("order in the time step of the end", "1");
+
+/// The order of three levels. The solver's own finer runs stand for the exact answer, so that no convention of a law is
+/// judged.
+fn observed(rows: &Rows<'_>, named: &Named, levels: [Resolution; 3]) -> Result<Found, NoEnd> {
+    let run = |at: usize| End::of(rows.solver, &named.scene, &levels[at]);
+    let ends = [run(0)?, run(1)?, run(2)?];
+    let (coarse, fine) = (ends[0].apart(&ends[1]), ends[1].apart(&ends[2]));
+    let claimed = rows.terms.order.map_or(f64::NAN, |order| order.expected);
+    Ok(Found {
+        measured: Measured::new((coarse / fine).log2(), Expected::Bound(Bound::Order(claimed)), 1.0),
+        allowed: asymptotic(claimed).of(&[]),
+        made: Made::Required,
     })
 }

@@ -42,10 +42,22 @@ impl Rows<'_> {
         (quantity, unit): (&str, &str),
         find: impl Fn(&Named) -> Result<Found, NoEnd>,
     ) -> Vec<Verdict> {
+        self.each_of(scenes, resolution, (quantity, unit), |named| named, find)
+    }
+
+    /// A row for every scene of a list whose entries hold more than the scene.
+    pub(super) fn each_of<T>(
+        &self,
+        scenes: Result<Vec<T>, SceneError>,
+        resolution: &Resolution,
+        (quantity, unit): (&str, &str),
+        named: impl Fn(&T) -> &Named,
+        find: impl Fn(&T) -> Result<Found, NoEnd>,
+    ) -> Vec<Verdict> {
         match scenes {
             Ok(scenes) => {
-                let asked = scenes.iter().filter(|named| self.terms.in_space || flat(&named.scene));
-                asked.map(|named| self.row(named.name, resolution, (quantity, unit), find(named))).collect()
+                let asked = scenes.iter().filter(|entry| self.terms.in_space || flat(&named(entry).scene));
+                asked.map(|entry| self.row(named(entry).name, resolution, (quantity, unit), find(entry))).collect()
             }
             Err(error) => {
                 vec![self.row("scenes", resolution, (quantity, unit), Err(NoEnd::Record(error.to_string())))]

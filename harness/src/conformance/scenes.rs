@@ -127,7 +127,12 @@ const HELD_3D: &str = "title = 'A sphere held by two walls'\ndimension = 3\ndura
 const ROUGH: &str = "tangential_stiffness = 5.0e3\nfriction = 100.0\n";
 
 fn scene(name: &'static str, parts: &[&str], frictional: bool) -> Result<Named, SceneError> {
-    let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), &parts.concat());
+    scene_of(name, &parts.concat(), frictional)
+}
+
+/// Resolves the text of a scene file.
+pub(super) fn scene_of(name: &'static str, text: &str, frictional: bool) -> Result<Named, SceneError> {
+    let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), text);
     Ok(Named { name, scene: source.scene(&|_| Err("this scene reads no file".to_owned()))?, frictional })
 }
 

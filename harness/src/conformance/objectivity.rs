@@ -1,0 +1,202 @@
+//! What turns as one rigid body stays one: grains at rest relative to walls that turn with them, and deformable bodies.
+
+use super::end::{End, NoEnd};
+use super::row::{Found, Rows};
+use super::scenes::Named;
+use super::turning::{self, Turning};
+use super::{Flaw, Property};
+use crate::evidence::Evidence;
+use crate::expect::larger;
+use crate::verdict::Verdict;
+use grainbench_scene::error::SceneError;
+use grainbench_scene::record::{PointState, Record};
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Resolution, RunError, Solver};
+use grainbench_scene::terms::Terms;
+use nalgebra::Vector3;
+
+pub(super) const PROPERTY: Property = Property {
+    name: "objectivity",
+    claim: "grains at rest relative to walls that turn as one body with them stay so, and a body that turns freely keeps its \
+            size and spin",
+    flaw: Flaw::SlowerWalls,
+    evidence: Evidence::Analytic,
+    source: "forces of the frame at rest and the centrifugal one",
+    because: "at a distance d from the axis, over an angle θ: second order, d (ΩΔt)² (1 + θ)², and of a grain on springs \
+              2 d (Ω/ω)² ωT (ωΔt)²/24; of a solver that claims no order d ΩΔt (1 + θ). Lever arms meet the surface \
+              within the overlap δ: spins off by 2Ωδ/R, and places by 2δθ where that moves the centre. Rigid grains \
+              stand 2 d (Ω/ω)² + δ off. Bodies grow by at most ρΩ²R²/E, and \
+              (ΩΔt)² (1 + θ), and lose twice as much spin",
+    check,
+};
+
+/// Names of what is judged. What turns about its normal too is apart from the rest, for a method may owe less of it.
+const PLACE: (&str, &str) = ("place off in the end", "m");
+const TWISTED: (&str, &str) = ("place off in the end, under twist", "m");
+const SPIN: (&str, &str) = ("spin × radius off in the end", "m/s");
+const SIZE: (&str, &str) = ("size off, largest of two time steps", "1");
+const SPINNING: (&str, &str) = ("spin off, largest of two time steps", "1");
+
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    if rows.solver.deforms() { of_bodies(rows) } else { of_grains(rows) }
+}
+
+/// Rows of grains on springs and of rigid ones.
+fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
+    let places = |twisted: bool| turning::all().map(|all| only(all, |turning| turning.twisted == twisted));
+    let place = |turning: &Turning| {
+        worst(rows, turning, |end| (place_off(turning, end), place_allowed(rows, turning, end)), turning.reach())
+    };
+    let spin = |turning: &Turning| {
+        let spinning = |end: &End| (spin_off(turning, end), spin_allowed(turning, end, rows.terms));
+        worst(rows, turning, spinning, turning.spin.norm())
+    };
+    [
+        each(rows, places(false), PLACE, place),
+        each(rows, places(true), TWISTED, place),
+        each(rows, turning::all(), SPIN, spin),
+    ]
+    .concat()
+}
+
+/// The deviation that uses most of what passes, at the solver's resolution, and at four times the step where it claims an order:
+/// what passes falls with that order.
+fn worst(rows: &Rows<'_>, turning: &Turning, read: impl Fn(&End) -> (f64, f64), scale: f64) -> Result<Found, NoEnd> {
+    let coarse = rows.terms.order.and_then(|_| rows.terms.resolution.coarser(4.0));
+    let mut worst: Option<(f64, f64)> = None;
+    for resolution in [Some(rows.terms.resolution), coarse].into_iter().flatten() {
+        let (off, allowed) = read(&End::of(rows.solver, &turning.named.scene, &resolution)?);
+        if off.is_nan() {
+            return Ok(Found::deviation(off, scale, allowed));
+        }
+        if worst.is_none_or(|(most, passes)| off / allowed > most / passes) {
+            worst = Some((off, allowed));
+        }
+    }
+    let (off, allowed) = worst.unwrap_or((f64::NAN, 0.0));
+    Ok(Found::deviation(off, scale, allowed))
+}
+
+fn only(all: Vec<Turning>, wanted: impl Fn(&Turning) -> bool) -> Vec<Turning> {
+    all.into_iter().filter(wanted).collect()
+}
+
+/// A row for every scene that turns.
+fn each(
+    rows: &Rows<'_>,
+    scenes: Result<Vec<Turning>, SceneError>,
+    quantity: (&str, &str),
+    find: impl Fn(&Turning) -> Result<Found, NoEnd>,
+) -> Vec<Verdict> {
+    rows.each_of(scenes, &rows.terms.resolution, quantity, |turning: &Turning| &turning.named, find)
+}
+
+/// Distance of the farthest grain from its exact place (m).
+fn place_off(turning: &Turning, end: &End) -> f64 {
+    let grains = end.grains.iter().zip(turning.named.scene.grains.iter());
+    let off = grains.map(|(grain, start)| (grain.position - turning.place(start.position, end.time)).norm());
+    off.fold(0.0, larger)
+}
+
+/// Largest spin off, times the radius (m/s).
+fn spin_off(turning: &Turning, end: &End) -> f64 {
+    let off = end.grains.iter().map(|grain| (grain.spin - turning.spin).norm() * grain.radius);
+    off.fold(0.0, larger)
+}
+
+/// Part by which a scheme of an order may be off when all turns by an angle.
+fn scheme(turning: &Turning, end: &End, terms: &Terms) -> f64 {
+    let step = turning.spin.norm() * end.time_step;
+    let angle = 1.0 + Turning::angle();
+    if terms.order.is_some_and(|order| order.expected >= 2.0) { (step * angle).powi(2) } else { step * angle }
+}
+
+/// Largest distance that passes (m).
+fn place_allowed(rows: &Rows<'_>, turning: &Turning, end: &End) -> f64 {
+    let terms = rows.terms;
+    let rate = turning.spin.norm();
+    let softness = |frequency: f64| 2.0 * (rate / frequency).powi(2);
+    let swing = turning.frequency().map_or(0.0, |frequency| {
+        let phase = frequency * end.time * (frequency * end.time_step).powi(2) / 24.0;
+        softness(frequency) * if terms.order.is_some() { phase } else { 1.0 }
+    });
+    let lever = if turning.carried { 2.0 * turning.overlap * Turning::angle() } else { 0.0 };
+    let rigid = if is_rigid(&terms.resolution) { turning.overlap } else { 0.0 };
+    turning.reach() * (scheme(turning, end, terms) + swing) + lever + rigid
+}
+
+/// Largest spin times radius that passes (m/s).
+fn spin_allowed(turning: &Turning, end: &End, terms: &Terms) -> f64 {
+    turning.spin.norm() * (scheme(turning, end, terms) + 2.0 * turning.overlap)
+}
+
+/// Whether a resolution is one of rigid bodies, whose contacts have no springs.
+pub(super) const fn is_rigid(resolution: &Resolution) -> bool {
+    matches!(resolution, Resolution::Rigid { .. })
+}
+
+/// Rows of deformable bodies.
+fn of_bodies(rows: &Rows<'_>) -> Vec<Verdict> {
+    let levels = [Some(rows.terms.resolution), shorter(&rows.terms.resolution)];
+    let judge = |named: &Named, times: f64, read: fn(&dyn Solver, &Scene, &Record) -> Result<f64, NoEnd>| {
+        let mut worst: Option<(f64, f64)> = None;
+        for resolution in levels.iter().flatten() {
+            let record = rows.solver.run(&named.scene, resolution, &mut ())?;
+            let (off, allowed) = (read(rows.solver, &named.scene, &record)?, times * strained(&named.scene, &record));
+            if off.is_nan() || worst.is_none_or(|(most, passes)| off / allowed > most / passes) {
+                worst = Some((off, allowed));
+            }
+        }
+        let (off, allowed) = worst.unwrap_or((f64::NAN, 0.0));
+        Ok(Found::deviation(off, 1.0, allowed))
+    };
+    let resolution = &rows.terms.resolution;
+    let size = rows.each(turning::free(), resolution, SIZE, |named| judge(named, 1.0, size_off));
+    let spin = rows.each(turning::free(), resolution, SPINNING, |named| judge(named, 2.0, spinning_off));
+    [size, spin].concat()
+}
+
+/// The resolution with half the time step, where the grid stays as it is.
+fn shorter(resolution: &Resolution) -> Option<Resolution> {
+    match *resolution {
+        Resolution::Grid { cells, points, courant } => Some(Resolution::Grid { cells, points, courant: 0.5 * courant }),
+        other => other.coarser(0.5),
+    }
+}
+
+/// Largest change of size and spin that passes: the strain that centrifugal forces give, reached at once and overshot, is
+/// below ρΩ²R²/E (at the centre of a disc it is .375 of that at most).
+fn strained(scene: &Scene, record: &Record) -> f64 {
+    let grain = &scene.grains[0];
+    let density = grain.mass / scene.grain_shape.mass(grain.radius, 1.0);
+    let modulus = scene.deformable[usize::from(grain.material)].map_or(f64::NAN, |material| {
+        let [bulk, shear] = [material.bulk_modulus, material.shear_modulus];
+        9.0 * bulk * shear / (3.0 * bulk + shear)
+    });
+    let rate = grain.spin.norm();
+    let angle = scene.duration.seconds().unwrap_or(f64::NAN) * rate;
+    density * (rate * grain.radius).powi(2) / modulus + (rate * record.provenance.time_step).powi(2) * (1.0 + angle)
+}
+
+/// Part by which the radius of gyration of a body's material points has changed in the end.
+fn size_off(solver: &dyn Solver, _: &Scene, record: &Record) -> Result<f64, NoEnd> {
+    let points = record.snapshots.last().map_or(&[][..], |last| &last.points);
+    if points.is_empty() {
+        return Err(
+            RunError::Unsupported { solver: solver.name(), reason: "it tells no material points".to_owned() }.into()
+        );
+    }
+    let gyration = |place: fn(&PointState) -> Vector3<f64>| {
+        let centre = points.iter().map(place).sum::<Vector3<f64>>() / points.len() as f64;
+        points.iter().map(|point| (place(point) - centre).norm_squared()).sum::<f64>()
+    };
+    let (end, start) = (gyration(|point| point.position), gyration(|point| point.position - point.displacement));
+    Ok(((end / start).sqrt() - 1.0).abs())
+}
+
+/// Part of the spin that was gained or lost.
+fn spinning_off(_: &dyn Solver, scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
+    let end = End::read(scene, record)?;
+    let start = scene.grains[0].spin;
+    Ok((end.grains[0].spin - start).norm() / start.norm())
+}

@@ -1,0 +1,275 @@
+//! Nothing gains energy by itself: not what bounces undamped, and not what drives a contact through a closed cycle.
+
+use super::end::{End, NoEnd};
+use super::objectivity::is_rigid;
+use super::row::{Found, Rows};
+use super::scenes::{self, Named, scene_of};
+use super::{Flaw, Property};
+use crate::evidence::Evidence;
+use crate::expect::{Bound, Expected, Measured, larger};
+use crate::tolerance::Made;
+use crate::verdict::Verdict;
+use grainbench_scene::error::SceneError;
+use grainbench_scene::record::{GrainState, Record};
+use grainbench_scene::scene::{Duration, Scene};
+
+pub(super) const PROPERTY: Property = Property {
+    name: "passivity",
+    claim: "grains that bounce never move with more energy than at the start, and a closed cycle of a driven contact \
+            without slip yields no work",
+    flaw: Flaw::Pumped,
+    evidence: Evidence::Invariant,
+    source: "springs store what they are given at most",
+    because: "central differences keep ½mv² + ½k x x′ of two steps in a contact, which opens and closes within a step: \
+              (ωΔt)²/4 of the energy for each of N contacts, ω of the stiffest spring there; levels are compared by \
+              Δt to the claimed order. Without springs, rounding in each step. Of a cycle: a force that is a step late, 2/n of what a spring stores in a leg of n \
+              steps",
+    check,
+};
+
+/// Gain of energy, and what is read of a cycle.
+const GAIN: (&str, &str) = ("energy gained, largest of the run", "1");
+const LEVELS: (&str, &str) = ("energy gained × (Δt₀/Δt)ⁿ, largest of three time steps", "1");
+const WORK: (&str, &str) = ("work gained in a closed cycle over the energy of its spring", "1");
+
+/// Contacts of a collision of five grains: one for each pair.
+const PAIRS: f64 = 10.0;
+/// Room between two planes beyond the diameter of the grain that bounces there (m), and how long it does (s).
+const ROOM: f64 = 0.02;
+const BOUNCING: f64 = 0.3;
+/// Velocity of that grain at the start (m/s): across the planes, and along them.
+const ACROSS: f64 = 1.0;
+/// Young's modulus of Hertz contacts (Pa).
+const YOUNG: f64 = 1.1375e5;
+
+fn check(rows: &Rows<'_>) -> Vec<Verdict> {
+    let resolution = &rows.terms.resolution;
+    let collisions = rows.each(scenes::collisions(), resolution, GAIN, |named| {
+        let record = rows.solver.run(&named.scene, resolution, &mut ())?;
+        let allowed = allowed(&named.scene, &record, PAIRS, rows)?;
+        Ok(gained(gain(&named.scene, &record)?, allowed))
+    });
+    let bouncing = rows.each(bouncing(rows), resolution, LEVELS, |named| levels(rows, named));
+    let cycles = if rows.solver.deforms() { Ok(Vec::new()) } else { cycles() };
+    let work = rows.each(cycles, resolution, WORK, |named| work(rows, named));
+    [collisions, bouncing, work].concat()
+}
+
+fn gained(gain: f64, allowed: f64) -> Found {
+    Found { measured: Measured::new(gain, Expected::Bound(Bound::AtMost(0.0)), 1.0), allowed, made: Made::Computed }
+}
+
+/// A scene for each law of contacts: a grain between two planes, which slips nowhere or now and then.
+fn bouncing(rows: &Rows<'_>) -> Result<Vec<Named>, SceneError> {
+    let linear =
+        |friction: f64| format!("normal_stiffness = 1e4\ntangential_stiffness = 5e3\nfriction = {friction:?}\n");
+    let hertz = |friction: f64| format!("law = 'hertz'\nfriction = {friction:?}\n");
+    let mut all = vec![
+        between_planes("between-planes-2d", 2, &linear(100.0))?,
+        between_planes("between-planes-2d-slip", 2, &linear(0.3))?,
+    ];
+    if !rows.solver.deforms() {
+        all.push(between_planes("between-planes-3d-hertz", 3, &hertz(100.0))?);
+        all.push(between_planes("between-planes-3d-hertz-slip", 3, &hertz(1.0))?);
+    }
+    for named in all.iter_mut().filter(|_| rows.terms.long) {
+        let step = rows.terms.resolution.steps(&named.scene).map_or(1e-5, |(step, _)| step);
+        named.scene.duration = Duration::Seconds(BOUNCING.max(1.01e5 * step));
+    }
+    Ok(all)
+}
+
+/// A grain of 1 kg and 1 m between two planes.
+fn between_planes(name: &'static str, dimension: usize, law: &str) -> Result<Named, SceneError> {
+    let flat = dimension == 2;
+    let density = if flat { 1.0 } else { 0.75 } / std::f64::consts::PI;
+    let moduli = if law.contains("hertz") {
+        format!("young_modulus = {YOUNG:?}\npoisson_ratio = 0.3")
+    } else {
+        "bulk_modulus = 1e4\nshear_modulus = 6e3".to_owned()
+    };
+    let pick = |flat_text: &'static str, deep: &'static str| if flat { flat_text } else { deep };
+    let height = 2.0 + ROOM;
+    let middle = 0.5 * height;
+    let at = |along: &str, height: f64| format!("[{along}, {height:?}]");
+    let (zero, sideways) = (pick("0.0", "0.0, 0.0"), pick("0.5", "0.5, 0.2"));
+    let spin = pick("0.4", "[0.3, -0.2, 0.4]");
+    let text = format!(
+        "title = 'A grain between two planes'\ndimension = {dimension}\nduration = {BOUNCING:?}\noutput.snapshots = 29\n\
+         [materials.m]\ndensity = {density:?}\n{moduli}\n[contacts.m]\nbetween = ['m', 'm']\n{law}\
+         [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = {}\nvelocity = {}\nspin = {spin}\n\
+         [walls.low]\nmaterial = 'm'\nplane = {{ point = {}, normal = {} }}\n\
+         [walls.high]\nmaterial = 'm'\nplane = {{ point = {}, normal = {} }}\n",
+        at(zero, middle),
+        at(sideways, -ACROSS),
+        at(zero, 0.0),
+        at(zero, 1.0),
+        at(zero, height),
+        at(zero, -1.0)
+    );
+    scene_of(name, &text, true)
+}
+
+/// A step that is usual beside that of the other runs: a tenth of the critical one, of solvers that take a fiftieth here.
+const COARSE: f64 = 5.0;
+
+/// The gain at the solver's resolution, and where it claims an order at a quarter of that step and at a coarse one.
+fn levels(rows: &Rows<'_>, named: &Named) -> Result<Found, NoEnd> {
+    let order = rows.terms.order.map_or(0.0, |order| order.expected);
+    let factors: &[f64] = if order > 0.0 { &[1.0, 0.25, COARSE] } else { &[1.0] };
+    let (mut worst, mut most) = (0.0, f64::NAN);
+    for &factor in factors {
+        let Some(resolution) = rows.terms.resolution.coarser(factor) else { continue };
+        let record = rows.solver.run(&named.scene, &resolution, &mut ())?;
+        if factor == 1.0 {
+            most = allowed(&named.scene, &record, contacts(&named.scene), rows)?;
+        }
+        worst = larger(gain(&named.scene, &record)? / factor.powf(order), worst);
+    }
+    Ok(gained(worst, most))
+}
+
+/// Contacts of a grain between two planes: it crosses the room, and turns back within half a period of the spring.
+fn contacts(scene: &Scene) -> f64 {
+    let time = scene.duration.seconds().unwrap_or(f64::NAN);
+    let grain = &scene.grains[0];
+    let (stiffness, _) = stiffest(scene);
+    1.0 + time / (ROOM / ACROSS + std::f64::consts::PI * (grain.mass / stiffness).sqrt())
+}
+
+/// Kinetic energy of a grain's rigid motion (J).
+fn kinetic(scene: &Scene, grain: &GrainState) -> f64 {
+    let inertia = scene.grains[grain.id as usize - 1].inertia;
+    // Of solvers that tell no spin, that of the centre.
+    let turning = if grain.spin.iter().all(|spin| spin.is_nan()) { 0.0 } else { inertia * grain.spin.norm_squared() };
+    0.5 * (grain.mass * grain.velocity.norm_squared() + turning)
+}
+
+/// Largest gain of energy over that of the start. There is no other energy at the start, and later only in springs.
+fn gain(scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
+    let of_start = |grain: &grainbench_scene::scene::Grain| {
+        0.5 * (grain.mass * grain.velocity.norm_squared() + grain.inertia * grain.spin.norm_squared())
+    };
+    let start: f64 = scene.grains.iter().map(of_start).sum();
+    End::read(scene, record)?;
+    let moving = |grains: &[GrainState]| grains.iter().map(|grain| kinetic(scene, grain)).sum::<f64>();
+    let energies =
+        record.snapshots.iter().filter(|snapshot| snapshot.step > 0).map(|snapshot| moving(&snapshot.grains));
+    Ok(energies.fold(0.0, larger) / start - 1.0)
+}
+
+/// Stiffness along the normal and along the tangent (N/m), at the deepest overlap that the energy of the start allows.
+fn stiffest(scene: &Scene) -> (f64, f64) {
+    let fastest = scene.grains.iter().map(|grain| grain.velocity.norm()).fold(0.0, f64::max);
+    let heaviest = scene.grains.iter().map(|grain| grain.mass).fold(0.0, f64::max);
+    let energy = 0.5 * heaviest * fastest.powi(2);
+    let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
+    // ∫F dδ = (2/5) k δ^{5/2} with k = (4/3) E* √R.
+    let radius = scene.grains[0].radius;
+    let spring = 4.0 / 3.0 * law.effective_modulus() * radius.sqrt();
+    let overlap = if law.is_hertz() { (2.5 * energy / spring).powf(0.4) } else { 1.0 };
+    law.springs.stiffness(overlap, radius)
+}
+
+/// Largest gain that passes: (ωΔt)²/4 for each contact. Deformable bodies swing with a wave that crosses a diameter in
+/// half a period. Rigid bodies have no springs, and round each step.
+fn allowed(scene: &Scene, record: &Record, contacts: f64, rows: &Rows<'_>) -> Result<f64, NoEnd> {
+    let step = record.provenance.time_step;
+    if !(step.is_finite() && step > 0.0) {
+        return Err(NoEnd::Record("the record has no time step".to_owned()));
+    }
+    let lightest = scene.grains.iter().map(|grain| grain.mass).fold(f64::INFINITY, f64::min);
+    let turning = 1.0 + 1.0 / scene.grain_shape.inertia_factor();
+    let rate = if rows.solver.deforms() {
+        std::f64::consts::FRAC_PI_2 / scene.crossing_time(1.0)
+    } else if is_rigid(&rows.terms.resolution) {
+        return Ok(4.0 * f64::EPSILON * record.cost.steps as f64);
+    } else {
+        let (normal, tangential) = stiffest(scene);
+        (normal.max(turning * tangential) / lightest).sqrt()
+    };
+    Ok(contacts * (rate * step).powi(2) / 4.0)
+}
+
+/// Overlaps (m) and shear (m) of a driven Hertz contact, and the time of each leg (s).
+const SHALLOW: f64 = 0.005;
+const DEEP: f64 = 0.01;
+const SHEAR: f64 = 5.0e-4;
+const LEG: f64 = 0.02;
+
+/// Closed cycles: sheared while shallow and back while deep, which a spring of its present stiffness pays for; and sheared
+/// while deep and back while shallow, which one that keeps its force does.
+fn cycles() -> Result<Vec<Named>, SceneError> {
+    let legs = |name, [first, second]: [f64; 2]| {
+        cycle(name, &[[0.0, first], [SHEAR, first], [SHEAR, second], [0.0, second], [0.0, 0.0]])
+    };
+    Ok(vec![legs("cycle-pressed-under-shear", [SHALLOW, DEEP])?, legs("cycle-relieved-under-shear", [DEEP, SHALLOW])?])
+}
+
+/// A ball that is driven against a plane, through shears and overlaps (m).
+fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<Named, SceneError> {
+    let place = |(leg, [shear, overlap]): (usize, &[f64; 2])| {
+        format!(", [{:?}, {shear:?}, 0.0, {:?}]", LEG * (leg + 1) as f64, -overlap)
+    };
+    let table: String = legs.iter().enumerate().map(place).collect();
+    let text = format!(
+        "title = 'A driven contact'\ndimension = 3\nduration = {:?}\noutput.every_cycles = 1\n\
+         materials.m = {{ density = 0.238732414637843, young_modulus = {YOUNG:?}, poisson_ratio = 0.3 }}\n\
+         contacts.m = {{ between = ['m', 'm'], law = 'hertz', friction = 100.0 }}\n\
+         grains.ball = {{ material = 'm', radius = 1.0, position = [0.0, 0.0, 1.0] }}\n\
+         driven.ball = {{ grains = 'ball', motion = [{{ table = [[0.0, 0.0, 0.0, 0.0]{table}] }}] }}\n\
+         walls.floor = {{ material = 'm', plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }} }}\n\
+         probes = {{ ball = {{ grain = 'ball' }}, floor = {{ wall = 'floor' }} }}\n",
+        LEG * legs.len() as f64
+    );
+    scene_of(name, &text, true)
+}
+
+/// Work that the driver gets out of a closed cycle, over what the tangential spring stores at its deepest.
+fn work(rows: &Rows<'_>, named: &Named) -> Result<Found, NoEnd> {
+    let record = rows.solver.run(&named.scene, &rows.terms.resolution, &mut ())?;
+    let column =
+        |name: &str| record.series.column(name).ok_or_else(|| NoEnd::Record(format!("the record has no {name}")));
+    let mut put_in = 0.0;
+    for axis in ["x", "z"] {
+        let (place, force) = (column(&format!("ball.{axis}"))?, column(&format!("floor.force_{axis}"))?);
+        let pairs = place.windows(2).zip(force.windows(2));
+        put_in += pairs.map(|(place, force)| 0.5 * (force[0] + force[1]) * (place[1] - place[0])).sum::<f64>();
+    }
+    let law = named.scene.laws[0].unwrap_or_default();
+    let (_, stiffness) = law.springs.stiffness(DEEP, named.scene.grains[0].radius);
+    let stored = 0.5 * stiffness * SHEAR * SHEAR;
+    let steps = LEG / record.provenance.time_step;
+    Ok(gained(-put_in / stored, 2.0 / steps))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+    use grainbench_scene::terms::Terms;
+
+    /// Runs nothing.
+    struct Nothing;
+
+    impl Solver for Nothing {
+        fn name(&self) -> String {
+            "nothing".to_owned()
+        }
+
+        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Watch) -> Result<Record, RunError> {
+            Err(RunError::Unsupported { solver: self.name(), reason: "everything".to_owned() })
+        }
+    }
+
+    #[test]
+    fn every_scene_is_right() {
+        let scenes =
+            |terms: &Terms| bouncing(&Rows { solver: &Nothing, again: &Nothing, terms, property: &PROPERTY }).unwrap();
+        assert_eq!((scenes(&Terms::SECOND_ORDER).len(), cycles().unwrap().len()), (4, 2));
+        let steps = |named: &Named| Resolution::CriticalFraction(0.02).steps(&named.scene).unwrap().1;
+        assert!(scenes(&Terms::SECOND_ORDER.at_length()).iter().all(|named| steps(named) >= 100_000));
+    }
+}
