@@ -1,0 +1,63 @@
+//! Objectivity and passivity pass a small solver with the right laws, and fail it by value with planted defects.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+#[path = "../../tests/small_dem/mod.rs"]
+mod small_dem;
+
+use grainbench_harness::conformance::ALL;
+use grainbench_harness::control::Red;
+use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_scene::terms::Terms;
+use small_dem::{Mutant, SmallDem};
+
+/// Rows of some properties.
+fn rows(solver: SmallDem, properties: &[&str], terms: &Terms) -> Vec<Verdict> {
+    let asked = ALL.iter().filter(|known| properties.contains(&known.name));
+    asked.flat_map(|property| property.check(&solver, terms)).collect()
+}
+
+/// Variants of rows that failed by value.
+fn failed(mutant: Mutant) -> Vec<String> {
+    let found = rows(SmallDem { mutant: Some(mutant) }, &["objectivity", "passivity"], &Terms::SECOND_ORDER);
+    let red = found.into_iter().filter(|row| row.red() == Some(Red::Value));
+    red.map(|row| row.variant).collect()
+}
+
+#[test]
+fn the_right_laws_pass() {
+    for row in rows(SmallDem::default(), &["objectivity", "passivity", "order"], &Terms::SECOND_ORDER) {
+        assert_eq!(row.outcome, Outcome::Pass, "{row:#?}");
+    }
+}
+
+/// 10⁵ steps of what bounces, with `GRAINBENCH_LONG=1`.
+#[test]
+fn the_right_laws_gain_nothing_in_the_long_run() {
+    if std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1") {
+        for row in rows(SmallDem::default(), &["passivity"], &Terms::SECOND_ORDER.at_length()) {
+            assert_eq!(row.outcome, Outcome::Pass, "{row:#?}");
+        }
+    }
+}
+
+#[test]
+fn planted_defects_fail_by_value() {
+    let expected: [(Mutant, &[&str]); 6] = [
+        (
+            Mutant::SpringNotTurned,
+            &["objectivity/planes-2d", "objectivity/planes-3d-along", "objectivity/rectangles-3d-oblique"],
+        ),
+        (Mutant::TwistNotFollowed, &["objectivity/planes-3d-along", "objectivity/rectangles-3d-oblique"]),
+        (Mutant::WallSpinDropped, &["objectivity/drum-3d", "objectivity/planes-3d-hertz"]),
+        (Mutant::SecantSpring, &["passivity/cycle-pressed-under-shear"]),
+        (Mutant::NotRescaled, &["passivity/cycle-relieved-under-shear"]),
+        (Mutant::WrongSpin, &["objectivity/drum-3d", "passivity/2d-friction", "passivity/between-planes-3d-hertz"]),
+    ];
+    for (mutant, variants) in expected {
+        let failed = failed(mutant);
+        for variant in variants {
+            assert!(failed.iter().any(|found| found == variant), "{mutant:?} in {variant}: {failed:?}");
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! A small discrete element method, written apart from the solvers of the project, with defects that can be planted in it.
+//!
+//! It checks properties and claims from both sides: the right laws must pass them, and each planted defect must fail them
+//! by value. It tests every pair of grains and takes central differences. Slip is found at mid-step, with the normals,
+//! lever arms and walls of mid-step.
+
+use grainbench_scene::contact_law::{ContactLaw, Springs};
+use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
+use grainbench_scene::record::{ContactState, Cost, GrainState, Look, Partner, Provenance, Record, Snapshot};
+use grainbench_scene::recorder::Recorder;
+use grainbench_scene::scene::{Driven, Grain, Scene, Wall, WallShape};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use nalgebra::{Rotation3, Vector3};
+
+type V = Vector3<f64>;
+
+/// A planted defect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mutant {
+    /// The tangential spring keeps its direction in space when its contact turns.
+    SpringNotTurned,
+    /// The tangential spring is projected on the tangent plane and does not follow the twist about the normal.
+    TwistNotFollowed,
+    /// Both grains of a pair have the lever arm (R₁ + R₂)/2.
+    MeanArm,
+    /// Both grains of a pair have the lever arm of the first.
+    OneArm,
+    /// The slip takes the spins with the wrong sign.
+    WrongSpin,
+    /// The rolling moment leaves out the spin of walls.
+    WallSpinDropped,
+    /// Mindlin's force is its present stiffness times all displacement since the contact began.
+    SecantSpring,
+    /// Mindlin's force stays as it is while a contact is unloaded.
+    NotRescaled,
+    /// The rolling angle grows on when the moment has yielded.
+    RollingNotCut,
+    /// Grains start without spin.
+    SpinsDropped,
+}
+
+/// The solver, with a defect or without.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SmallDem {
+    pub(crate) mutant: Option<Mutant>,
+}
+
+/// Where one side of a contact is, over one step.
+struct Side {
+    /// Vector from the centre of the first grain to the second or to the wall, before the step and after it (m).
+    between: [V; 2],
+    /// Velocity of the second side at its own centre, or of the wall at the contact (m/s).
+    velocity: V,
+    spin: V,
+    radius: Option<f64>,
+    mass: f64,
+    partner: Partner,
+}
+
+/// The history of a contact.
+#[derive(Clone, Debug)]
+struct Contact {
+    first: usize,
+    partner: Partner,
+    /// Tangential force of the spring on the first grain (N).
+    spring: V,
+    /// Rolling angle (rad).
+    rolled: V,
+    normal: V,
+    overlap: f64,
+    seen: u64,
+    normal_force: f64,
+    shear: V,
+    slipping: bool,
+}
+
+#[derive(Clone)]
+struct Body {
+    grain: Grain,
+    before: V,
+    position: V,
+    velocity: V,
+    spin: V,
+    force: V,
+    torque: V,
+}
+
+struct State<'a> {
+    scene: &'a Scene,
+    mutant: Option<Mutant>,
+    step: f64,
+    count: u64,
+    bodies: Vec<Body>,
+    contacts: Vec<Contact>,
+    wall_forces: Vec<V>,
+}
+
+fn nearest(wall: &WallShape, at: V) -> Option<V> {
+    Some(match wall {
+        WallShape::Plane { point, normal } => at - normal * (at - point).dot(normal),
+        WallShape::Segment { ends } => nearest_on_segment(at, ends),
+        WallShape::Rectangle { corner, edges } => nearest_on_rectangle(at, corner, edges),
+        WallShape::Round { axis, radii } => nearest_on_round(at, axis, radii),
+        WallShape::Mesh(_) => return None,
+    })
+}
+
+impl State<'_> {
+    fn time(&self) -> f64 {
+        self.count as f64 * self.step
+    }
+
+    /// The wall as a grain sees it that moved from one place to another in the last step.
+    fn facing(&self, place: usize, wall: &Wall, body: &Body) -> Option<Side> {
+        let now = self.time();
+        let at = |time: f64| {
+            let displacement = wall.motion.displacement(time.max(0.0), self.step);
+            (wall.shape.moved(&wall.motion, &displacement), displacement)
+        };
+        let (after, gone) = at(now);
+        let (before, was) = at(now - self.step);
+        let (spot, past) = (nearest(&after, body.position)?, nearest(&before, body.before)?);
+        let (spin, speed) =
+            ((gone.rotation - was.rotation) / self.step, (gone.translation - was.translation) / self.step);
+        let centre = wall.motion.centre + (gone.translation + was.translation) * 0.5;
+        let middle = self.middle(wall, body, now - 0.5 * self.step)?;
+        Some(Side {
+            between: [past - body.before, spot - body.position],
+            velocity: speed + spin.cross(&(middle - centre)),
+            spin,
+            radius: None,
+            mass: f64::INFINITY,
+            partner: Partner::Wall(place as u16),
+        })
+    }
+
+    /// The nearest place of a wall at mid-step.
+    fn middle(&self, wall: &Wall, body: &Body, time: f64) -> Option<V> {
+        let displacement = wall.motion.displacement(time.max(0.0), self.step);
+        nearest(&wall.shape.moved(&wall.motion, &displacement), (body.before + body.position) * 0.5)
+    }
+
+    fn sides(&self, first: usize) -> Vec<Side> {
+        let body = &self.bodies[first];
+        let later = self.bodies.iter().enumerate().skip(first + 1).map(|(id, other)| Side {
+            between: [other.before - body.before, other.position - body.position],
+            velocity: other.velocity,
+            spin: other.spin,
+            radius: Some(other.grain.radius),
+            mass: other.grain.mass,
+            partner: Partner::Grain(id as u32 + 1),
+        });
+        let walls = self.scene.walls.iter().enumerate().filter_map(|(place, wall)| self.facing(place, wall, body));
+        later.chain(walls).collect()
+    }
+
+    /// Finds all forces; `elapsed` is the step (s), or zero at the start.
+    fn evaluate(&mut self, elapsed: f64) {
+        for body in &mut self.bodies {
+            (body.force, body.torque) = (V::zeros(), V::zeros());
+        }
+        self.wall_forces.iter_mut().for_each(|force| *force = V::zeros());
+        for first in 0..self.bodies.len() {
+            for side in self.sides(first) {
+                self.contact(first, &side, elapsed);
+            }
+        }
+        let count = self.count;
+        self.contacts.retain(|contact| contact.seen == count);
+    }
+
+    fn contact(&mut self, first: usize, side: &Side, elapsed: f64) {
+        let body = &self.bodies[first];
+        let radius = body.grain.radius;
+        let distance = side.between[1].norm();
+        let overlap = radius + side.radius.unwrap_or(0.0) - distance;
+        let material = match side.partner {
+            Partner::Grain(id) => self.bodies[id as usize - 1].grain.material,
+            Partner::Wall(place) => self.scene.walls[usize::from(place)].material,
+            Partner::Body(_) => return,
+        };
+        let Some(law) = self.scene.law(body.grain.material, material).copied().filter(|_| overlap > 0.0) else {
+            return;
+        };
+        let normal = side.between[1] / distance;
+        let found = self.contacts.iter().position(|old| old.first == first && old.partner == side.partner);
+        let place = found.unwrap_or_else(|| {
+            let partner = side.partner;
+            let zero = V::zeros();
+            let (spring, rolled, shear) = (zero, zero, zero);
+            let (seen, normal_force, slipping) = (0, 0.0, false);
+            self.contacts.push(Contact {
+                first,
+                partner,
+                spring,
+                rolled,
+                normal,
+                overlap,
+                seen,
+                normal_force,
+                shear,
+                slipping,
+            });
+            self.contacts.len() - 1
+        });
+        let mut contact = self.contacts[place].clone();
+        let answer = respond(self.mutant, &law, body, side, [distance, overlap, elapsed], &mut contact);
+        contact.seen = self.count;
+        self.contacts[place] = contact;
+        let [force, torque, opposite] = answer;
+        let body = &mut self.bodies[first];
+        body.force += force;
+        body.torque += torque;
+        match side.partner {
+            Partner::Grain(id) => {
+                let other = &mut self.bodies[id as usize - 1];
+                other.force -= force;
+                other.torque += opposite;
+            }
+            Partner::Wall(wall) => self.wall_forces[usize::from(wall)] -= force,
+            Partner::Body(_) => {}
+        }
+    }
+
+    fn advance(&mut self) {
+        self.move_bodies();
+        self.count += 1;
+        self.evaluate(self.step);
+    }
+
+    fn move_bodies(&mut self) {
+        let (scene, step, time) = (self.scene, self.step, self.time());
+        for body in &mut self.bodies {
+            body.velocity += (body.force / body.grain.mass + scene.gravity) * step;
+            body.spin += body.torque / body.grain.inertia * step;
+        }
+        for driven in scene.driven.iter().filter(|driven| driven.is_moved_at(time)) {
+            self.drive(driven, time);
+        }
+        for body in &mut self.bodies {
+            body.before = body.position;
+            body.position += body.velocity * step;
+        }
+    }
+
+    fn drive(&mut self, driven: &Driven, time: f64) {
+        for &grain in &driven.grains {
+            self.bodies[grain].velocity = driven.velocity_over(time, self.step);
+            self.bodies[grain].spin = driven.spin;
+        }
+    }
+
+    fn look(&self) -> Look {
+        let half = 0.5 * self.step;
+        let is_driven = |id: usize| self.scene.driven.iter().any(|driven| driven.grains.contains(&id));
+        let grains = self.bodies.iter().enumerate().map(|(id, body)| {
+            let free = if is_driven(id) { 0.0 } else { half };
+            GrainState {
+                position: body.position,
+                velocity: body.velocity + (body.force / body.grain.mass + self.scene.gravity) * free,
+                spin: body.spin + body.torque / body.grain.inertia * free,
+                force: Some(body.force),
+                torque: Some(body.torque),
+                ..GrainState::start(id as u32 + 1, &body.grain)
+            }
+        });
+        let mut snapshot = Snapshot::of_grains(self.scene, self.count, self.time(), grains.collect());
+        for (wall, force) in snapshot.walls.iter_mut().zip(&self.wall_forces) {
+            wall.force = Some(*force);
+        }
+        let shown = self.contacts.iter().map(|contact| ContactState {
+            grain: contact.first as u32 + 1,
+            partner: contact.partner,
+            point: self.bodies[contact.first].position,
+            normal: contact.normal,
+            overlap: contact.overlap,
+            normal_force: contact.normal_force,
+            shear_force: contact.shear,
+            slipping: contact.slipping,
+        });
+        snapshot.contacts = Some(shown.collect());
+        let driven =
+            self.scene.driven.iter().map(|group| group.grains.iter().map(|&grain| self.bodies[grain].force).sum());
+        Look { driven: driven.collect(), ..Look::of_rigid(snapshot, 0.0) }
+    }
+}
+
+/// Lever arms of both sides (m): their sum is the distance of the centres, or the distance of the wall.
+fn arms(mutant: Option<Mutant>, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
+    if wall {
+        return [distance, 0.0];
+    }
+    let [first, second] = radii.map(|radius| radius - 0.5 * overlap);
+    match mutant {
+        Some(Mutant::MeanArm) => [0.5 * (first + second); 2],
+        Some(Mutant::OneArm) => [first; 2],
+        _ => [first, second],
+    }
+}
+
+/// The turn of a contact over a step: that of its normal, then the mean twist of both sides about it.
+fn turn(mutant: Option<Mutant>, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
+    if mutant == Some(Mutant::SpringNotTurned) {
+        return Rotation3::identity();
+    }
+    let across = from.cross(&to);
+    let sine = across.norm();
+    let tilt = if sine > 0.0 {
+        Rotation3::from_scaled_axis(across * (sine.atan2(from.dot(&to)) / sine))
+    } else {
+        Rotation3::identity()
+    };
+    if mutant == Some(Mutant::TwistNotFollowed) {
+        return tilt;
+    }
+    let twist = (spins[0] + spins[1]).dot(&to) * 0.5 * elapsed;
+    Rotation3::from_scaled_axis(to * twist) * tilt
+}
+
+/// Force and torque on the first side, and torque on the second.
+fn respond(
+    mutant: Option<Mutant>,
+    law: &ContactLaw,
+    body: &Body,
+    side: &Side,
+    [distance, overlap, elapsed]: [f64; 3],
+    contact: &mut Contact,
+) -> [V; 3] {
+    let radii = [body.grain.radius, side.radius.unwrap_or(0.0)];
+    let normal = side.between[1] / distance;
+    let middle = (side.between[0] + side.between[1]).normalize();
+    let wall = side.radius.is_none();
+    let effective = if wall { radii[0] } else { radii[0] * radii[1] / (radii[0] + radii[1]) };
+    let mass = 1.0 / (1.0 / body.grain.mass + 1.0 / side.mass);
+    let [first, second] = arms(mutant, radii, wall, distance, overlap);
+    let between = 0.5 * (side.between[0].norm() + side.between[1].norm());
+    let moving = arms(mutant, radii, wall, between, radii[0] + radii[1] - between);
+    let second_spin = if wall { V::zeros() } else { side.spin };
+    let sign = if mutant == Some(Mutant::WrongSpin) { -1.0 } else { 1.0 };
+    let relative =
+        body.velocity - side.velocity + (body.spin * moving[0] + second_spin * moving[1]).cross(&middle) * sign;
+    let slip = relative - middle * relative.dot(&middle);
+    let (stiff, _) = law.springs.stiffness(overlap, effective);
+    let damping = law.normal_damping * mass + 2.0 * law.damping_ratio * (stiff * mass * damped_share(law)).sqrt();
+    let secant = law.springs.secant_stiffness(overlap, effective);
+    let push = (secant * overlap + damping * (body.velocity - side.velocity).dot(&normal)).max(0.0);
+    shear(mutant, law, [effective, overlap, elapsed, push], (slip, normal, [body.spin, side.spin]), contact);
+    let dashpot = slip * (law.tangential_damping * mass);
+    let limit = law.friction * push + law.cohesion;
+    let total = contact.spring - dashpot;
+    contact.shear = total.cap_magnitude(limit);
+    let spin = if wall && mutant == Some(Mutant::WallSpinDropped) { V::zeros() } else { side.spin };
+    let moment = roll(mutant, law, [effective, secant, elapsed, push], (body.spin - spin, normal), contact);
+    (contact.normal, contact.overlap, contact.normal_force) = (normal, overlap, push);
+    let force = contact.shear - normal * push;
+    let lever = normal.cross(&contact.shear);
+    [force, lever * first + moment, lever * second - moment]
+}
+
+fn damped_share(law: &ContactLaw) -> f64 {
+    if law.is_hertz() { 5.0 / 6.0 } else { 1.0 }
+}
+
+/// Brings the tangential spring up to date.
+fn shear(
+    mutant: Option<Mutant>,
+    law: &ContactLaw,
+    [effective, overlap, elapsed, push]: [f64; 4],
+    (slip, normal, spins): (V, V, [V; 2]),
+    contact: &mut Contact,
+) {
+    // Slip is of mid-step: the contact turns by the other half of the step after it.
+    let half = turn(mutant, normal, normal, spins, 0.5 * elapsed);
+    let along = half * slip * elapsed;
+    let along = along - normal * along.dot(&normal);
+    let turned = turn(mutant, contact.normal, normal, spins, elapsed) * contact.spring;
+    let stiffness = |overlap: f64| law.springs.stiffness(overlap, effective).1;
+    let (was, is) = (contact.overlap, overlap);
+    let kept = match (law.springs, mutant) {
+        (Springs::Hertz { .. }, Some(Mutant::SecantSpring)) if was > 0.0 => (is / was).sqrt(),
+        (Springs::Hertz { .. }, mutant) if is < was && mutant != Some(Mutant::NotRescaled) => (is / was).sqrt(),
+        _ => 1.0,
+    };
+    contact.spring = turned * kept - along * stiffness(0.5 * (was + is));
+    let limit = law.friction * push + law.cohesion;
+    contact.slipping = contact.spring.norm() > limit;
+    contact.spring = contact.spring.cap_magnitude(limit);
+}
+
+/// The moment against rolling on the first side.
+fn roll(
+    mutant: Option<Mutant>,
+    law: &ContactLaw,
+    [effective, secant, elapsed, push]: [f64; 4],
+    (spin, normal): (V, V),
+    contact: &mut Contact,
+) -> V {
+    let arm = law.rolling_friction * effective;
+    if arm == 0.0 {
+        return V::zeros();
+    }
+    let rate = spin - normal * spin.dot(&normal);
+    let stiffness = 2.25 * secant * arm * arm;
+    contact.rolled += rate * elapsed;
+    contact.rolled -= normal * contact.rolled.dot(&normal);
+    let most = arm * push;
+    let moment = (-contact.rolled * stiffness).cap_magnitude(most);
+    if mutant != Some(Mutant::RollingNotCut) {
+        contact.rolled = -moment / stiffness;
+    }
+    moment
+}
+
+impl Solver for SmallDem {
+    fn name(&self) -> String {
+        "small-dem".to_owned()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let refuse = |reason: String| RunError::Unsupported { solver: self.name(), reason };
+        if let Some(what) = scene.needs_deformable().or_else(|| scene.passing()) {
+            return Err(refuse(what.to_owned()));
+        }
+        if scene.laws.iter().flatten().any(|law| law.rolling_damping > 0.0 && law.rolling_friction > 0.0) {
+            return Err(refuse("it has no dashpot against rolling".to_owned()));
+        }
+        let (step, steps) = resolution.steps(scene).map_err(refuse)?;
+        let bodies = scene.grains.iter().map(|grain| Body {
+            grain: *grain,
+            before: grain.position,
+            position: grain.position,
+            velocity: grain.velocity,
+            spin: if self.mutant == Some(Mutant::SpinsDropped) { V::zeros() } else { grain.spin },
+            force: V::zeros(),
+            torque: V::zeros(),
+        });
+        let walls = vec![V::zeros(); scene.walls.len()];
+        let (mutant, bodies) = (self.mutant, bodies.collect());
+        let mut state = State { scene, mutant, step, count: 0, bodies, contacts: Vec::new(), wall_forces: walls };
+        state.evaluate(0.0);
+        for body in &mut state.bodies {
+            body.velocity -= (body.force / body.grain.mass + scene.gravity) * (0.5 * step);
+            body.spin -= body.torque / body.grain.inertia * (0.5 * step);
+        }
+        let mut recorder = Recorder::new(scene, step, steps);
+        for count in 0..=steps {
+            if count > 0 {
+                state.advance();
+            }
+            if recorder.is_due(count) {
+                let due = recorder.take(scene, state.look());
+                due.into_iter().for_each(|snapshot| recorder.keep(snapshot));
+            }
+        }
+        watch.progress(steps, steps);
+        let (series, snapshots) = recorder.finish();
+        let provenance = Provenance::of(scene, self.name(), resolution, step, Vec::new());
+        Ok(Record { provenance, series, snapshots, cost: Cost::of_program(steps, scene.grains.len(), f64::NAN) })
+    }
+}
