@@ -58,8 +58,10 @@ pub fn by_name(name: &str) -> Option<Box<dyn Solver>> {
 /// Every solver of ours with what it claims of itself, in scenes that take a moment.
 #[must_use]
 pub fn with_terms() -> Vec<(Box<dyn Solver>, Terms)> {
-    let dem =
-        Convention::ALL.into_iter().map(|convention| (Box::new(Dem::new(convention)) as Box<dyn Solver>, Dem::TERMS));
+    let dem = Convention::ALL.into_iter().map(|convention| {
+        let dem = Dem::new(convention);
+        (Box::new(dem) as Box<dyn Solver>, dem.terms())
+    });
     let mpm = Mpm::ALL.into_iter().map(|mpm| (Box::new(mpm) as Box<dyn Solver>, mpm.terms().in_the_plane()));
     dem.chain([(Box::new(Rigid::new()) as Box<dyn Solver>, Rigid::TERMS)]).chain(mpm).collect()
 }

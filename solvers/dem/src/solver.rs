@@ -24,7 +24,7 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Scene};
 use grainbench_scene::solver::{Defect, Resolution, RunError, Solver, Watch};
 use grainbench_scene::space::{Plane, Solid};
-use grainbench_scene::terms::Terms;
+use grainbench_scene::terms::{Less, Terms};
 
 /// The discrete element method in one convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,9 +37,36 @@ pub struct Dem {
     pub allow_unstable: bool,
 }
 
+/// Properties that the programs behind two conventions do not have.
+const OF_PROGRAMS: &[Less] = &[
+    Less {
+        property: "objectivity",
+        quantity: "place off in the end, under twist",
+        at_most: 1e-3,
+        because: "the tangential spring is projected on the tangent plane and does not follow a contact that turns about its \
+                  normal",
+    },
+    Less {
+        property: "passivity",
+        quantity: "work gained",
+        at_most: 0.35,
+        because: "the tangential force is the present stiffness times all displacement: a contact that is pressed under shear \
+                  gains the energy by which the stiffness grows, 1 − 1/√2 of the spring's here",
+    },
+];
+
 impl Dem {
-    /// What it claims of itself, in every convention.
+    /// Terms of the conventions that are no other program's.
     pub const TERMS: Terms = Terms::SECOND_ORDER;
+
+    /// Terms of a convention.
+    #[must_use]
+    pub const fn terms(&self) -> Terms {
+        match self.convention.history {
+            History::Turned => Self::TERMS,
+            History::Projected => Self::TERMS.owing_less(OF_PROGRAMS),
+        }
+    }
 
     /// The method in a convention.
     #[must_use]

@@ -20,6 +20,9 @@ const KINK: &str = "hat functions have a kink at nodes: a point on the face betw
 const OWN_NORMALS: &str = "each body is stopped along a normal of its own, so that what two bodies give each other is not \
                            opposite: the papers' contact loses momentum where more than two meet or surfaces are coarse";
 
+const OPPOSED: &str = "each body is stopped along a normal of its own, before it touches: impulses that are not opposite add \
+                       energy where several bodies meet";
+
 const fn less(property: &'static str, quantity: &'static str, at_most: f64, because: &'static str) -> Less {
     Less { property, quantity, at_most, because }
 }
@@ -39,6 +42,8 @@ const HATS: &[Less] = &[
     less("mirror-invariance", "", 0.01, KINK),
     less("rotation-invariance", "", 0.8, GRID_HAS_AXES),
     less("free-flight", "", 0.2, NO_AFFINE_PART),
+    less("objectivity", "size", 2e-3, NO_AFFINE_PART),
+    less("objectivity", "spin", 0.5, NO_AFFINE_PART),
 ];
 
 /// With hat functions and the contacts of the papers.
@@ -49,6 +54,21 @@ const PAPERS: &[Less] = &[
     less("mirror-invariance", "", 0.3, KINK),
     less("rotation-invariance", "", 0.8, GRID_HAS_AXES),
     less("free-flight", "", 0.2, NO_AFFINE_PART),
+    less("objectivity", "size", 2e-3, NO_AFFINE_PART),
+    less("objectivity", "spin", 0.5, NO_AFFINE_PART),
+];
+
+/// The same with contacts that act at a distance.
+const FIRST_PAPER: &[Less] = &[
+    less("momentum", "momentum", 0.6, OWN_NORMALS),
+    less("momentum", "angular", 1.0, OWN_NORMALS),
+    less("galilean-invariance", "", 0.8, GRID_AT_REST),
+    less("mirror-invariance", "", 0.3, KINK),
+    less("rotation-invariance", "", 0.8, GRID_HAS_AXES),
+    less("free-flight", "", 0.2, NO_AFFINE_PART),
+    less("objectivity", "size", 2e-3, NO_AFFINE_PART),
+    less("objectivity", "spin", 0.5, NO_AFFINE_PART),
+    less("passivity", "energy gained, largest of the run", 1.5, OPPOSED),
 ];
 
 impl Mpm {
@@ -57,7 +77,8 @@ impl Mpm {
     pub fn terms(&self) -> Terms {
         let less = match self.setting.contact {
             _ if *self == Self::BEST => BEST,
-            Contact::Kinematic | Contact::Traction => PAPERS,
+            Contact::Kinematic => FIRST_PAPER,
+            Contact::Traction => PAPERS,
             _ => HATS,
         };
         Terms::at(Resolution::grid(2.0, 2)).owing_less(less)

@@ -16,6 +16,10 @@ const RAPIER: &str = "rapier 0.36, f64";
 /// Steps after which a watcher hears of progress at the latest.
 const STEPS_BETWEEN_PROGRESS: u64 = 1000;
 
+/// Why a grain between walls that press on it does not follow them.
+const PRESSED: &str = "walls that press on a rigid grain from both sides overlap it, and nothing shares the load: impulses push \
+                       the overlap out on one side and then on the other, and friction turns the grain with them";
+
 /// The solver `rigid`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rigid {
@@ -58,6 +62,8 @@ impl Rigid {
             at_most: 1e-12,
             because: "spins are turned to and from the engine's units at every step, which rounds them once more",
         },
+        Less { property: "objectivity", quantity: "place", at_most: 0.1, because: PRESSED },
+        Less { property: "objectivity", quantity: "spin", at_most: 1.0, because: PRESSED },
     ]);
 
     /// rapier as it comes.
