@@ -106,9 +106,11 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
 fn the_time_step_comes_from_the_log_or_is_asked_for() {
     let log = data("liggghts-backspin.log");
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--log", &log]);
-    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 19, 19));
+    // Conventions of damping differ by more than a twentieth in the speeds of this impact: those rows are amber.
+    assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 14, 0, 19));
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--dt", "2e-4"]);
-    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 19, 19));
+    // Conventions of damping differ by more than a twentieth in the speeds of this impact: those rows are amber.
+    assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 14, 0, 19));
     // Another step is another motion.
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--dt", "3e-4"]);
     assert!(code == 1 && count(&rows, "fail") > 2);
@@ -245,7 +247,10 @@ fn two_outputs_against_each_other() {
     };
     // Scaled and rounded to six digits, it is the same motion.
     let same = compare("lammps-incline.dump.gz", "lammps-incline-six-digits.dump.gz");
-    assert_eq!((same.code, count(&rows(&same), "pass"), rows(&same).len()), (Some(0), 8, 8));
+    assert_eq!((same.code, count(&rows(&same), "pass"), count(&rows(&same), "fail")), (Some(0), 8, 0));
+    // Columns that the first has alone are listed.
+    let alone = |row: &Value| row["detail"].as_str().is_some_and(|words| words.starts_with("only "));
+    assert_eq!(rows(&same).iter().filter(|row| alone(row)).count(), rows(&same).len() - 8);
     let other = compare("lammps-incline.dump.gz", "lammps-incline-half-friction.dump.gz");
     assert_eq!(other.code, Some(1));
     assert!(count(&rows(&other), "fail") >= 3);
@@ -300,7 +305,7 @@ fn what_cannot_be_told_is_amber() {
     assert_eq!((code, count(&rows[1..], "no-reference"), rows.len()), (Some(1), 2, 3), "{rows:#?}");
     assert!(rows[1]["detail"].as_str().unwrap().starts_with("cannot tell: "), "{}", rows[1]);
     let (code, rows) = checked("time,contact.overlap\n0,0\n0.06,0\n");
-    assert_eq!((code, rows.len()), (Some(1), 1), "{rows:#?}");
+    assert_eq!((code, rows.len(), &rows[1]["verdict"]), (Some(1), 2, &"no-reference".into()), "{rows:#?}");
 }
 
 #[test]
@@ -375,5 +380,5 @@ fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
     );
     assert_eq!(rows[1]["detail"], "only a.csv has it");
     // An option that takes one value takes one.
-    assert_eq!(compared("step,v\n0,0.5\n", "step,v\n0,0.5\n", &["--dt", "1e-5", "--allow-missing"]).0, 0);
+    assert_eq!(compared("step,v\n0,0.512345\n", "step,v\n0,0.512345\n", &["--dt", "1e-5", "--allow-missing"]).0, 0);
 }

@@ -42,9 +42,11 @@ impl Clock {
         let mean = (ends.1.1 - ends.0.1) / (ends.1.0 - ends.0.0) as f64;
         let mut parts = Vec::new();
         for pair in samples.windows(2).filter(|pair| pair[1].0 > pair[0].0) {
-            parts.push(Part { from: pair[0].0, time_step: (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0) as f64 });
+            let time_step = rounded((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0) as f64);
+            parts.push(Part { from: pair[0].0, time_step });
         }
         // Times are printed with few digits: steps that differ by less than a thousandth are one.
+        parts.dedup_by(|next, before| next.time_step.total_cmp(&before.time_step).is_eq());
         if parts.iter().all(|part| (part.time_step - mean).abs() <= 1e-3 * mean) {
             parts = vec![Part { from: 0, time_step: mean }];
         }
@@ -80,6 +82,11 @@ impl Clock {
             (last.min(until).saturating_sub(first.max(from)), part.time_step)
         })
     }
+}
+
+/// A time step from a difference of printed times, to ten digits: the rest is rounding.
+fn rounded(time_step: f64) -> f64 {
+    format!("{time_step:.9e}").parse().unwrap_or(time_step)
 }
 
 /// The time steps of one run: of its command, of the column `Dt`, or of the columns `Time` and `Step`.

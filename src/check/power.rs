@@ -221,7 +221,7 @@ fn families(scene: &Scene) -> Vec<Family> {
     if has(&|law| law.damping_ratio > 0.0) {
         scaled("restitution", &|law, factor| law.set_restitution((law.restitution() * factor).min(1.0)));
     }
-    if has(&|law| law.normal_damping > 0.0 || law.stiffness_damping > 0.0) {
+    if has(&|law| law.normal_damping > 0.0 || law.stiffness_damping > 0.0 || law.tangential_damping > 0.0) {
         scaled("contact damping", &|law, factor| {
             (law.normal_damping, law.stiffness_damping) = (law.normal_damping * factor, law.stiffness_damping * factor);
             law.tangential_damping *= factor;

@@ -39,7 +39,7 @@ pub struct Sample {
     pub found: f64,
     /// Value of the nearest run.
     pub expected: f64,
-    /// By how much the runs differ around this time, as a part of the scale.
+    /// By how much the runs differ, as a part of the scale.
     pub between: f64,
     /// Change by half the time step around this time, as a part of the scale.
     pub halved: f64,
@@ -124,7 +124,8 @@ pub fn against<'a>(
         let (times, found, expected) = together(observed, &observed.values[at], &nearest.series, &column.name)?;
         let own = nearest.series.column(&column.name)?;
         let others = peers.iter().filter_map(|peer| together(&nearest.series, own, &peer.series, &column.name));
-        let between: Vec<Envelope> = others.map(|(times, a, b)| Envelope::of(times, &a, &b)).collect();
+        // Conventions ring and drift otherwise: how far they are apart at one time says little of another program there.
+        let between = others.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale;
         let halved = with_half.map(|(peer, half)| {
             let of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
             Envelope::of(peer.series.time.clone(), &of(&peer.series), &of(half))
@@ -133,7 +134,7 @@ pub fn against<'a>(
             time: *time,
             found: *found,
             expected: *expected,
-            between: between.iter().map(|envelope| envelope.at(*time)).fold(0.0, larger) / scale,
+            between,
             halved: halved.as_ref().map_or(0.0, |envelope| envelope.at(*time)) / scale,
         };
         (scale > 0.0).then(|| Compared {
@@ -157,23 +158,17 @@ struct Envelope {
 const WINDOW: f64 = 0.01;
 
 impl Envelope {
-    /// Of two runs at times they share (s): at each time the largest difference of the samples around it, or √2 times the root
-    /// mean square of all up to there, which is the amplitude of what oscillates. What differs at an impact alone does not
-    /// widen what is allowed long after it.
+    /// Of two runs at times they share (s): at each time the largest difference of the samples around it, or what nine in ten
+    /// samples are within, which is nearly the amplitude of what oscillates. What differs at impacts alone does not widen what is
+    /// allowed between them.
     fn of(times: Vec<f64>, a: &[f64], b: &[f64]) -> Self {
         let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
-        let count = off.len();
-        let half = ((WINDOW * count as f64) as usize).max(1);
-        let mut sums = vec![0.0; count + 1];
-        for (at, off) in off.iter().enumerate() {
-            sums[at + 1] = sums[at] + off * off;
-        }
-        let largest = windowed(&off, half);
-        let value = |at: usize| {
-            let end = (at + half + 1).min(count);
-            larger(largest[at], (2.0 * sums[end] / end as f64).sqrt())
-        };
-        Self { values: (0..count).map(value).collect(), times }
+        let mut sorted = off.clone();
+        sorted.sort_by(|a, b| weight(*a).total_cmp(&weight(*b)));
+        let mostly = sorted.get(sorted.len().saturating_sub(1) * 9 / 10).copied().unwrap_or_default();
+        let half = ((WINDOW * off.len() as f64) as usize).max(1);
+        let values = windowed(&off, half).into_iter().map(|largest| larger(largest, mostly)).collect();
+        Self { times, values }
     }
 
     /// The value at the sample nearest to a time (s).
