@@ -24,7 +24,8 @@ pub(super) const PROPERTY: Property = Property {
     source: "forces of the frame at rest and the centrifugal one",
     because: "at a distance d from the axis, over an angle θ: second order, d (ΩΔt)² (1 + θ)², and of a grain on springs \
               2 d (Ω/ω)² ωT (ωΔt)²/24; of a solver that claims no order d ΩΔt (1 + θ). Lever arms meet the surface \
-              within the overlap δ: spins off by 2Ωδ/R, and places by 2δθ where that moves the centre. Rigid grains \
+              within the overlap δ: spins off by 2Ωδ/R, and places by 2δθ where that moves the centre. \
+              That Ωδ differs from side to side turns the swing on springs, d (Ω/ω)² θ. Rigid grains \
               stand 2 d (Ω/ω)² + δ off. Bodies grow by at most ρΩ²R²/E, and \
               (ΩΔt)² (1 + θ), and lose twice as much spin",
     check,
@@ -118,7 +119,8 @@ fn place_allowed(rows: &Rows<'_>, turning: &Turning, end: &End) -> f64 {
     let softness = |frequency: f64| 2.0 * (rate / frequency).powi(2);
     let swing = turning.frequency().map_or(0.0, |frequency| {
         let phase = frequency * end.time * (frequency * end.time_step).powi(2) / 24.0;
-        softness(frequency) * if terms.order.is_some() { phase } else { 1.0 }
+        let arms = 0.5 * turning.across * Turning::angle().min(2.0);
+        softness(frequency) * (arms + if terms.order.is_some() { phase } else { 1.0 })
     });
     let lever = if turning.carried { 2.0 * turning.overlap * Turning::angle() } else { 0.0 };
     let rigid = if is_rigid(&terms.resolution) { turning.overlap } else { 0.0 };

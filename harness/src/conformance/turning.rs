@@ -44,6 +44,8 @@ pub(super) struct Turning {
     pub(super) carried: bool,
     /// Whether contacts turn about their normals.
     pub(super) twisted: bool,
+    /// Part of Ω that is across the normals, where the lever arms of a sprung grain matter.
+    pub(super) across: f64,
 }
 
 impl Turning {
@@ -216,8 +218,9 @@ fn clamped(
     let frequency = (2.0 * STIFFNESS).sqrt();
     let overlap = HELD + 2.0 * centre.norm() * (RATE / frequency).powi(2);
     let twisted = spin.dot(&normal).abs() > 1e-9;
+    let across = spin.cross(&normal).norm() / RATE;
     let course = Course::Sprung(frequency);
-    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: false, twisted })
+    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: false, twisted, across })
 }
 
 /// Two grains in a row between two walls, along a line across the axis and through it: contact forces differ by m Ω² r.
@@ -233,7 +236,7 @@ fn row(name: &'static str, law: Law, (builder, walls): (Builder, Walls), normal:
     let builder = builder.grain("b", normal * second);
     let builder = walls(builder, "high", normal * (second + 1.0 - overlap), -normal);
     let (spin, course) = (builder.spin, Course::Rigid);
-    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false })
+    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
 }
 
 /// A sphere on the inside of a drum: k δ = m Ω² (R_drum − R + δ).
@@ -248,7 +251,7 @@ fn drum(name: &'static str, law: Law, axis: V) -> Result<Turning, SceneError> {
     let ends = [builder.vector(axis * -5.0), builder.vector(axis * 5.0)].join(", ");
     let builder = builder.wall("drum", &format!("cylinder = {{ axis = [{ends}], radius = {DRUM:?} }}"));
     let (spin, course) = (builder.spin, Course::Rigid);
-    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false })
+    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
 }
 
 /// Scenes of grains on springs and of rigid grains.
