@@ -3,3 +3,4 @@
 pub mod dashpot;
 pub mod manufactured;
 pub mod one_grain;
+pub mod turning;

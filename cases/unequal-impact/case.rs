@@ -1,0 +1,148 @@
+//! A small grain meets a large one at an angle and slips throughout: exact velocities and spins of both.
+
+use crate::rows::incline::stronger_friction;
+use grainbench_harness::prelude::*;
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.02", 0.02), fraction("dt=.005", 0.005)];
+const VARIANTS: [&str; 3] = ["spheres", "discs", "hertz"];
+
+pub(crate) static CASE: Case = Case {
+    name: "unequal-impact",
+    title: "A small grain meets a large one at an angle",
+    claim: "Friction between grains of unequal size gives each a spin by its own lever arm, and both the same impulse.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "The grains slip all the time and have no dashpots: neither sticking nor restitution below 1 is felt.",
+    levels: LEVELS,
+    default_level: LEVELS[1],
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+/// The impact, in numbers of the scene.
+struct Impact {
+    /// Velocity of the small grain along the line of centres and across it (m/s).
+    before: [f64; 2],
+    /// Impulse along the normal and along the tangent (N s).
+    impulse: [f64; 2],
+    /// Masses (kg), radii (m) and moments of inertia (kg m²).
+    masses: [f64; 2],
+    radii: [f64; 2],
+    inertias: [f64; 2],
+    /// Part by which an impulse or a spin may be off.
+    off: f64,
+}
+
+impl Impact {
+    fn of(scene: &Scene) -> Self {
+        let pair = |read: fn(&grainbench_scene::scene::Grain) -> f64| [read(&scene.grains[0]), read(&scene.grains[1])];
+        let (masses, radii) = (pair(|grain| grain.mass), pair(|grain| grain.radius));
+        let before = [scene.grains[0].velocity.x, scene.grains[0].velocity.y];
+        let law = scene.laws[0].unwrap_or_default();
+        let reduced = masses[0] * masses[1] / (masses[0] + masses[1]);
+        let normal = 2.0 * reduced * before[0];
+        let effective = radii[0] * radii[1] / (radii[0] + radii[1]);
+        let (overlap, time) = if law.is_hertz() {
+            let stiffness = 4.0 / 3.0 * law.effective_modulus() * effective.sqrt();
+            let overlap = (1.25 * reduced * before[0].powi(2) / stiffness).powf(0.4);
+            (overlap, 2.943_275_184 * overlap / before[0])
+        } else {
+            let rate = (law.normal_stiffness() / reduced).sqrt();
+            (before[0] / rate, std::f64::consts::PI / rate)
+        };
+        let turned = before[1] * time / (radii[0] + radii[1]);
+        let step = LEVELS[1].resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        let phase = law.springs.stiffness(overlap, effective).0 / reduced * step * step / 8.0;
+        let off = turned * (1.0 + before[1] / before[0]) + 0.5 * overlap / radii[0] + phase;
+        let impulse = [normal, law.friction * normal];
+        Self { before, impulse, masses, radii, inertias: pair(|grain| grain.inertia), off }
+    }
+}
+
+/// A quantity: its name, unit and column, what it should be, and the impulse's part of it.
+struct Quantity {
+    name: &'static str,
+    unit: &'static str,
+    column: &'static str,
+    exact: fn(&Impact) -> f64,
+    given: fn(&Impact) -> f64,
+}
+
+const QUANTITIES: [Quantity; 6] = [
+    Quantity {
+        name: "velocity of the small grain along the line of centres",
+        unit: "m/s",
+        column: "small.vx",
+        exact: |impact| impact.before[0] - impact.impulse[0] / impact.masses[0],
+        given: |impact| impact.impulse[0] / impact.masses[0],
+    },
+    Quantity {
+        name: "velocity of the large grain along the line of centres",
+        unit: "m/s",
+        column: "large.vx",
+        exact: |impact| impact.impulse[0] / impact.masses[1],
+        given: |impact| impact.impulse[0] / impact.masses[1],
+    },
+    Quantity {
+        name: "velocity of the small grain across it",
+        unit: "m/s",
+        column: "small.vy",
+        exact: |impact| impact.before[1] - impact.impulse[1] / impact.masses[0],
+        given: |impact| impact.impulse[0] / impact.masses[0],
+    },
+    Quantity {
+        name: "velocity of the large grain across it",
+        unit: "m/s",
+        column: "large.vy",
+        exact: |impact| impact.impulse[1] / impact.masses[1],
+        given: |impact| impact.impulse[0] / impact.masses[1],
+    },
+    Quantity {
+        name: "spin of the small grain",
+        unit: "rad/s",
+        column: "small.omega",
+        exact: |impact| -impact.impulse[1] * impact.radii[0] / impact.inertias[0],
+        given: |impact| impact.impulse[1] * impact.radii[0] / impact.inertias[0],
+    },
+    Quantity {
+        name: "spin of the large grain",
+        unit: "rad/s",
+        column: "large.omega",
+        exact: |impact| -impact.impulse[1] * impact.radii[1] / impact.inertias[1],
+        given: |impact| impact.impulse[1] * impact.radii[1] / impact.inertias[1],
+    },
+];
+
+fn claims() -> Vec<Claim> {
+    VARIANTS.into_iter().flat_map(|variant| QUANTITIES.iter().map(move |quantity| row(variant, quantity))).collect()
+}
+
+fn row(variant: &'static str, quantity: &'static Quantity) -> Claim {
+    let flat = variant == "discs";
+    let spins = quantity.column.ends_with("omega");
+    let column = if spins && !flat { format!("{}_z", quantity.column) } else { quantity.column.to_owned() };
+    let allowed = CASE.variant(variant).map_or(f64::NAN, |scene| {
+        let impact = Impact::of(&scene);
+        impact.off * ((quantity.given)(&impact) / (quantity.exact)(&impact)).abs()
+    });
+    let along = quantity.column.ends_with("vx");
+    let heavier = Control::scene("the large grain a hundredth heavier", |scene| scene.grains[1].mass *= 1.01);
+    claim(quantity.name, quantity.unit)
+        .of(Run::new(variant, "dem", LEVELS[1].resolution))
+        .equals(Source::Derived("momentum, restitution 1 and Coulomb's limit throughout (derivation)"), move |done| {
+            let exact = (quantity.exact)(&Impact::of(&done[0].scene));
+            Ok(Measured::new(done[0].last(&column)?, exact, exact))
+        })
+        .within(computed(
+            allowed,
+            "the line of centres turns by α while they touch, α (1 + u/v); arms between R and R − δ/2; and contact begins \
+             and ends within a step, (ωΔt)²/8: of the impulse",
+        ))
+        .refuses(if along { heavier } else { stronger_friction() })
+        .fair_to_any_springs()
+}
+
+fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(Vec::new())
+}
