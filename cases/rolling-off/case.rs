@@ -1,0 +1,162 @@
+//! A ball rolls off a fixed ball: where it leaves, and with which spin.
+
+use grainbench_harness::prelude::*;
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const STEP: Level = LEVELS[1];
+
+pub(crate) static CASE: Case = Case {
+    name: "rolling-off",
+    title: "A ball rolls off a fixed ball",
+    claim: "A ball that rolls off another leaves it at cos θ = 10/17 if it is rough, and as Coulomb's law says if it slips.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "Where it leaves is read from the spin and the velocity that it keeps afterwards, not from the contact itself.",
+    levels: LEVELS,
+    default_level: STEP,
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+/// The balls, in numbers of the scene.
+struct Balls {
+    gravity: f64,
+    friction: f64,
+    radius: f64,
+    /// Distance of the centres while they touch (m).
+    distance: f64,
+    /// Angle at the start (rad).
+    angle: f64,
+    /// Part of the velocity that may be off.
+    off: f64,
+}
+
+/// Angle (rad), velocity v (m/s) and velocity of the surface ωR (m/s).
+type State = [f64; 3];
+
+impl Balls {
+    fn of(scene: &Scene) -> Self {
+        let [fixed, ball] = [&scene.grains[0], &scene.grains[1]];
+        let law = scene.laws[0].unwrap_or_default();
+        let (gravity, distance) = (scene.gravity.norm(), ball.radius + fixed.radius);
+        let angle = ball.position.x.atan2(ball.position.z);
+        let swing = 2.0 / 7.0 * gravity * angle.sin() / (3.5 * law.tangential_stiffness() / ball.mass).sqrt();
+        let fast = (gravity * distance * 10.0 / 17.0).sqrt();
+        let overlap = ball.mass * gravity / law.normal_stiffness();
+        let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        let off = (swing + gravity * step) / fast + overlap / distance + overlap / ball.radius;
+        Self { gravity, friction: law.friction, radius: ball.radius, distance, angle, off }
+    }
+
+    /// Normal force over the mass (m/s²).
+    fn press(&self, [angle, speed, _]: State) -> f64 {
+        self.gravity * angle.cos() - speed * speed / self.distance
+    }
+
+    /// Rates of a state, while it rolls or slips.
+    fn rates(&self, state: State, slips: bool) -> State {
+        let down = self.gravity * state[0].sin();
+        let friction = if slips { self.friction * self.press(state).max(0.0) } else { 2.0 / 7.0 * down };
+        [state[1] / self.distance, down - friction, 2.5 * friction]
+    }
+
+    /// The state in which it leaves.
+    fn leaves(&self) -> State {
+        let step = 1e-5;
+        let mut state = [self.angle, 0.0, 0.0];
+        let mut slips = false;
+        while self.press(state) > 0.0 {
+            slips |= 2.0 / 7.0 * self.gravity * state[0].sin() > self.friction * self.press(state);
+            let moved =
+                |from: State, by: State, part: f64| -> State { [0, 1, 2].map(|at| from[at] + part * step * by[at]) };
+            let first = self.rates(state, slips);
+            let second = self.rates(moved(state, first, 0.5), slips);
+            let third = self.rates(moved(state, second, 0.5), slips);
+            let fourth = self.rates(moved(state, third, 1.0), slips);
+            state = [0, 1, 2]
+                .map(|at| state[at] + step / 6.0 * (first[at] + 2.0 * second[at] + 2.0 * third[at] + fourth[at]));
+        }
+        state
+    }
+}
+
+fn claims() -> Vec<Claim> {
+    let mut claims = vec![angle()];
+    for variant in ["rough", "slippery"] {
+        claims.push(kept(variant, "spin after it has left", "rad/s", "ball.omega_y", |balls| {
+            balls.leaves()[2] / balls.radius
+        }));
+        claims.push(kept(variant, "velocity along x after it has left", "m/s", "ball.vx", |balls| {
+            let [angle, speed, _] = balls.leaves();
+            speed * angle.cos()
+        }));
+    }
+    claims
+}
+
+fn off(variant: &str, times: f64) -> Tolerance {
+    computed(
+        CASE.variant(variant).map_or(f64::NAN, |scene| times * Balls::of(&scene).off),
+        "the spring's swing at the start, (2/7) g sin θ₀/ω_t, and one step of gravity, of the velocity; the overlap over the \
+         distance and over the radius",
+    )
+}
+
+/// The rough ball leaves at cos θ = (10/17) cos θ₀: ω²R² = g d cos θ.
+fn angle() -> Claim {
+    claim("cosine of the angle at which the rough ball leaves, from its spin", "1")
+        .of(Run::new("rough", "dem", STEP.resolution))
+        .equals(Source::Derived("energy and v = ωR: cos θ = (10/17) cos θ₀ (derivation)"), |done| {
+            let balls = Balls::of(&done[0].scene);
+            let surface = done[0].last("ball.omega_y")? * balls.radius;
+            let exact = 10.0 / 17.0 * balls.angle.cos();
+            Ok(Measured::new(surface * surface / (balls.gravity * balls.distance), exact, exact))
+        })
+        .within(off("rough", 2.0))
+        .refuses(Control::scene("the inertia of a disc", |scene| scene.grains[1].inertia *= 1.25))
+        .fair_to_any_springs()
+}
+
+fn kept(
+    variant: &'static str,
+    quantity: &str,
+    unit: &'static str,
+    column: &'static str,
+    exact: fn(&Balls) -> f64,
+) -> Claim {
+    let control = if variant == "rough" {
+        Control::scene("the inertia of a disc", |scene| scene.grains[1].inertia *= 1.25)
+    } else {
+        Control::scene("friction × 1.05", |scene| scene.change_laws(|law| law.friction *= 1.05))
+    };
+    claim(format!("{quantity}, {variant}"), unit)
+        .of(Run::new(variant, "dem", STEP.resolution))
+        .equals(Source::Derived("Newton's law with Coulomb's, by Runge and Kutta's method (derivation)"), move |done| {
+            let exact = exact(&Balls::of(&done[0].scene));
+            Ok(Measured::new(done[0].last(column)?, exact, exact))
+        })
+        .within(off(variant, 1.0))
+        .refuses(control)
+        .fair_to_any_springs()
+}
+
+fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(Vec::new())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    /// The integration has the closed form of the rough ball.
+    #[test]
+    fn the_rough_ball_leaves_at_ten_seventeenths() {
+        let balls = Balls::of(&CASE.variant("rough").unwrap());
+        let [angle, speed, surface] = Balls { friction: 1e9, ..balls }.leaves();
+        let exact = 10.0 / 17.0 * CASE.variant("rough").map(|scene| Balls::of(&scene).angle.cos()).unwrap();
+        assert!((angle.cos() - exact).abs() < 1e-4 && (speed - surface).abs() < 1e-9, "{} {exact}", angle.cos());
+    }
+}
