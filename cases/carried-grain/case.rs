@@ -1,0 +1,128 @@
+//! A grain is carried round by two driven grains: a contact whose normal turns, and one that turns about its normal.
+
+use crate::exact::turning::{second_order, sprung};
+use grainbench_harness::prelude::*;
+use grainbench_scene::nalgebra::Vector3;
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const STEP: Level = LEVELS[2];
+
+pub(crate) static CASE: Case = Case {
+    name: "carried-grain",
+    title: "A grain is carried round by two",
+    claim: "Tangential springs between grains turn with their contact: with its normal, and about it.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "Nothing slips, and springs are linear and alike along the normal and the tangent.",
+    levels: LEVELS,
+    default_level: STEP,
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+/// The motion, in numbers of the scene.
+struct Motion {
+    /// Angular velocity Ω (rad/s).
+    spin: Vector3<f64>,
+    /// Frequency ω of the springs (rad/s).
+    frequency: f64,
+    /// Largest overlap (m), and half the sum of overlap over distance at both contacts.
+    overlap: f64,
+    curved: f64,
+    start: Vector3<f64>,
+    radius: f64,
+    time: f64,
+    step: f64,
+}
+
+impl Motion {
+    fn of(scene: &Scene) -> Self {
+        let carried = &scene.grains[0];
+        let stiffness = scene.laws[0].map_or(f64::NAN, |law| law.normal_stiffness());
+        let distance = |other: &grainbench_scene::scene::Grain| (other.position - carried.position).norm();
+        let overlap = |other: &grainbench_scene::scene::Grain| carried.radius + other.radius - distance(other);
+        let drivers = || scene.grains.iter().skip(1);
+        Self {
+            spin: carried.spin,
+            frequency: (2.0 * stiffness / carried.mass).sqrt(),
+            overlap: drivers().map(overlap).fold(0.0, f64::max),
+            curved: drivers().map(|other| 0.5 * overlap(other) / distance(other)).sum(),
+            start: carried.position,
+            radius: carried.radius,
+            time: scene.duration.seconds().unwrap_or(f64::NAN),
+            step: STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step),
+        }
+    }
+
+    /// Distance that the place may be off (m); lever arms matter where the axis is across the normals.
+    fn off(&self, across: bool) -> f64 {
+        let (rate, distance) = (self.spin.norm(), self.start.norm());
+        let phase = 0.25 * self.frequency * self.time;
+        let soft = 2.0 * (rate / self.frequency).powi(2) * self.curved * (0.5 + phase) * distance;
+        let turned = (rate * self.time).min(2.0) * (rate / self.frequency).powi(2) * distance;
+        let arms = if across { turned } else { 0.0 };
+        second_order(distance, rate, self.frequency, [self.time, self.step]) + soft + arms
+    }
+}
+
+fn motion(variant: &str) -> Option<Motion> {
+    CASE.variant(variant).ok().map(|scene| Motion::of(&scene))
+}
+
+/// Place of the carried grain in the end (m).
+fn place(done: &Done) -> Result<Vector3<f64>, Missing> {
+    let mut place = Vector3::zeros();
+    for (axis, name) in ["carried.x", "carried.y", "carried.z"].iter().enumerate().take(done.scene.dimension.count()) {
+        place[axis] = done.last(name)?;
+    }
+    Ok(place)
+}
+
+fn claims() -> Vec<Claim> {
+    let mut claims: Vec<Claim> = ["across", "along"].into_iter().map(after_a_turn).collect();
+    claims.push(spin());
+    claims
+}
+
+fn after_a_turn(variant: &'static str) -> Claim {
+    let allowed = motion(variant).map_or(f64::NAN, |motion| motion.off(variant == "across") / motion.start.norm());
+    claim(format!("place after a turn, axis {variant} the normals, off"), "m")
+        .of(Run::new(variant, "dem", STEP.resolution))
+        .holds("a mass on springs alike in all directions, whose rest place turns (derivation)", |done| {
+            let motion = Motion::of(&done[0].scene);
+            let exact = sprung(motion.start, motion.spin, motion.frequency, motion.time);
+            Ok(Measured::new((place(&done[0])? - exact).norm(), 0.0, motion.start.norm()))
+        })
+        .within(computed(
+            allowed,
+            "second order, d (ΩΔt)² (1 + θ)² and 2 d (Ω/ω)² ωT (ωΔt)²/24; curved surfaces, 2 d (Ω/ω)² c (1/2 + ωT/4); across the normals \
+             lever arms, d (Ω/ω)² θ and at most twice d (Ω/ω)²",
+        ))
+        .refuses(Control::scene("the drivers run on and do not spin", |scene| {
+            scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());
+        }))
+        .fair_to_any_springs()
+}
+
+fn spin() -> Claim {
+    let allowed = motion("across").map_or(f64::NAN, |motion| {
+        let (rate, step) = (motion.spin.norm(), motion.step);
+        2.0 * motion.overlap / motion.radius + (rate * step * (1.0 + rate * motion.time)).powi(2)
+    });
+    claim("spin after a turn, axis across the normals", "rad/s")
+        .of(Run::new("across", "dem", STEP.resolution))
+        .equals(Source::Derived("the torques of both contacts are opposite (derivation)"), |done| {
+            let rate = Motion::of(&done[0].scene).spin.norm();
+            Ok(Measured::new(done[0].last("carried.omega")?, rate, rate))
+        })
+        .within(computed(allowed, "lever arms within the overlap, 2δ/R, and (ΩΔt)² (1 + θ)²"))
+        .refuses(Control::scene("the drivers run on and do not spin", |scene| {
+            scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());
+        }))
+        .fair_to_any_springs()
+}
+
+fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(Vec::new())
+}

@@ -1,0 +1,174 @@
+//! Grains ride on walls that turn: in a drum, on a tray that is tilted, between plates that turn about their normal.
+
+use crate::exact::turning::{second_order, sprung};
+use grainbench_harness::prelude::*;
+use grainbench_scene::nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.02", 0.02)];
+const STEP: Level = LEVELS[1];
+
+pub(crate) static CASE: Case = Case {
+    name: "turning-walls",
+    title: "Grains ride on walls that turn",
+    claim: "Grains at rest relative to walls that turn stay so: the walls' spin reaches friction, its springs and the \
+            resistance against rolling.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "Linear springs without dashpots, and one grain at a time.",
+    levels: LEVELS,
+    default_level: STEP,
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+/// Angular velocity of the walls (rad/s).
+fn spin(scene: &Scene) -> Vector3<f64> {
+    scene.walls[0].motion.phases.iter().map(|phase| phase.spin).sum()
+}
+
+/// Angle by which the walls have turned (rad).
+fn turned(scene: &Scene) -> f64 {
+    spin(scene).norm() * scene.duration.seconds().unwrap_or(f64::NAN)
+}
+
+/// Numbers of a variant, as the file has them.
+fn number(variant: &str, of: impl Fn(&Scene) -> f64) -> f64 {
+    CASE.variant(variant).map_or(f64::NAN, |scene| of(&scene))
+}
+
+/// (ΩΔt)² (1 + ΩT)².
+fn scheme(scene: &Scene) -> f64 {
+    let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+    (spin(scene).norm() * step * (1.0 + turned(scene))).powi(2)
+}
+
+/// Overlap with the drum (m).
+fn in_drum(scene: &Scene) -> f64 {
+    let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
+    let force = grain.mass * spin(scene).norm_squared() * grain.position.norm();
+    force / law.normal_stiffness()
+}
+
+fn claims() -> Vec<Claim> {
+    vec![orbit(), spin_in_drum(), tray(), clamped()]
+}
+
+fn slower() -> Control {
+    Control::scene("walls that turn slower by a hundredth", |scene| {
+        let phases = scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases);
+        phases.for_each(|phase| phase.spin *= 0.99);
+    })
+}
+
+/// Angle that the grain has gone round the origin (rad), from its places at all samples.
+fn gone_round(done: &Done) -> Result<f64, Missing> {
+    let angles: Vec<f64> =
+        done.column("grain.x")?.iter().zip(done.column("grain.y")?).map(|(x, y)| y.atan2(*x)).collect();
+    let nearest = |change: f64| change - TAU * (change / TAU).round();
+    Ok(angles.windows(2).map(|pair| nearest(pair[1] - pair[0])).sum())
+}
+
+fn orbit() -> Claim {
+    let exact = number("drum", turned);
+    claim("angle that the sphere has gone round in the drum", "rad")
+        .of(Run::new("drum", "dem", STEP.resolution))
+        .equals(Source::Derived("it stays at rest relative to the drum: ΩT (derivation)"), move |done| {
+            Ok(Measured::new(gone_round(&done[0])?, exact, exact))
+        })
+        .within(computed(
+            number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].position.norm() + scheme(scene)),
+            "lever arms within the overlap, 2δ/r, and (ΩΔt)² (1 + ΩT)²",
+        ))
+        .refuses(slower())
+        .fair_to_any_springs()
+}
+
+fn spin_in_drum() -> Claim {
+    let exact = number("drum", |scene| spin(scene).norm());
+    claim("spin of the sphere in the drum", "rad/s")
+        .of(Run::new("drum", "dem", STEP.resolution))
+        .equals(Source::Derived("it turns with the drum: Ω (derivation)"), move |done| {
+            Ok(Measured::new(done[0].last("grain.omega_z")?, exact, exact))
+        })
+        .within(computed(
+            number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].radius + scheme(scene)),
+            "lever arms within the overlap, 2δ/R, and (ΩΔt)² (1 + ΩT)²",
+        ))
+        .refuses(slower())
+        .fair_to_any_springs()
+}
+
+/// How far the disc gives way along the tray, for each newton (m/N): 1/k_t + R²/k_r.
+fn softness(scene: &Scene) -> f64 {
+    let (law, radius) = (scene.laws[0].unwrap_or_default(), scene.grains[0].radius);
+    let rolling = 2.25 * law.normal_stiffness() * (law.rolling_friction * radius).powi(2);
+    1.0 / law.tangential_stiffness() + radius * radius / rolling
+}
+
+/// Part of Rφ by which the disc may be off: lever arms, and the swing on the springs.
+fn tray_off(scene: &Scene) -> f64 {
+    let grain = &scene.grains[0];
+    let (weight, angle) = (grain.mass * scene.gravity.norm(), turned(scene));
+    let overlap = weight / scene.laws[0].map_or(f64::NAN, |law| law.normal_stiffness());
+    let rate = (1.5 * grain.mass * softness(scene)).sqrt().recip();
+    let swing = weight * spin(scene).norm() * softness(scene) / rate;
+    (overlap * angle + 2.0 * swing) / (grain.radius * angle) + scheme(scene)
+}
+
+fn tray() -> Claim {
+    claim("way of the disc down the tray", "m")
+        .of(Run::new("tray", "dem", STEP.resolution))
+        .equals(Source::Derived("m g sin φ (1/k_t + R²/k_r) (derivation)"), |done| {
+            let scene = &done[0].scene;
+            let (angle, grain) = (turned(scene), &scene.grains[0]);
+            // The tray falls towards +x.
+            let way = done[0].last("grain.x")? * angle.cos() - done[0].last("grain.y")? * angle.sin();
+            let exact = grain.mass * scene.gravity.norm() * angle.sin() * softness(scene);
+            Ok(Measured::new(way, exact, grain.radius * angle))
+        })
+        .within(computed(
+            number("tray", tray_off),
+            "lever arms within the overlap, δφ, and twice the swing ẋ/ω on the springs; in units of Rφ",
+        ))
+        .refuses(Control::without(Effect::RollingResistance))
+        .fair_to_any_springs()
+}
+
+/// Frequency of the springs of both plates (rad/s).
+fn frequency(scene: &Scene) -> f64 {
+    scene.laws[0].map_or(f64::NAN, |law| (2.0 * law.tangential_stiffness() / scene.grains[0].mass).sqrt())
+}
+
+/// Place across the axis, where the clamped sphere turns.
+fn across(place: Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(place.x, place.y, 0.0)
+}
+
+fn clamped() -> Claim {
+    let allowed = number("clamped", |scene| {
+        let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        let time = scene.duration.seconds().unwrap_or(f64::NAN);
+        second_order(1.0, spin(scene).norm(), frequency(scene), [time, step])
+    });
+    claim("place of the clamped sphere after a turn, off", "m")
+        .of(Run::new("clamped", "dem", STEP.resolution))
+        .holds("r̈ = −ω²(r − r₀(t)) (derivation)", |done| {
+            let scene = &done[0].scene;
+            let start = across(scene.grains[0].position);
+            let time = scene.duration.seconds().unwrap_or(f64::NAN);
+            let exact = sprung(start, spin(scene), frequency(scene), time);
+            let end = Vector3::new(done[0].last("grain.x")?, done[0].last("grain.y")?, 0.0);
+            Ok(Measured::new((end - exact).norm(), 0.0, start.norm()))
+        })
+        .within(computed(allowed, "(ΩΔt)² (1 + ΩT)² and 2 (Ω/ω)² ωT (ωΔt)²/24, of r₀"))
+        .refuses(Control::scene("the upper plate turns slower by a hundredth", |scene| {
+            scene.walls[1].motion.phases.iter_mut().for_each(|phase| phase.spin *= 0.99);
+        }))
+        .fair_to_any_springs()
+}
+
+fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(Vec::new())
+}
