@@ -92,8 +92,9 @@ struct At {
     away: &'static [[f64; 3]],
 }
 
-const PLACES: [At; 4] = [
+const PLACES: [At; 5] = [
     At { words: "over the seam of a face", centre: [0.5, 0.5, 1.07], away: &[[0.0, 0.0, 0.07]] },
+    At { words: "over a face beside a ridge", centre: [0.97, 0.5, 1.07], away: &[[0.0, 0.0, 0.07]] },
     At { words: "at a ridge", centre: [1.06, 0.4, 1.07], away: &[[0.06, 0.0, 0.07]] },
     At { words: "at a corner", centre: [1.05, 1.04, 1.07], away: &[[0.05, 0.04, 0.07]] },
     At {

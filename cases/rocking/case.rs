@@ -1,0 +1,141 @@
+//! A sphere rolls to rest and rocks on its rolling spring; a disc rocks between two others that run on.
+
+use grainbench_harness::prelude::*;
+
+const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+const STEP: Level = LEVELS[1];
+
+pub(crate) static CASE: Case = Case {
+    name: "rocking",
+    title: "Rolling springs",
+    claim: "The rolling spring yields at its limit and lets a grain rock about where it came to rest; the memory of it \
+            belongs to the contact, whichever grain comes first.",
+    scene: include_str!("scene.toml"),
+    derivation: include_str!("derivation.md"),
+    weakness: "There is no dashpot against rolling.",
+    levels: LEVELS,
+    default_level: STEP,
+    claims: &claims,
+    figures,
+    home: &crate::registry::HOME,
+};
+
+/// A sphere that rolls to rest, in numbers of the scene.
+struct ToRest {
+    radius: f64,
+    /// Angle at which the rolling spring yields (rad).
+    yields: f64,
+    /// Way to rest (m).
+    way: f64,
+    /// Part of the rocking, and of the way, that may be off.
+    off: [f64; 2],
+}
+
+impl ToRest {
+    fn of(scene: &Scene) -> Self {
+        let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
+        let (radius, gravity, speed) = (grain.radius, scene.gravity.norm(), grain.velocity.norm());
+        let arm = law.rolling_friction * radius;
+        let (rolling, limit) = (2.25 * law.normal_stiffness() * arm * arm, arm * grain.mass * gravity);
+        let yields = limit / rolling;
+        let way = 0.7 * grain.mass * speed * speed * radius / limit + 0.5 * radius * yields;
+        let soft = rolling / (law.tangential_stiffness() * radius * radius);
+        let swing =
+            2.0 / 7.0 * law.rolling_friction * gravity / (3.5 * law.tangential_stiffness() / grain.mass).sqrt() / speed;
+        let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        // A sample is taken every ten steps, a swing of 2Rθ is read at its ends.
+        let phase = (10.0 * step).powi(2) * rolling / (1.4 * grain.mass * radius * radius) / 8.0;
+        Self { radius, yields, way, off: [soft + phase + swing * way / (radius * yields), 2.0 * swing + soft] }
+    }
+}
+
+/// The largest place, and the smallest one after it (m).
+fn turning_points(done: &Done) -> Result<[f64; 2], Missing> {
+    let places = done.column("grain.x")?;
+    let farthest = (0..places.len()).max_by(|&a, &b| places[a].total_cmp(&places[b])).unwrap_or(0);
+    Ok([places[farthest], places[farthest..].iter().copied().fold(f64::INFINITY, f64::min)])
+}
+
+fn number(variant: &str, of: impl Fn(&Scene) -> f64) -> f64 {
+    CASE.variant(variant).map_or(f64::NAN, |scene| of(&scene))
+}
+
+fn claims() -> Vec<Claim> {
+    vec![back(), way(), between("between"), between("backwards")]
+}
+
+fn back() -> Claim {
+    claim("way back from where the sphere came to rest", "m")
+        .of(Run::new("to-rest", "dem", STEP.resolution))
+        .equals(Source::Derived("2Rθ_y, θ_y = μ_r R F_n/k_r (derivation)"), |done| {
+            let [stop, back] = turning_points(&done[0])?;
+            let rest = ToRest::of(&done[0].scene);
+            let exact = 2.0 * rest.radius * rest.yields;
+            Ok(Measured::new(stop - back, exact, exact))
+        })
+        .within(computed(
+            number("to-rest", |scene| ToRest::of(scene).off[0]),
+            "the tangential spring gives way, k_r/k_tR²; its swing at the start; a turning point between samples, (ω_rΔt)²/8",
+        ))
+        .refuses(Control::scene("rolling resistance × 1.1", |scene| {
+            scene.change_laws(|law| law.rolling_friction *= 1.1);
+        }))
+        .fair_to_any_springs()
+}
+
+fn way() -> Claim {
+    claim("way to rest", "m")
+        .of(Run::new("to-rest", "dem", STEP.resolution))
+        .equals(Source::Derived("(7/10) m v₀² = μ_r m g (x_s/R − θ_y/2) R (derivation)"), |done| {
+            let exact = ToRest::of(&done[0].scene).way;
+            Ok(Measured::new(turning_points(&done[0])?[0], exact, exact))
+        })
+        .within(computed(
+            number("to-rest", |scene| ToRest::of(scene).off[1]),
+            "the tangential spring's swing at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
+        ))
+        .refuses(Control::scene("rolling resistance × 1.1", |scene| {
+            scene.change_laws(|law| law.rolling_friction *= 1.1);
+        }))
+        .fair_to_any_springs()
+}
+
+/// Frequency at which the disc rocks between two (rad/s), and the part of the spin that may be off.
+fn rocks(scene: &Scene) -> [f64; 2] {
+    let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
+    let each = |other: &grainbench_scene::scene::Grain| {
+        let effective = grain.radius * other.radius / (grain.radius + other.radius);
+        let rolling = 2.25 * law.normal_stiffness() * (law.rolling_friction * effective).powi(2);
+        law.tangential_stiffness() * grain.radius.powi(2) + rolling
+    };
+    let stiffness: f64 = scene.grains.iter().skip(1).map(each).sum();
+    let rate = (stiffness / grain.inertia).sqrt();
+    let phase = rate * scene.duration.seconds().unwrap_or(f64::NAN);
+    let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+    let overlap = 1e-3;
+    [rate, phase * (0.5 * overlap / grain.radius + (rate * step).powi(2) / 24.0) + (rate * step).powi(2) / 8.0]
+}
+
+fn between(variant: &'static str) -> Claim {
+    let forth = if variant == "between" { "forth" } else { "back" };
+    claim(format!("spin of the disc between two that run {forth}, worst"), "rad/s")
+        .of(Run::new(variant, "dem", STEP.resolution))
+        .series(|done| samples(done, "grain.omega"))
+        .follows(
+            Source::Derived("ω₀ cos ω_s t, ω_s² = Σ (k_t R² + k_r)/I (derivation)"),
+            |done, time| done.scene.grains[0].spin.z * (rocks(&done.scene)[0] * time).cos(),
+            |done| done.scene.grains[0].spin.z,
+        )
+        .within(computed(
+            number(variant, |scene| rocks(scene)[1]),
+            "lever arms within the overlap, ω_s t δ/2R; central differences, ω_s t (ω_sΔt)²/24 and (ω_sΔt)²/8 of a velocity; of ω₀",
+        ))
+        .refuses(Control::scene("rolling resistance × 1.05", |scene| {
+            scene.change_laws(|law| law.rolling_friction *= 1.05);
+        }))
+        .fair_to_any_springs()
+}
+
+fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
+    Ok(Vec::new())
+}
