@@ -96,8 +96,8 @@ fn after_a_turn(variant: &'static str) -> Claim {
         })
         .within(computed(
             allowed,
-            "second order, d (ΩΔt)² (1 + θ)² and 2 d (Ω/ω)² ωT (ωΔt)²/24; curved surfaces, 2 d (Ω/ω)² c (1/2 + ωT/4); across the normals \
-             lever arms, d (Ω/ω)² θ and at most twice d (Ω/ω)²",
+            "second order, d (ΩΔt)² (1 + θ)² and 2 d (Ω/ω)² ωT (ωΔt)²/24; curved surfaces, 2 d (Ω/ω)² c (1/2 + ωT/4); across \
+             the normals lever arms, d (Ω/ω)² θ and at most twice d (Ω/ω)²",
         ))
         .refuses(Control::scene("the drivers run on and do not spin", |scene| {
             scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());

@@ -22,8 +22,8 @@ pub(super) const PROPERTY: Property = Property {
     source: "springs store what they are given at most",
     because: "central differences keep ½mv² + ½k x x′ of two steps in a contact, which opens and closes within a step: \
               (ωΔt)²/4 of the energy for each of N contacts, ω of the stiffest spring there; levels are compared by \
-              Δt to the claimed order. Without springs, rounding in each step. Of a cycle: a force that is a step late, 2/n of what a spring stores in a leg of n \
-              steps",
+              Δt to the claimed order. Without springs, rounding in each step. Of a cycle: a \
+              force that is a step late, 2/n of what a spring stores in a leg of n steps",
     check,
 };
 
