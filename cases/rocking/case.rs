@@ -128,7 +128,8 @@ fn between(variant: &'static str) -> Claim {
         )
         .within(computed(
             number(variant, |scene| rocks(scene)[1]),
-            "lever arms within the overlap, ω_s t δ/2R; central differences, ω_s t (ω_sΔt)²/24 and (ω_sΔt)²/8 of a velocity; of ω₀",
+            "lever arms within the overlap, ω_s t δ/2R; central differences, ω_s t (ω_sΔt)²/24 and \
+             (ω_sΔt)²/8 of a velocity; of ω₀",
         ))
         .refuses(Control::scene("rolling resistance × 1.05", |scene| {
             scene.change_laws(|law| law.rolling_friction *= 1.05);

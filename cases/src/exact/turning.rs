@@ -21,8 +21,9 @@ pub fn sprung(start: Vector3<f64>, spin: Vector3<f64>, frequency: f64, time: f64
         + across(-phase) * (0.5 * (sum - difference))
 }
 
-/// What a scheme of second order with a step Δt (s) may be off (m), of a mass at a distance d (m) from the axis: every turn of the
-/// frame d (ΩΔt)² (1 + Ωt)², and the swing on the springs, 2 d (Ω/ω)², by its phase ωt (ωΔt)²/24.
+/// Error of a scheme of second order (m), of a mass at a distance d (m) from the axis.
+///
+/// The turn of the frame gives d (ΩΔt)² (1 + Ωt)², and the swing on the springs, 2 d (Ω/ω)², the error of its phase, ωt (ωΔt)²/24.
 #[must_use]
 pub fn second_order(distance: f64, rate: f64, frequency: f64, [time, step]: [f64; 2]) -> f64 {
     let phase = frequency * time * (frequency * step).powi(2) / 24.0;
