@@ -23,7 +23,8 @@ pub fn sprung(start: Vector3<f64>, spin: Vector3<f64>, frequency: f64, time: f64
 
 /// Error of a scheme of second order (m), of a mass at a distance d (m) from the axis.
 ///
-/// The turn of the frame gives d (ΩΔt)² (1 + Ωt)², and the swing on the springs, 2 d (Ω/ω)², the error of its phase, ωt (ωΔt)²/24.
+/// The turn of the frame gives d (ΩΔt)² (1 + Ωt)². The swing on the springs, 2 d (Ω/ω)², gives the error of its phase,
+/// ωt (ωΔt)²/24.
 #[must_use]
 pub fn second_order(distance: f64, rate: f64, frequency: f64, [time, step]: [f64; 2]) -> f64 {
     let phase = frequency * time * (frequency * step).powi(2) / 24.0;
