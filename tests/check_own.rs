@@ -74,7 +74,9 @@ fn a_scene_of_ones_own_is_compared_with_our_solvers() {
         let scene = file("slope.toml");
         let (code, rows) = judged(&[&[&scene, "--dump"], &files[..]].concat());
         let nearest = |row: &Value| row["source"].as_str().is_some_and(|source| source.starts_with("dem:liggghts"));
-        assert_eq!((code, count(&rows, |row| row["verdict"] == "pass")), (Some(0), rows.len()), "{rows:#?}");
+        // Of what was found all is right; what the output could not reveal is amber.
+        let is_told = |row: &Value| row["verdict"] == "pass" || row["quantity"].as_str().unwrap().contains("reveals");
+        assert_eq!((code, count(&rows, is_told)), (Some(0), rows.len()), "{rows:#?}");
         assert!(count(&rows, nearest) >= 9, "{rows:#?}");
         assert_eq!(rows[0]["case"], "slope");
     }
