@@ -12,6 +12,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const SIZE: f64 = 1e-9;
 /// The same for what falls, where a solver claims no more than the first order and may be off by gΔt/2.
 const LARGE: f64 = 1e-2;
+/// Part by which walls, or bodies without walls, turn slower.
+const SLOWER: f64 = 0.05;
 
 /// How a solver is wrong. All but the last three act on the velocities it starts from, which any solver can express.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +28,7 @@ pub enum Flaw {
     Anisotropic,
     /// The first grain in the list is treated otherwise than the rest.
     Listed,
-    /// Walls turn slower than they are told; without walls that turn, grains do.
+    /// Walls turn slower than prescribed. Without walls that turn, grains turn slower, and points of bodies spread.
     SlowerWalls,
     /// Velocities and forces on walls grow during a run.
     Pumped,
@@ -48,8 +50,10 @@ impl Flaw {
             Self::Handed => "velocities turned to one side by a billionth",
             Self::Anisotropic => "velocities along x larger by a billionth",
             Self::Listed => "the first grain in the list faster by a billionth",
-            Self::SlowerWalls => "walls, or grains without walls, that turn slower by a hundredth",
-            Self::Pumped => "velocities, and forces on walls, that double over a run",
+            Self::SlowerWalls => {
+                "walls that turn slower by a twentieth, or bodies that turn slower and grow by a thousandth"
+            }
+            Self::Pumped => "velocities, and forces on walls, that grow tenfold over a run",
             Self::FirstOrder => "positions and velocities off by the first order in the step",
             Self::Irreproducible => "a velocity that differs by a rounding from run to run",
             Self::Restarted => "a velocity that differs by a rounding after a restart",
@@ -66,13 +70,13 @@ impl Flaw {
                 Self::Handed if flat => grain.velocity += SIZE * Vector3::z().cross(&grain.velocity),
                 Self::Handed => grain.velocity += SIZE * grain.radius * grain.spin,
                 Self::Anisotropic => grain.velocity.x *= 1.0 + SIZE,
-                Self::SlowerWalls if !turns => grain.spin *= 1.0 - LARGE,
+                Self::SlowerWalls if !turns => grain.spin *= 1.0 - SLOWER,
                 _ => {}
             }
         }
         if self == Self::SlowerWalls {
             let phases = scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases);
-            phases.for_each(|phase| phase.spin *= 1.0 - LARGE);
+            phases.for_each(|phase| phase.spin *= 1.0 - SLOWER);
         }
         if let Some(grain) = scene.grains.first_mut() {
             match self {
@@ -84,11 +88,18 @@ impl Flaw {
     }
 }
 
-/// Lets velocities, spins and forces on walls grow to twice as much at the end.
+/// Spreads the material points at the end by a thousandth, away from their mean place.
+fn spread(record: &mut Record) {
+    let Some(last) = record.snapshots.last_mut() else { return };
+    let mean = last.points.iter().map(|point| point.position).sum::<Vector3<f64>>() / last.points.len() as f64;
+    last.points.iter_mut().for_each(|point| point.position += 1e-3 * (point.position - mean));
+}
+
+/// Lets velocities, spins and forces on walls grow to ten times as much at the end.
 fn pump(record: &mut Record) {
     let end = record.snapshots.last().map_or(1.0, |last| last.time);
     for snapshot in &mut record.snapshots {
-        let factor = 1.0 + snapshot.time / end;
+        let factor = 1.0 + 9.0 * snapshot.time / end;
         for grain in &mut snapshot.grains {
             grain.velocity *= factor;
             grain.spin *= factor;
@@ -97,7 +108,7 @@ fn pump(record: &mut Record) {
     let series = &mut record.series;
     for (column, values) in series.columns.iter().zip(&mut series.values) {
         if column.name.contains(".force_") {
-            values.iter_mut().zip(&series.time).for_each(|(value, time)| *value *= 1.0 + time / end);
+            values.iter_mut().zip(&series.time).for_each(|(value, time)| *value *= 1.0 + 9.0 * time / end);
         }
     }
 }
@@ -150,8 +161,10 @@ impl Solver for Flawed<'_> {
                 grain.velocity *= 1.0 + share;
             });
         }
-        if self.flaw == Flaw::Pumped {
-            pump(&mut record);
+        match self.flaw {
+            Flaw::Pumped => pump(&mut record),
+            Flaw::SlowerWalls => spread(&mut record),
+            _ => {}
         }
         Ok(record)
     }

@@ -45,6 +45,8 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
 /// Rows of grains on springs and of rigid ones.
 fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
     let places = |twisted: bool| turning::all().map(|all| only(all, |turning| turning.twisted == twisted));
+    // Nothing turns a grain whose contacts turn about their normals alone.
+    let spinning = turning::all().map(|all| only(all, |turning| turning.across > 0.0 || turning.carried));
     let place = |turning: &Turning| {
         worst(rows, turning, |end| (place_off(turning, end), place_allowed(rows, turning, end)), turning.reach())
     };
@@ -55,7 +57,7 @@ fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
     [
         each(rows, places(false), PLACE, place),
         each(rows, places(true), TWISTED, place),
-        each(rows, turning::all(), SPIN, spin),
+        each(rows, spinning, SPIN, spin),
     ]
     .concat()
 }
