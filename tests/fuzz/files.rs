@@ -9,7 +9,6 @@ use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench::reference::comparison::{Options, compare};
-use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{OutputError, Outputs, Sources};
 use grainbench::reference::stored::StoredRun;
 use grainbench::reference::{ReadError, parse_data, parse_log, parse_table};
@@ -351,13 +350,11 @@ fn of_two(lot: &mut Lot) -> Answer {
     }
     let sources = Sources {
         files: vec![first.clone()],
-        log: None,
-        names: Names::default(),
         time_step: Some(1e-5),
         most_rows: Some(MOST_ROWS),
-        frame_interval: None,
-        from_first: lot.draw(any::<bool>()),
         partial: lot.draw(any::<bool>()),
+        from_first: lot.draw(any::<bool>()),
+        ..Sources::default()
     };
     static SCENE: OnceLock<Scene> = OnceLock::new();
     let observed = Outputs::survey(sources).and_then(|outputs| outputs.observe(SCENE.get_or_init(scene)));

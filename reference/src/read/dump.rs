@@ -110,10 +110,8 @@ impl<'r> DumpReader<'r> {
                 return Err(ReadError::at(self.blocks.name(), self.blocks.number(), expected, "more"));
             }
         }
-        if snapshot.kind == DumpKind::Atoms {
-            if let Some(column) = snapshot.column("id") {
-                self.ids.check(self.blocks.name(), snapshot, column)?;
-            }
+        if let Some(column) = snapshot.column("id").filter(|_| snapshot.kind == DumpKind::Atoms) {
+            self.ids.check(self.blocks.name(), snapshot, column)?;
         }
         Ok(true)
     }

@@ -15,11 +15,11 @@ const EXCERPT: usize = 60;
 #[derive(Debug, thiserror::Error)]
 #[error("{}: expected {expected}, found {found}", Place(file, *line, *column))]
 pub struct ReadError {
-    file: String,
+    file: Box<str>,
     line: Option<u64>,
     column: Option<usize>,
-    expected: String,
-    found: String,
+    expected: Box<str>,
+    found: Box<str>,
     is_cut: bool,
     #[source]
     source: Option<io::Error>,
@@ -28,11 +28,11 @@ pub struct ReadError {
 impl ReadError {
     pub(crate) fn at(file: &str, line: u64, expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self {
-            file: one_line(file),
+            file: one_line(file).into_boxed_str(),
             line: Some(line),
             column: None,
-            expected: expected.into(),
-            found: found.into(),
+            expected: expected.into().into_boxed_str(),
+            found: found.into().into_boxed_str(),
             is_cut: false,
             source: None,
         }
@@ -57,7 +57,7 @@ impl ReadError {
 
     /// A file that could not be opened.
     pub(crate) fn opening(file: &str, source: io::Error) -> Self {
-        Self { line: None, expected: "a readable file".to_owned(), ..Self::reading(file, 0, source) }
+        Self { line: None, expected: "a readable file".into(), ..Self::reading(file, 0, source) }
     }
 
     /// The input's name, as it was given (characters that would break the line are escaped).
