@@ -108,7 +108,10 @@ fn rocks(scene: &Scene) -> [f64; 2] {
         let rolling = 2.25 * law.normal_stiffness() * (law.rolling_friction * effective).powi(2);
         law.tangential_stiffness() * grain.radius.powi(2) + rolling
     };
-    let stiffness: f64 = scene.grains.iter().skip(1).map(each).sum();
+    let touches = |other: &&grainbench_scene::scene::Grain| {
+        (other.position - grain.position).norm() < grain.radius + other.radius
+    };
+    let stiffness: f64 = scene.grains.iter().skip(1).filter(touches).map(each).sum();
     let rate = (stiffness / grain.inertia).sqrt();
     let phase = rate * scene.duration.seconds().unwrap_or(f64::NAN);
     let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
