@@ -28,7 +28,7 @@ pub enum Flaw {
     Anisotropic,
     /// The first grain in the list is treated otherwise than the rest.
     Listed,
-    /// Walls turn slower than prescribed. Without walls that turn, grains turn slower, and points of bodies spread.
+    /// Walls turn slower than prescribed. Without walls that turn, grains turn slower, and points of bodies move outwards.
     SlowerWalls,
     /// Velocities and forces on walls grow during a run.
     Pumped,
@@ -51,9 +51,9 @@ impl Flaw {
             Self::Anisotropic => "velocities along x larger by a billionth",
             Self::Listed => "the first grain in the list faster by a billionth",
             Self::SlowerWalls => {
-                "walls that turn slower by a twentieth, or bodies that turn slower and grow by a thousandth"
+                "walls that turn slower by a twentieth, or bodies that turn slower and swell by a hundredth"
             }
-            Self::Pumped => "velocities, and forces on walls, that grow tenfold over a run",
+            Self::Pumped => "velocities, and forces on walls, that grow a hundredfold over a run",
             Self::FirstOrder => "positions and velocities off by the first order in the step",
             Self::Irreproducible => "a velocity that differs by a rounding from run to run",
             Self::Restarted => "a velocity that differs by a rounding after a restart",
@@ -88,18 +88,22 @@ impl Flaw {
     }
 }
 
-/// Spreads the material points at the end by a thousandth, away from their mean place.
-fn spread(record: &mut Record) {
-    let Some(last) = record.snapshots.last_mut() else { return };
-    let mean = last.points.iter().map(|point| point.position).sum::<Vector3<f64>>() / last.points.len() as f64;
-    last.points.iter_mut().for_each(|point| point.position += 1e-3 * (point.position - mean));
+/// Moves all material points outwards by a hundredth.
+fn swell(record: &mut Record) {
+    for point in record.snapshots.iter_mut().flat_map(|snapshot| &mut snapshot.points) {
+        point.displacement += point.position * LARGE;
+        point.position *= 1.0 + LARGE;
+    }
 }
 
-/// Lets velocities, spins and forces on walls grow to ten times as much at the end.
+/// Part by which velocities and forces grow over a run: beyond what dissipation takes of the energy.
+const GROWTH: f64 = 99.0;
+
+/// Lets velocities, spins and forces on walls grow to a hundred times as much at the end.
 fn pump(record: &mut Record) {
     let end = record.snapshots.last().map_or(1.0, |last| last.time);
     for snapshot in &mut record.snapshots {
-        let factor = 1.0 + 9.0 * snapshot.time / end;
+        let factor = 1.0 + GROWTH * snapshot.time / end;
         for grain in &mut snapshot.grains {
             grain.velocity *= factor;
             grain.spin *= factor;
@@ -108,7 +112,7 @@ fn pump(record: &mut Record) {
     let series = &mut record.series;
     for (column, values) in series.columns.iter().zip(&mut series.values) {
         if column.name.contains(".force_") {
-            values.iter_mut().zip(&series.time).for_each(|(value, time)| *value *= 1.0 + 9.0 * time / end);
+            values.iter_mut().zip(&series.time).for_each(|(value, time)| *value *= 1.0 + GROWTH * time / end);
         }
     }
 }
@@ -163,7 +167,7 @@ impl Solver for Flawed<'_> {
         }
         match self.flaw {
             Flaw::Pumped => pump(&mut record),
-            Flaw::SlowerWalls => spread(&mut record),
+            Flaw::SlowerWalls => swell(&mut record),
             _ => {}
         }
         Ok(record)
