@@ -211,7 +211,7 @@ fn no_command_is_run_with_its_options() {
     let directory = tempfile::tempdir().unwrap();
     let answer = grainbench(directory.path(), &["--solver", "dem:no-such"]);
     assert_eq!(answer.code, Some(2));
-    assert!(answer.err.contains("did you mean `dem:"), "{}", answer.err);
+    assert!(answer.err.contains("did you mean `dem`?"), "{}", answer.err);
 }
 
 #[test]

@@ -23,10 +23,6 @@ const FIGURE_7: Source =
     Source::Printed(&PAPER, "Fig. 7: the pattern of chains evolves over the 8 % of shear between 63 and 71 %");
 const FIGURE_8: Source =
     Source::Printed(&PAPER, "Fig. 8: motion of the grains is concentrated near the moving boundary");
-const CONFINING: Source = Source::Printed(
-    &PAPER,
-    "the text on Fig. 7, of experiments: the confining force during shearing fluctuates dramatically",
-);
 
 /// The other side moves instead.
 fn other_side(scene: &mut Scene) {
@@ -158,19 +154,6 @@ fn on_springs() -> Vec<Claim> {
         ),
         chains_go_on(runs(), ", grains on springs", staying()),
         chains_of_the_paper(runs(), ", grains on springs", staying()),
-        over_packings(
-            (
-                "standard deviation over mean of the normal force on the standing side, 20 to 80 % shear, grains on \
-                 springs",
-                CONFINING,
-            ),
-            runs(),
-            VALUES,
-            0.15,
-            // Grains that stand still do not press at all. A weight beside the chains is steady.
-            Control::scene("grains that weigh on the standing side, 1e8 m/s²", |scene| scene.gravity.x = -1e8),
-            |done| fluctuation(&done[0], "left.force_x"),
-        ),
         claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear, grains on springs", "1")
             .of_all([springs::to("slow", 0.25, 0), springs::to("seed-1", 0.25, 0)])
             .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measured::new(bands(done)?, slower, slower)))

@@ -13,8 +13,8 @@ const SOURCE: Source = Source::Derived("Lamé's rotating annulus in plane strain
 pub(crate) static CASE: Case = Case {
     name: "spinning-ring",
     title: "A spinning ring",
-    claim: "A ring that spins keeps its angular momentum and grows by what centrifugal forces ask for, whether its stress follows \
-            from the deformation or is added up from step to step.",
+    claim: "A ring that spins keeps its angular momentum and grows by the strain of centrifugal forces, whether its stress \
+            follows from the deformation or is added up from step to step.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "In the plane, small strain, one turn. The sum over all points sees no error that leaves the second moment alone.",

@@ -14,7 +14,7 @@ use thiserror::Error;
 /// What a checkpoint begins with, before the number of its format.
 const MAGIC: &[u8] = b"grainbench checkpoint ";
 /// The format that this program writes: to be raised whenever anything that is stored changes its meaning or its place.
-const FORMAT: u32 = 9;
+const FORMAT: u32 = 10;
 
 /// Why a run cannot be continued from a checkpoint, or a checkpoint not be left.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
