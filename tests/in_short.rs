@@ -32,7 +32,7 @@ const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_init
     materials.m = { density = 1000.0, young_modulus = 1.0e6, poisson_ratio = 0.3 }\n\
     contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e6, friction = 0.3 }\n\
     [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n\
-    [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [0.985, 0.1]\n\
+    [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [0.988, 0.1]\n\
     [output]\nevery = 0.004\nsnapshots = 2\n";
 
 /// Takes what it is given.

@@ -290,7 +290,6 @@ fn a_contact_that_stiffens_beyond_the_step_is_refused() {
     assert!((broken.critical / (2.0 * (mass / stiffness).sqrt()) - 1.0).abs() < 1e-12);
     assert!(broken.to_string().contains("became so stiff"), "{broken}");
     run(dem, 0.5).unwrap();
-    assert!(
-        !matches!(run(dem.allowing_unstable_steps(), 0.95), Err(RunError::Broken(broken)) if broken.cause == Cause::StiffContact { stiffness })
-    );
+    let goes_on = run(dem.allowing_unstable_steps(), 0.95);
+    assert!(!goes_on.is_err_and(|error| error.to_string().contains("became so stiff")));
 }
