@@ -28,8 +28,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
     /// Output files, plain, gzip or zstd: dumps of grains and of contacts (`dump local`) at the same steps, VTK files (`.vtk`,
-    /// `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`), NumPy arrays (`.npz`), CSV tables of grains as ParaView writes them (one a time, or one
-    /// of all times), or one CSV table of probes.
+    /// `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`), NumPy arrays (`.npz`), CSV tables of grains as ParaView writes them (one a time, or
+    /// one of all times), or one CSV table of probes.
     #[arg(long, value_name = "FILE", required_unless_present = "all", num_args = 1..)]
     dump: Vec<PathBuf>,
     /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`.

@@ -79,8 +79,8 @@ pub struct Setting {
     /// The two differ by Δt (1 − S) a, a the acceleration and S the smoothing of points by nodes and of nodes by points. In
     /// material that swings with the velocity v, positions are then off by Δt (1 − S) v from what the stress knows of, and the
     /// forces −Σ V σ ∇N(x) of a tension σ feel it as a force along v: with smooth ∇N waves of wave number k grow by
-    /// Δt σ k² (1 − S)/2ρ a second. A bar under a tension of .08 E falls to pieces at rest. Hat functions, whose ∇N is constant in
-    /// a cell, feel nothing of it there.
+    /// Δt σ k² (1 − S)/2ρ a second. A bar under a tension of .08 E falls to pieces at rest. Hat functions, whose ∇N is constant
+    /// in a cell, feel nothing of it there.
     pub moves_with_stress: bool,
     /// Contact.
     pub contact: Contact,
