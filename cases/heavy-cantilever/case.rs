@@ -35,7 +35,7 @@ pub(crate) static CASE: Case = Case {
 struct Elastica {
     /// Curvature at the clamp.
     curvature: f64,
-    /// How far the tip is below the clamp.
+    /// Displacement of the tip below the clamp.
     sinking: f64,
     /// Angle of the tip below the level (rad).
     angle: f64,
@@ -85,7 +85,7 @@ fn strip(scene: &Scene) -> Option<[f64; 3]> {
     Some([length, thickness, beam.density * -scene.gravity.y * length.powi(3) / stiffness])
 }
 
-/// What a strip of this thickness and the place of a material point are worth, in units of the deflection.
+/// Effect of the thickness of the strip and of the place of a material point, in units of the deflection.
 fn allowed(level: Level) -> f64 {
     let Resolution::Grid { cells, points, .. } = level.resolution else { return f64::NAN };
     let (thickness, Elastica { curvature, sinking, angle, .. }) = (0.05, Elastica::under(10.0));

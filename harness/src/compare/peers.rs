@@ -51,7 +51,7 @@ pub struct Decisive {
     pub sample: Sample,
     /// Largest |error| that passes there.
     pub allowed: f64,
-    /// How many samples allow more than [`WIDE`].
+    /// Number of samples that allow more than [`WIDE`].
     pub wide: usize,
     /// Time of the first sample outside (s).
     pub first_outside: Option<f64>,
@@ -81,7 +81,7 @@ impl Compared<'_> {
         Some(Decisive { sample, allowed: allowed(&sample), wide, first_outside })
     }
 
-    /// What was measured at a sample.
+    /// Measured value at a sample.
     #[must_use]
     pub fn measured(&self, sample: &Sample) -> Measured {
         Measured::new(sample.found, sample.expected, self.scale)
