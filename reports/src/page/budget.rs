@@ -12,6 +12,8 @@ pub(crate) enum Rank {
     Controls,
     /// What is put aside of a figure is still seen, loaded from its file; of a film one frame stays.
     HeavyFigures,
+    /// The reader opens it first.
+    ClosedFigures,
     Films,
     Figures,
     Derivations,

@@ -13,7 +13,7 @@ use crate::report::Section;
 
 /// A figure of more than this (B) makes room for films.
 const HEAVY: usize = 30_000;
-/// So many stand open.
+/// Number of figures of a case that are open at first.
 const SEEN: usize = 2;
 
 /// Graphs scroll on a phone, for their text would be too small; force plots have hardly any and shrink.
@@ -38,7 +38,10 @@ pub(crate) fn pieces(
     let mut pieces = Vec::new();
     let count = section.figures.len();
     let fixed = |text: &str| Piece::Fixed(text.to_owned());
-    for (at, part) in parts.into_iter().enumerate() {
+    for (at, mut part) in parts.into_iter().enumerate() {
+        if at >= SEEN && part.rank == Rank::Figures {
+            part.rank = Rank::ClosedFigures;
+        }
         if at == 0 {
             pieces.push(fixed("<div class=\"figures aside\">"));
         }
