@@ -9,7 +9,10 @@
 //! ```
 
 use grainbench_cases::registry;
+use grainbench_cases::solvers::Registry;
 use grainbench_harness::conformance;
+use grainbench_harness::mistake;
+use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 use grainbench_reports::line;
 use grainbench_scene::solver::Solver;
@@ -70,6 +73,7 @@ fn names() -> String {
 /// When a case does not exist or has no such gate.
 pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement, NotJudged> {
     let solver: Arc<dyn Solver> = Arc::new(solver);
+    let solvers: Arc<dyn Solvers> = Arc::new(Registry);
     let mut judgement = Judgement::default();
     for &name in cases {
         let case = registry::by_name(name).ok_or_else(|| NotJudged::NoSuchCase(name.to_owned()))?;
@@ -78,13 +82,16 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
         if claims.is_empty() {
             return Err(NotJudged::NothingFair(name.to_owned()));
         }
+        let mut rows = Vec::new();
         for claim in &claims {
             let verdict = runner.judge(claim);
             if runner.tries_control(claim, &verdict) {
                 judgement.controls.push(runner.control(claim));
             }
-            judgement.verdicts.push(verdict);
+            rows.push(Some(verdict));
         }
+        mistake::explain(case, &solvers, &claims, &mut rows);
+        judgement.verdicts.extend(rows.into_iter().flatten());
     }
     Ok(judgement)
 }
@@ -100,7 +107,7 @@ impl Judgement {
     /// A line for every row that failed or broke, and for every control that stayed green.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
-        let failed = |row: &&Verdict| matches!(row.outcome, Outcome::Fail | Outcome::Broken);
+        let failed = |row: &&Verdict| row.outcome.is_red();
         let rows = self.verdicts.iter().filter(failed).map(line::verdict);
         rows.chain(self.controls.iter().filter(|control| !control.turned_red).map(line::control)).collect()
     }

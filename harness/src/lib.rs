@@ -17,6 +17,7 @@ pub mod expect;
 pub mod figure;
 pub mod force_plot;
 pub mod measure;
+pub mod mistake;
 pub mod prelude;
 pub mod raster;
 pub mod reading;

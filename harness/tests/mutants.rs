@@ -2,14 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-#[path = "../../tests/small_dem/mod.rs"]
-mod small_dem;
-
 use grainbench_harness::conformance::ALL;
 use grainbench_harness::control::Red;
+use grainbench_harness::mistake::small_dem::{Slip, SmallDem};
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_scene::terms::Terms;
-use small_dem::{Mutant, SmallDem};
 
 /// Rows of some properties.
 fn rows(solver: SmallDem, properties: &[&str], terms: &Terms) -> Vec<Verdict> {
@@ -18,8 +15,8 @@ fn rows(solver: SmallDem, properties: &[&str], terms: &Terms) -> Vec<Verdict> {
 }
 
 /// Variants of rows that failed by value.
-fn failed(mutant: Mutant) -> Vec<String> {
-    let found = rows(SmallDem { mutant: Some(mutant) }, &["objectivity", "passivity"], &Terms::SECOND_ORDER);
+fn failed(mistake: Slip) -> Vec<String> {
+    let found = rows(SmallDem { mistake: Some(mistake) }, &["objectivity", "passivity"], &Terms::SECOND_ORDER);
     let red = found.into_iter().filter(|row| row.red() == Some(Red::Value));
     red.map(|row| row.variant).collect()
 }
@@ -43,18 +40,18 @@ fn the_right_laws_gain_nothing_in_the_long_run() {
 
 #[test]
 fn planted_defects_fail_by_value() {
-    let expected: [(Mutant, &[&str]); 6] = [
-        (Mutant::SpringNotTurned, &["objectivity/planes-2d", "objectivity/planes-3d-along"]),
-        (Mutant::TwistNotFollowed, &["objectivity/planes-3d-along"]),
-        (Mutant::WallSpinDropped, &["objectivity/drum-3d", "objectivity/planes-3d-hertz"]),
-        (Mutant::SecantSpring, &["passivity/cycle-pressed-under-shear"]),
-        (Mutant::NotRescaled, &["passivity/cycle-relieved-under-shear"]),
-        (Mutant::WrongSpin, &["objectivity/drum-3d", "passivity/2d-friction", "passivity/between-planes-3d-hertz"]),
+    let expected: [(Slip, &[&str]); 6] = [
+        (Slip::SpringNotTurned, &["objectivity/planes-2d", "objectivity/planes-3d-along"]),
+        (Slip::TwistNotFollowed, &["objectivity/planes-3d-along"]),
+        (Slip::WallSpinDropped, &["objectivity/drum-3d", "objectivity/planes-3d-hertz"]),
+        (Slip::SecantSpring, &["passivity/cycle-pressed-under-shear"]),
+        (Slip::NotRescaled, &["passivity/cycle-relieved-under-shear"]),
+        (Slip::WrongSpin, &["objectivity/drum-3d", "passivity/2d-friction", "passivity/between-planes-3d-hertz"]),
     ];
-    for (mutant, variants) in expected {
-        let failed = failed(mutant);
+    for (mistake, variants) in expected {
+        let failed = failed(mistake);
         for variant in variants {
-            assert!(failed.iter().any(|found| found == variant), "{mutant:?} in {variant}: {failed:?}");
+            assert!(failed.iter().any(|found| found == variant), "{mistake:?} in {variant}: {failed:?}");
         }
     }
 }
@@ -62,9 +59,9 @@ fn planted_defects_fail_by_value() {
 /// Grains of these scenes are equal: lever arms are tried by claims about unequal ones.
 #[test]
 fn wrong_lever_arms_are_right_between_equal_grains() {
-    for mutant in [Mutant::MeanArm, Mutant::OneArm] {
-        for row in rows(SmallDem { mutant: Some(mutant) }, &["objectivity"], &Terms::SECOND_ORDER) {
-            assert_eq!(row.outcome, Outcome::Pass, "{mutant:?}: {row:#?}");
+    for mistake in [Slip::MeanArm, Slip::OneArm] {
+        for row in rows(SmallDem { mistake: Some(mistake) }, &["objectivity"], &Terms::SECOND_ORDER) {
+            assert_eq!(row.outcome, Outcome::Pass, "{mistake:?}: {row:#?}");
         }
     }
 }

@@ -16,9 +16,12 @@ pub use subject::Subject;
 use covered::Covered;
 use exact::exact;
 use figures::figures;
+use grainbench_cases::solvers::Registry;
 use grainbench_harness::compare::peers::{Compared, Decisive, Peer, Sample, WIDE};
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Measured;
+use grainbench_harness::mistake;
+use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::{Origin, OutputError, Outputs, steps_in_words};
@@ -28,6 +31,7 @@ use grainbench_scene::scene::{ProbeTarget, Scene};
 use grainbench_scene::solver::Resolution;
 use ours::{Plan, ours};
 use power::Made;
+use std::sync::Arc;
 use subject::Candidate;
 use thiserror::Error;
 
@@ -207,7 +211,13 @@ fn section(
         }
     };
     let mut verdicts = vec![covered.row(options.partial, outputs, row("time of the last sample".to_owned(), "s"))];
-    verdicts.extend(candidate.claims.iter().map(|claim| exact(claim, candidate, outputs, observed, covered, &row)));
+    let judge = |claim| exact(claim, candidate, outputs, observed, covered, &row);
+    let mut of_claims: Vec<Option<Verdict>> = candidate.claims.iter().map(|claim| Some(judge(claim))).collect();
+    if let Some(case) = subject.as_stored() {
+        let solvers: Arc<dyn Solvers> = Arc::new(Registry);
+        mistake::explain(case, &solvers, &candidate.claims, &mut of_claims);
+    }
+    verdicts.extend(of_claims.into_iter().flatten());
     let unknown = || "the files do not tell the time step (--dt gives it)".to_owned();
     let plan = steps.ok_or_else(unknown).and_then(|steps| Plan::new(observed, steps));
     let (verdicts_of_ours, figures) = match plan.and_then(|plan| against_ours(&candidate.scene, plan)) {

@@ -1,9 +1,9 @@
 //! The contact laws of a scene as the kernels read them: one row of numbers for every two materials.
 
 use crate::contact::Options;
-use crate::release::no_tension_ratio;
 use grainbench_lanes::{Lanes, Quad, WIDEST, Wide};
 use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::Scene;
 
 /// The numbers of a contact law, one or several at a time. Which law they belong to is the type of the kernel's stages, so

@@ -37,7 +37,6 @@ mod observe;
 mod pairs;
 #[cfg(test)]
 mod processors;
-mod release;
 mod seen;
 mod share;
 mod simulation;

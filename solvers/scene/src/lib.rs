@@ -35,6 +35,7 @@ pub mod radii;
 pub mod record;
 pub mod recorder;
 pub mod refined;
+pub mod release;
 pub mod resolve;
 mod rounded_state;
 pub mod scene;

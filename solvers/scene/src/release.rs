@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 /// the place of δ their motion v dv/dy is that of a linear oscillator (Antypov & Elliott, EPL 94 (2011) 50004), and the force
 /// vanishes where that of the oscillator does.
 #[must_use]
-pub(crate) fn no_tension_ratio(pulling: f64) -> f64 {
+pub fn no_tension_ratio(pulling: f64) -> f64 {
     if pulling <= 0.0 {
         return pulling;
     }

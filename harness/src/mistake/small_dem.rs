@@ -1,22 +1,23 @@
-//! A small discrete element method, written apart from the solvers of the project, with defects that can be planted in it.
+//! A small discrete element method with mistakes that can be switched on, written apart from the solvers of the project.
 //!
-//! It checks properties and claims from both sides: the right laws must pass them, and each planted defect must fail them
-//! by value. It tests every pair of grains and takes central differences. Slip is found at mid-step, with the normals,
-//! lever arms and walls of mid-step.
+//! Its mistakes explain failed results, and they test claims: the right laws must pass, and each mistake must fail by value.
+//! It tests every pair of grains and takes central differences. It finds the slip at mid-step, with the normals, lever arms
+//! and walls of mid-step.
 
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
 use grainbench_scene::record::{ContactState, Cost, GrainState, Look, Partner, Provenance, Record, Snapshot};
 use grainbench_scene::recorder::Recorder;
+use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::{Driven, Grain, Scene, Wall, WallShape};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
 use nalgebra::{Rotation3, Vector3};
 
 type V = Vector3<f64>;
 
-/// A planted defect.
+/// A mistake in the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mutant {
+pub enum Slip {
     /// The tangential spring keeps its direction in space when its contact turns.
     SpringNotTurned,
     /// The tangential spring is projected on the tangent plane and does not follow the twist about the normal.
@@ -27,6 +28,12 @@ pub(crate) enum Mutant {
     OneArm,
     /// The slip takes the spins with the wrong sign.
     WrongSpin,
+    /// The slip leaves the spins out.
+    NoSpin,
+    /// Friction turns the first grain of a pair and not the second.
+    NoSecondTorque,
+    /// Torques have the wrong sign.
+    TorqueReversed,
     /// The rolling moment leaves out the spin of walls.
     WallSpinDropped,
     /// Mindlin's force is its present stiffness times all displacement since the contact began.
@@ -37,12 +44,88 @@ pub(crate) enum Mutant {
     RollingNotCut,
     /// Grains start without spin.
     SpinsDropped,
+    /// The tangential spring is forgotten after each step.
+    SpringForgotten,
+    /// Coulomb's limit cuts the force, and the spring grows on.
+    SpringNotCut,
+    /// Coulomb's limit acts on the spring, and the tangential dashpot is added to it.
+    LimitOnSpring,
+    /// Coulomb's limit is proportional to the elastic part of the normal force.
+    LimitOfElastic,
+    /// The normal dashpot pulls on grains that part.
+    Pulls,
+    /// Dashpots have the mass of the first grain in place of the reduced mass.
+    WholeMass,
+    /// Hertz contacts have the radius of the first grain in place of the effective radius.
+    WholeRadius,
+    /// Reported velocities are half a step old.
+    HalfStepOld,
+    /// Positions move with the velocity before the step.
+    OldVelocity,
 }
 
-/// The solver, with a defect or without.
+impl Slip {
+    /// Every mistake.
+    pub const ALL: [Self; 22] = [
+        Self::SpringNotTurned,
+        Self::TwistNotFollowed,
+        Self::MeanArm,
+        Self::OneArm,
+        Self::WrongSpin,
+        Self::NoSpin,
+        Self::NoSecondTorque,
+        Self::TorqueReversed,
+        Self::WallSpinDropped,
+        Self::SecantSpring,
+        Self::NotRescaled,
+        Self::RollingNotCut,
+        Self::SpinsDropped,
+        Self::SpringForgotten,
+        Self::SpringNotCut,
+        Self::LimitOnSpring,
+        Self::LimitOfElastic,
+        Self::Pulls,
+        Self::WholeMass,
+        Self::WholeRadius,
+        Self::HalfStepOld,
+        Self::OldVelocity,
+    ];
+
+    /// The mistake in words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::SpringNotTurned => "tangential springs do not turn with their contact",
+            Self::TwistNotFollowed => "tangential springs do not follow the twist about the normal",
+            Self::MeanArm => "the lever arm (R₁ + R₂)/2 for both grains",
+            Self::OneArm => "the lever arm of the first grain for both grains",
+            Self::WrongSpin => "spins with the wrong sign in the slip",
+            Self::NoSpin => "no spins in the slip",
+            Self::NoSecondTorque => "no torque on the second grain of a pair",
+            Self::TorqueReversed => "torques with the wrong sign",
+            Self::WallSpinDropped => "no spin of walls in the rolling moment",
+            Self::SecantSpring => "Mindlin's force as present stiffness times all displacement",
+            Self::NotRescaled => "Mindlin's force not reduced while a contact is unloaded",
+            Self::RollingNotCut => "a rolling angle that grows beyond its limit",
+            Self::SpinsDropped => "no spins at the start",
+            Self::SpringForgotten => "tangential springs forgotten after each step",
+            Self::SpringNotCut => "a tangential spring that grows beyond Coulomb's limit",
+            Self::LimitOnSpring => "Coulomb's limit on the spring alone, with the dashpot added",
+            Self::LimitOfElastic => "Coulomb's limit from the elastic normal force alone",
+            Self::Pulls => "a normal dashpot that pulls on grains that part",
+            Self::WholeMass => "dashpots with a grain's mass in place of the reduced mass",
+            Self::WholeRadius => "Hertz contacts with a grain's radius in place of the effective radius",
+            Self::HalfStepOld => "velocities reported half a step early",
+            Self::OldVelocity => "positions moved with the velocity before the step",
+        }
+    }
+}
+
+/// The solver, with a mistake or without.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SmallDem {
-    pub(crate) mutant: Option<Mutant>,
+pub struct SmallDem {
+    /// The mistake; none in the right method.
+    pub mistake: Option<Slip>,
 }
 
 /// Where one side of a contact is, over one step.
@@ -87,7 +170,7 @@ struct Body {
 
 struct State<'a> {
     scene: &'a Scene,
-    mutant: Option<Mutant>,
+    mistake: Option<Slip>,
     step: f64,
     count: u64,
     bodies: Vec<Body>,
@@ -204,10 +287,15 @@ impl State<'_> {
             self.contacts.len() - 1
         });
         let mut contact = self.contacts[place].clone();
-        let answer = respond(self.mutant, &law, body, side, [distance, overlap, elapsed], &mut contact);
+        let answer = respond(self.mistake, &law, body, side, [distance, overlap, elapsed], &mut contact);
         contact.seen = self.count;
         self.contacts[place] = contact;
         let [force, torque, opposite] = answer;
+        let (torque, opposite) = match self.mistake {
+            Some(Slip::NoSecondTorque) => (torque, V::zeros()),
+            Some(Slip::TorqueReversed) => (-torque, -opposite),
+            _ => (torque, opposite),
+        };
         let body = &mut self.bodies[first];
         body.force += force;
         body.torque += torque;
@@ -231,6 +319,7 @@ impl State<'_> {
     fn move_bodies(&mut self) {
         let (scene, step, time) = (self.scene, self.step, self.time());
         for body in &mut self.bodies {
+            body.before = body.velocity;
             body.velocity += (body.force / body.grain.mass + scene.gravity) * step;
             body.spin += body.torque / body.grain.inertia * step;
         }
@@ -238,8 +327,9 @@ impl State<'_> {
             self.drive(driven, time);
         }
         for body in &mut self.bodies {
+            let velocity = if self.mistake == Some(Slip::OldVelocity) { body.before } else { body.velocity };
             body.before = body.position;
-            body.position += body.velocity * step;
+            body.position += velocity * step;
         }
     }
 
@@ -254,7 +344,8 @@ impl State<'_> {
         let half = 0.5 * self.step;
         let is_driven = |id: usize| self.scene.driven.iter().any(|driven| driven.grains.contains(&id));
         let grains = self.bodies.iter().enumerate().map(|(id, body)| {
-            let free = if is_driven(id) { 0.0 } else { half };
+            let is_old = self.mistake == Some(Slip::HalfStepOld);
+            let free = if is_driven(id) || is_old { 0.0 } else { half };
             GrainState {
                 position: body.position,
                 velocity: body.velocity + (body.force / body.grain.mass + self.scene.gravity) * free,
@@ -286,21 +377,21 @@ impl State<'_> {
 }
 
 /// Lever arms of both sides (m): their sum is the distance of the centres, or the distance of the wall.
-fn arms(mutant: Option<Mutant>, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
+fn arms(mistake: Option<Slip>, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
     if wall {
         return [distance, 0.0];
     }
     let [first, second] = radii.map(|radius| radius - 0.5 * overlap);
-    match mutant {
-        Some(Mutant::MeanArm) => [0.5 * (first + second); 2],
-        Some(Mutant::OneArm) => [first; 2],
+    match mistake {
+        Some(Slip::MeanArm) => [0.5 * (first + second); 2],
+        Some(Slip::OneArm) => [first; 2],
         _ => [first, second],
     }
 }
 
 /// The turn of a contact over a step: that of its normal, then the mean twist of both sides about it.
-fn turn(mutant: Option<Mutant>, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
-    if mutant == Some(Mutant::SpringNotTurned) {
+fn turn(mistake: Option<Slip>, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
+    if mistake == Some(Slip::SpringNotTurned) {
         return Rotation3::identity();
     }
     let across = from.cross(&to);
@@ -310,7 +401,7 @@ fn turn(mutant: Option<Mutant>, from: V, to: V, spins: [V; 2], elapsed: f64) -> 
     } else {
         Rotation3::identity()
     };
-    if mutant == Some(Mutant::TwistNotFollowed) {
+    if mistake == Some(Slip::TwistNotFollowed) {
         return tilt;
     }
     let twist = (spins[0] + spins[1]).dot(&to) * 0.5 * elapsed;
@@ -319,7 +410,7 @@ fn turn(mutant: Option<Mutant>, from: V, to: V, spins: [V; 2], elapsed: f64) -> 
 
 /// Force and torque on the first side, and torque on the second.
 fn respond(
-    mutant: Option<Mutant>,
+    mistake: Option<Slip>,
     law: &ContactLaw,
     body: &Body,
     side: &Side,
@@ -330,27 +421,42 @@ fn respond(
     let normal = side.between[1] / distance;
     let middle = (side.between[0] + side.between[1]).normalize();
     let wall = side.radius.is_none();
-    let effective = if wall { radii[0] } else { radii[0] * radii[1] / (radii[0] + radii[1]) };
-    let mass = 1.0 / (1.0 / body.grain.mass + 1.0 / side.mass);
-    let [first, second] = arms(mutant, radii, wall, distance, overlap);
+    let is_whole = wall || mistake == Some(Slip::WholeRadius);
+    let effective = if is_whole { radii[0] } else { radii[0] * radii[1] / (radii[0] + radii[1]) };
+    let is_whole = mistake == Some(Slip::WholeMass);
+    let mass = if is_whole { body.grain.mass } else { 1.0 / (1.0 / body.grain.mass + 1.0 / side.mass) };
+    let [first, second] = arms(mistake, radii, wall, distance, overlap);
     let between = 0.5 * (side.between[0].norm() + side.between[1].norm());
-    let moving = arms(mutant, radii, wall, between, radii[0] + radii[1] - between);
+    let moving = arms(mistake, radii, wall, between, radii[0] + radii[1] - between);
     let second_spin = if wall { V::zeros() } else { side.spin };
-    let sign = if mutant == Some(Mutant::WrongSpin) { -1.0 } else { 1.0 };
+    let sign = match mistake {
+        Some(Slip::WrongSpin) => -1.0,
+        Some(Slip::NoSpin) => 0.0,
+        _ => 1.0,
+    };
     let relative =
         body.velocity - side.velocity + (body.spin * moving[0] + second_spin * moving[1]).cross(&middle) * sign;
     let slip = relative - middle * relative.dot(&middle);
     let (stiff, _) = law.springs.stiffness(overlap, effective);
-    let damping = law.normal_damping * mass + 2.0 * law.damping_ratio * (stiff * mass * damped_share(law)).sqrt();
+    let ratio = if mistake == Some(Slip::Pulls) { law.damping_ratio } else { no_tension_ratio(law.damping_ratio) };
+    let damping = law.normal_damping * mass + 2.0 * ratio * (stiff * mass * damped_share(law)).sqrt();
     let secant = law.springs.secant_stiffness(overlap, effective);
-    let push = (secant * overlap + damping * (body.velocity - side.velocity).dot(&normal)).max(0.0);
-    shear(mutant, law, [effective, overlap, elapsed, push], (slip, normal, [body.spin, side.spin]), contact);
+    let push = secant * overlap + damping * (body.velocity - side.velocity).dot(&normal);
+    let push = if mistake == Some(Slip::Pulls) { push } else { push.max(0.0) };
+    let base = if mistake == Some(Slip::LimitOfElastic) { secant * overlap } else { push.max(0.0) };
+    let limit = law.friction * base + law.cohesion;
+    shear(mistake, law, [effective, overlap, elapsed, limit], (slip, normal, [body.spin, side.spin]), contact);
     let dashpot = slip * (law.tangential_damping * mass);
-    let limit = law.friction * push + law.cohesion;
-    let total = contact.spring - dashpot;
-    contact.shear = total.cap_magnitude(limit);
-    let spin = if wall && mutant == Some(Mutant::WallSpinDropped) { V::zeros() } else { side.spin };
-    let moment = roll(mutant, law, [effective, secant, elapsed, push], (body.spin - spin, normal), contact);
+    contact.shear = if mistake == Some(Slip::LimitOnSpring) {
+        contact.spring - dashpot
+    } else {
+        (contact.spring - dashpot).cap_magnitude(limit)
+    };
+    if mistake == Some(Slip::SpringForgotten) {
+        contact.spring = V::zeros();
+    }
+    let spin = if wall && mistake == Some(Slip::WallSpinDropped) { V::zeros() } else { side.spin };
+    let moment = roll(mistake, law, [effective, secant, elapsed, push], (body.spin - spin, normal), contact);
     (contact.normal, contact.overlap, contact.normal_force) = (normal, overlap, push);
     let force = contact.shear - normal * push;
     let lever = normal.cross(&contact.shear);
@@ -363,33 +469,34 @@ fn damped_share(law: &ContactLaw) -> f64 {
 
 /// Brings the tangential spring up to date.
 fn shear(
-    mutant: Option<Mutant>,
+    mistake: Option<Slip>,
     law: &ContactLaw,
-    [effective, overlap, elapsed, push]: [f64; 4],
+    [effective, overlap, elapsed, limit]: [f64; 4],
     (slip, normal, spins): (V, V, [V; 2]),
     contact: &mut Contact,
 ) {
     // Slip is of mid-step: the contact turns by the other half of the step after it.
-    let half = turn(mutant, normal, normal, spins, 0.5 * elapsed);
+    let half = turn(mistake, normal, normal, spins, 0.5 * elapsed);
     let along = half * slip * elapsed;
     let along = along - normal * along.dot(&normal);
-    let turned = turn(mutant, contact.normal, normal, spins, elapsed) * contact.spring;
+    let turned = turn(mistake, contact.normal, normal, spins, elapsed) * contact.spring;
     let stiffness = |overlap: f64| law.springs.stiffness(overlap, effective).1;
     let (was, is) = (contact.overlap, overlap);
-    let kept = match (law.springs, mutant) {
-        (Springs::Hertz { .. }, Some(Mutant::SecantSpring)) if was > 0.0 => (is / was).sqrt(),
-        (Springs::Hertz { .. }, mutant) if is < was && mutant != Some(Mutant::NotRescaled) => (is / was).sqrt(),
+    let kept = match (law.springs, mistake) {
+        (Springs::Hertz { .. }, Some(Slip::SecantSpring)) if was > 0.0 => (is / was).sqrt(),
+        (Springs::Hertz { .. }, mistake) if is < was && mistake != Some(Slip::NotRescaled) => (is / was).sqrt(),
         _ => 1.0,
     };
     contact.spring = turned * kept - along * stiffness(0.5 * (was + is));
-    let limit = law.friction * push + law.cohesion;
     contact.slipping = contact.spring.norm() > limit;
-    contact.spring = contact.spring.cap_magnitude(limit);
+    if mistake != Some(Slip::SpringNotCut) {
+        contact.spring = contact.spring.cap_magnitude(limit);
+    }
 }
 
 /// The moment against rolling on the first side.
 fn roll(
-    mutant: Option<Mutant>,
+    mistake: Option<Slip>,
     law: &ContactLaw,
     [effective, secant, elapsed, push]: [f64; 4],
     (spin, normal): (V, V),
@@ -405,7 +512,7 @@ fn roll(
     contact.rolled -= normal * contact.rolled.dot(&normal);
     let most = arm * push;
     let moment = (-contact.rolled * stiffness).cap_magnitude(most);
-    if mutant != Some(Mutant::RollingNotCut) {
+    if mistake != Some(Slip::RollingNotCut) {
         contact.rolled = -moment / stiffness;
     }
     moment
@@ -430,13 +537,13 @@ impl Solver for SmallDem {
             before: grain.position,
             position: grain.position,
             velocity: grain.velocity,
-            spin: if self.mutant == Some(Mutant::SpinsDropped) { V::zeros() } else { grain.spin },
+            spin: if self.mistake == Some(Slip::SpinsDropped) { V::zeros() } else { grain.spin },
             force: V::zeros(),
             torque: V::zeros(),
         });
         let walls = vec![V::zeros(); scene.walls.len()];
-        let (mutant, bodies) = (self.mutant, bodies.collect());
-        let mut state = State { scene, mutant, step, count: 0, bodies, contacts: Vec::new(), wall_forces: walls };
+        let (mistake, bodies) = (self.mistake, bodies.collect());
+        let mut state = State { scene, mistake, step, count: 0, bodies, contacts: Vec::new(), wall_forces: walls };
         state.evaluate(0.0);
         for body in &mut state.bodies {
             body.velocity -= (body.force / body.grain.mass + scene.gravity) * (0.5 * step);

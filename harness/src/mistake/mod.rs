@@ -1,0 +1,383 @@
+//! Known mistakes of solvers, and the search for the one that explains failed results.
+//!
+//! A mistake explains a failed result if our own solvers give the same error with it. The candidates are wrong scenes, such
+//! as another gravity or inertia, the claim's negative control, and mistakes in the method of [`small_dem`].
+
+pub mod small_dem;
+
+use crate::case::Case;
+use crate::claim::Claim;
+use crate::control::{Control, Wrong};
+use crate::evidence::Evidence;
+use crate::run::{Run, Set};
+use crate::runner::Runner;
+use crate::solvers::Solvers;
+use crate::verdict::{Outcome, Verdict};
+use grainbench_scene::effect::Effect;
+use grainbench_scene::file::GrainShape;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::solver::{Method, Resolution};
+use small_dem::{Slip, SmallDem};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::thread;
+
+/// Errors that agree within this part of them have one cause.
+const SAME: f64 = 0.05;
+/// Most candidates that a hint names.
+const MOST_NAMED: usize = 2;
+/// Largest number of steps times grains of a run with a wrong scene.
+const SCENE_WORK: f64 = 2e7;
+/// Largest number of steps times pairs of a run with a wrong method.
+const METHOD_WORK: f64 = 5e6;
+/// Time step of a method with springs where a claim has none, as a fraction of the critical one.
+const FRACTION: f64 = 0.05;
+
+/// A mistake whose effect on a result can be computed.
+#[derive(Clone)]
+enum Mistake {
+    /// A wrong scene.
+    Scene(Control),
+    /// The negative control of each claim, by its name.
+    Control(&'static str),
+    /// A wrong method.
+    Method(Slip),
+}
+
+impl Mistake {
+    const fn words(&self) -> &'static str {
+        match self {
+            Self::Scene(control) => control.name,
+            Self::Control(name) => name,
+            Self::Method(slip) => slip.words(),
+        }
+    }
+}
+
+/// A claim of a case with its result.
+struct Judged<'a> {
+    claim: &'a Claim,
+    row: &'a Verdict,
+}
+
+/// The errors of all results with one mistake; none where it cannot be computed or changes nothing.
+struct Candidate {
+    words: &'static str,
+    errors: Vec<Option<f64>>,
+}
+
+/// Appends "as if: …" to the details of failed results whose errors a known mistake gives too.
+///
+/// `rows` are the results of `claims`, in their order. Every other result of the scenes in question counts against a mistake
+/// that contradicts it.
+pub fn explain(case: &'static Case, solvers: &Arc<dyn Solvers>, claims: &[Claim], rows: &mut [Option<Verdict>]) {
+    let hints = hints(case, solvers, claims, rows);
+    for (row, hint) in rows.iter_mut().zip(hints) {
+        if let (Some(row), Some(hint)) = (row, hint) {
+            let detail = row.detail.take().map_or_else(String::new, |detail| format!("{detail}; "));
+            row.detail = Some(format!("{detail}as if: {hint}"));
+        }
+    }
+}
+
+fn hints(
+    case: &'static Case,
+    solvers: &Arc<dyn Solvers>,
+    claims: &[Claim],
+    rows: &[Option<Verdict>],
+) -> Vec<Option<String>> {
+    let failed = |row: &Verdict| row.outcome == Outcome::Fail && row.error.is_some();
+    let scenes = |claim: &Claim| claim.runs.iter().map(Run::scene_words).collect::<BTreeSet<String>>();
+    let judged: Vec<Judged<'_>> =
+        claims.iter().zip(rows).filter_map(|(claim, row)| Some(Judged { claim, row: row.as_ref()? })).collect();
+    let in_question: BTreeSet<String> =
+        judged.iter().filter(|judged| failed(judged.row)).flat_map(|judged| scenes(judged.claim)).collect();
+    let judged: Vec<Judged<'_>> = judged
+        .into_iter()
+        .filter(|of| failed(of.row) || of.row.outcome == Outcome::Pass)
+        .filter(|of| of.row.error.is_some() && scenes(of.claim).is_subset(&in_question))
+        .collect();
+    if in_question.is_empty() {
+        return vec![None; rows.len()];
+    }
+    let found = candidates(case, solvers, &judged);
+    let scores: Vec<i64> = found.iter().map(|candidate| score(candidate, &judged)).collect();
+    let hint_of = |row: &Verdict| {
+        let place = judged.iter().position(|judged| std::ptr::eq(judged.row, row))?;
+        let matches = |candidate: &Candidate| failed(row) && explains(candidate.errors[place], row);
+        let mut best: Vec<(i64, f64, &'static str)> = found
+            .iter()
+            .zip(&scores)
+            .filter(|(candidate, score)| **score > 0 && matches(candidate))
+            .map(|(candidate, score)| (-score, distance(candidate.errors[place], row), candidate.words))
+            .collect();
+        best.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let top = best.first()?.0;
+        let named: Vec<&str> = best.iter().filter(|(score, ..)| *score == top).map(|(.., words)| *words).collect();
+        Some(named[..named.len().min(MOST_NAMED)].join(", or "))
+    };
+    rows.iter().map(|row| row.as_ref().and_then(hint_of)).collect()
+}
+
+fn distance(error: Option<f64>, row: &Verdict) -> f64 {
+    error.zip(row.error).map_or(f64::INFINITY, |(error, found)| (error - found).abs())
+}
+
+/// Whether a mistake gives the error of a failed result: red too, and nearer to it than the part [`SAME`] or what is allowed.
+fn explains(error: Option<f64>, row: &Verdict) -> bool {
+    let found = row.error.unwrap_or(f64::NAN).abs();
+    error.is_some_and(|error| error.abs() > row.allowed)
+        && distance(error, row) <= (SAME * found).max(row.allowed.min(0.5 * found))
+}
+
+/// Number of failed results that a mistake explains, less the number of results that it contradicts.
+fn score(candidate: &Candidate, judged: &[Judged<'_>]) -> i64 {
+    let of = |(error, judged): (&Option<f64>, &Judged<'_>)| match (error, judged.row.outcome) {
+        (None, _) => 0,
+        (Some(_), Outcome::Fail) if explains(*error, judged.row) => 1,
+        (Some(error), Outcome::Pass) if error.abs() <= 2.0 * judged.row.allowed => 0,
+        _ => -1,
+    };
+    candidate.errors.iter().zip(judged).map(of).sum()
+}
+
+/// The errors with each mistake, computed on all processors.
+fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<'_>]) -> Vec<Candidate> {
+    let plain = Runner::new(case, Arc::clone(solvers));
+    let right = small(case, solvers, None);
+    let can: Vec<[bool; 3]> = judged
+        .iter()
+        .map(|judged| {
+            let [by_scene, by_method] = limits(&plain, judged.claim);
+            let is_right = || method_error(&right, judged).is_some_and(|error| error.abs() <= judged.row.allowed);
+            [true, by_scene, by_method && is_right()]
+        })
+        .collect();
+    let errors = |mistake: &Mistake| -> Vec<Option<f64>> {
+        match mistake {
+            Mistake::Method(slip) => {
+                let runner = small(case, solvers, Some(*slip));
+                let of = |(judged, can): (&Judged<'_>, &[bool; 3])| can[2].then(|| method_error(&runner, judged))?;
+                judged.iter().zip(&can).map(of).collect()
+            }
+            Mistake::Scene(control) => {
+                let runner = Runner::new(case, Arc::clone(solvers));
+                let of = |(judged, can): (&Judged<'_>, &[bool; 3])| {
+                    can[1].then(|| scene_error(&runner, judged.claim, control.clone()))?
+                };
+                judged.iter().zip(&can).map(of).collect()
+            }
+            Mistake::Control(name) => {
+                let runner = Runner::new(case, Arc::clone(solvers));
+                let of = |judged: &Judged<'_>| {
+                    let is_it = judged.claim.control.name == *name && is_own(judged.claim);
+                    is_it.then(|| scene_error(&runner, judged.claim, judged.claim.control.clone()))?
+                };
+                judged.iter().map(of).collect()
+            }
+        }
+    };
+    let mistakes = mistakes(&plain, judged);
+    let count = thread::available_parallelism().map_or(1, usize::from);
+    let of_thread = |thread: usize| -> Vec<(usize, Candidate)> {
+        let own = mistakes.iter().enumerate().skip(thread).step_by(count);
+        own.map(|(place, mistake)| (place, Candidate { words: mistake.words(), errors: errors(mistake) })).collect()
+    };
+    let mut found: Vec<(usize, Candidate)> = thread::scope(|scope| {
+        let threads: Vec<_> = (0..count).map(|thread| scope.spawn(move || of_thread(thread))).collect();
+        threads.into_iter().filter_map(|thread| thread.join().ok()).flatten().collect()
+    });
+    found.sort_by_key(|(place, _)| *place);
+    found.into_iter().map(|(_, candidate)| candidate).collect()
+}
+
+/// A runner of the small method, with a mistake or without.
+fn small(case: &'static Case, solvers: &Arc<dyn Solvers>, mistake: Option<Slip>) -> Runner {
+    Runner::new(case, Arc::clone(solvers)).with_solver(Arc::new(SmallDem { mistake })).controlled(false)
+}
+
+/// The error of a claim by a runner of the small method.
+fn method_error(runner: &Runner, judged: &Judged<'_>) -> Option<f64> {
+    let runs = judged.claim.runs.iter().map(with_step).collect();
+    runner.judge(&Claim { runs, ..judged.claim.clone() }).error
+}
+
+/// The run with a time step.
+fn with_step(run: &Run) -> Run {
+    match run.resolution {
+        Resolution::CriticalFraction(_) | Resolution::TimeStep(_) => run.clone(),
+        Resolution::Rigid { .. } | Resolution::Grid { .. } => run.at(Resolution::CriticalFraction(FRACTION)),
+    }
+}
+
+/// The error of a claim with a wrong scene.
+fn scene_error(runner: &Runner, claim: &Claim, control: Control) -> Option<f64> {
+    runner.control(&Claim { control, ..claim.clone() }).error
+}
+
+/// Whether the runs of a claim are those of our own solvers, in the quick tier.
+fn is_own(claim: &Claim) -> bool {
+    let is_computed = !matches!(claim.evidence(), Evidence::OtherCode | Evidence::Regression);
+    let is_short = |run: &Run| {
+        Method::of(run.solver).is_some() && run.set == Set::Main && !run.kept && !run.aside && run.data.is_none()
+    };
+    is_computed && claim.control.set == Set::Main && claim.runs.iter().all(is_short)
+}
+
+/// Whether the runs of a claim are short enough for a wrong scene and for a wrong method.
+fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
+    let of_grains = |run: &Run| matches!(Method::of(run.solver), Some(Method::Dem | Method::Rigid));
+    if !is_own(claim) || !claim.runs.iter().all(of_grains) {
+        return [false; 2];
+    }
+    let work = |run: &Run| -> Option<[f64; 2]> {
+        let scene = runner.scene(run).ok()?;
+        let (_, steps) = with_step(run).resolution.steps(&scene).ok()?;
+        let grains = scene.grains.len() as f64;
+        let sides = 0.5 * (grains + 1.0) + scene.walls.len() as f64;
+        Some([grains, grains * sides].map(|count| count * steps as f64))
+    };
+    let sum = claim.runs.iter().map(work).try_fold([0.0; 2], |sum, of| of.map(|of| [sum[0] + of[0], sum[1] + of[1]]));
+    sum.map_or([false; 2], |[scene, method]| [scene <= SCENE_WORK, method <= METHOD_WORK])
+}
+
+/// The mistakes that can concern these claims.
+fn mistakes(runner: &Runner, judged: &[Judged<'_>]) -> Vec<Mistake> {
+    let mut known = BTreeSet::new();
+    let mut found: Vec<Mistake> = Vec::new();
+    let mut add = |mistake: Mistake| {
+        if known.insert(mistake.words()) {
+            found.push(mistake);
+        }
+    };
+    for claim in judged.iter().map(|judged| judged.claim) {
+        let scenes = claim.runs.iter().filter_map(|run| runner.scene(run).ok());
+        scenes.flat_map(|scene| of_scene(&scene)).for_each(|control| add(Mistake::Scene(control)));
+        if matches!(claim.control.wrong, Wrong::Scene(_)) {
+            add(Mistake::Control(claim.control.name));
+        }
+    }
+    Slip::ALL.into_iter().for_each(|slip| add(Mistake::Method(slip)));
+    found
+}
+
+/// Wrong scenes that a slip of the hand makes of a scene.
+fn of_scene(scene: &Scene) -> Vec<Control> {
+    let off = Effect::switches().filter(|effect| effect.is_on(scene)).map(Control::without);
+    let parts =
+        [of_gravity(scene), of_inertia(scene.grain_shape), of_strength(scene), of_damping(scene), of_springs(scene)];
+    off.chain(parts.into_iter().flatten()).collect()
+}
+
+fn of_gravity(scene: &Scene) -> Vec<Control> {
+    let size = scene.gravity.norm();
+    if size == 0.0 {
+        return Vec::new();
+    }
+    let set = |name: &'static str, to: f64| {
+        let is_other = (size - to).abs() > 1e-9 * size;
+        is_other.then(|| Control::scene(name, move |scene: &mut Scene| scene.gravity *= to / size))
+    };
+    let rounded = [
+        ("gravity of 9.8 m/s²", 9.8),
+        ("gravity of 9.80665 m/s²", 9.80665),
+        ("gravity of 9.81 m/s²", 9.81),
+        ("gravity of 10 m/s²", 10.0),
+    ];
+    let near = rounded.into_iter().filter(|_| (size - 9.8).abs() < 0.3).filter_map(|(name, to)| set(name, to));
+    let is_oblique = scene.gravity.x != 0.0 && scene.gravity.y != 0.0;
+    let exchanged = is_oblique.then(|| {
+        Control::scene("sine and cosine of the slope exchanged", |scene: &mut Scene| {
+            let [x, y] = [scene.gravity.x, scene.gravity.y];
+            (scene.gravity.x, scene.gravity.y) = (y.abs().copysign(x), x.abs().copysign(y));
+        })
+    });
+    near.chain(exchanged).collect()
+}
+
+fn of_inertia(shape: GrainShape) -> Vec<Control> {
+    let scaled = |name: &'static str, by: f64| {
+        Control::scene(name, move |scene: &mut Scene| scene.grains.iter_mut().for_each(|grain| grain.inertia *= by))
+    };
+    let mut found = match shape {
+        GrainShape::Disc => {
+            vec![scaled("the inertia of a sphere in a disc", 0.8), scaled("the inertia of a ring", 2.0)]
+        }
+        GrainShape::Sphere => {
+            vec![scaled("the inertia of a disc in a sphere", 1.25), scaled("the inertia of a hollow sphere", 5.0 / 3.0)]
+        }
+    };
+    found.push(scaled("grains that do not turn", 1e12));
+    found.push(Control::scene("half the mass of grains", |scene: &mut Scene| {
+        for grain in &mut scene.grains {
+            (grain.mass, grain.inertia) = (0.5 * grain.mass, 0.5 * grain.inertia);
+        }
+    }));
+    found
+}
+
+/// A change of every contact law.
+fn laws(name: &'static str, change: fn(&mut grainbench_scene::contact_law::ContactLaw)) -> Control {
+    Control::scene(name, move |scene: &mut Scene| scene.laws.iter_mut().flatten().for_each(change))
+}
+
+fn of_strength(scene: &Scene) -> Vec<Control> {
+    let mut found = Vec::new();
+    if scene.laws.iter().flatten().any(|law| law.friction > 0.0) {
+        found.push(laws("half the friction", |law| law.friction *= 0.5));
+        found.push(laws("twice the friction", |law| law.friction *= 2.0));
+    }
+    if scene.laws.iter().flatten().any(|law| law.rolling_friction > 0.0) {
+        found.push(laws("half the rolling resistance", |law| law.rolling_friction *= 0.5));
+        found.push(laws("twice the rolling resistance", |law| law.rolling_friction *= 2.0));
+    }
+    found
+}
+
+fn of_damping(scene: &Scene) -> Vec<Control> {
+    let mut found = Vec::new();
+    if scene.laws.iter().flatten().any(|law| law.damping_ratio > 0.0) {
+        found.push(laws("the restitution taken as the damping ratio", |law| {
+            if law.damping_ratio > 0.0 {
+                law.damping_ratio = law.restitution();
+            }
+        }));
+    }
+    if scene.laws.iter().flatten().any(|law| law.damping_ratio > 0.0 || law.normal_damping > 0.0) {
+        found.push(laws("half the normal damping", |law| {
+            (law.damping_ratio, law.normal_damping) = (0.5 * law.damping_ratio, 0.5 * law.normal_damping);
+        }));
+        found.push(laws("twice the normal damping", |law| {
+            (law.damping_ratio, law.normal_damping) = ((2.0 * law.damping_ratio).min(0.99), 2.0 * law.normal_damping);
+        }));
+    }
+    if scene.laws.iter().flatten().any(|law| law.tangential_damping > 0.0) {
+        found.push(laws("no tangential damping", |law| law.tangential_damping = 0.0));
+    }
+    found
+}
+
+fn of_springs(scene: &Scene) -> Vec<Control> {
+    if !scene.laws.iter().flatten().any(|law| law.has_stiffness()) {
+        return Vec::new();
+    }
+    let both = |name: &'static str, by: f64| {
+        Control::scene(name, move |scene: &mut Scene| {
+            for law in scene.laws.iter_mut().flatten() {
+                law.scale_normal(by);
+                law.scale_tangential(by);
+            }
+        })
+    };
+    vec![
+        both("half the stiffness", 0.5),
+        both("twice the stiffness", 2.0),
+        laws("half the tangential stiffness", |law| law.scale_tangential(0.5)),
+        laws("a tangential stiffness equal to the normal one", |law| {
+            let [normal, tangential] = law.springs.constants();
+            if tangential > 0.0 {
+                law.scale_tangential(normal / tangential);
+            }
+        }),
+    ]
+}
