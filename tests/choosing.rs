@@ -187,6 +187,11 @@ fn a_job_is_told_in_its_own_way() {
     assert!(summary.starts_with("## grainbench: ") && summary.contains("| oblique-impact |"), "{summary}");
     assert_eq!(fs::read_to_string(here.join("output")).unwrap(), "report=judged\n");
     assert!(here.join("judged/badge.svg").is_file());
-    assert_eq!(job("no-such-case", "").status.code(), Some(2));
+    // Every line of an input counts, and none is dropped.
+    for (cases, arguments) in
+        [("no-such-case", ""), ("oblique-impact\nno-such-case", ""), ("oblique-impact", "--quiet\n--no-such")]
+    {
+        assert_eq!(job(cases, arguments).status.code(), Some(2), "{cases} {arguments}");
+    }
     assert_eq!(fs::read_to_string(here.join("summary.md")).unwrap(), summary, "nothing was judged");
 }

@@ -33,6 +33,17 @@ impl Scope {
         matches!(self, Self::AnySolver | Self::AnySprings)
     }
 
+    /// The solvers in a word, for lists of claims.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Named => "named",
+            Self::AnySolver => "any",
+            Self::AnyContinuum => "continuum",
+            Self::AnySprings => "springs",
+        }
+    }
+
     /// Whether it is asked of a solver that the case does not name.
     #[must_use]
     pub fn is_asked_of(self, solver: &dyn Solver) -> bool {

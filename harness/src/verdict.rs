@@ -7,6 +7,18 @@ use crate::tolerance::Made;
 use grainbench_scene::solver::RunError;
 use serde::{Deserialize, Serialize};
 
+/// Colour of a result: the one decision about exit codes, pages and summaries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// It was judged and passes.
+    Green,
+    /// It shows nothing, or a documented error.
+    Amber,
+    /// It fails, its run broke, or its reference is of another scene.
+    Red,
+}
+
 /// How a row ended. Only `Pass` is green.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -30,6 +42,22 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// Its colour.
+    #[must_use]
+    pub const fn severity(self) -> Severity {
+        match self {
+            Self::Pass => Severity::Green,
+            Self::Fail | Self::Broken | Self::Stale => Severity::Red,
+            Self::Known | Self::NoReference | Self::Unsupported | Self::NotAvailable => Severity::Amber,
+        }
+    }
+
+    /// Whether it is red.
+    #[must_use]
+    pub const fn is_red(self) -> bool {
+        matches!(self.severity(), Severity::Red)
+    }
+
     /// The word used in result files and tables.
     #[must_use]
     pub const fn word(self) -> &'static str {

@@ -12,7 +12,7 @@ const LETTER: usize = 7;
 #[must_use]
 pub fn badge(report: &Report) -> String {
     let counts = Headline::of_report(report);
-    let red = counts.rows() - counts.pass - counts.amber() + (counts.controls - counts.controls_red);
+    let red = counts.red() + (counts.controls - counts.controls_red);
     let words = if counts.rows() == 0 {
         "nothing judged".to_owned()
     } else if red > 0 {

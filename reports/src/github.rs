@@ -26,7 +26,7 @@ pub fn summary(report: &Report) -> String {
     text.push_str("\n| case | passed | red | amber | controls red |\n|---|---|---|---|---|\n");
     for section in &report.sections {
         let counts = Headline::of_section(section);
-        let red = counts.rows() - counts.pass - counts.amber();
+        let red = counts.red();
         let (name, controls) = (escaped(&section.name), format!("{}/{}", counts.controls_red, counts.controls));
         let _ =
             writeln!(text, "| {name} | {}/{} | {red} | {} | {controls} |", counts.pass, counts.rows(), counts.amber());

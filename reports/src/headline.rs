@@ -2,7 +2,7 @@
 
 use grainbench_harness::control::Red;
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 
 use crate::report::{Report, Section};
 
@@ -11,8 +11,8 @@ pub const OUTCOMES: [Outcome; 8] = [
     Outcome::Pass,
     Outcome::Fail,
     Outcome::Broken,
-    Outcome::Known,
     Outcome::Stale,
+    Outcome::Known,
     Outcome::NoReference,
     Outcome::Unsupported,
     Outcome::NotAvailable,
@@ -95,10 +95,22 @@ impl Headline {
         OUTCOMES.into_iter().map(|outcome| self.count(outcome)).sum()
     }
 
-    /// Rows that are neither right nor wrong.
+    /// Rows of a colour.
+    #[must_use]
+    pub fn of_severity(self, severity: Severity) -> usize {
+        OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
+    }
+
+    /// Rows that show nothing, or a documented error.
     #[must_use]
     pub fn amber(self) -> usize {
-        self.rows() - self.pass - self.fail - self.broken
+        self.of_severity(Severity::Amber)
+    }
+
+    /// Rows that fail, broke, or have a reference of another scene.
+    #[must_use]
+    pub fn red(self) -> usize {
+        self.of_severity(Severity::Red)
     }
 
     /// The counts in one sentence; kinds without a row are left out, except for `pass` and `fail`.

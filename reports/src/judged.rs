@@ -1,7 +1,7 @@
 //! What is kept of a program that was judged: every row with its control, by which version and adapter, when and where.
 
 use grainbench_harness::expect::Expected;
-use grainbench_harness::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 use serde::{Deserialize, Serialize};
 
 use crate::report::{Provenance, Report};
@@ -52,6 +52,9 @@ pub struct Row {
     pub control_red: Option<bool>,
 }
 
+/// Relative rounding of errors that are read back.
+const ROUNDING: f64 = 1e-6;
+
 /// The rows of a program in a case, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Count {
@@ -97,7 +100,8 @@ impl Judged {
         Self { program, version, adapter, provenance: report.provenance.clone(), rows }
     }
 
-    /// What ends otherwise in another run of the program, a line each: verdicts, controls, and rows that are not kept.
+    /// Differences of another run of the program, a line each: verdicts, controls, rows that are not kept, and errors that
+    /// moved by more than the tolerance.
     #[must_use]
     pub fn otherwise(&self, report: &Report) -> Vec<String> {
         let now = Self::of(self.program.clone(), String::new(), String::new(), report);
@@ -114,9 +118,15 @@ impl Judged {
                 (&kept.case, &kept.variant, &kept.resolution, &kept.quantity)
                     == (&row.case, &row.variant, &row.resolution, &row.quantity)
             });
-            let kept = kept.map_or_else(|| "no such row".to_owned(), words);
+            let words_kept = kept.map_or_else(|| "no such row".to_owned(), words);
             let found = words(row);
-            (kept != found).then(|| format!("{}/{} · {}: {found}; kept: {kept}", row.case, row.variant, row.quantity))
+            let place = || format!("{}/{} · {}", row.case, row.variant, row.quantity);
+            if words_kept != found {
+                return Some(format!("{}: {found}; kept: {words_kept}", place()));
+            }
+            let errors = kept.and_then(|kept| kept.error).zip(row.error);
+            let (was, is) = errors.filter(|(was, is)| (was - is).abs() > row.allowed.max(was.abs() * ROUNDING))?;
+            Some(format!("{}: {found}, error {is:e}; kept: error {was:e}, allowed {:e}", place(), row.allowed))
         };
         now.rows.iter().filter_map(line).collect()
     }
@@ -142,14 +152,10 @@ impl Judged {
     pub fn count(&self, case: Option<&str>) -> Count {
         let mut count = Count::default();
         for row in self.rows.iter().filter(|row| case.is_none_or(|case| case == row.case)) {
-            match row.verdict {
-                Outcome::Pass => count.pass += 1,
-                Outcome::Fail | Outcome::Broken => count.red += 1,
-                Outcome::Known
-                | Outcome::Stale
-                | Outcome::NoReference
-                | Outcome::Unsupported
-                | Outcome::NotAvailable => count.amber += 1,
+            match row.verdict.severity() {
+                Severity::Green => count.pass += 1,
+                Severity::Red => count.red += 1,
+                Severity::Amber => count.amber += 1,
             }
             count.controls += usize::from(row.control_red.is_some());
             count.controls_red += usize::from(row.control_red == Some(true));
@@ -193,7 +199,7 @@ mod tests {
         assert_eq!(Judged::read(&judged.text().unwrap()).unwrap(), judged);
         let counts = crate::Headline::of_report(&report);
         let count = judged.count(None);
-        assert_eq!((count.pass, count.red), (counts.pass, counts.fail + counts.broken));
+        assert_eq!((count.pass, count.red), (counts.pass, counts.red()));
         assert_eq!(count.pass + count.red + count.amber, judged.rows.len());
         assert!(count.controls > 0 && count.controls_red <= count.controls);
         assert_eq!(judged.count(Some("no-such-case")), Count::default());

@@ -1,6 +1,6 @@
 //! `junit.xml`, which continuous-integration services show.
 
-use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, TestSuite};
 
 use crate::line;
@@ -53,16 +53,14 @@ fn name(variant: &str, solver: &str, resolution: &str, quantity: &str) -> String
 }
 
 fn status(verdict: &Verdict) -> TestCaseStatus {
-    let mut status = match verdict.outcome {
-        Outcome::Pass => return TestCaseStatus::success(),
-        Outcome::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
-        Outcome::Broken => TestCaseStatus::non_success(NonSuccessKind::Error),
-        Outcome::Known | Outcome::Stale | Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => {
-            TestCaseStatus::skipped()
-        }
+    let mut status = match verdict.outcome.severity() {
+        Severity::Green => return TestCaseStatus::success(),
+        Severity::Red if verdict.outcome == Outcome::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
+        Severity::Red => TestCaseStatus::non_success(NonSuccessKind::Error),
+        Severity::Amber => TestCaseStatus::skipped(),
     };
     let message = match (&verdict.outcome, &verdict.detail) {
-        (Outcome::Fail | Outcome::Broken, _) => line::verdict(verdict),
+        (outcome, _) if outcome.is_red() => line::verdict(verdict),
         (outcome, Some(detail)) => format!("{}: {detail}", outcome.word()),
         (outcome, None) => outcome.word().to_owned(),
     };

@@ -1,8 +1,9 @@
 //! Everything a report is made from: enough to redo every output without a solver.
 
 use grainbench_harness::figure::Figure;
-use grainbench_harness::verdict::{Control, Verdict};
+use grainbench_harness::verdict::{Control, Outcome, Verdict};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 use crate::judged::Judged;
 use crate::measured::Measurements;
@@ -18,9 +19,32 @@ pub struct Report {
     /// Programs that were judged before, by their manifests.
     #[serde(default)]
     pub judged: Vec<Judged>,
+    /// Outcomes that the page and the terminal show; all where none is named. Every file holds all results.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shown: Vec<Outcome>,
     /// What accuracy costs and what stays stable, as it was measured before.
     #[serde(default)]
     pub measured: Measurements,
+}
+
+impl Report {
+    /// The sections with the results that are shown and their controls.
+    #[must_use]
+    pub fn view(&self) -> Cow<'_, Self> {
+        if self.shown.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut view = self.clone();
+        for section in &mut view.sections {
+            section.verdicts.retain(|row| self.shown.contains(&row.outcome));
+            let verdicts = &section.verdicts;
+            section.controls.retain(|control| {
+                verdicts.iter().any(|row| row.variant == control.variant && row.quantity == control.quantity)
+            });
+        }
+        view.sections.retain(|section| !section.verdicts.is_empty());
+        Cow::Owned(view)
+    }
 }
 
 /// What ran, where and when.

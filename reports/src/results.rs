@@ -1,6 +1,6 @@
 //! Result files for other programs.
 
-use grainbench_harness::verdict::{Control, Verdict};
+use grainbench_harness::verdict::{Control, Severity, Verdict};
 use serde::Serialize;
 
 use crate::report::{Provenance, Report};
@@ -9,9 +9,23 @@ use crate::report::{Provenance, Report};
 #[derive(Serialize)]
 struct Results<'a> {
     provenance: &'a Provenance,
-    verdicts: Vec<&'a Verdict>,
+    verdicts: Vec<Row<'a>>,
     controls: Vec<&'a Control>,
     points: Vec<Point<'a>>,
+}
+
+/// A result with its colour.
+#[derive(Serialize)]
+struct Row<'a> {
+    #[serde(flatten)]
+    verdict: &'a Verdict,
+    severity: Severity,
+}
+
+impl<'a> Row<'a> {
+    const fn new(verdict: &'a Verdict) -> Self {
+        Self { verdict, severity: verdict.outcome.severity() }
+    }
 }
 
 /// One line of `points.csv`: what a run cost, whatever its verdicts.
@@ -53,7 +67,7 @@ fn points(report: &Report) -> impl Iterator<Item = Point<'_>> {
 pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &report.provenance,
-        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).collect(),
+        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).map(Row::new).collect(),
         controls: report.sections.iter().flat_map(|section| &section.controls).collect(),
         points: points(report).collect(),
     };

@@ -284,6 +284,7 @@ pub(crate) fn report() -> Report {
         provenance: report_provenance(),
         sections: vec![backspin(), nine_discs()],
         judged: Vec::new(),
+        shown: Vec::new(),
         measured: Measurements { cost: Some(Costs::of(&costs(), &|_| None)), stability: None },
     };
     report.judged = vec![Judged::of("other".into(), "other 1.0".into(), "0123".into(), &report)];

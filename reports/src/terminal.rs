@@ -1,6 +1,6 @@
 //! The summary as plain text.
 
-use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_harness::verdict::Verdict;
 
 use crate::headline::{self, Headline};
 use crate::line;
@@ -10,6 +10,8 @@ use crate::report::{Report, Section};
 /// A row a case, the counts, then every line that fails. No colour codes: it goes to files as well.
 #[must_use]
 pub fn summary_table(report: &Report) -> String {
+    let (counts, all) = (Headline::of_report(report), report);
+    let report = &*report.view();
     let head = ["case", "solvers", "passed", "amber", "worst, of allowed", "controls red"];
     let mut rows = vec![head.map(str::to_owned)];
     rows.extend(report.sections.iter().map(row));
@@ -22,9 +24,8 @@ pub fn summary_table(report: &Report) -> String {
             push_line(&mut text, &rule, &widths);
         }
     }
-    let counts = Headline::of_report(report);
     text.push_str(&format!("\n{}\n", counts.sentence()));
-    let failing = failing_lines(report);
+    let failing = failing_lines(all);
     if !failing.is_empty() {
         text.push('\n');
         for line in failing {
@@ -38,7 +39,7 @@ pub fn summary_table(report: &Report) -> String {
 /// Whether a row that ended so makes a run red: a stale reference does too.
 #[must_use]
 pub fn is_red(verdict: &Verdict) -> bool {
-    matches!(verdict.outcome, Outcome::Fail | Outcome::Stale | Outcome::Broken)
+    verdict.outcome.is_red()
 }
 
 /// Every row that fails, broke or is stale, and every negative control that stayed green, a line each.

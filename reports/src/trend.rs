@@ -6,7 +6,7 @@ use crate::plot::{self, DrawError};
 use crate::staged::StagedDir;
 use crate::store::SaveError;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_harness::verdict::Outcome;
+use grainbench_harness::verdict::{Outcome, Severity};
 use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -89,8 +89,8 @@ impl Column {
         Ok(Self { name: name.to_owned(), commit: provenance.commit, date: provenance.date, rows, runs })
     }
 
-    fn count(&self, of: &[Outcome]) -> u64 {
-        self.rows.values().filter(|outcome| of.contains(outcome)).count() as u64
+    fn count(&self, of: Severity) -> u64 {
+        self.rows.values().filter(|outcome| outcome.severity() == of).count() as u64
     }
 
     /// The sum over all runs that all of some columns have.
@@ -99,12 +99,9 @@ impl Column {
     }
 }
 
-/// Green, red and the rest.
-const KINDS: [(&str, &[Outcome]); 3] = [
-    ("pass", &[Outcome::Pass]),
-    ("fail or broken", &[Outcome::Fail, Outcome::Broken]),
-    ("amber", &[Outcome::Known, Outcome::Stale, Outcome::NoReference, Outcome::Unsupported, Outcome::NotAvailable]),
-];
+/// Colours with their words.
+const KINDS: [(&str, Severity); 3] =
+    [("pass", Severity::Green), ("fail, broken or stale", Severity::Red), ("amber", Severity::Amber)];
 
 /// Adds `trend.html` and `figures/trend-*.svg` to the directory of a report, for reports from the oldest to this one.
 ///
@@ -166,8 +163,9 @@ fn render(columns: &[Column]) -> Result<String, DrawError> {
 }
 
 fn verdicts(columns: &[Column]) -> Figure {
-    let curve = |(label, of): &(&str, &[Outcome])| {
-        let points = columns.iter().zip(1_u32..).map(|(column, at)| (f64::from(at), column.count(of) as f64)).collect();
+    let curve = |(label, of): &(&str, Severity)| {
+        let points =
+            columns.iter().zip(1_u32..).map(|(column, at)| (f64::from(at), column.count(*of) as f64)).collect();
         Curve::new(*label, Stroke::MarkedLine, points)
     };
     Figure::graph(

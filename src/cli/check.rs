@@ -91,6 +91,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections,
         judged: Vec::new(),
+        shown: Vec::new(),
         measured: Measurements::default(),
     };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;

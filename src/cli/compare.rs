@@ -78,6 +78,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections: vec![section],
         judged: Vec::new(),
+        shown: Vec::new(),
         measured: Measurements::default(),
     };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;

@@ -54,7 +54,9 @@ impl Earlier {
     }
 
     /// What is otherwise in a report, a line a row or control: what turned red first.
-    pub(crate) fn changes(&self, report: &Report) -> Vec<String> {
+    ///
+    /// Results of cases that the report does not have are gone only if it `is_whole`.
+    pub(crate) fn changes(&self, report: &Report, is_whole: bool) -> Vec<String> {
         let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
         let before: BTreeMap<Name, &Verdict> = self.verdicts.iter().map(|row| (name(row), row)).collect();
         let now: BTreeMap<Name, &Verdict> = rows().map(|row| (name(row), row)).collect();
@@ -71,11 +73,11 @@ impl Earlier {
             let words = format!("was {}, is {}: {}", was.outcome.word(), row.outcome.word(), line::verdict(row));
             if is_red(row) { red.push(words) } else { other.push(words) }
         }
+        let is_asked = |row: &&Verdict| is_whole || report.sections.iter().any(|section| section.name == row.case);
+        for row in self.verdicts.iter().filter(is_asked).filter(|row| !now.contains_key(&name(row))) {
+            other.push(format!("not judged now, was {}: {}", row.outcome.word(), line::verdict(row)));
+        }
         for section in &report.sections {
-            let of_case = self.verdicts.iter().filter(|row| row.case == section.name);
-            for row in of_case.filter(|row| !now.contains_key(&name(row))) {
-                other.push(format!("not judged now, was {}: {}", row.outcome.word(), line::verdict(row)));
-            }
             for control in section.controls.iter().filter(|control| !control.turned_red) {
                 let same = |was: &&Control| {
                     (&was.case, &was.variant, &was.solver, &was.quantity)

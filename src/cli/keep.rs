@@ -11,6 +11,8 @@ use std::fs;
 
 /// The file with what is kept.
 const KEEPS: &str = "judged.json";
+/// The version of a program that names none.
+const UNKNOWN: &str = "not told";
 
 /// The one program that was selected.
 pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
@@ -32,6 +34,14 @@ pub(crate) fn read(program: &Outside) -> Result<Judged, Fault> {
     Judged::read(&text).map_err(|error| wrong(error.to_string()))
 }
 
+/// The name and version of a program where they are not those of the stored rows.
+pub(crate) fn other_program(program: &Outside, kept: &Judged) -> Vec<String> {
+    let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
+    let pairs = [("name", &program.manifest().name, &kept.program), ("version", &version, &kept.version)];
+    let other = pairs.into_iter().filter(|(_, is, was)| is != was);
+    other.map(|(what, is, was)| format!("{what} {is}; kept: {was}")).collect()
+}
+
 /// Keeps a study in the tree, for the first screen of a page.
 pub(crate) fn keep_study(name: &str, study: &Study) -> Result<(), Fault> {
     let text = kept_text(study).map_err(Fault::input)?;
@@ -42,7 +52,7 @@ pub(crate) fn keep_study(name: &str, study: &Study) -> Result<(), Fault> {
 pub(crate) fn keep(program: &Outside, report: &Report) -> Result<(), Fault> {
     let adapter = program.fingerprint().map_err(Fault::writing)?;
     let name = program.manifest().name.clone();
-    let version = program.version().unwrap_or_else(|| "not told".to_owned());
+    let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
     let text = Judged::of(name, version, adapter, report).text().map_err(Fault::input)?;
     write_file(program.folder().join(KEEPS), text.as_bytes()).map_err(Fault::writing)
 }

@@ -30,6 +30,8 @@ struct Row {
     unit: &'static str,
     /// The wrong physics that must turn it red.
     control: &'static str,
+    /// Kind of solvers that it is asked of: `any`, `continuum` or `springs`.
+    solvers: &'static str,
 }
 
 /// One case of the list.
@@ -66,7 +68,8 @@ fn list_rows(arguments: &Arguments) -> Outcome {
         for claim in &selected.claims {
             let variant = claim.runs.first().map_or("", |run| run.variant);
             let (quantity, control) = (claim.quantity.clone(), claim.control.name);
-            rows.push(Row { case: selected.case.name, variant, quantity, unit: claim.unit, control });
+            let solvers = claim.scope.word();
+            rows.push(Row { case: selected.case.name, variant, quantity, unit: claim.unit, control, solvers });
         }
     }
     if arguments.json {

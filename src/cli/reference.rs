@@ -220,6 +220,7 @@ fn verify(arguments: &Verify) -> Outcome {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections: vec![section],
         judged: Vec::new(),
+        shown: Vec::new(),
         measured: Measurements::default(),
     };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;

@@ -13,15 +13,15 @@ use super::progress::Progress;
 use super::provenance::provenance;
 use super::select::{self, Selected};
 use super::value::whole;
-use grainbench::cases::solvers;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
 use grainbench::harness::data::{Data, NotMade};
 use grainbench::harness::figure::Figure;
+use grainbench::harness::mistake;
 use grainbench::harness::run::{Done, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
-use grainbench::harness::verdict::{self, Control, Verdict};
+use grainbench::harness::verdict::{self, Control, Severity, Verdict};
 use grainbench::reference::outside::Outside;
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
@@ -163,9 +163,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     }
     let is_mute = selected.iter().any(|of| of.stranger.is_some()) && says_nothing(&report);
     let code = exit_code(&report, options.strict);
-    if filters.asks_for_outcomes() {
-        show(&mut report, &filters);
-    }
+    report.shown = filters.outcomes();
     let write = if options.parquet { write_report_and_parquet } else { write_report };
     write(&options.out, &report).map_err(Fault::writing)?;
     if options.json {
@@ -175,13 +173,14 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     }
     github::tell(&report, options.json)?;
     if let Some(earlier) = &earlier {
-        let changes = earlier.changes(&report);
+        let changes = earlier.changes(&report, is_whole);
         let none = ["nothing: every row and every control ended as it did, with the same value".to_owned()];
         let lines = if changes.is_empty() { &none[..] } else { &changes[..] };
         lines.iter().for_each(|line| exit::say("changed", line));
     }
     if let Some(kept) = kept {
-        let otherwise = kept.otherwise(&report);
+        let mut otherwise = keep::other_program(keep::program(&selected)?, &kept);
+        otherwise.extend(kept.otherwise(&report));
         otherwise.iter().for_each(|line| exit::say("otherwise than kept", line));
         let is_red = left > 0 || is_mute || !otherwise.is_empty();
         return Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS });
@@ -217,7 +216,7 @@ pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: b
     } else {
         (Vec::new(), Measurements::default())
     };
-    Ok(Report { provenance, sections, judged, measured })
+    Ok(Report { provenance, sections, judged, shown: Vec::new(), measured })
 }
 
 /// Leaves the claims that filters mean and, where that is asked for, that were red in the report that `--out` holds.
@@ -241,18 +240,6 @@ pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &
     Ok(())
 }
 
-/// Leaves the rows that end as it is asked for, with their controls.
-fn show(report: &mut Report, filters: &Filters) {
-    for section in &mut report.sections {
-        section.verdicts.retain(|row| filters.shows(row));
-        let verdicts = &section.verdicts;
-        section.controls.retain(|control| {
-            verdicts.iter().any(|row| row.variant == control.variant && row.quantity == control.quantity)
-        });
-    }
-    report.sections.retain(|section| !section.verdicts.is_empty());
-}
-
 /// What is printed of a report.
 fn summary(report: &Report, options: &Options) -> String {
     let page = options.out.join("index.html");
@@ -263,15 +250,10 @@ fn summary(report: &Report, options: &Options) -> String {
     format!("{failing}{}\n", Headline::of_report(report).sentence())
 }
 
-/// Success, or red when a row failed or has a stale reference, a control stayed green, a solver of ours broke, or nothing
-/// was judged; where all must be green, also when a row is not.
+/// Success, or red when a row is red, a control stayed green, or nothing was judged; with `strict`, also when a row is amber.
 pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
-    use verdict::Outcome::{Broken, Fail, Pass, Stale};
-    let red_row = |verdict: &Verdict| match verdict.outcome {
-        Fail | Stale => true,
-        Broken => is_ours(&verdict.solver),
-        outcome => strict && outcome != Pass,
-    };
+    let least = if strict { Severity::Amber } else { Severity::Red };
+    let red_row = |verdict: &Verdict| verdict.outcome.severity() >= least;
     let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
     let mut controls = report.sections.iter().flat_map(|section| &section.controls);
     let is_red = rows().any(red_row) || !rows().any(is_judged) || controls.any(|control| !control.turned_red);
@@ -288,11 +270,6 @@ pub(crate) const fn is_judged(verdict: &Verdict) -> bool {
 pub(crate) fn says_nothing(report: &Report) -> bool {
     let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
     rows.all(|row| row.outcome == verdict::Outcome::Unsupported || !is_judged(row))
-}
-
-/// Other people's programs may break without it being our failure.
-fn is_ours(solver: &str) -> bool {
-    !solvers::is_program(solver)
 }
 
 /// The options that are not the default, in words.
@@ -321,6 +298,7 @@ pub(crate) fn words(cases: &[String], options: &Options) -> Vec<String> {
 /// One case at work. Every answer has its own place, so that the order in which they come does not matter.
 struct Work<'a> {
     selected: &'a Selected,
+    solvers: Arc<dyn Solvers>,
     runner: Runner,
     verdicts: Vec<OnceLock<Verdict>>,
     controls: Vec<OnceLock<Control>>,
@@ -412,6 +390,7 @@ impl<'a> Work<'a> {
     fn new(selected: &'a Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Self {
         Self {
             selected,
+            solvers: Arc::clone(&solvers),
             runner: runner(selected, options, thorough, solvers),
             verdicts: selected.claims.iter().map(|_| OnceLock::new()).collect(),
             controls: selected.claims.iter().map(|_| OnceLock::new()).collect(),
@@ -429,9 +408,11 @@ impl<'a> Work<'a> {
             }
             None => Vec::new(),
         };
+        let mut verdicts: Vec<Option<Verdict>> = self.verdicts.into_iter().map(OnceLock::into_inner).collect();
+        mistake::explain(self.selected.case, &self.solvers, &self.selected.claims, &mut verdicts);
         Section {
             figures,
-            verdicts: self.verdicts.into_iter().filter_map(OnceLock::into_inner).collect(),
+            verdicts: verdicts.into_iter().flatten().collect(),
             controls: self.controls.into_iter().filter_map(OnceLock::into_inner).collect(),
             runs: self.runner.done().iter().map(|(run, done)| cost(run, done)).collect(),
             ..blank(self.selected)

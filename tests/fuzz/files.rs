@@ -284,6 +284,7 @@ fn report() -> &'static Vec<u8> {
             provenance,
             sections: vec![section],
             judged: Vec::new(),
+            shown: Vec::new(),
             measured: Measurements::default(),
         })
         .unwrap()

@@ -70,6 +70,7 @@ fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Item = &'a Ver
 fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
     match row.outcome {
         Outcome::Broken => Some((2, f64::INFINITY)),
+        Outcome::Stale => Some((1, f64::INFINITY)),
         Outcome::Fail => Some((1, row.error.map_or(f64::INFINITY, f64::abs))),
         Outcome::Known => Some((0, row.error.map_or(f64::INFINITY, f64::abs))),
         _ => None,
@@ -85,7 +86,7 @@ fn card(
 ) -> Markup {
     let count = |outcome: Outcome| rows(report, solver).filter(|row| row.outcome == outcome).count();
     let (all, pass) = (rows(report, solver).count(), count(Outcome::Pass));
-    let red = count(Outcome::Fail) + count(Outcome::Broken);
+    let red = rows(report, solver).filter(|row| row.outcome.is_red()).count();
     let class = if red > 0 {
         "fail"
     } else if pass < all {

@@ -15,7 +15,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                     li { a href="#summary" { "Summary" } }
                     @for (section, anchor) in report.sections.iter().zip(anchors) {
                         @let counts = Headline::of_section(section);
-                        @let wrong = counts.fail + counts.broken;
+                        @let wrong = counts.red();
                         li {
                             a href={ "#" (anchor) } data-case=(section.name) {
                                 @if wrong > 0 { span.n.fail { "✗ " (wrong) } }

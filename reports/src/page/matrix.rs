@@ -29,8 +29,8 @@ const fn order(outcome: Outcome) -> u8 {
     match outcome {
         Outcome::Broken => 5,
         Outcome::Fail => 4,
-        Outcome::Known => 3,
-        Outcome::Stale => 2,
+        Outcome::Stale => 3,
+        Outcome::Known => 2,
         Outcome::Pass => 1,
         Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => 0,
     }
@@ -55,10 +55,10 @@ fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
         Outcome::Pass if worst <= 0.1 => "c0",
         Outcome::Pass if worst <= 0.5 => "c1",
         Outcome::Pass => "c2",
-        Outcome::Fail | Outcome::Broken => "f0",
+        Outcome::Fail | Outcome::Broken | Outcome::Stale => "f0",
         Outcome::Known if worst <= 10.0 => "k0",
         Outcome::Known if worst <= 1e3 => "k1",
-        Outcome::Known | Outcome::Stale => "k2",
+        Outcome::Known => "k2",
         Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => "cannot",
     }
 }
@@ -136,7 +136,7 @@ fn ours(section: &Section, column: &str, anchor: &str) -> Markup {
 
 fn text(outcome: Outcome, worst: Option<f64>) -> String {
     match (worst, outcome) {
-        (_, Outcome::Broken) => "✗".to_owned(),
+        (_, Outcome::Broken | Outcome::Stale) => "✗".to_owned(),
         (Some(worst), _) if worst.is_finite() => short(worst),
         (Some(_), _) => "∞".to_owned(),
         (None, _) => "–".to_owned(),

@@ -17,7 +17,7 @@ mod tables;
 
 use std::collections::BTreeSet;
 
-use grainbench_harness::verdict::Outcome;
+use grainbench_harness::verdict::{Outcome, Severity};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::headline::Headline;
@@ -43,6 +43,8 @@ pub struct Page {
 /// # Errors
 /// When a figure cannot be drawn.
 pub fn render(report: &Report) -> Result<Page, DrawError> {
+    let counts = Headline::of_report(report);
+    let report = &*report.view();
     let mut taken = BTreeSet::from(["summary", "peers", "provenance", "tools", "matrix"].map(str::to_owned));
     let anchors: Vec<String> = report.sections.iter().map(|section| unique(&slug(&section.name), &mut taken)).collect();
     taken.extend(anchors.iter().map(|anchor| rows_of(anchor)));
@@ -51,8 +53,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     for ((section, anchor), names) in report.sections.iter().zip(&anchors).zip(&names) {
         pieces.extend(section::pieces(section, anchor, names, &mut taken)?);
     }
-    let head = overview::render(report, &anchors, &|_| true).into_string();
-    let counts = Headline::of_report(report);
+    let head = overview::render(report, counts, &anchors, &|_| true).into_string();
     let foot = html! { (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
     pieces.push(budget::Piece::Fixed(foot));
     pieces[0] = budget::Piece::Fixed(head.clone());
@@ -60,7 +61,8 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     let (main, beside) = budget::fit(pieces, budget::PAGE.saturating_sub(fixed));
     let below = main.strip_prefix(&head).unwrap_or_default();
     // Rows that lie beside the page cannot be led to by their own addresses.
-    let head = overview::render(report, &anchors, &|row| below.contains(&format!(" id=\"{row}\""))).into_string();
+    let head =
+        overview::render(report, counts, &anchors, &|row| below.contains(&format!(" id=\"{row}\""))).into_string();
     let body = html! {
         a.skip href="#summary" { "To the summary" }
         div.frame {
@@ -134,12 +136,10 @@ pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
 
 /// Symbol and class of an outcome: the meaning never hangs on colour alone.
 pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
-    match outcome {
-        Outcome::Pass => ("✓", "pass"),
-        Outcome::Fail | Outcome::Broken => ("✗", "fail"),
-        Outcome::Known | Outcome::Stale | Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => {
-            ("▲", "amber")
-        }
+    match outcome.severity() {
+        Severity::Green => ("✓", "pass"),
+        Severity::Red => ("✗", "fail"),
+        Severity::Amber => ("▲", "amber"),
     }
 }
 

@@ -8,9 +8,11 @@ use crate::report::Report;
 use grainbench_harness::verdict::Outcome;
 
 /// Renders the head of the page; `is_there` says whether a row stands in the page by its own address.
-pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
-    let counts = Headline::of_report(report);
-    let wrong = counts.fail + counts.broken;
+///
+/// `counts` are those of all results, `report` holds those that are shown.
+pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
+    let shown = Headline::of_report(report).rows();
+    let wrong = counts.red();
     let cases = report.sections.len();
     let costs = report.measured.cost.as_ref();
     html! {
@@ -29,6 +31,9 @@ pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str
                 } @else {
                     "All " (counts.rows()) " rows pass"
                 }
+            }
+            @if shown < counts.rows() {
+                p.back { "This page shows " (shown) " of " (counts.rows()) " results." }
             }
             ul.counts aria-label="Rows by outcome" {
                 li { (cases) (if cases == 1 { " case" } else { " cases" }) }

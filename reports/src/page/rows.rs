@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use maud::{Markup, html};
 
 use super::{sign, unique};
@@ -23,11 +23,12 @@ pub(crate) fn address(verdict: &Verdict) -> String {
 /// In order of the gates, but what fails first, and what is amber after that.
 pub(crate) fn sorted(verdicts: &[Verdict]) -> Vec<&Verdict> {
     let mut rows: Vec<&Verdict> = verdicts.iter().collect();
-    rows.sort_by_key(|verdict| match verdict.outcome {
-        Outcome::Fail => 0,
-        Outcome::Broken => 1,
-        Outcome::Pass => 3,
-        _ => 2,
+    rows.sort_by_key(|verdict| {
+        std::cmp::Reverse(match verdict.outcome.severity() {
+            Severity::Red => (2, verdict.outcome == Outcome::Fail),
+            Severity::Amber => (1, false),
+            Severity::Green => (0, false),
+        })
     });
     rows
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use grainbench_harness::verdict::Outcome;
 use maud::{Markup, PreEscaped, html};
 
 use super::budget::{Part, Piece, Rank};
@@ -94,7 +93,7 @@ fn folded(pieces: &mut Vec<Piece>, id: Option<&str>, class: &str, summary: &Mark
 
 /// The head of the section, with its opening tag.
 fn open(section: &Section, anchor: &str) -> String {
-    let failing = section.verdicts.iter().filter(|row| matches!(row.outcome, Outcome::Fail | Outcome::Broken));
+    let failing = section.verdicts.iter().filter(|row| row.outcome.is_red());
     let green_controls = section.controls.iter().filter(|control| !control.turned_red);
     let fails = failing.clone().count() + green_controls.clone().count();
     // What a search looks through beside the rows themselves.

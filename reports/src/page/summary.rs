@@ -1,7 +1,6 @@
 //! What fails, and what accuracy costs over all cases.
 
 use grainbench_harness::figure::{Axis, Curve, Graph, Stroke};
-use grainbench_harness::verdict::Outcome;
 use maud::{Markup, html};
 
 use crate::line;
@@ -21,7 +20,7 @@ pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     let mut lines = Vec::new();
     for (section, anchor) in report.sections.iter().zip(anchors) {
         for verdict in &section.verdicts {
-            if matches!(verdict.outcome, Outcome::Fail | Outcome::Broken) {
+            if verdict.outcome.is_red() {
                 lines.push((anchor, line::verdict(verdict)));
             }
         }

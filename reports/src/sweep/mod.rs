@@ -11,7 +11,7 @@ use crate::store::SaveError;
 use crate::study::point::Timing;
 use crate::{page as shared, plot};
 use grainbench_harness::expect::Expected;
-use grainbench_harness::verdict::Outcome;
+use grainbench_harness::verdict::{Outcome, Severity};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::io;
@@ -165,21 +165,11 @@ impl Point {
     /// How it stands.
     #[must_use]
     pub fn standing(&self) -> Standing {
-        let has = |outcomes: &[Outcome]| {
-            self.left.looked.iter().any(|looked| looked.verdict.is_some_and(|verdict| outcomes.contains(&verdict)))
-        };
-        if has(&[Outcome::Fail, Outcome::Broken]) {
-            Standing::Outside
-        } else if has(&[
-            Outcome::Unsupported,
-            Outcome::NotAvailable,
-            Outcome::Known,
-            Outcome::Stale,
-            Outcome::NoReference,
-        ]) {
-            Standing::Amber
-        } else {
-            Standing::Within
+        let severities = self.left.looked.iter().filter_map(|looked| looked.verdict).map(Outcome::severity);
+        match severities.max() {
+            Some(Severity::Red) => Standing::Outside,
+            Some(Severity::Amber) => Standing::Amber,
+            Some(Severity::Green) | None => Standing::Within,
         }
     }
 

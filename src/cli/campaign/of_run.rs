@@ -84,7 +84,7 @@ impl OfRun {
         let again = <Again as clap::Parser>::try_parse_from(words).map_err(Fault::input)?;
         let run::Arguments { cases, options } = again.arguments;
         let filters = Filters::read(&options.filter)?;
-        if filters.asks_for_outcomes() {
+        if !filters.outcomes().is_empty() {
             return Err(Fault::input("--filter: expected what is known beforehand, found `outcome`"));
         }
         let mut selected = select::select(&cases, &options.solver, &options.levels)?;
