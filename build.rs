@@ -42,8 +42,8 @@ fn build(root: &Path, rustc: &str) -> String {
     blake3::hash(all.join("\n").as_bytes()).to_hex().to_string()
 }
 
-/// Hash of all files in some folders but of tests, by their paths and texts. A package has none of them: its version and the
-/// checksums in its lock say what it was built from.
+/// Hash of all files in some folders except tests, by their paths and texts; comments of Rust sources do not count. A package
+/// has none of them: its version and the checksums in its lock identify its sources.
 fn fingerprint(root: &Path, folders: &[&str]) -> String {
     if folders.iter().any(|folder| !root.join(folder).is_dir()) {
         return format!("package {}", env::var("CARGO_PKG_VERSION").unwrap_or_default());
@@ -64,12 +64,24 @@ fn fingerprint(root: &Path, folders: &[&str]) -> String {
     let mut hasher = blake3::Hasher::new();
     for file in files {
         let name = file.strip_prefix(root).unwrap_or(&file).to_string_lossy().into_owned();
-        for part in [name.into_bytes(), fs::read(&file).unwrap_or_default()] {
+        for part in [name.into_bytes(), code(&file)] {
             hasher.update(&(part.len() as u64).to_le_bytes());
             hasher.update(&part);
         }
     }
     hasher.finalize().to_hex()[..16].to_owned()
+}
+
+/// The text of a file; of a Rust source the lines of code without their indentation.
+fn code(file: &Path) -> Vec<u8> {
+    let bytes = fs::read(file).unwrap_or_default();
+    match (file.extension(), str::from_utf8(&bytes)) {
+        (Some(end), Ok(text)) if end == "rs" => {
+            let lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
+            lines.collect::<Vec<_>>().join("\n").into_bytes()
+        }
+        _ => bytes,
+    }
 }
 
 /// The folders of the workspace's crates but this one, from the line that lists them.

@@ -95,9 +95,9 @@ class Judgement(Results):
     @property
     def passed(self) -> bool:
         """Whether something passed, nothing failed or broke, and every control turned red."""
-        outcomes = [row["verdict"] for row in self.verdicts]
+        severities = {row["severity"] for row in self.verdicts}
         controls = all(control["turned_red"] for control in self.of_controls)
-        return "pass" in outcomes and not {"fail", "broken", "stale"} & set(outcomes) and controls
+        return "green" in severities and "red" not in severities and controls
 
     def require(self) -> Judgement:
         """Itself, where it passed; else an AssertionError with the rows that did not."""

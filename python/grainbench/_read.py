@@ -16,7 +16,6 @@ from ._scene import Floats
 
 _BACKENDS = ("pandas", "polars", "pyarrow")
 _SHOWN = ("verdict", "case", "variant", "quantity", "value", "expected", "error", "allowed", "detail")
-_RED = ("fail", "broken", "stale")
 
 
 class Results:
@@ -39,7 +38,7 @@ class Results:
 
     def table(self, *, only_red: bool = False) -> str:
         """A line a row, and one for each control that stayed green."""
-        rows = [row for row in self.verdicts if not only_red or row["verdict"] in _RED or only_red and not self._any_red()]
+        rows = [row for row in self.verdicts if not only_red or row["severity"] == "red" or only_red and not self._any_red()]
         lines = [_line(row) for row in rows]
         green = [control for control in self.of_controls if not control["turned_red"]]
         lines += [
@@ -52,17 +51,17 @@ class Results:
         return "\n".join([*lines, f"{said}; {red} of {len(self.of_controls)} controls turned red"])
 
     def _any_red(self) -> bool:
-        return any(row["verdict"] in _RED for row in self.verdicts)
+        return any(row["severity"] == "red" for row in self.verdicts)
 
     def __repr__(self) -> str:
         return self.table()
 
     def _repr_html_(self) -> str:
-        colours = {"pass": "#1a7f37", "fail": "#cf222e", "broken": "#cf222e", "stale": "#cf222e"}
+        colours = {"green": "#1a7f37", "amber": "#9a6700", "red": "#cf222e"}
 
         def cell(row: dict[str, Any], name: str) -> str:
             text = html.escape(_shown(row.get(name)))
-            style = f' style="color:{colours.get(row["verdict"], "#9a6700")};font-weight:bold"' if name == "verdict" else ""
+            style = f' style="color:{colours[row["severity"]]};font-weight:bold"' if name == "verdict" else ""
             return f"<td{style}>{text}</td>"
 
         head = "".join(f"<th>{name}</th>" for name in _SHOWN)

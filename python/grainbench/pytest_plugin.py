@@ -15,6 +15,9 @@ from ._read import _line
 from .worker import load
 
 
+_NOTHING: pytest.StashKey[bool] = pytest.StashKey()
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Options of the plugin."""
     group = parser.getgroup("grainbench", "solvers of grains, judged by grainbench")
@@ -29,9 +32,9 @@ def pytest_configure(config: pytest.Config) -> None:
         raise pytest.UsageError(f"--grainbench: expected MODULE:NAME or FILE.py:NAME, found {target!r}")
 
 
-@pytest.hookimpl(trylast=True)
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Adds the rows."""
+    """Adds the rows, before `-k` and `-m` choose among the items."""
     target: str | None = config.getoption("--grainbench")
     if target is None:
         return
@@ -51,7 +54,23 @@ def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config
         key = (row["case"], row["variant"], row["quantity"])
         place = seen[key] = seen.get(key, -1) + 1
         for control in (None, row["control"]):
-            items.append(_Row.from_parent(session, name=(name := _name(row, control)), nodeid=name, judged=judged, key=(*key, place), control=control))
+            items.append(_Row.from_parent(session, name=(name := _name(row, control)), nodeid=name, judged=judged, key=(*key, place), control=control, solvers=row["solvers"]))
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """Fails where rows were asked for and none was judged."""
+    if session.config.getoption("--grainbench") is None or exitstatus not in (0, 5) or session.config.option.collectonly:
+        return
+    if not any(isinstance(item, _Row) and item.is_judged for item in session.items):
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+        session.config.stash[_NOTHING] = True
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """Says why it fails where every row was skipped."""
+    if config.stash.get(_NOTHING, False):
+        terminalreporter.write_line("grainbench: no row was judged: the run fails", red=True)
 
 
 def pytest_report_collectionfinish(config: pytest.Config, items: list[pytest.Item]) -> str | None:
@@ -95,26 +114,39 @@ class _Judged:
 class _Row(pytest.Item):
     """A row, or its control."""
 
-    def __init__(self, *, judged: _Judged, key: tuple[str, str, str, int], control: str | None, **words: Any) -> None:
+    def __init__(self, *, judged: _Judged, key: tuple[str, str, str, int], control: str | None, solvers: str, **words: Any) -> None:
         super().__init__(**words)
-        self._judged, self._key, self._control = judged, key, control
+        self._judged, self._key, self._control, self._solvers = judged, key, control, solvers
+        self.is_judged = False
 
     def runtest(self) -> None:
         """Green where the row passed, or its control turned red."""
         case, variant, quantity, place = self._key
         results = self._judged.of(case)
-        of_kind = results["verdicts" if self._control is None else "controls"]
-        found = [row for row in of_kind if (row["variant"], row["quantity"]) == (variant, quantity)]
-        if place >= len(found):
-            pytest.skip("what cannot be expressed has no control")
-        row = found[place]
+
+        def found(kind: str) -> list[dict[str, Any]]:
+            return [row for row in results[kind] if (row["variant"], row["quantity"]) == (variant, quantity)]
+
+        if place >= len(found("verdicts")) and self._solvers != "any":
+            pytest.skip(f"a row for solvers of one kind: {self._solvers}")
+        if place >= len(found("verdicts")):
+            raise _Red("there is no result of this row")
+        row = found("verdicts")[place]
+        if row["severity"] == "amber":
+            pytest.skip(f"{row['verdict']}: {row.get('detail') or ''}")
         if self._control is not None:
-            if not row["turned_red"]:
+            # A control is left out where the row is red and the solver cannot express its wrong scene.
+            controls = found("controls")
+            if place >= len(controls) and row["severity"] == "red":
+                pytest.skip("the row is red, and its control cannot be expressed")
+            if place >= len(controls):
+                raise _Red("there is no result of this control")
+            self.is_judged = True
+            if not controls[place]["turned_red"]:
                 raise _Red(f"the row stays green under wrong physics: {self._control}")
             return
-        if row["verdict"] in ("unsupported", "not-available", "no-reference"):
-            pytest.skip(f"{row['verdict']}: {row.get('detail') or ''}")
-        if row["verdict"] != "pass":
+        self.is_judged = True
+        if row["severity"] == "red":
             raise _Red(_line(row) + (f"\n{row['detail']}" if row.get("detail") else ""))
 
     def repr_failure(self, excinfo: Any, style: Any = None) -> Any:

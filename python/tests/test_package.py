@@ -38,6 +38,14 @@ SPOILED = [
     ("x + dt * (v + kick)", "x + 0.999 * dt * (v + kick)"),
 ]
 
+REFUSES = """
+import grainbench as gb
+
+@gb.solver(dimension=[2, 3], laws=["linear"], effects=["friction", "contact-damping"])
+def sphere(scene, steps):
+    raise gb.Cannot("no")
+"""
+
 
 def example(folder: Path, spoiled: tuple[str, str] | None = None) -> Path:
     text = EXAMPLE.read_text(encoding="utf-8")
@@ -86,6 +94,28 @@ def test_pytest_says_which_row_is_red_and_why(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert "fail         incline-sphere · 45deg-mu.495 · " in done.stdout, done.stdout
     assert "allowed" in done.stdout
+
+
+def test_pytest_names_the_mistake(tmp_path: Path) -> None:
+    example(tmp_path, ("0.5 * dt / inertia", "0.4 * dt / inertia"))
+    done = by_pytest(tmp_path, cases=CASES[1:2])
+    assert done.returncode == 1 and "as if: the inertia of a disc in a sphere" in done.stdout, done.stdout
+
+
+def test_pytest_fails_where_nothing_is_judged(tmp_path: Path) -> None:
+    (tmp_path / "sphere.py").write_text(REFUSES, encoding="utf-8")
+    done = by_pytest(tmp_path, cases=["incline-disc", "backspin"])
+    assert done.returncode == 1 and "no row was judged" in done.stdout and " passed" not in done.stdout, done.stdout
+    done = by_pytest(tmp_path, "--collect-only", cases=["backspin"])
+    assert done.returncode == 0, done.stdout
+
+
+def test_pytest_selects_rows_by_keyword(tmp_path: Path) -> None:
+    example(tmp_path)
+    done = by_pytest(tmp_path, "-k", "zzz", cases=["backspin/sphere"])
+    assert done.returncode != 0 and " passed" not in done.stdout, done.stdout
+    done = by_pytest(tmp_path, "-k", "spin and not control", cases=["backspin/sphere"])
+    assert done.returncode == 0 and "deselected" in done.stdout, done.stdout
 
 
 def test_what_is_wrong_is_said_in_a_line(tmp_path: Path) -> None:
