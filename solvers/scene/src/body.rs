@@ -1,20 +1,20 @@
-//! Deformable bodies that are no grains, and how bodies start.
+//! Deformable bodies other than grains, and their initial conditions.
 
 use crate::manufactured::Manufactured;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Shape of a body that is no grain.
+/// Shape of a deformable body other than a grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BlockShape {
-    /// A box along the axes.
+    /// Axis-aligned box.
     Box {
         /// Lower corner (m).
         low: Vector3<f64>,
         /// Upper corner (m).
         high: Vector3<f64>,
     },
-    /// A ring, in the plane.
+    /// Ring, in the plane.
     Annulus {
         /// Centre (m).
         centre: Vector3<f64>,
@@ -26,7 +26,7 @@ pub enum BlockShape {
 }
 
 impl BlockShape {
-    /// Corners of the box around it (m).
+    /// Returns the corners of the bounding box (m).
     #[must_use]
     pub fn corners(&self) -> (Vector3<f64>, Vector3<f64>) {
         match *self {
@@ -38,7 +38,7 @@ impl BlockShape {
         }
     }
 
-    /// Volume (m³; m² in the plane).
+    /// Returns the volume (m³; m² in the plane).
     #[must_use]
     pub fn volume(&self, dimensions: usize) -> f64 {
         match self {
@@ -47,7 +47,7 @@ impl BlockShape {
         }
     }
 
-    /// Middle (m).
+    /// Returns the centre (m).
     #[must_use]
     pub fn centre(&self) -> Vector3<f64> {
         match self {
@@ -56,7 +56,8 @@ impl BlockShape {
         }
     }
 
-    /// How far outside of it a place is (m); not above zero where it is in it.
+    /// Returns the distance of a position outside the shape (m); zero or negative inside. For a box, it is the largest
+    /// distance along one axis.
     #[must_use]
     pub fn outside(&self, at: Vector3<f64>, dimensions: usize) -> f64 {
         match self {
@@ -71,7 +72,7 @@ impl BlockShape {
         }
     }
 
-    /// Length that says how large it is: the shortest edge, or the width of the ring (m).
+    /// Returns the characteristic length (m): the shortest edge of a box, or the width of a ring.
     #[must_use]
     pub fn length(&self, dimensions: usize) -> f64 {
         match self {
@@ -81,22 +82,22 @@ impl BlockShape {
     }
 }
 
-/// What the sides of a box may do, by axis: the lower side and the upper one.
+/// Boundary conditions on the sides of a box: for each axis, the lower and the upper side.
 pub type Sides = [[Hold; 2]; 3];
 
-/// Whether a side of a box is held.
+/// Boundary condition on a side of a box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hold {
     /// Free to move.
     #[default]
     Free,
-    /// Kept from moving along the normal of the side.
+    /// Symmetry boundary: no motion along the normal of the side.
     Sliding,
-    /// Kept from moving at all.
+    /// Fixed boundary: no motion.
     Fixed,
 }
 
-/// An initial velocity along x of v₀ sin(β (x − x_low)), β = (2n − 1)π/2L: mode n of a bar that is held at its lower
+/// Initial velocity along x of v₀ sin(β (x − x_low)) with β = (2n − 1)π/2L: mode n of a bar that is fixed at its lower
 /// end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
@@ -106,29 +107,29 @@ pub struct Wave {
     pub wave_number: f64,
 }
 
-/// A Cauchy stress that a body starts with, linear in the place (Pa, tension positive).
+/// Initial Cauchy stress, linear in the position (Pa, tension positive).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InitialStress {
-    /// At the middle of its shape (Pa). In the plane the stress out of it is that of plane strain, ν (σ_xx + σ_yy).
+    /// Stress at the centre of the shape (Pa). In the plane, σ_zz = ν (σ_xx + σ_yy), as in plane strain.
     pub centre: Matrix3<f64>,
-    /// What it gains along each axis (Pa/m).
+    /// Gradient of the stress along each axis (Pa/m).
     pub gradient: [Matrix3<f64>; 3],
 }
 
 impl InitialStress {
-    /// The stress at a place, given by its way from the middle of the shape (m).
+    /// Returns the stress (Pa) at a position relative to the centre of the shape (m).
     #[must_use]
     pub fn at(&self, arm: Vector3<f64>) -> Matrix3<f64> {
         self.gradient.iter().zip(arm.iter()).fold(self.centre, |sum, (gradient, way)| sum + gradient * *way)
     }
 }
 
-/// A deformable body that is no grain.
+/// Deformable body other than a grain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// Name in the file.
     pub name: String,
-    /// Place in [`crate::scene::Scene::materials`].
+    /// Index in [`crate::scene::Scene::materials`].
     pub material: u16,
     /// Density ρ (kg/m³).
     pub density: f64,
@@ -136,66 +137,66 @@ pub struct Block {
     pub shape: BlockShape,
     /// Velocity (m/s).
     pub velocity: Vector3<f64>,
-    /// Angular velocity ω about the middle of its shape (rad/s), on top of it: ω × (x − c).
+    /// Angular velocity ω about the centre c of the shape (rad/s). It adds ω × (x − c) to the velocity.
     pub spin: Vector3<f64>,
-    /// Rates of stretch a along the axes (1/s), on top of both: aᵢ (xᵢ − cᵢ).
+    /// Stretch rates a along the axes (1/s). They add aᵢ (xᵢ − cᵢ) to the velocity.
     pub stretch: Vector3<f64>,
-    /// Stress that it starts with, beside none.
+    /// Initial stress; zero if absent.
     pub stress: Option<InitialStress>,
-    /// Sides that are held.
+    /// Boundary conditions on the sides.
     pub sides: Sides,
-    /// A velocity on top of it that varies along x.
+    /// Further initial velocity that varies along x.
     pub wave: Option<Wave>,
 }
 
 impl Block {
-    /// Its velocity at a place at the start (m/s), but for a wave.
+    /// Returns the initial velocity (m/s) at a position (m), without the wave.
     #[must_use]
     pub fn velocity_at(&self, place: Vector3<f64>) -> Vector3<f64> {
         let arm = place - self.shape.centre();
         self.velocity + self.spin.cross(&arm) + self.stretch.component_mul(&arm)
     }
 
-    /// Gradient of that velocity (1/s), ∂vᵢ/∂xⱼ.
+    /// Returns the gradient ∂vᵢ/∂xⱼ of the initial velocity, without the wave (1/s).
     #[must_use]
     pub fn velocity_gradient(&self) -> Matrix3<f64> {
         self.spin.cross_matrix() + Matrix3::from_diagonal(&self.stretch)
     }
 }
 
-/// A damped phase before the clock starts: bodies at rest come to equilibrium, then they are given their velocities and
-/// spins and are released.
+/// Damped relaxation before t = 0. Bodies at rest come to equilibrium, then receive their velocities and spins and are
+/// released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {
-    /// How long (s).
+    /// Duration (s).
     pub duration: f64,
-    /// Mass-proportional damping α (1/s) meanwhile.
+    /// Mass-proportional damping α during the relaxation (1/s).
     pub damping: f64,
-    /// Gravity meanwhile (m/s²).
+    /// Gravity during the relaxation (m/s²).
     pub gravity: Vector3<f64>,
 }
 
-/// The stress that bodies start with.
+/// Initial stress of deformable bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum InitialPressure {
-    /// That of a fluid at rest: ∇p = ρ g, zero at the highest point of each body.
+    /// Stress of a fluid at rest: ∇p = ρ g, with p = 0 at the highest point of each body.
     Hydrostatic,
 }
 
-/// How deformable bodies start and what drives them, beside gravity and contacts.
+/// Initial conditions of deformable bodies, and driving forces other than gravity and contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
-    /// A damped phase before the clock starts.
+    /// Damped relaxation before t = 0.
     pub settle: Option<Settle>,
-    /// Stress at the start.
+    /// Initial stress.
     pub initial_pressure: Option<InitialPressure>,
-    /// A body force that makes a chosen motion the exact one.
+    /// Body force that makes a chosen motion the exact solution.
     pub manufactured: Option<Manufactured>,
 }
 
 impl Start {
-    /// What is asked for here, in words, for solvers that have no deformable bodies.
+    /// Names a requested feature that only solvers for deformable bodies support; `None` if there is none.
     #[must_use]
     pub fn needs_deformable(&self) -> Option<&'static str> {
         if self.settle.is_some() {

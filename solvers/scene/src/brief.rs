@@ -1,9 +1,9 @@
-//! A snapshot in short: what is told of one that nobody wants row by row.
+//! Summary of a snapshot, for runs that do not need its rows.
 
 use crate::record::{GrainState, Look, Snapshot};
 use serde::{Deserialize, Serialize};
 
-/// A snapshot in short.
+/// Summary of a snapshot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Brief {
     /// Step.
@@ -12,9 +12,9 @@ pub struct Brief {
     pub time: f64,
     /// Number of grains.
     pub grains: usize,
-    /// Number of contacts; absent where nobody told them.
+    /// Number of contacts; absent if the solver does not report contacts.
     pub contacts: Option<usize>,
-    /// How many of them slip.
+    /// Number of slipping contacts; absent if the solver does not report contacts.
     pub slipping_contacts: Option<usize>,
     /// Sum of ½mv² over the grains (J).
     pub kinetic_energy: f64,
@@ -23,7 +23,8 @@ pub struct Brief {
 }
 
 impl Brief {
-    /// Of grains at a step and its time (s), with the number of contacts and that of those that slip, where they are known.
+    /// Summarises grains at a step and its time (s). `touching` holds the number of contacts and the number of slipping
+    /// contacts, if they are known.
     #[must_use]
     pub fn of_grains(
         (step, time): (u64, f64),
@@ -40,14 +41,14 @@ impl Brief {
         })
     }
 
-    /// Of a look.
+    /// Summarises the state of a simulation at one step.
     #[must_use]
     pub fn of_look(look: &Look) -> Self {
         let Snapshot { step, time, grains, .. } = &look.snapshot;
         Self::of_grains((*step, *time), grains.iter().cloned(), look.touching)
     }
 
-    /// Of a snapshot.
+    /// Summarises a snapshot.
     #[must_use]
     pub fn of(snapshot: &Snapshot) -> Self {
         let Snapshot { step, time, grains, .. } = snapshot;

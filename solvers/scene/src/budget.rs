@@ -1,45 +1,46 @@
-//! Where the energy of a run comes from and goes, each entry found where it arises.
+//! Energy budget of a run. Each entry is computed where the energy changes form.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// The energy budget of a run (J; J/m of discs): what is stored now, and what was brought in and lost since the start.
+/// Energy budget of a run (J; J/m for discs): the energy stored now, and the energy supplied and dissipated since the
+/// start.
 ///
-/// Methods move velocities and positions in turn, half a step apart. Kinetic energy and momentum are those that belong
-/// to the method's own sums: at the time of the positions for grains on springs, half a step before them for material
-/// points.
+/// Methods update velocities and positions half a step apart. Kinetic energy and momentum refer to the time at which
+/// the method sums them: the time of the positions in DEM, half a step before it for material points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Budget {
-    /// Kinetic energy: of grains and their spin, or of material points and the spin that they carry.
+    /// Kinetic energy of grains or material points, spin included.
     pub kinetic: f64,
     /// Elastic energy of deformed material.
     pub elastic: f64,
-    /// Energy in the springs of contacts.
+    /// Elastic energy of the contact springs.
     pub springs: f64,
-    /// Energy of height in the field of gravity.
+    /// Gravitational potential energy.
     pub gravitational: f64,
-    /// Work that walls and driven grains have done on the others.
+    /// Work of walls and grains with prescribed motion on the free grains.
     pub work: f64,
-    /// Work of plastic flow.
+    /// Plastic work.
     pub plastic: f64,
-    /// Work of friction where surfaces slip.
+    /// Frictional work at slipping contacts.
     pub friction: f64,
     /// Work against dashpots, viscosity and global damping.
     pub damping: f64,
-    /// Lost by the method between material points and nodes: what nodes gain in kinetic energy and points do not, and
-    /// what stresses take from nodes and do not do on points.
+    /// Numerical loss between material points and nodes: kinetic energy that nodes gain but points do not, and work
+    /// that stresses take from nodes but do not do on points.
     pub transfer: f64,
-    /// Lost by the method at contacts: what contacts take from the motion and neither store nor rub away.
+    /// Numerical loss at contacts: energy that contacts take from the motion but neither store nor dissipate by
+    /// friction.
     pub contact: f64,
     /// Momentum (kg m/s).
     pub momentum: Vector3<f64>,
-    /// Impulse that walls, driven grains and gravity have given (N s).
+    /// Impulse of walls, of grains with prescribed motion, and of gravity (N s).
     pub impulse: Vector3<f64>,
 }
 
 impl Budget {
-    /// What is stored, and what was lost, less what was brought in (J): what it is at the start for as long as every
-    /// entry is right.
+    /// Returns the stored and dissipated energy less the supplied energy (J). It keeps its initial value as long as
+    /// every entry is right.
     #[must_use]
     pub fn unbalanced(&self) -> f64 {
         let stored = self.kinetic + self.elastic + self.springs + self.gravitational;

@@ -1,4 +1,4 @@
-//! Checks of single values, each an error that names the key.
+//! Checks of single values. Each failure is an error that names the key.
 
 use crate::error::{SceneError, did_you_mean};
 use crate::file::SpinSpec;
@@ -42,7 +42,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A vector with as many finite components as the scene has dimensions.
+    /// Reads a vector with one finite component for each dimension of the scene.
     pub(crate) fn vector(&self, key: &str, values: &[f64]) -> Result<Vector3<f64>, SceneError> {
         let count = self.dimension.count();
         if values.len() != count {
@@ -58,7 +58,7 @@ impl Checker<'_> {
         values.map_or(Ok(Vector3::zeros()), |values| self.vector(key, values))
     }
 
-    /// A symmetric tensor, row by row, with as many rows as the scene has dimensions.
+    /// Reads a symmetric tensor, row by row, with one row for each dimension of the scene.
     pub(crate) fn symmetric(&self, key: &str, rows: &[Vec<f64>]) -> Result<Matrix3<f64>, SceneError> {
         let count = self.dimension.count();
         let found = || format!("{rows:?}");
@@ -94,7 +94,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The place of a name among those that exist.
+    /// Returns the index of a name in a list of known names.
     pub(crate) fn place_of<'n>(
         &self,
         key: &str,
@@ -109,7 +109,7 @@ impl Checker<'_> {
         })
     }
 
-    /// Exactly one of several alternatives must be given.
+    /// Checks that exactly one of several alternatives is given.
     pub(crate) fn exactly_one(&self, key: &str, given: &[(&str, bool)]) -> Result<(), SceneError> {
         let names = |wanted: bool| -> Vec<&str> {
             given.iter().filter(|(_, is)| !wanted || *is).map(|(name, _)| *name).collect()
@@ -123,7 +123,7 @@ impl Checker<'_> {
     }
 }
 
-/// Says that a value must be finite where that is what is wrong with it.
+/// Returns `, finite` for the error message if the value is not finite.
 fn and_finite(value: f64) -> &'static str {
     if value.is_finite() { "" } else { ", finite" }
 }

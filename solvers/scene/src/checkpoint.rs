@@ -1,7 +1,7 @@
-//! The state of a run between two steps, from which it continues to the same bits.
+//! State of a run between two steps, from which the run continues bit for bit.
 //!
-//! On disk: the line `grainbench checkpoint <format>`, length and hash (see `sealed`), and a [`Checkpoint`] in postcard's
-//! format, which keeps every bit of a number.
+//! A file holds the line `grainbench checkpoint <format>`, length and hash (see `sealed`), and a [`Checkpoint`] in
+//! postcard's format, which keeps every bit of a number.
 
 use crate::scene::Scene;
 use crate::sealed::{self, Broken};
@@ -11,15 +11,15 @@ use serde::{Deserialize, Serialize};
 use std::{fmt, mem};
 use thiserror::Error;
 
-/// What a checkpoint begins with, before the number of its format.
+/// First bytes of a checkpoint, before the format number.
 const MAGIC: &[u8] = b"grainbench checkpoint ";
-/// The format that this program writes: to be raised whenever anything that is stored changes its meaning or its place.
+/// Format that this program writes. It must be raised whenever stored data change their meaning or their position.
 const FORMAT: u32 = 10;
 
-/// Why a run cannot be continued from a checkpoint, or a checkpoint not be left.
+/// Reason that a run cannot continue from a checkpoint, or that a checkpoint cannot be stored.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum CheckpointError {
-    /// Some other file.
+    /// Another kind of file.
     #[error("expected a checkpoint, which begins with `grainbench checkpoint`; found another kind of file")]
     Foreign,
     /// Written by an earlier version.
@@ -39,36 +39,36 @@ pub enum CheckpointError {
         /// Its format.
         found: u32,
     },
-    /// Cut off, or longer than it should be.
+    /// Truncated, or longer than expected.
     #[error("expected {expected} bytes after the first line, found {found}: the checkpoint is not whole")]
     Length {
-        /// Bytes there should be.
+        /// Expected number of bytes.
         expected: u64,
-        /// Bytes there are.
+        /// Number of bytes found.
         found: u64,
     },
-    /// Its bytes are not those that were written.
+    /// The bytes differ from those that were written.
     #[error("the checkpoint is damaged: {0}")]
     Damaged(String),
-    /// It belongs to another run.
+    /// Checkpoint of another run.
     #[error("the checkpoint is of another run: expected {what} {expected}, found {}", tamed(found, |_| false))]
     OtherRun {
-        /// What differs.
+        /// Property that differs.
         what: &'static str,
-        /// Of the run that is to continue.
+        /// Value of the run that is to continue.
         expected: String,
-        /// Of the checkpoint.
+        /// Value in the checkpoint.
         found: String,
     },
-    /// It could not be stored.
+    /// The checkpoint could not be stored.
     #[error("{0}")]
     NotStored(String),
 }
 
-/// Which run a checkpoint belongs to: it continues no other.
+/// Identity of a run. A checkpoint continues only a run of the same identity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunIdentity {
-    /// Solver and options, in words.
+    /// Solver and options, as text.
     pub solver: String,
     /// Title of the scene.
     pub scene: String,
@@ -78,14 +78,14 @@ pub struct RunIdentity {
     pub time_step: f64,
     /// Steps of the whole run.
     pub steps: u64,
-    /// What the solver keeps, in words that change when it does.
+    /// Layout of the solver's state, as text that changes with the layout.
     pub layout: String,
 }
 
-/// What the identity of a run is taken from, when a checkpoint is.
+/// Properties of a run from which the identity in its checkpoints is computed.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
-    /// Solver and options, in words.
+    /// Solver and options, as text.
     pub solver: String,
     /// The scene.
     pub scene: &'a Scene,
@@ -93,12 +93,12 @@ pub struct Run<'a> {
     pub time_step: f64,
     /// Steps of the whole run.
     pub steps: u64,
-    /// What the solver keeps, in words that change when it does.
+    /// Layout of the solver's state, as text that changes with the layout.
     pub layout: &'static str,
 }
 
 impl Run<'_> {
-    /// The run as its checkpoints name it.
+    /// Returns the identity that checkpoints of this run store.
     #[must_use]
     pub fn identity(&self) -> RunIdentity {
         let &Self { ref solver, scene, time_step, steps, layout } = self;
@@ -140,8 +140,8 @@ impl RunIdentity {
     }
 }
 
-/// The hash of everything in a scene: of the bits of its grains and of what contacts remember, which may be many, and of the
-/// debug output of the rest, which tells every bit of a number.
+/// Returns the hash of everything in a scene. Grains and contact history may be large, so their bits are hashed. The
+/// rest is hashed as debug output, which shows every bit of a number.
 #[must_use]
 pub fn fingerprint(scene: &Scene) -> blake3::Hash {
     struct Hashed(blake3::Hasher);
@@ -158,7 +158,7 @@ pub fn fingerprint(scene: &Scene) -> blake3::Hash {
         hashed.0.update(&bits.len().to_le_bytes());
         hashed.0.update(&bits);
     }
-    // A hash takes any text.
+    // Writing to a hash cannot fail.
     let _ = fmt::write(&mut hashed, format_args!("{rest:?}"));
     hashed.0.finalize()
 }
@@ -169,47 +169,47 @@ pub struct Checkpoint {
     identity: RunIdentity,
     step: u64,
     state: Vec<u8>,
-    /// Of whoever stores it: what it needs to go on with the output of the run.
+    /// Data that the storing program needs to continue the output of the run.
     output: Vec<u8>,
 }
 
 impl Checkpoint {
-    /// Keeps a state.
+    /// Stores a state.
     ///
     /// # Errors
-    /// When the state has a part that cannot be written down.
+    /// When a part of the state cannot be serialised.
     pub fn keep(identity: &RunIdentity, step: u64, state: &impl Serialize) -> Result<Self, CheckpointError> {
         Ok(Self { identity: identity.clone(), step, state: written(state)?, output: Vec::new() })
     }
 
-    /// The same, with what whoever stores it needs to go on with the output of the run.
+    /// Adds data that the storing program needs to continue the output of the run.
     #[must_use]
     pub fn with_output(self, output: Vec<u8>) -> Self {
         Self { output, ..self }
     }
 
-    /// What was kept of the output of the run; nothing where nobody kept anything.
+    /// Returns the stored data on the output of the run; empty if there are none.
     #[must_use]
     pub fn output(&self) -> &[u8] {
         &self.output
     }
 
-    /// Steps that were taken.
+    /// Returns the number of steps taken.
     #[must_use]
     pub const fn step(&self) -> u64 {
         self.step
     }
 
-    /// The state, for the run that it belongs to.
+    /// Returns the state, if it belongs to this run.
     ///
     /// # Errors
-    /// When it belongs to another run or cannot be read.
+    /// When the state belongs to another run or cannot be read.
     pub fn state<T: DeserializeOwned>(&self, identity: &RunIdentity) -> Result<T, CheckpointError> {
         identity.require(&self.identity)?;
         postcard::from_bytes(&self.state).map_err(|error| CheckpointError::Damaged(error.to_string()))
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     ///
     /// # Errors
     /// Never, as far as is known.
@@ -217,10 +217,10 @@ impl Checkpoint {
         Ok(sealed::seal(MAGIC, FORMAT, &written(self)?))
     }
 
-    /// Whether a file begins as a checkpoint of any format does.
+    /// Returns true if a file begins like a checkpoint of any format.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// When the file cannot be read.
     pub fn is_one(path: &std::path::Path) -> std::io::Result<bool> {
         let mut start = Vec::new();
         let file = std::fs::File::open(path)?;
@@ -228,10 +228,10 @@ impl Checkpoint {
         Ok(start == MAGIC)
     }
 
-    /// A checkpoint from the bytes of a file.
+    /// Reads a checkpoint from the bytes of a file.
     ///
     /// # Errors
-    /// When the file is of another kind, of a newer format, cut off or damaged.
+    /// When the file is of another kind or another format, truncated or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let body = sealed::open(MAGIC, FORMAT, bytes).map_err(|broken| match broken {
             Broken::Foreign => CheckpointError::Foreign,

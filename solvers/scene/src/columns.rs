@@ -1,4 +1,4 @@
-//! What snapshots hold beside where grains are and how fast: chosen columns, in chosen digits.
+//! Optional columns of snapshots, and the number of digits kept.
 
 use crate::record::{GrainState, Snapshot};
 use crate::virial;
@@ -6,30 +6,30 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Something that a snapshot may hold.
+/// Optional column of a snapshot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Chosen {
-    /// Spin of every grain, and in the plane its angle.
+    /// Spin of every grain; in the plane also its angle.
     Spin,
     /// Sum of forces and of torques on every grain.
     Force,
     /// Every contact.
     Contacts,
-    /// V σ of every grain, of the instant (see [`crate::virial`]).
+    /// V σ of every grain at the time of the snapshot (see [`crate::virial`]).
     Virial,
-    /// V σ of every grain, its mean over the time since the snapshot before.
+    /// V σ of every grain, averaged over the time since the previous snapshot.
     MeanVirial,
 }
 
-/// What the snapshots of a run hold.
+/// Contents of the snapshots of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// Beside id, material, radius, mass, position and velocity.
+    /// Columns in addition to id, material, radius, mass, position and velocity.
     pub chosen: Vec<Chosen>,
-    /// Significant digits that the numbers of grains and contacts keep; none for all. Radius and mass keep all.
+    /// Significant digits of the numbers of grains and contacts; all digits if absent. Radius and mass keep all digits.
     pub digits: Option<u8>,
-    /// Steps between those that a mean is taken over.
+    /// Steps between the samples of a time average.
     pub mean_every: u64,
 }
 
@@ -40,17 +40,17 @@ impl Default for Columns {
 }
 
 impl Columns {
-    /// What is held where a scene does not say.
+    /// Columns of a scene that chooses none.
     pub const USUAL: [Chosen; 3] = [Chosen::Spin, Chosen::Force, Chosen::Contacts];
 
-    /// Whether something is held.
+    /// Returns true if a column is chosen.
     #[must_use]
     pub fn has(&self, of: Chosen) -> bool {
         self.chosen.contains(&of)
     }
 
-    /// Leaves in a snapshot what is asked for, finds what its contacts tell, and rounds. What is left out is told as what nobody
-    /// told: absent, and not a number where it cannot be.
+    /// Reduces a snapshot to the chosen columns, adds virials computed from its contacts, and rounds its numbers.
+    /// Omitted columns are absent, or NaN if they cannot be absent.
     pub fn keep(&self, snapshot: &mut Snapshot) {
         if *self == Self::default() {
             return;
@@ -97,18 +97,20 @@ fn round_grain(grain: &mut GrainState, bits: u32) {
     numbers.for_each(|number| *number = rounded(*number, bits));
 }
 
-/// Bits after the first that so many digits need: 10⁻ᵈ/2 of a number or less is lost.
+/// Returns the number of bits after the leading bit that `digits` significant digits need. The relative rounding error
+/// is then at most 10⁻ᵈ/2.
 fn bits(digits: u8) -> u32 {
     (f64::from(digits) * std::f64::consts::LOG2_10).ceil() as u32
 }
 
-/// A number with so many bits after its first, to the nearest. What follows are zeros, of which a file takes no room.
+/// Rounds a number to the nearest one with `bits` bits after the leading bit. The trailing zeros compress well in a
+/// file.
 fn rounded(number: f64, bits: u32) -> f64 {
     if bits >= 52 || !number.is_finite() {
         return number;
     }
     let dropped = 52 - bits;
-    // A carry goes on into the exponent, as it should: the next number up is a power of two.
+    // A carry into the exponent is right: the next number up is a power of two.
     let half = 1_u64 << (dropped - 1);
     let found = f64::from_bits((number.to_bits() + half) >> dropped << dropped);
     if found.is_finite() { found } else { number }

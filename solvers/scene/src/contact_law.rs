@@ -1,7 +1,7 @@
-//! The law of a contact between two materials, from the keys that a user writes to the numbers that act.
+//! Contact law between two materials: the keys of a scene file, and the numbers that act.
 //!
-//! A new law is a variant of [`Springs`] with its word, what it takes from the scene, and how stiff it is. Decks and programs
-//! that were not written for it refuse it by its kind.
+//! A new law is a variant of [`Springs`] with its name, its parameters from the scene, and its stiffness. Input decks
+//! and programs that were not written for the new law reject it by its kind.
 
 use crate::check::Checker;
 use crate::error::SceneError;
@@ -21,24 +21,25 @@ pub enum LawKind {
     Linear,
     /// Hertz along the normal, Mindlin's spring along the tangent, from E and ν of both materials; spheres only.
     Hertz,
-    /// Coulomb friction and no spring: for bodies that deform themselves, or not at all.
+    /// Coulomb friction without a spring, for bodies that deform themselves or are rigid.
     Coulomb,
 }
 
-/// The law of a contact between two materials: a spring and dashpot along the normal, an incremental spring and dashpot
-/// along the tangent, limited by Coulomb friction with cohesion, |F_s| ≤ F_n tan φ + c, and rolling resistance.
+/// Contact law between two materials: a spring and dashpot along the normal, an incremental spring and dashpot along
+/// the tangent, and rolling resistance. Coulomb friction with cohesion limits the tangential force: |F_s| ≤ F_n tan φ +
+/// c.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSpec {
     /// The two materials.
     pub between: [String; 2],
-    /// `linear` (the default), `hertz` or `coulomb`. One scene has one kind.
+    /// `linear` (the default), `hertz` or `coulomb`. All laws of a scene are of one kind.
     #[serde(default)]
     pub law: LawKind,
-    /// Normal stiffness k_n (N/m; N/m per metre for discs). Needed for linear laws.
+    /// Normal stiffness k_n (N/m; N/m per metre of depth for discs). Required for linear laws.
     #[serde(default)]
     pub normal_stiffness: Option<f64>,
-    /// Tangential stiffness k_s (N/m). Needed for linear laws with friction or cohesion.
+    /// Tangential stiffness k_s (N/m). Required for linear laws with friction or cohesion.
     #[serde(default)]
     pub tangential_stiffness: f64,
     /// Coefficient of friction μ = tan φ. Give this or `friction_angle_deg`; frictionless when both are absent.
@@ -47,7 +48,7 @@ pub struct ContactSpec {
     /// Angle of friction φ (degrees).
     #[serde(default)]
     pub friction_angle_deg: Option<f64>,
-    /// Cohesion c (N): the part of the shear strength that needs no normal force.
+    /// Cohesion c (N): the shear strength at zero normal force.
     #[serde(default)]
     pub cohesion: f64,
     /// Stiffness-proportional contact damping β (s): dashpots c_n = β k_n and c_s = β k_s (Cundall & Strack 1979).
@@ -59,39 +60,40 @@ pub struct ContactSpec {
     /// Mass-proportional tangential damping γ_t (1/s): dashpot c_s = γ_t m_eff.
     #[serde(default)]
     pub tangential_damping: f64,
-    /// Coefficient of restitution e, above 0 and at most 1, by a normal dashpot c_n = 2ζ√(k_n m_eff) in linear and
-    /// 2√(5/6) ζ√(S m_eff) with S = dF/dδ in Hertz contacts. Where a contact ends when its force returns to zero, as in `dem`,
-    /// e = exp(−2ζ acos ζ/√(1 − ζ²)); where it ends with the overlap, as in the other conventions, e = exp(−πζ/√(1 − ζ²)). The
-    /// dashpot is half a step late and the touch falls within a step, so that e is off by an amount of first order in the step.
-    /// Dashpots add up: beside another one the grains part with less.
+    /// Coefficient of restitution e, above 0 and at most 1. It sets a normal dashpot: c_n = 2ζ√(k_n m_eff) in linear
+    /// contacts, and 2√(5/6) ζ√(S m_eff) with S = dF/dδ in Hertz contacts. If a contact ends when its force returns to
+    /// zero, as in `dem`, e = exp(−2ζ acos ζ/√(1 − ζ²)). If it ends with the overlap, as in the other conventions,
+    /// e = exp(−πζ/√(1 − ζ²)). The dashpot lags by half a step and the contact begins within a step, so e has an error
+    /// of first order in the time step. Dashpots add up: with a further dashpot, grains rebound more slowly.
     #[serde(default)]
     pub restitution: Option<f64>,
-    /// Coefficient of rolling resistance μ_r: a moment of at most μ_r R_eff F_n against rolling, R_eff = R₁R₂/(R₁+R₂),
-    /// R at a wall. An elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r² R_eff² (Ai et al. 2011, model C).
+    /// Coefficient of rolling resistance μ_r. The moment against rolling is at most μ_r R_eff F_n, with
+    /// R_eff = R₁R₂/(R₁+R₂), or R at a wall. It comes from an elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r²
+    /// R_eff² (Ai et al. 2011, model C).
     #[serde(default)]
     pub rolling_friction: f64,
-    /// Damping ratio η_r of the rolling spring: a moment −2η_r√(I_r k_r) times the rolling velocity while it has not
-    /// yielded.
+    /// Damping ratio η_r of the rolling spring. Until the spring yields, its moment is −2η_r√(I_r k_r) times the
+    /// rolling velocity.
     #[serde(default)]
     pub rolling_damping: f64,
 }
 
-/// The law of a contact between two materials; see [`ContactSpec`] for the meaning of each number.
+/// Contact law between two materials; see [`ContactSpec`] for the meaning of each number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactLaw {
-    /// The springs along the normal and the tangent.
+    /// Normal and tangential springs.
     pub springs: Springs,
     /// Friction tan φ.
     pub friction: f64,
     /// Cohesion c (N).
     pub cohesion: f64,
-    /// Stiffness-proportional damping β (s); of linear springs only.
+    /// Stiffness-proportional damping β (s); linear springs only.
     pub stiffness_damping: f64,
     /// Mass-proportional normal damping γ_n (1/s).
     pub normal_damping: f64,
     /// Mass-proportional tangential damping γ_t (1/s).
     pub tangential_damping: f64,
-    /// Damping ratio ζ from a coefficient of restitution, of a contact that ends with the overlap.
+    /// Damping ratio ζ for the coefficient of restitution of a contact that ends with the overlap.
     pub damping_ratio: f64,
     /// Coefficient of rolling resistance μ_r.
     pub rolling_friction: f64,
@@ -99,11 +101,11 @@ pub struct ContactLaw {
     pub rolling_damping: f64,
 }
 
-/// What kind of springs a law has, by the word that manifests declare and resolved scenes hold.
+/// Kind of the springs of a law, named as in manifests and resolved scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpringsKind {
-    /// Coulomb friction and no spring.
+    /// Coulomb friction without a spring.
     Coulomb,
     /// Linear springs.
     Linear,
@@ -112,7 +114,7 @@ pub enum SpringsKind {
 }
 
 impl SpringsKind {
-    /// Its word.
+    /// Returns the name.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -123,21 +125,21 @@ impl SpringsKind {
     }
 }
 
-/// The springs of a contact law, and how programs of others are told of them.
+/// Springs of a contact law, serialised in the form that external solvers read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "law")]
 pub enum Springs {
-    /// Friction and no spring: for bodies that deform themselves, or not at all.
+    /// Friction without a spring, for bodies that deform themselves or are rigid.
     #[default]
     #[serde(rename = "coulomb")]
     Absent,
-    /// F_n = k_n δ, and k_s along the tangent.
+    /// F_n = k_n δ, with k_s along the tangent.
     #[serde(rename = "linear")]
     Linear {
-        /// Normal stiffness k_n (N/m; of discs per metre of depth).
+        /// Normal stiffness k_n (N/m; N/m per metre of depth for discs).
         #[serde(rename = "normal_stiffness")]
         normal: f64,
-        /// Tangential stiffness k_s (N/m; of discs per metre of depth).
+        /// Tangential stiffness k_s (N/m; N/m per metre of depth for discs).
         #[serde(rename = "tangential_stiffness")]
         tangential: f64,
     },
@@ -152,7 +154,7 @@ pub enum Springs {
 }
 
 impl Springs {
-    /// What kind they are.
+    /// Returns the kind of the springs.
     #[must_use]
     pub const fn kind(&self) -> SpringsKind {
         match self {
@@ -162,7 +164,7 @@ impl Springs {
         }
     }
 
-    /// The two numbers that say how stiff: k_n and k_s (N/m), or E* and G* (Pa).
+    /// Returns the two stiffness constants: k_n and k_s (N/m), or E* and G* (Pa).
     #[must_use]
     pub const fn constants(&self) -> [f64; 2] {
         match *self {
@@ -172,7 +174,7 @@ impl Springs {
         }
     }
 
-    /// The same law with its two numbers multiplied.
+    /// Returns the springs with their two constants multiplied by two factors.
     #[must_use]
     pub fn scaled(self, [first, second]: [f64; 2]) -> Self {
         match self {
@@ -187,7 +189,8 @@ impl Springs {
         }
     }
 
-    /// How far apart surfaces may be for the springs to act (m): bodies that do not overlap exert nothing.
+    /// Returns the largest gap at which the springs act (m). It is zero, because bodies that do not overlap exert no
+    /// force.
     #[must_use]
     pub const fn range(&self) -> f64 {
         match self {
@@ -195,8 +198,9 @@ impl Springs {
         }
     }
 
-    /// Stiffness dF/dδ along the normal and along the tangent (N/m) at an overlap (m) of bodies with an effective
-    /// radius R* = R₁R₂/(R₁+R₂) (m): k_n and k_s for linear laws, S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and Mindlin.
+    /// Returns the normal and tangential stiffness dF/dδ (N/m) at an overlap (m), for an effective radius
+    /// R* = R₁R₂/(R₁+R₂) (m). They are k_n and k_s for linear laws, and S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and
+    /// Mindlin.
     #[must_use]
     pub fn stiffness(&self, overlap: f64, effective_radius: f64) -> (f64, f64) {
         let root = || (effective_radius * overlap).sqrt();
@@ -209,7 +213,7 @@ impl Springs {
         }
     }
 
-    /// Secant stiffness F_n/δ (N/m) at an overlap (m) of bodies with an effective radius (m): k_n, or two thirds of
+    /// Returns the secant stiffness F_n/δ (N/m) at an overlap (m), for an effective radius (m): k_n, or two thirds of
     /// dF/dδ for F_n ∝ δ^{3/2}.
     #[must_use]
     pub fn secant_stiffness(&self, overlap: f64, effective_radius: f64) -> f64 {
@@ -222,79 +226,79 @@ impl Springs {
 }
 
 impl ContactLaw {
-    /// Coefficient of restitution e = exp(−πζ/√(1 − ζ²)) of the damping ratio.
+    /// Returns the coefficient of restitution e = exp(−πζ/√(1 − ζ²)) of the damping ratio.
     #[must_use]
     pub fn restitution(&self) -> f64 {
         libm::exp(-PI * self.damping_ratio / (1.0 - self.damping_ratio * self.damping_ratio).sqrt())
     }
 
-    /// Sets the damping ratio ζ = −ln e/√(π² + ln² e) that gives a coefficient of restitution.
+    /// Sets the damping ratio ζ = −ln e/√(π² + ln² e) for a coefficient of restitution e.
     pub fn set_restitution(&mut self, restitution: f64) {
         let log = libm::log(restitution);
         self.damping_ratio = -log / (PI * PI + log * log).sqrt();
     }
 
-    /// Whether a tangential force can act: it needs strength to be limited to.
+    /// Returns true if a tangential force can act, which needs friction or cohesion.
     #[must_use]
     pub fn has_friction(&self) -> bool {
         self.friction > 0.0 || self.cohesion > 0.0
     }
 
-    /// Whether a dashpot acts along the normal or, with friction, along the tangent.
+    /// Returns true if a dashpot acts along the normal or, with friction, along the tangent.
     #[must_use]
     pub fn has_damping(&self) -> bool {
         let tangential = self.has_friction() && self.tangential_damping != 0.0;
         self.stiffness_damping != 0.0 || self.normal_damping != 0.0 || self.damping_ratio != 0.0 || tangential
     }
 
-    /// Whether the law is that of Hertz.
+    /// Returns true for Hertz's law.
     #[must_use]
     pub const fn is_hertz(&self) -> bool {
         matches!(self.springs, Springs::Hertz { .. })
     }
 
-    /// Whether it has springs; without them it says only what limits a tangential force.
+    /// Returns true if the law has springs. Without springs, it only limits the tangential force.
     #[must_use]
     pub const fn has_stiffness(&self) -> bool {
         !matches!(self.springs, Springs::Absent)
     }
 
-    /// Stiffness k_n of a linear normal spring (N/m); zero in other laws.
+    /// Returns the stiffness k_n of a linear normal spring (N/m); zero in other laws.
     #[must_use]
     pub const fn normal_stiffness(&self) -> f64 {
         if let Springs::Linear { normal, .. } = self.springs { normal } else { 0.0 }
     }
 
-    /// Stiffness k_s of a linear tangential spring (N/m); zero in other laws.
+    /// Returns the stiffness k_s of a linear tangential spring (N/m); zero in other laws.
     #[must_use]
     pub const fn tangential_stiffness(&self) -> f64 {
         if let Springs::Linear { tangential, .. } = self.springs { tangential } else { 0.0 }
     }
 
-    /// Hertz's E* (Pa); zero in other laws.
+    /// Returns Hertz's E* (Pa); zero in other laws.
     #[must_use]
     pub const fn effective_modulus(&self) -> f64 {
         if let Springs::Hertz { effective_modulus, .. } = self.springs { effective_modulus } else { 0.0 }
     }
 
-    /// Mindlin's G* (Pa); zero in other laws.
+    /// Returns Mindlin's G* (Pa); zero in other laws.
     #[must_use]
     pub const fn effective_shear_modulus(&self) -> f64 {
         if let Springs::Hertz { effective_shear_modulus, .. } = self.springs { effective_shear_modulus } else { 0.0 }
     }
 
-    /// Multiplies the stiffness along the normal, whatever the law.
+    /// Multiplies the normal stiffness of any law by a factor.
     pub fn scale_normal(&mut self, by: f64) {
         self.springs = self.springs.scaled([by, 1.0]);
     }
 
-    /// Multiplies the stiffness along the tangent, whatever the law.
+    /// Multiplies the tangential stiffness of any law by a factor.
     pub fn scale_tangential(&mut self, by: f64) {
         self.springs = self.springs.scaled([1.0, by]);
     }
 
-    /// All that distinguishes it from another law, in words that a fingerprint is taken of: every number with all its
-    /// digits, in an order that stays, for stored runs are found by it.
+    /// Returns text that identifies the law in fingerprints: every number with all its digits. Stored results are found
+    /// by this text, so the order of the numbers must not change.
     #[must_use]
     pub fn identity(&self) -> String {
         let moduli = [self.effective_modulus(), self.effective_shear_modulus()];
@@ -305,7 +309,7 @@ impl ContactLaw {
     }
 }
 
-/// What a law takes from the rest of a scene file.
+/// Parts of a scene file that a contact law needs.
 pub(crate) struct Surroundings<'a> {
     pub(crate) check: &'a Checker<'a>,
     pub(crate) materials: &'a IndexMap<String, MaterialSpec>,
@@ -313,7 +317,7 @@ pub(crate) struct Surroundings<'a> {
 }
 
 impl ContactSpec {
-    /// The law with all that the scene gives it; `name` is its key in the table of contacts.
+    /// Builds the law from the scene; `name` is its key in the table of contacts.
     pub(crate) fn law(&self, name: &str, around: &Surroundings<'_>) -> Result<ContactLaw, SceneError> {
         let check = around.check;
         let key = |part: &str| format!("contacts.{name}.{part}");
@@ -376,7 +380,7 @@ impl ContactSpec {
         Ok(Springs::Linear { normal, tangential })
     }
 
-    /// 1/E* and 1/G* are sums over both materials; a rigid one adds nothing.
+    /// Builds Hertz springs. 1/E* and 1/G* are sums over both materials; a rigid material adds nothing.
     fn hertz(&self, name: &str, around: &Surroundings<'_>) -> Result<Springs, SceneError> {
         let check = around.check;
         let key = |part: &str| format!("contacts.{name}.{part}");

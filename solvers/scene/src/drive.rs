@@ -1,5 +1,5 @@
-//! The one loop by which every solver goes through a run: what is due is taken down, who watches hears of it,
-//! checkpoints are left. And the one clock: it runs from the first step of any kind, settling included, to the last.
+//! Main loop of a run, shared by all solvers. It records due output, notifies the watcher and stores checkpoints. It
+//! also measures the wall-clock time from the first step of any kind, relaxation included, to the last.
 
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
@@ -10,9 +10,9 @@ use crate::scene::Scene;
 use crate::solver::{Ahead, RunError, Watch};
 use std::time::Instant;
 
-/// A state that takes steps.
+/// State that can be advanced in time.
 pub trait Stepper {
-    /// What is done before the clock of the scene starts, such as settling. It counts as work.
+    /// Runs the phase before t = 0, such as relaxation. Its steps count as work.
     ///
     /// # Errors
     /// When the simulation breaks.
@@ -20,57 +20,58 @@ pub trait Stepper {
         Ok(())
     }
 
-    /// Particles that take every step: grains, unless a solver says otherwise.
+    /// Returns the number of particles that take every step; by default the number of grains.
     fn particles(&self, scene: &Scene) -> u64 {
         scene.grains.len() as u64
     }
 
-    /// Steps taken.
+    /// Returns the number of steps taken.
     fn step(&self) -> u64;
 
-    /// Takes so many steps.
+    /// Takes a number of steps.
     ///
     /// # Errors
     /// When the simulation breaks.
     fn advance(&mut self, steps: u64) -> Result<(), RunError>;
 
-    /// The state after the last step; with all that a snapshot holds where one is due. It is looked at once a step: who looks
-    /// again may be told no contacts.
+    /// Returns the state after the last step; with all snapshot data if `snapshot` is true. It is called at most once
+    /// per step, because a second call may return no contacts.
     fn look(&mut self, snapshot: bool) -> Look;
 
-    /// Rows of grains, contacts and points that a snapshot has now.
+    /// Returns the number of rows of grains, contacts and points that a snapshot would have now.
     fn rows(&self, scene: &Scene) -> u64 {
         self.particles(scene)
     }
 
-    /// Whether a snapshot can be shown now that has at most so many rows.
+    /// Returns true if a snapshot would have at most `most_rows` rows now.
     fn shows(&self, scene: &Scene, most_rows: u64) -> bool {
         self.rows(scene) <= most_rows
     }
 
-    /// The state after the last step in short, where nobody looks at it.
+    /// Summarises the state after the last step, for steps whose snapshot is not wanted.
     fn brief(&mut self) -> Brief {
         Brief::of_look(&self.look(false))
     }
 
-    /// Counts so far; no times.
+    /// Returns the counts so far, without times.
     fn counts(&self) -> Counts;
 
-    /// The state after the last step, for another scene to begin with; none of a solver that does not tell it.
+    /// Returns the state after the last step, as the initial state of another scene; `None` if the solver does not
+    /// provide it.
     fn end_state(&self) -> Option<EndState> {
         None
     }
 
-    /// The state with the record so far; none of a solver that leaves no checkpoints.
+    /// Returns a checkpoint of the state with the record so far; `None` if the solver writes no checkpoints.
     ///
     /// # Errors
-    /// When it cannot be written down.
+    /// When the state cannot be serialised.
     fn keep(&self, _recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
         Ok(None)
     }
 }
 
-/// What there is to drive through.
+/// Parameters of the main loop.
 pub struct Course<'a> {
     /// The scene.
     pub scene: &'a Scene,
@@ -78,28 +79,28 @@ pub struct Course<'a> {
     pub time_step: f64,
     /// Steps of the whole run.
     pub steps: u64,
-    /// The record of a run that is continued; none of one that begins.
+    /// Record of a continued run; `None` for a new run.
     pub resumed: Option<Recorder>,
-    /// Steps after which a watcher hears of progress at the latest.
+    /// Largest number of steps between two progress reports.
     pub between_progress: u64,
 }
 
-/// What was left behind.
+/// Results of the main loop.
 pub struct Driven {
     /// Time series.
     pub series: Series,
     /// Snapshots.
     pub snapshots: Vec<Snapshot>,
-    /// Counts, and the time of all steps, settling included (s).
+    /// Counts, and the wall-clock time of all steps, relaxation included (s).
     pub cost: Cost,
 }
 
 impl Course<'_> {
-    /// Drives a state from where it is to the end.
+    /// Advances a state to the end of the run.
     ///
     /// # Errors
-    /// When the simulation breaks, or a snapshot or a checkpoint cannot be left. Who watches hears of what there is of a
-    /// simulation that broke.
+    /// When the simulation breaks or is interrupted, or a snapshot or a checkpoint cannot be stored. The watcher
+    /// receives the partial results of a run that broke or was interrupted.
     pub fn drive(mut self, stepper: &mut dyn Stepper, watch: &mut dyn Watch) -> Result<Driven, RunError> {
         let particles = stepper.particles(self.scene);
         watch.begin(Ahead { time_step: self.time_step, steps: self.steps, particles });
@@ -119,13 +120,13 @@ impl Course<'_> {
             let end = match error {
                 RunError::Interrupted { .. } => {
                     let look = stepper.look(true);
-                    // A run that is continued has the sample of its first step.
+                    // A continued run already has the sample of its first step.
                     if recorder.last_sample() != Some(look.snapshot.step) {
                         recorder.sample(self.scene, &look);
                     }
                     Some(look.snapshot)
                 }
-                // The contacts of the last look are of an earlier step.
+                // The contacts of the last look belong to an earlier step.
                 RunError::Broken(_) | RunError::NotFinite { .. } => {
                     Some(Snapshot { contacts: None, ..stepper.look(true).snapshot })
                 }
@@ -159,7 +160,7 @@ impl Course<'_> {
             stepper.begin()?;
         }
         let first = stepper.step();
-        // No checkpoint is wanted of where the run begins.
+        // No checkpoint is stored at the first step.
         let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
         loop {
             let now = stepper.step();
@@ -185,7 +186,8 @@ impl Course<'_> {
         }
     }
 
-    /// Takes down what is due at a step. A sample that is no number ends the run before its snapshot is taken for a good one.
+    /// Records the output that is due at a step. A sample that is not finite ends the run before its snapshot is
+    /// stored.
     fn take_down(
         &self,
         step: u64,

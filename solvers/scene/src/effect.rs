@@ -1,5 +1,5 @@
-//! The one list of effects: what each is called, which key of a scene turns it on, how it is switched off, and a value
-//! with which it is compiled in and does nothing. What a scene calls for is derived from it and never typed beside it.
+//! List of physical effects. Each has a name, a scene key that turns it on, a way to switch it off, and a neutral value
+//! that turns it on without changing results. The effects of a scene are always derived from this list.
 
 use crate::contact_law::{ContactLaw, Springs};
 use crate::material::Deformable;
@@ -8,18 +8,19 @@ use crate::scene::Scene;
 use crate::solver::Method;
 use nalgebra::Vector3;
 
-/// An effect that a scene may call for.
+/// Physical effect that a scene may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
-    /// Tangential forces, and the rotation that they drive.
+    /// Tangential forces, and the rotation that they cause.
     Friction,
-    /// Strength of a contact without load.
+    /// Tangential strength of a contact at zero normal force.
     Cohesion,
-    /// Hertz contacts in place of linear springs: another law, which is not switched off.
+    /// Hertz contacts instead of linear springs. This is another law, so it cannot be switched off.
     Hertz,
-    /// Dashpots at contacts, a coefficient of restitution among them.
+    /// Contact dashpots, including those of a coefficient of restitution.
     ContactDamping,
-    /// Normal dashpots that give a coefficient of restitution: a kind of contact damping, switched off with it.
+    /// Normal dashpots that set a coefficient of restitution. They are part of contact damping and switched off with
+    /// it.
     Restitution,
     /// Moments against rolling.
     RollingResistance,
@@ -29,16 +30,16 @@ pub enum Effect {
     Gravity,
     /// Periodic axes.
     PeriodicAxes,
-    /// Walls, or driven grains, that move.
+    /// Walls or grains with prescribed motion.
     MovingWalls,
-    /// Material that yields; of deformable grains alone.
+    /// Material that yields; only in deformable bodies.
     Plasticity,
-    /// Material with a viscosity; of deformable grains alone.
+    /// Material with a viscosity; only in deformable bodies.
     Viscosity,
 }
 
 impl Effect {
-    /// Every one.
+    /// All effects.
     pub const ALL: [Self; 12] = [
         Self::Friction,
         Self::Cohesion,
@@ -54,12 +55,12 @@ impl Effect {
         Self::Viscosity,
     ];
 
-    /// Those that can be switched off by themselves.
+    /// Returns the effects that can be switched off separately.
     pub fn switches() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|effect| !matches!(effect, Self::Hertz | Self::Restitution))
     }
 
-    /// Its name.
+    /// Returns the name.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -78,7 +79,7 @@ impl Effect {
         }
     }
 
-    /// Its name in files.
+    /// Returns the name in files.
     #[must_use]
     pub const fn key_word(self) -> &'static str {
         match self {
@@ -97,7 +98,7 @@ impl Effect {
         }
     }
 
-    /// What a negative control says that leaves it out.
+    /// Returns the title of a negative control without the effect.
     #[must_use]
     pub const fn absence(self) -> &'static str {
         match self {
@@ -116,7 +117,7 @@ impl Effect {
         }
     }
 
-    /// The key of the scene that turned it on, with its value; none where it is off.
+    /// Returns the scene key that turns the effect on, with its value; `None` if the effect is off.
     #[must_use]
     pub fn key(self, scene: &Scene) -> Option<String> {
         match self {
@@ -159,14 +160,14 @@ impl Effect {
         }
     }
 
-    /// Whether a solver of this kind knows it: only deformable grains yield and have a viscosity.
+    /// Returns true if the effect applies to a method: only deformable bodies yield and have a viscosity.
     #[must_use]
     pub fn concerns(self, method: Method) -> bool {
         !matches!(self, Self::Plasticity | Self::Viscosity) || method == Method::Grid
     }
 
-    /// The kinds of solver that leave it out of their loops where it is absent, and are tried with it there. On a grid gravity
-    /// and damping are a product and a sum a node, which nobody leaves out.
+    /// Returns the methods whose loops omit the effect when it is off. These methods are also tested with a neutral
+    /// value. On a grid, gravity and damping cost one product and one sum per node, so they are never omitted.
     #[must_use]
     pub const fn left_out_by(self) -> &'static [Method] {
         match self {
@@ -176,20 +177,20 @@ impl Effect {
         }
     }
 
-    /// Whether the scene calls for it.
+    /// Returns true if the scene uses the effect.
     #[must_use]
     pub fn is_on(self, scene: &Scene) -> bool {
         self.key(scene).is_some()
     }
 
-    /// Switches it off.
+    /// Switches the effect off.
     pub fn switch_off(self, scene: &mut Scene) {
         match self {
             Self::Friction => scene.change_laws(|law| {
                 (law.friction, law.cohesion, law.rolling_friction) = (0.0, 0.0, 0.0);
             }),
             Self::Cohesion => scene.change_laws(|law| law.cohesion = 0.0),
-            // Another law is no switch.
+            // Another law is not a switch.
             Self::Hertz => {}
             Self::Restitution => scene.change_laws(|law| law.damping_ratio = 0.0),
             Self::RollingResistance => scene.change_laws(|law| law.rolling_friction = 0.0),
@@ -227,9 +228,9 @@ impl Effect {
         }
     }
 
-    /// Switches it on with a value that does nothing: a law between grains of a material that nobody has, a rate that
-    /// is lost when it is added to one, gravity that a step shorter than half a second rounds to nothing, a motion that
-    /// starts after the end. Whether there is such a value.
+    /// Switches the effect on with a neutral value, and returns false if there is none. Neutral values are a law of a
+    /// material that no grain has, a rate lost in rounding, gravity that a step below 0.5 s rounds to zero, and a
+    /// motion that starts after the end.
     #[must_use]
     pub fn switch_on_idly(self, scene: &mut Scene) -> bool {
         match self {
@@ -257,7 +258,7 @@ impl Effect {
             }
             Self::MovingWalls => match scene.walls.first_mut() {
                 Some(wall) => {
-                    // It would move, long after the run.
+                    // The wall would move long after the run.
                     let velocity = Vector3::new(1.0, 0.0, 0.0);
                     let (start, stop) = (Moment::Seconds(f64::MAX), Moment::Never);
                     wall.motion.phases.push(Phase { velocity, spin: Vector3::zeros(), start, stop });
@@ -265,7 +266,7 @@ impl Effect {
                 }
                 None => false,
             },
-            // A yield stress that nothing reaches.
+            // The yield stress is never reached.
             Self::Plasticity => {
                 let idle = |material: &mut Deformable| {
                     material.constitutive.never_yielding().map(|never| material.constitutive = never)
@@ -278,16 +279,16 @@ impl Effect {
                 };
                 scene.deformable.iter_mut().flatten().filter_map(idle).count() > 0
             }
-            // A periodic box changes where grains are, however large it is; another law is another answer.
+            // A periodic domain of any size changes the positions of grains, and another law changes the results.
             Self::PeriodicAxes | Self::Hertz | Self::Restitution => false,
         }
     }
 }
 
-/// The smallest positive number (m/s² where it is gravity): times a step below half a second it is zero.
+/// Smallest positive number (m/s² for gravity): its product with a step below 0.5 s is zero.
 const SMALLEST: f64 = f64::from_bits(1);
 
-/// The first law in which a value is not zero.
+/// Returns the key of the first law in which a value is not zero.
 fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Option<String> {
     let count = scene.materials.len();
     scene.laws.iter().enumerate().find_map(|(at, law)| {
@@ -297,19 +298,19 @@ fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Optio
     })
 }
 
-/// Coefficient of restitution as the scene has it, to twelve digits; 0 without its dashpot.
+/// Returns the coefficient of restitution given in the scene, rounded to twelve digits; 0 without its dashpot.
 fn restitution(law: &ContactLaw) -> f64 {
     if law.damping_ratio == 0.0 { 0.0 } else { (1e12 * law.restitution()).round() / 1e12 }
 }
 
-/// Gives linear springs a tangential one too, as stiff as the normal one.
+/// Gives linear springs a tangential stiffness equal to the normal one.
 const fn bear_shear(law: &mut ContactLaw) {
     if let Springs::Linear { normal, tangential } = &mut law.springs {
         *tangential = *normal;
     }
 }
 
-/// Adds a material that no grain has, with a law of its own.
+/// Adds a material that no grain has, with its own law. Returns false if the scene has no law.
 fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
     let Some(mut law) = scene.laws.iter().flatten().next().copied() else { return false };
     change(&mut law);
@@ -333,7 +334,7 @@ fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-    /// The scene says a coefficient of restitution, not a damping ratio.
+    /// The scene gives a coefficient of restitution, not a damping ratio.
     #[test]
     fn restitution_is_told_as_the_scene_has_it() {
         let mut law = ContactLaw::default();
@@ -349,7 +350,7 @@ mod tests {
     use crate::source::SceneSource;
     use std::path::Path;
 
-    /// A value that does nothing turns its effect on, or it would be tried with the kernel that lacks it.
+    /// A neutral value must turn its effect on; otherwise the kernel without the effect would be tested.
     #[test]
     fn what_is_switched_on_idly_is_on() {
         let text = "title = 'two discs'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 1.0\n\

@@ -1,21 +1,21 @@
-//! Which physics a scene calls for, as flags by which solvers pick their kernels; derived from the list of effects.
+//! Effects that a scene uses, as flags by which solvers select kernels. They are derived from the list of effects.
 
 use crate::effect::Effect;
 use crate::scene::Scene;
 
-/// The effects that are on. Solvers pick their kernels from this, once, before the first step.
+/// Effects that are on. Solvers select their kernels from these flags once, before the first step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
-    /// Tangential forces or rolling moments at contacts: some law has friction, cohesion or rolling resistance. Without
-    /// them nothing can exert a torque, and no grain carries history or spin.
+    /// Tangential forces or rolling moments at contacts: at least one law has friction, cohesion or rolling resistance.
+    /// Without them no torque acts, and no grain carries contact history or spin.
     pub friction: bool,
-    /// Dashpots at contacts: some law has a damping coefficient or a restitution below 1.
+    /// Dashpots at contacts: at least one law has a damping coefficient or a restitution below 1.
     pub contact_damping: bool,
-    /// Normal dashpots that give a coefficient of restitution.
+    /// Normal dashpots that set a coefficient of restitution.
     pub restitution: bool,
     /// Hertz contacts instead of linear springs.
     pub hertz: bool,
-    /// Moments against rolling: some law has rolling resistance.
+    /// Moments against rolling: at least one law has rolling resistance.
     pub rolling_resistance: bool,
     /// Mass-proportional damping of every grain.
     pub global_damping: bool,
@@ -23,12 +23,12 @@ pub struct Effects {
     pub gravity: bool,
     /// Periodic axes.
     pub periodic: bool,
-    /// Walls, or driven grains, that move.
+    /// Walls or grains with prescribed motion.
     pub moving_walls: bool,
 }
 
 impl Effects {
-    /// What `scene` calls for.
+    /// Returns the effects that `scene` uses.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let on = |effect: Effect| effect.is_on(scene);
@@ -45,7 +45,7 @@ impl Effects {
         }
     }
 
-    /// The effects that are on, in words.
+    /// Returns the names of the effects that are on.
     #[must_use]
     pub fn words(scene: &Scene) -> Vec<String> {
         Effect::ALL.into_iter().filter(|effect| effect.is_on(scene)).map(|effect| effect.word().to_owned()).collect()

@@ -1,8 +1,9 @@
-//! The state that a run ends in, from which another scene begins: grains with their velocities and spins, and what their
-//! contacts remember. A data file loses the springs of contacts, and with them the friction that holds a heap up.
+//! Final state of a run, from which another scene begins: grains with their velocities and spins, and contact history.
+//! A data file loses the contact springs, and with them the friction that supports a heap.
 //!
-//! On disk: the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an [`EndState`] in
-//! postcard's format, which keeps every bit of a number; or, where little room is what matters, the form of `rounded_state`.
+//! A file holds the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an
+//! [`EndState`] in postcard's format, which keeps every bit of a number. The smaller form is described in
+//! `rounded_state`.
 
 use crate::rounded_state::{self, Packed};
 use crate::sealed::{self, Broken};
@@ -14,36 +15,36 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Write};
 
-/// What a file begins with, before the number of its format.
+/// First bytes of a file, before the format number.
 const MAGIC: &[u8] = b"grainbench state ";
-/// The format that this program writes.
+/// Format that this program writes.
 const FORMAT: u32 = 1;
-/// Most bytes that a state may unfold to.
+/// Largest decompressed size of a state (B).
 const MOST: u64 = 1 << 32;
 
-/// The state that a run ended in.
+/// Final state of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EndState {
-    /// What ran: title of the scene, and solver.
+    /// Title of the scene, and solver.
     pub of: [String; 2],
     /// Number of dimensions.
     pub dimension: usize,
-    /// Time at which it was (s).
+    /// Time of the state (s).
     pub time: f64,
     /// Names of the materials of grains.
     pub materials: Vec<String>,
     /// The grains, in order of id.
     pub grains: Vec<StateGrain>,
-    /// What contacts remember.
+    /// Contact history.
     pub springs: Springs,
 }
 
-/// A grain at the end.
+/// Final state of a grain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StateGrain {
-    /// Place in [`EndState::materials`].
+    /// Index in [`EndState::materials`].
     pub material: u16,
-    /// Radius (m), mass (kg; per metre of discs) and moment of inertia (kg m²).
+    /// Radius (m), mass (kg; kg per metre of depth for discs) and moment of inertia (kg m²).
     pub size: [f64; 3],
     /// Centre (m).
     pub position: Vector3<f64>,
@@ -53,19 +54,19 @@ pub struct StateGrain {
     pub spin: Vector3<f64>,
 }
 
-/// What contacts remember, as a solver lays it out.
+/// Contact history in the layout of a solver.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Springs {
-    /// The layout in words that change when it does.
+    /// Layout, as text that changes with the layout.
     pub layout: String,
-    /// Of contacts between grains: their places, and the numbers, from the side of the first.
+    /// Contacts between grains: the indices of both grains, and the history values as seen from the first grain.
     pub pairs: Vec<(u32, u32, Vec<f64>)>,
-    /// Of contacts with walls: the grain's place, the wall by name, and the numbers.
+    /// Contacts with walls: the index of the grain, the name of the wall, and the history values.
     pub walls: Vec<(u32, String, Vec<f64>)>,
 }
 
 impl Springs {
-    /// Every bit of them, contact by contact.
+    /// Returns every bit of the history, contact by contact.
     #[must_use]
     pub fn bits(&self) -> Vec<u8> {
         let Self { layout, pairs, walls } = self;
@@ -84,7 +85,7 @@ impl Springs {
         bits
     }
 
-    /// The same of grains that stand so many places later.
+    /// Returns the history with every grain index increased by `places`.
     #[must_use]
     pub fn later_by(mut self, places: u32) -> Self {
         for (first, second, _) in &mut self.pairs {
@@ -96,27 +97,27 @@ impl Springs {
 }
 
 impl EndState {
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     ///
     /// # Errors
-    /// When the state has a part that cannot be written down, in words.
+    /// When a part of the state cannot be serialised; the error is a message.
     pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
         sealed_body(self, MAGIC, FORMAT)
     }
 
-    /// The bytes of a file in half the room: positions, velocities, spins and springs are rounded in it.
+    /// Returns the bytes of a file of about half the size. Positions, velocities, spins and springs are rounded.
     ///
     /// # Errors
-    /// When the state has a part that cannot be rounded, in words.
+    /// When a part of the state cannot be rounded; the error is a message.
     pub fn to_rounded_bytes(&self) -> Result<Vec<u8>, String> {
         sealed_body(&Packed::of(self, rounded_state::ROUNDING)?, rounded_state::MAGIC, rounded_state::FORMAT)
     }
 
-    /// The bytes of a file in a quarter of that room, of a bed at rest: positions are rounded more, and velocities, spins and
-    /// springs left out.
+    /// Returns the bytes of a file of about a quarter of that size, for a bed at rest. Positions are rounded more
+    /// coarsely; velocities, spins and springs are omitted.
     ///
     /// # Errors
-    /// When the state has a part that cannot be rounded, in words.
+    /// When a part of the state cannot be rounded; the error is a message.
     pub fn to_bytes_at_rest(&self) -> Result<Vec<u8>, String> {
         let at_rest = |grain: &StateGrain| StateGrain { velocity: Vector3::zeros(), spin: Vector3::zeros(), ..*grain };
         let grains = self.grains.iter().map(at_rest).collect();
@@ -131,10 +132,10 @@ impl EndState {
         sealed_body(&packed, rounded_state::MAGIC, rounded_state::FORMAT)
     }
 
-    /// A state from the bytes of a file, of either form.
+    /// Reads a state from the bytes of a file in either form.
     ///
     /// # Errors
-    /// What was found in its place, in words.
+    /// When the bytes are not a valid state; the error names what was found.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
         let state: Self = if bytes.starts_with(rounded_state::MAGIC) {
             body_of::<Packed>(bytes, rounded_state::MAGIC, rounded_state::FORMAT)?.state()?
@@ -163,7 +164,7 @@ fn is_finite(vector: &Vector3<f64>) -> bool {
     vector.iter().all(|number| number.is_finite())
 }
 
-/// Something as a sealed file of a kind.
+/// Serialises a value as a sealed file of one kind.
 fn sealed_body(body: &impl Serialize, magic: &[u8], format: u32) -> Result<Vec<u8>, String> {
     let body = postcard::to_allocvec(body).map_err(|error| error.to_string())?;
     let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
@@ -171,7 +172,7 @@ fn sealed_body(body: &impl Serialize, magic: &[u8], format: u32) -> Result<Vec<u
     Ok(sealed::seal(magic, format, &packed))
 }
 
-/// What a sealed file of a kind holds.
+/// Reads the value in a sealed file of one kind.
 fn body_of<T: DeserializeOwned>(bytes: &[u8], magic: &[u8], format: u32) -> Result<T, String> {
     let packed = sealed::open(magic, format, bytes).map_err(|broken| match broken {
         Broken::Foreign => "another kind of file".to_owned(),
@@ -212,7 +213,7 @@ mod tests {
         EndState { of, dimension: 3, time: 1.5, materials, grains: vec![grain(0.1), grain(0.2)], springs }
     }
 
-    /// Half a step of 2⁻²⁰ · 2⁻¹ at most from where it was.
+    /// Positions move by at most half a rounding step, which is 2⁻²⁰ · 2⁻¹ m.
     #[test]
     fn a_bed_at_rest_keeps_its_places_and_nothing_else() {
         let bytes = state().to_bytes_at_rest().unwrap();
@@ -246,7 +247,7 @@ mod tests {
     #[test]
     fn a_state_is_rounded_once_and_by_as_much_as_is_said() {
         let mut exact = state();
-        // Two sizes, walls by name, contacts in both senses.
+        // Two sizes, named walls, and contacts with either grain first.
         let third =
             StateGrain { size: [0.3, 0.2, 0.05], position: Vector3::new(-70.1, 1.0 / 3.0, 1e-3), ..exact.grains[0] };
         exact.grains.push(third);
@@ -256,7 +257,7 @@ mod tests {
         let bytes = exact.to_rounded_bytes().unwrap();
         let rounded = EndState::from_bytes(&bytes).unwrap();
         assert_eq!(rounded.to_rounded_bytes().unwrap(), bytes, "rounding what is rounded changes nothing");
-        // .3 lies between 2⁻² and 2⁻¹.
+        // The smallest radius, 0.3 m, lies between 2⁻² m and 2⁻¹ m.
         let step = (-2.0_f64 - 36.0).exp2();
         for (found, exact) in rounded.grains.iter().zip(&exact.grains) {
             assert_eq!((found.material, found.size), (exact.material, exact.size));
@@ -273,7 +274,7 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         assert_eq!(of(&rounded.springs), of(&exact.springs));
-        // What cannot be rounded is refused, and not written down wrongly.
+        // Values that cannot be rounded are rejected.
         exact.grains[0].position.x = 1e9;
         assert!(exact.to_rounded_bytes().is_err());
         exact.grains[0].position.x = f64::NAN;

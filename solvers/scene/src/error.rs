@@ -1,25 +1,25 @@
-//! What is wrong with a scene, said so that its author can mend it.
+//! Errors in a scene, worded so that its author can correct them.
 
 use crate::text::tamed;
 use thiserror::Error;
 
-/// A scene that cannot be used: which file, where, what was expected and what stood there.
+/// Error in a scene: the file, the position, and the expected and found values.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}", tamed(&told(self), |_| false))]
 pub struct SceneError {
-    /// File and line, or the `--set` that brought the value in.
+    /// File and line, or the `--set` option that gave the value.
     pub place: String,
-    /// Dotted path of the key, empty for the file as a whole.
+    /// Dotted path of the key; empty for the file as a whole.
     pub key: String,
-    /// What was expected.
+    /// Expected value.
     pub expected: String,
-    /// What stood there.
+    /// Found value.
     pub found: String,
-    /// How to mend it, where that is known.
+    /// Suggested correction, if one is known.
     pub help: Option<String>,
 }
 
-/// In one sentence, with whatever stood in the file as it stood there.
+/// Returns the error as one sentence, with the text of the file unchanged.
 fn told(error: &SceneError) -> String {
     let SceneError { place, key, expected, found, help } = error;
     format!("{place}: {}expected {expected}, found {found}{}", key_prefix(key), help_suffix(help.as_deref()))
@@ -33,10 +33,10 @@ fn help_suffix(help: Option<&str>) -> String {
     help.map(|help| format!(" ({help})")).unwrap_or_default()
 }
 
-/// `did you mean …?` for a mistyped word, when one of the known words is close to it.
+/// Returns `did you mean …?` for a mistyped word if a known word is close to it.
 #[must_use]
 pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    // A letter too few, too many, another or two in the wrong order: nearer than any likeness.
+    // One missing, extra, changed or swapped letter counts as closer than any similarity.
     let likeness = |candidate: &str| match strsim::osa_distance(word, candidate) {
         1 if candidate.len() > 2 => 1.0,
         _ => strsim::jaro_winkler(word, candidate),
@@ -62,7 +62,7 @@ mod tests {
         assert_eq!(did_you_mean("quux", known), None);
     }
 
-    /// What stood in the file stands in the message, but steers nothing.
+    /// Text of the file appears in the message, but its control characters are escaped.
     #[test]
     fn is_one_line_whatever_stood_there() {
         let error = SceneError {

@@ -1,22 +1,22 @@
-//! Motions that are functions of time: oscillations and ramps.
+//! Motions given as functions of time: oscillations and ramps.
 
 use nalgebra::Vector3;
 
-/// A way that is a function of time.
+/// Displacement as a function of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Function {
-    /// Which.
+    /// Kind of function.
     pub kind: FunctionKind,
-    /// When it starts (s): nothing of it is there before.
+    /// Start (s). The displacement is zero until then.
     pub start: f64,
-    /// When it stops (s): what has been gone then stays.
+    /// Stop (s). The displacement stays constant from then on.
     pub stop: f64,
 }
 
-/// The functions, of the time τ (s) since their start.
+/// Functions of the time τ since their start (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FunctionKind {
-    /// A (sin(2πfτ + φ) − sin φ): it starts where it is.
+    /// Oscillation A (sin(2πfτ + φ) − sin φ), which starts at zero displacement.
     Sine {
         /// Amplitude A (m).
         amplitude: Vector3<f64>,
@@ -25,7 +25,7 @@ pub enum FunctionKind {
         /// Phase φ (rad).
         phase: f64,
     },
-    /// A velocity V that is reached evenly over a time T: V τ²/2T, and V (τ − T/2) from T on.
+    /// Velocity V reached at a constant rate over a time T: V τ²/2T, and V (τ − T/2) from T on.
     Ramp {
         /// Velocity V (m/s).
         velocity: Vector3<f64>,
@@ -35,7 +35,7 @@ pub enum FunctionKind {
 }
 
 impl Function {
-    /// The way since the start (m) at a time (s).
+    /// Returns the displacement since the start (m) at a time (s).
     #[must_use]
     pub fn way(&self, time: f64) -> Vector3<f64> {
         let elapsed = (time.min(self.stop) - self.start).max(0.0);
@@ -49,7 +49,7 @@ impl Function {
         }
     }
 
-    /// The fastest that it ever is (m/s).
+    /// Returns the largest speed (m/s).
     #[must_use]
     pub fn fastest(&self) -> f64 {
         match self.kind {

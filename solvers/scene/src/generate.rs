@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Centres of a square or simple-cubic lattice (m), x fastest.
+/// Returns the centres of a square or simple-cubic lattice (m); x varies fastest.
 #[must_use]
 pub fn lattice(origin: Vector3<f64>, spacing: Vector3<f64>, count: [u32; 3]) -> Vec<Vector3<f64>> {
     let mut centres = Vec::new();
@@ -22,8 +22,9 @@ pub fn lattice(origin: Vector3<f64>, spacing: Vector3<f64>, count: [u32; 3]) -> 
     centres
 }
 
-/// Centres of a close-packed lattice (m): rows along x, every other one half a spacing further; in space layers of them, each
-/// with its rows over the hollows of the layer below, the third above the first (face-centred cubic).
+/// Returns the centres of a close-packed lattice (m). Rows lie along x, and every second row is shifted by half a
+/// spacing. In three dimensions, the rows of each layer lie over the hollows of the layer below, and the fourth layer
+/// lies above the first (face-centred cubic).
 #[must_use]
 pub fn close_packed(origin: Vector3<f64>, spacing: f64, count: [u32; 3]) -> Vec<Vector3<f64>> {
     let row = spacing * 0.75_f64.sqrt();
@@ -38,7 +39,7 @@ pub fn close_packed(origin: Vector3<f64>, spacing: f64, count: [u32; 3]) -> Vec<
     centres
 }
 
-/// Moves each place by up to `most` (m), in a direction of its own; evenly over the ball, or the disc.
+/// Moves each position by up to `most` (m) in a random direction, uniformly over the ball or disc.
 pub fn perturb(places: &mut [Vector3<f64>], most: f64, seed: u64, dimension: Dimension) {
     let mut generator = Pcg64::seed_from_u64(seed);
     for place in places {
@@ -48,7 +49,7 @@ pub fn perturb(places: &mut [Vector3<f64>], most: f64, seed: u64, dimension: Dim
     }
 }
 
-/// A grain placed at random.
+/// Randomly placed grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
     /// Centre (m).
@@ -59,11 +60,11 @@ pub struct Placed {
     pub velocity: Vector3<f64>,
 }
 
-/// Places `count` grains without overlap in `domain`, large ones first. Grains keep off the faces of the domain along axes that
+/// Places `count` grains without overlap in `domain`, large grains first. Grains do not cross the faces of axes that
 /// are not periodic. The same seed gives the same grains on every machine.
 ///
 /// # Errors
-/// When no room is found for one in 10,000 tries: the share of the domain that they would fill.
+/// When 10,000 tries find no room for a grain. The error is the fraction of the domain that all grains would fill.
 pub fn random(
     count: u32,
     seed: u64,
@@ -114,7 +115,7 @@ fn direction(generator: &mut impl Rng, dimension: Dimension) -> Vector3<f64> {
     }
 }
 
-/// The centre itself and its periodic images that come within a cell of the domain.
+/// Returns the centre and its periodic images within one cell of the domain.
 fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>> {
     let mut images = vec![centre];
     for axis in 0..3 {
@@ -134,14 +135,14 @@ fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>>
     images
 }
 
-/// Room that is taken: spheres by cells, which are as wide as the largest is thick. Cells of one bucket may be far apart; that
-/// costs a distance, and no sphere is missed by it.
+/// Spheres placed so far, hashed by cell. A cell is as wide as the largest diameter. Distant cells may share a bucket;
+/// this costs extra distance tests, but no sphere is missed.
 struct Taken {
     /// Edge of a cell (m).
     cell: f64,
-    /// The last sphere of each bucket, with the one before it.
+    /// Last sphere of each bucket.
     last: Vec<Option<u32>>,
-    /// Centre (m), radius (m), and the one before in its bucket.
+    /// Centre (m), radius (m), and the previous sphere of the same bucket.
     spheres: Vec<(Vector3<f64>, f64, Option<u32>)>,
 }
 
@@ -150,12 +151,12 @@ impl Taken {
         Self { cell, last: vec![None; most.next_power_of_two()], spheres: Vec::with_capacity(most) }
     }
 
-    /// Number of a place's cell along each axis.
+    /// Returns the cell of a position along each axis.
     fn cell_of(&self, place: Vector3<f64>) -> [i64; 3] {
         [0, 1, 2].map(|axis| (place[axis] / self.cell).floor() as i64)
     }
 
-    /// The bucket of a cell: its numbers times large primes, so that cells in a row come to lie apart.
+    /// Returns the bucket of a cell. Products with large primes spread adjacent cells over the buckets.
     fn bucket(&self, cell: [i64; 3]) -> usize {
         const PRIMES: [i64; 3] = [0x9e37_79b1, 0x85eb_ca77, 0xc2b2_ae3d];
         let mixed = (0..3).fold(0, |mixed: i64, axis| mixed ^ cell[axis].wrapping_mul(PRIMES[axis]));
@@ -169,9 +170,9 @@ impl Taken {
     }
 
     fn is_free(&self, centre: Vector3<f64>, radius: f64) -> bool {
-        // Far beyond what a cell number can hold, neighbours are the same cell.
+        // For very large coordinates, this keeps the indices of adjacent cells in range.
         let [i, j, k] = self.cell_of(centre).map(|at| at.clamp(i64::MIN + 1, i64::MAX - 1));
-        // What is in the way is most often in the cell itself.
+        // The cell itself comes first, because most overlaps occur there.
         [0, -1, 1].into_iter().all(|dk| {
             [0, -1, 1].into_iter().all(|dj| {
                 [0, -1, 1].into_iter().all(|di| {
@@ -194,7 +195,7 @@ impl Taken {
 mod tests {
     use super::*;
 
-    /// Six nearest neighbours in the plane, twelve in space, one spacing away; nobody is nearer.
+    /// Each grain has six nearest neighbours in the plane and twelve in space, one spacing away.
     #[test]
     fn close_packed_grains_touch_their_neighbours() {
         for (count, neighbours) in [([7, 7, 1], 6), ([7, 7, 7], 12)] {
@@ -214,7 +215,7 @@ mod tests {
         perturb(&mut moved, 0.1, 3, Dimension::Two);
         let distances: Vec<f64> = whole.iter().zip(&moved).map(|(a, b)| (a - b).norm()).collect();
         assert!(distances.iter().all(|distance| (0.0..=0.1).contains(distance)));
-        // Evenly over a disc: two thirds of its radius in the mean.
+        // Uniformly over a disc: the mean distance is two thirds of its radius.
         let mean = distances.iter().sum::<f64>() / 100.0;
         assert!((mean - 0.0667).abs() < 0.006, "{mean}");
         assert!(moved.iter().all(|centre| centre.z == 0.0));

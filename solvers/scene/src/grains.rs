@@ -1,16 +1,16 @@
-//! The grains of a scene: shared by all copies of it until one of them changes its own.
+//! Grains of a scene. All copies share them until one copy changes.
 
 use crate::scene::Grain;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-/// The grains of a scene. A copy costs nothing; whoever changes one has grains of its own from then on.
+/// Grains of a scene. A copy costs nothing; a changed copy gets its own grains.
 #[derive(Clone, Default, PartialEq)]
 pub struct Grains(Arc<Vec<Grain>>);
 
 impl Grains {
-    /// Every bit of them, grain by grain.
+    /// Returns every bit of the grains, one grain after the other.
     #[must_use]
     pub fn bits(&self) -> Vec<u8> {
         let mut bits = Vec::with_capacity(self.len() * size_of::<Grain>());
@@ -69,7 +69,7 @@ impl<'g> IntoIterator for &'g mut Grains {
     }
 }
 
-/// As the list that they are.
+/// Prints the grains as a list.
 impl fmt::Debug for Grains {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(formatter)

@@ -1,12 +1,13 @@
-//! Records of finished runs, kept to be read back by this program: the line `grainbench record <format>`, length and hash (see
-//! `sealed`), and the name that it is kept under with the [`Record`] in postcard's format, which keeps every bit of a number.
+//! Stored records of finished runs, which only this program reads. A file holds the line `grainbench record <format>`,
+//! length and hash (see `sealed`), and then its name and a [`Record`] in postcard's format, which keeps every bit of a
+//! number.
 
 use crate::record::Record;
 use crate::sealed;
 use serde::{Deserialize, Serialize};
 
 const MAGIC: &[u8] = b"grainbench record ";
-/// To be raised whenever anything that is stored changes its meaning or its place.
+/// Raised whenever stored data change their meaning or their position.
 const FORMAT: u32 = 1;
 
 #[derive(Serialize)]
@@ -21,15 +22,15 @@ struct Read {
     record: Record,
 }
 
-/// The bytes of a record under a name.
+/// Returns the bytes of a record with its name.
 ///
 /// # Errors
-/// When it has no such form, which no record of a solver has.
+/// When the record cannot be serialised. Records of solvers always can.
 pub fn to_bytes(name: &str, record: &Record) -> Result<Vec<u8>, String> {
     Ok(sealed::seal(MAGIC, FORMAT, &body(name, record)?))
 }
 
-/// The bytes without what tells that they are whole: two records of one name are the same bit by bit where these are.
+/// Returns the bytes without header and hash. Two records of one name are equal bit for bit if these bytes are.
 ///
 /// # Errors
 /// As for [`to_bytes`].
@@ -37,7 +38,7 @@ pub fn body(name: &str, record: &Record) -> Result<Vec<u8>, String> {
     postcard::to_allocvec(&Written { name, record }).map_err(|error| error.to_string())
 }
 
-/// The record that bytes hold under this name; none where they are damaged, of another format, or hold that of another.
+/// Reads the record stored under this name; `None` if the bytes are damaged, of another format or of another name.
 #[must_use]
 pub fn from_bytes(name: &str, bytes: &[u8]) -> Option<Record> {
     let body = sealed::open(MAGIC, FORMAT, bytes).ok()?;

@@ -1,7 +1,7 @@
-//! Scenes of grains: what exists, which physics acts, and what a solver leaves behind.
+//! Scenes of grains: their contents, their physics, and the output of solvers.
 //!
-//! A scene names no solver. It is read from a file ([`source::SceneSource`]), made definite ([`scene::Scene`]), and
-//! given to a [`solver::Solver`], which leaves a [`record::Record`].
+//! A scene names no solver. It is read from a file ([`source::SceneSource`]), resolved ([`scene::Scene`]), and passed
+//! to a [`solver::Solver`], which returns a [`record::Record`].
 
 pub mod body;
 pub mod brief;
@@ -49,10 +49,10 @@ pub mod terms;
 pub mod text;
 pub mod virial;
 
-/// The vectors of scenes and records, for who writes a solver.
+/// Vectors of scenes and records, for authors of solvers.
 pub use nalgebra;
 
-/// The JSON schema of scene files.
+/// Returns the JSON schema of scene files.
 #[must_use]
 pub fn schema() -> schemars::Schema {
     schemars::schema_for!(file::SceneFile)

@@ -1,10 +1,10 @@
-//! Manufactured solutions: a motion is chosen, and the body force that makes it exact in a neo-Hookean material.
+//! Manufactured solutions: chosen motions, and the body forces that make them exact in a neo-Hookean material.
 
 use libm::{cos, log, sin, sincos};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
 
-/// Which motion. Both are exact for τ = λ ln J + G (b − 1) (Kamojjala, Brannon, Sadeghirad & Guilkey 2015).
+/// Chosen motion. Both motions are exact for τ = λ ln J + G (b − 1) (Kamojjala, Brannon, Sadeghirad & Guilkey 2015).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Manufactured {
     /// u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ₀), in a periodic box of length L along x.
@@ -14,17 +14,17 @@ pub enum Manufactured {
         /// Length L of the box (m).
         length: f64,
     },
-    /// Rotation of each circle R about the origin by α = A sin(Bπt) h(R), h = (1 − 16 (R − 1)²)² for .75 m < R < 1.25 m
-    /// and zero elsewhere.
+    /// Rotation of each circle of radius R about the origin by α = A sin(Bπt) h(R). For .75 m < R < 1.25 m, h = (1 − 16
+    /// (R − 1)²)²; elsewhere h = 0.
     Vortex {
         /// Largest angle A (rad).
         amplitude: f64,
-        /// B (1/s): the motion has the period 2/B.
+        /// Rate B (1/s). The period of the motion is 2/B.
         rate: f64,
     },
 }
 
-/// The material a body force is made for.
+/// Material for which a body force is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
     /// Density ρ₀ (kg/m³).
@@ -36,7 +36,7 @@ pub struct Medium {
 }
 
 impl Medium {
-    /// √(E/ρ₀), E = G (3λ + 2G)/(λ + G) (m/s).
+    /// Returns the bar wave speed √(E/ρ₀), E = G (3λ + 2G)/(λ + G) (m/s).
     fn bar_speed(&self) -> f64 {
         let (lame, shear) = (self.lame, self.shear_modulus);
         (shear * (3.0 * lame + 2.0 * shear) / (lame + shear) / self.density).sqrt()
@@ -44,7 +44,7 @@ impl Medium {
 }
 
 impl Manufactured {
-    /// Where the material point that started at `at` (m) is at `time` (s), relative to its start (m).
+    /// Returns the displacement (m) at `time` (s) of the material point that started at `at` (m).
     #[must_use]
     pub fn displacement(&self, medium: &Medium, at: Vector3<f64>, time: f64) -> Vector3<f64> {
         match *self {
@@ -59,7 +59,7 @@ impl Manufactured {
         }
     }
 
-    /// Velocity of the material point that started at `at` (m), at `time` (m/s).
+    /// Returns the velocity (m/s) at `time` (s) of the material point that started at `at` (m).
     #[must_use]
     pub fn velocity(&self, medium: &Medium, at: Vector3<f64>, time: f64) -> Vector3<f64> {
         match *self {
@@ -77,11 +77,10 @@ impl Manufactured {
         }
     }
 
-    /// Body force per unit mass on the material point that started at `at` (m), at `time` (m/s²).
+    /// Returns the body force per unit mass (m/s²) at `time` (s) on the material point that started at `at` (m).
     ///
-    /// Axis-aligned, with F = 1 + ∂u/∂X: b = (π²u/ρ₀L²)[4G − c²ρ₀ − 4(λ(ln F − 1) − G)/F²].
-    /// Vortex, along the radius and across it at the present angle: ρb_r = −ρRα_t² + GRα'²,
-    /// ρb_θ = ρRα_tt − G(3α' + Rα'').
+    /// Axis-aligned, with F = 1 + ∂u/∂X: b = (π²u/ρ₀L²)[4G − c²ρ₀ − 4(λ(ln F − 1) − G)/F²]. Vortex, radial and
+    /// tangential components at the present angle: ρb_r = −ρRα_t² + GRα'², ρb_θ = ρRα_tt − G(3α' + Rα'').
     #[must_use]
     pub fn body_force(&self, medium: &Medium, at: Vector3<f64>, time: f64) -> Vector3<f64> {
         let &Medium { density, lame, shear_modulus: shear } = medium;
@@ -121,7 +120,7 @@ fn turned(vector: Vector2<f64>, angle: f64) -> Vector3<f64> {
     Vector3::new(vector.x * cosine - vector.y * sine, vector.x * sine + vector.y * cosine, 0.0)
 }
 
-/// h, h' and h''.
+/// Returns h, h' and h''.
 fn bump(radius: f64) -> [f64; 3] {
     let away = radius - 1.0;
     let inside = 1.0 - 16.0 * away * away;
@@ -154,7 +153,7 @@ mod tests {
         kirchhoff * gradient.try_inverse().unwrap_or(one).transpose()
     }
 
-    /// ρ₀ a = Div P + ρ₀ b, with derivatives by differences.
+    /// The momentum balance ρ₀ a = Div P + ρ₀ b holds, with derivatives by finite differences.
     #[test]
     fn body_force_balances_the_motion() {
         let motions = [

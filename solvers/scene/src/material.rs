@@ -1,6 +1,6 @@
-//! What grains, bodies and walls are made of, from the keys that a user writes to the moduli and the law that act.
+//! Materials of grains, bodies and walls: the keys of a scene file, and the moduli and constitutive laws that act.
 //!
-//! A new law between deformation and stress is a variant of [`Constitutive`] with its word and its keys here, and its stress in
+//! A new constitutive law is a variant of [`Constitutive`] with its name and its keys here. Its stress is computed in
 //! `solvers/mpm/src/material/laws.rs`.
 
 use crate::check::Checker;
@@ -12,35 +12,36 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
-    /// Density ρ (kg/m³); not needed for materials of walls, nor where a data file gives it.
+    /// Density ρ (kg/m³). Not required for materials of walls, or if a data file gives it.
     #[serde(default)]
     pub density: Option<f64>,
-    /// Young's modulus E (Pa); needed for Hertz contacts unless `rigid`. With Poisson's ratio it makes bodies
-    /// deformable for solvers that resolve them.
+    /// Young's modulus E (Pa). Required for Hertz contacts unless `rigid`. With Poisson's ratio, it makes bodies
+    /// deformable for solvers that resolve deformation.
     #[serde(default)]
     pub young_modulus: Option<f64>,
-    /// Poisson's ratio ν, from −1 to 1/2; needed for Hertz contacts unless `rigid`.
+    /// Poisson's ratio ν, from −1 to 1/2. Required for Hertz contacts unless `rigid`.
     #[serde(default)]
     pub poisson_ratio: Option<f64>,
-    /// Whether the material is rigid: its partner alone deforms in a Hertz contact.
+    /// Rigid material: in a Hertz contact, only the other material deforms.
     #[serde(default)]
     pub rigid: bool,
-    /// Bulk modulus K (Pa), with `shear_modulus` in place of Young's modulus and Poisson's ratio.
+    /// Bulk modulus K (Pa). With `shear_modulus`, it replaces Young's modulus and Poisson's ratio.
     #[serde(default)]
     pub bulk_modulus: Option<f64>,
     /// Shear modulus G (Pa).
     #[serde(default)]
     pub shear_modulus: Option<f64>,
-    /// Law of a deformable material: `neo-hookean` (the default), `kelvin-voigt`, `hypoelastic` or `von-mises`.
+    /// Constitutive law of a deformable material: `neo-hookean` (the default), `kelvin-voigt`, `hypoelastic` or
+    /// `von-mises`.
     #[serde(default)]
     pub constitutive: Option<ConstitutiveKind>,
-    /// Yield stress Y (Pa); needed for `von-mises`.
+    /// Yield stress Y (Pa). Required for `von-mises`.
     #[serde(default)]
     pub yield_stress: Option<f64>,
     /// Hardening modulus H (Pa) of `von-mises`. Default 0.
     #[serde(default)]
     pub hardening_modulus: Option<f64>,
-    /// Shear viscosity η (Pa s) of `kelvin-voigt`, which needs it.
+    /// Shear viscosity η (Pa s). Required for `kelvin-voigt`.
     #[serde(default)]
     pub viscosity: Option<f64>,
     /// Bulk viscosity ζ (Pa s) of `kelvin-voigt`. Default 0.
@@ -49,10 +50,10 @@ pub struct MaterialSpec {
 }
 
 impl MaterialSpec {
-    /// The moduli and the law, where the file says so; `name` is the material's.
+    /// Returns the moduli and the constitutive law if the file gives them; `name` is the name of the material.
     ///
     /// # Errors
-    /// Where a number is wrong, or moduli are given by halves.
+    /// When a number is out of range, or only a part of the moduli is given.
     pub(crate) fn deformable(&self, name: &str, check: &Checker<'_>) -> Result<Option<Deformable>, SceneError> {
         let key = |part: &str| format!("materials.{name}.{part}");
         let asked = self.constitutive.is_some() || self.bulk_modulus.is_some() || self.shear_modulus.is_some();
@@ -67,7 +68,7 @@ impl MaterialSpec {
                     if !(young > 0.0 && young.is_finite() && poisson > -1.0 && poisson < 0.5) {
                         let expected = "a positive `young_modulus` and a `poisson_ratio` above −1 and below 1/2";
                         let found = format!("{young} and {poisson}");
-                        // Laws of contacts judge these numbers themselves where no body is to deform.
+                        // Without deformable bodies, contact laws check these numbers themselves.
                         return if asked {
                             Err(check.error(&key("young_modulus"), expected, &found))
                         } else {
@@ -111,7 +112,7 @@ impl MaterialSpec {
         Ok(Some(Deformable { bulk_modulus, shear_modulus, constitutive }))
     }
 
-    /// A key that the law does not read is a mistake, and never dropped.
+    /// Rejects a key that the constitutive law does not use, instead of ignoring it.
     fn refuse_keys_of_other_laws(
         &self,
         kind: ConstitutiveKind,
@@ -134,7 +135,7 @@ impl MaterialSpec {
     }
 }
 
-/// Law of a deformable material.
+/// Constitutive law of a deformable material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConstitutiveKind {
@@ -142,14 +143,14 @@ pub enum ConstitutiveKind {
     Hypoelastic,
     /// Compressible: τ = λ ln J + G (b − 1).
     NeoHookean,
-    /// Neo-Hookean with a viscous stress beside it, σ + 2η dev D + ζ tr D.
+    /// Neo-Hookean stress σ plus a viscous stress: σ + 2η dev D + ζ tr D.
     KelvinVoigt,
     /// Hypoelastic up to a yield stress, with linear isotropic hardening.
     VonMises,
 }
 
 impl std::fmt::Display for ConstitutiveKind {
-    /// The word of scene files.
+    /// Prints the name used in scene files.
     fn fmt(&self, text: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         text.write_str(match self {
             Self::Hypoelastic => "hypoelastic",
@@ -160,7 +161,7 @@ impl std::fmt::Display for ConstitutiveKind {
     }
 }
 
-/// The law between deformation and stress, with its numbers.
+/// Constitutive law with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "constitutive", rename_all = "kebab-case")]
 pub enum Constitutive {
@@ -168,24 +169,24 @@ pub enum Constitutive {
     Hypoelastic,
     /// Compressible neo-Hookean: τ = λ ln J + G (b − 1), λ = K − 2G/3.
     NeoHookean,
-    /// Neo-Hookean with a viscous stress beside it, 2η dev D + ζ tr D 1, D the rate of deformation (1/s).
+    /// Neo-Hookean stress plus a viscous stress 2η dev D + ζ tr D 1, with the rate of deformation D (1/s).
     KelvinVoigt {
         /// Shear viscosity η (Pa s).
         viscosity: f64,
         /// Bulk viscosity ζ (Pa s).
         bulk_viscosity: f64,
     },
-    /// Hypoelastic up to the yield stress of von Mises, with linear isotropic hardening.
+    /// Hypoelastic up to the von Mises yield stress, with linear isotropic hardening.
     VonMises {
         /// Yield stress Y (Pa).
         yield_stress: f64,
-        /// Hardening modulus H (Pa): the yield stress grows by H for each unit of plastic strain.
+        /// Hardening modulus H (Pa): the increase of the yield stress per unit of plastic strain.
         hardening_modulus: f64,
     },
 }
 
 impl Constitutive {
-    /// The law's word.
+    /// Returns the kind of the law.
     #[must_use]
     pub const fn kind(&self) -> ConstitutiveKind {
         match self {
@@ -196,7 +197,7 @@ impl Constitutive {
         }
     }
 
-    /// The stress at which it first yields (Pa), where it ever does.
+    /// Returns the initial yield stress (Pa); `None` if the material never yields.
     #[must_use]
     pub const fn yield_stress(&self) -> Option<f64> {
         match *self {
@@ -205,7 +206,7 @@ impl Constitutive {
         }
     }
 
-    /// The same without yielding.
+    /// Returns the law without yielding.
     #[must_use]
     pub const fn elastic(self) -> Self {
         match self {
@@ -214,7 +215,7 @@ impl Constitutive {
         }
     }
 
-    /// The law that yields at a stress that nothing reaches and is this one below it, where there is one.
+    /// Returns an equivalent law with a yield stress that is never reached; `None` if there is none.
     #[must_use]
     pub const fn never_yielding(&self) -> Option<Self> {
         match self {
@@ -223,7 +224,7 @@ impl Constitutive {
         }
     }
 
-    /// Shear and bulk viscosity η and ζ (Pa s); none of a law without viscosity, and none where both are zero.
+    /// Returns the shear and bulk viscosities η and ζ (Pa s); `None` if the law has no viscosity or both are zero.
     #[must_use]
     pub fn viscosities(&self) -> Option<[f64; 2]> {
         match *self {
@@ -234,7 +235,7 @@ impl Constitutive {
         }
     }
 
-    /// The same without viscosity.
+    /// Returns the law without viscosity.
     #[must_use]
     pub const fn inviscid(self) -> Self {
         match self {
@@ -243,7 +244,8 @@ impl Constitutive {
         }
     }
 
-    /// The law with a viscosity whose stress is lost beside any other, and which is this one but for that, where there is one.
+    /// Returns an equivalent law with a viscosity so small that its stress is lost in rounding; `None` if there is
+    /// none.
     #[must_use]
     pub const fn hardly_viscous(&self) -> Option<Self> {
         match self {
@@ -260,37 +262,37 @@ pub struct Deformable {
     pub bulk_modulus: f64,
     /// Shear modulus G (Pa).
     pub shear_modulus: f64,
-    /// The law.
+    /// Constitutive law.
     pub constitutive: Constitutive,
 }
 
 impl Deformable {
-    /// Lamé's λ = K − 2G/3 (Pa).
+    /// Returns Lamé's λ = K − 2G/3 (Pa).
     #[must_use]
     pub fn lame(&self) -> f64 {
         self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus
     }
 
-    /// Modulus of longitudinal waves M = K + 4G/3 (Pa); their speed is √(M/ρ).
+    /// Returns the modulus of longitudinal waves M = K + 4G/3 (Pa). Their speed is √(M/ρ).
     #[must_use]
     pub fn longitudinal_modulus(&self) -> f64 {
         self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus
     }
 
-    /// Viscosity of longitudinal waves 4η/3 + ζ (Pa s), beside the modulus M.
+    /// Returns the viscosity of longitudinal waves 4η/3 + ζ (Pa s).
     #[must_use]
     pub fn longitudinal_viscosity(&self) -> f64 {
         self.constitutive.viscosities().map_or(0.0, |[shear, bulk]| 4.0 / 3.0 * shear + bulk)
     }
 
-    /// Poisson's ratio ν = (3K − 2G)/(6K + 2G).
+    /// Returns Poisson's ratio ν = (3K − 2G)/(6K + 2G).
     #[must_use]
     pub fn poisson_ratio(&self) -> f64 {
         let Self { bulk_modulus, shear_modulus, .. } = self;
         (3.0 * bulk_modulus - 2.0 * shear_modulus) / (6.0 * bulk_modulus + 2.0 * shear_modulus)
     }
 
-    /// Young's modulus of plane strain E' = E/(1 − ν²) = 4G (K + G/3)/(K + 4G/3) (Pa).
+    /// Returns Young's modulus of plane strain E' = E/(1 − ν²) = 4G (K + G/3)/(K + 4G/3) (Pa).
     #[must_use]
     pub fn plane_modulus(&self) -> f64 {
         4.0 * self.shear_modulus * (self.bulk_modulus + self.shear_modulus / 3.0) / self.longitudinal_modulus()

@@ -1,20 +1,19 @@
-//! What a run may take of the memory that the machine has left: it is counted before anything is allocated, for an
-//! allocation that fails ends the program.
+//! Memory available to a run. It is checked before anything is allocated, because a failed allocation ends the program.
 
 use std::fs;
 
-/// Memory that is taken to be there where the machine does not say (B).
+/// Memory that is assumed if the machine does not report any (B).
 const UNTOLD: u64 = 8 << 30;
 
-/// Memory that a run may take (B): what the machine has left, `MemAvailable` of `/proc/meminfo`, or 8 GiB where there is
-/// none; less where this process may not have as much (`ulimit -v`, as queues set it).
+/// Returns the memory that a run may use (B): `MemAvailable` of `/proc/meminfo`, or 8 GiB without that file. A smaller
+/// limit of this process (`ulimit -v`, as set by batch queues) applies.
 #[must_use]
 pub fn available() -> u64 {
     let told = fs::read_to_string("/proc/meminfo").ok();
     told.as_deref().and_then(told_by).unwrap_or(UNTOLD).min(allowed().unwrap_or(u64::MAX))
 }
 
-/// What is left of the limit on this process's addresses (B); none where there is no limit.
+/// Returns the rest of this process's address-space limit (B); `None` without a limit.
 fn allowed() -> Option<u64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let limit = limit_of(&limits)?;
@@ -23,7 +22,7 @@ fn allowed() -> Option<u64> {
     Some(limit.saturating_sub(in_kilobytes(taken)?))
 }
 
-/// The limit on addresses (B) that `/proc/self/limits` tells, where there is one.
+/// Reads the address-space limit (B) from `/proc/self/limits`; `None` without a limit.
 fn limit_of(limits: &str) -> Option<u64> {
     let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
     line.split_whitespace().next()?.parse().ok()
@@ -38,11 +37,11 @@ fn in_kilobytes(words: &str) -> Option<u64> {
     words.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// What is wrong with so many of something, of so many bytes each: more than the machine has left. None where they fit.
+/// Describes a request of `count` items of `bytes_each` bytes that exceeds the available memory; `None` if they fit.
 #[must_use]
 pub fn beyond(count: f64, what: &str, bytes_each: f64) -> Option<String> {
     let (wanted, available) = (count * bytes_each, available() as f64);
-    // What is not a number fits nowhere.
+    // NaN does not fit either.
     if wanted <= available {
         return None;
     }

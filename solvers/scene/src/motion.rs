@@ -1,22 +1,22 @@
-//! Prescribed motion of walls: exact positions at any time, so that a ramp ends where it should whatever the step.
+//! Prescribed motion of walls. Positions are exact at any time, so a ramp ends at the right position for any time step.
 
 use crate::function::Function;
 use nalgebra::{Rotation3, Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// A moment that is given in seconds or in calculation cycles.
+/// Moment in seconds or in calculation cycles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Moment {
-    /// A time (s).
+    /// Time (s).
     Seconds(f64),
-    /// A calculation cycle.
+    /// Calculation cycle.
     Cycle(u64),
     /// Not within the run.
     Never,
 }
 
 impl Moment {
-    /// The moment in seconds when a cycle lasts `time_step`.
+    /// Returns the moment (s) for cycles of `time_step` (s).
     #[must_use]
     pub fn seconds(self, time_step: f64) -> f64 {
         match self {
@@ -27,7 +27,7 @@ impl Moment {
     }
 }
 
-/// One phase: constant velocity and spin between two moments.
+/// Phase of constant velocity and spin between two moments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
     /// Velocity (m/s).
@@ -40,18 +40,19 @@ pub struct Phase {
     pub stop: Moment,
 }
 
-/// The motion of a wall, or of driven grains: phases and functions that add up. All rotations of a wall share one axis.
+/// Motion of a wall, or of grains with prescribed motion: the sum of phases and functions. All rotations share one
+/// axis.
 #[derive(Clone, Default, PartialEq)]
 pub struct Motion {
-    /// Centre of rotation at the start (m); it moves with the wall.
+    /// Initial centre of rotation (m). It moves with the wall.
     pub centre: Vector3<f64>,
-    /// The phases.
+    /// Phases.
     pub phases: Vec<Phase>,
-    /// The functions of time beside them.
+    /// Further functions of time.
     pub functions: Vec<Function>,
 }
 
-/// Functions are shown where there are any: what scenes are known by does not change where a key is not used.
+/// Prints functions only if there are any, so that fingerprints of scenes without functions stay the same.
 impl std::fmt::Debug for Motion {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut shown = formatter.debug_struct("Motion");
@@ -63,7 +64,7 @@ impl std::fmt::Debug for Motion {
     }
 }
 
-/// Where a wall is, relative to its start.
+/// Displacement of a wall from its initial position.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Displacement {
     /// Translation (m).
@@ -73,33 +74,33 @@ pub struct Displacement {
 }
 
 impl Motion {
-    /// Whether the wall ever moves.
+    /// Returns true if the wall ever moves.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         self.phases.iter().any(|phase| phase.velocity.norm() > 0.0 || phase.spin.norm() > 0.0)
             || self.functions.iter().any(|function| function.fastest() > 0.0)
     }
 
-    /// Whether there is none, not even one that stands still.
+    /// Returns true if there is no phase and no function, not even one at rest.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.phases.is_empty() && self.functions.is_empty()
     }
 
-    /// A bound of the speed that it ever has (m/s), but for what turns.
+    /// Returns an upper bound of the translational speed (m/s).
     #[must_use]
     pub fn fastest(&self) -> f64 {
         let phases = self.phases.iter().map(|phase| phase.velocity.norm());
         phases.chain(self.functions.iter().map(Function::fastest)).sum()
     }
 
-    /// Takes all motion away.
+    /// Removes all phases and functions.
     pub fn clear(&mut self) {
         self.phases.clear();
         self.functions.clear();
     }
 
-    /// Displacement since the start at `time` (s), with cycles of `time_step` (s).
+    /// Returns the displacement since the start at `time` (s), with cycles of `time_step` (s).
     #[must_use]
     pub fn displacement(&self, time: f64, time_step: f64) -> Displacement {
         let mut result = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
@@ -115,13 +116,13 @@ impl Motion {
         result
     }
 
-    /// Where a point of the wall (m, at the start) is after a displacement.
+    /// Returns the position (m) of a point of the wall after a displacement. `point` is its initial position (m).
     #[must_use]
     pub fn moved(&self, point: Vector3<f64>, displacement: &Displacement) -> Vector3<f64> {
         self.centre + displacement.translation + self.turned(point - self.centre, displacement)
     }
 
-    /// Where a direction of the wall points after a displacement.
+    /// Returns a direction of the wall after a displacement.
     #[must_use]
     pub fn turned(&self, direction: Vector3<f64>, displacement: &Displacement) -> Vector3<f64> {
         match Unit::try_new_and_get(displacement.rotation, 0.0) {
@@ -130,7 +131,7 @@ impl Motion {
         }
     }
 
-    /// How the wall is turned after a displacement.
+    /// Returns the rotation of the wall after a displacement.
     #[must_use]
     pub fn turning(&self, displacement: &Displacement) -> Rotation3<f64> {
         let turned = Unit::try_new_and_get(displacement.rotation, 0.0);

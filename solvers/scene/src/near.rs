@@ -1,18 +1,20 @@
-//! Which spheres are near each other, found in a time that grows with their number, whatever their sizes.
+//! Pairs of spheres near each other, found in a time proportional to their number, for any sizes.
 
 use crate::scene::Domain;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::ops::{ControlFlow, Range};
 
-/// Numbers of cells stay below this, so that those beside them are numbers too.
+/// Bound of the cell indices, so that the indices of adjacent cells are valid integers.
 const FARTHEST: f64 = 1e18;
 
-/// Gives each pair (a, b), a ≠ b, of spheres that are less than `skin` (m) apart to `visit`, by nearest images along the
-/// periodic axes of `domain`, at least once, and some that are not so near. Ends where `visit` breaks.
+/// Calls `visit` at least once for each pair (a, b), a ≠ b, of spheres with a gap below `skin` (m). Gaps are those of
+/// nearest images along the periodic axes of `domain`. Some pairs with larger gaps are visited too. The search ends
+/// when `visit` breaks.
 ///
-/// Spheres are sorted into classes of radii within a factor of two, and each class into cells as wide as what two of them
-/// reach: a sphere looks for those of its class and of larger ones in the cells around it.
+/// Spheres are sorted into classes of radii within a factor of two. The cells of a class are as wide as the interaction
+/// range of two of its spheres. A sphere searches its own class and the classes of larger spheres, in the cells around
+/// it.
 pub(crate) fn near_pairs(
     centres: &[Vector3<f64>],
     radii: &[f64],
@@ -32,7 +34,7 @@ pub(crate) fn near_pairs(
         let cells = Cells::new(&places, larger, 2.0 * largest + skin);
         for (class, (_, smaller)) in classes[..=at].iter().enumerate() {
             for &a in smaller {
-                // A sphere starts at most a face away from the sphere that it reaches.
+                // The image of a sphere lies at most one cell width beyond a periodic face.
                 for image in images(places[a as usize], domain, cells.width) {
                     for row in cells.rows_around(image) {
                         for &(_, b) in &cells.sorted[row] {
@@ -48,13 +50,13 @@ pub(crate) fn near_pairs(
     ControlFlow::Continue(())
 }
 
-/// Some spheres, sorted by cell.
+/// Spheres sorted by cell.
 struct Cells {
     /// Edge of a cell (m).
     width: f64,
-    /// Cell along x, within rows of cells, and number of each sphere.
+    /// Cell along x within its row, and index of each sphere.
     sorted: Vec<(i64, u32)>,
-    /// Where the rows stand, by their cells along y and z.
+    /// Range of each row in `sorted`, by its cells along y and z.
     rows: HashMap<[i64; 2], Range<usize>>,
 }
 
@@ -78,7 +80,7 @@ impl Cells {
         Self { width, sorted: keyed.into_iter().map(|([_, _, x], number)| (x, number)).collect(), rows }
     }
 
-    /// The cells around a place, as parts of rows.
+    /// Returns the cells around a position, as ranges of rows.
     fn rows_around(&self, place: Vector3<f64>) -> impl Iterator<Item = Range<usize>> {
         let [x, y, z] = cell(place, self.width);
         let around = (-1..=1).flat_map(move |k| (-1..=1).map(move |j| [y + j, z + k]));
@@ -94,7 +96,7 @@ fn cell(place: Vector3<f64>, width: f64) -> [i64; 3] {
     [0, 1, 2].map(|axis| (place[axis] / width).floor().clamp(-FARTHEST, FARTHEST) as i64)
 }
 
-/// Where a place is within the periodic axes of a domain.
+/// Returns a position wrapped into the domain along its periodic axes.
 fn wrapped(mut place: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
     if let Some(domain) = domain {
         for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
@@ -105,7 +107,7 @@ fn wrapped(mut place: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
     place
 }
 
-/// A place in the domain and its images within `reach` (m) of the periodic faces.
+/// Returns a position in the domain, and its images within `reach` (m) of the periodic faces.
 fn images(place: Vector3<f64>, domain: Option<&Domain>, reach: f64) -> Vec<Vector3<f64>> {
     let mut images = vec![place];
     if let Some(domain) = domain {
@@ -132,7 +134,7 @@ mod tests {
     use rand_pcg::Pcg64;
     use std::collections::BTreeSet;
 
-    /// Spheres of three octaves of radii in a box, some of them periods away from it.
+    /// Returns spheres with radii over three octaves in a box, some of them periods away from it.
     fn scatter(count: usize, spread: f64) -> (Vec<Vector3<f64>>, Vec<f64>) {
         let mut lot = Pcg64::seed_from_u64(7);
         let radii = (0..count).map(|_| 0.05 * 8.0_f64.powf(lot.random::<f64>())).collect();
@@ -178,7 +180,8 @@ mod tests {
         }
     }
 
-    /// Visits grow with the number of spheres and no faster, though one is far away and one as large as all others.
+    /// The number of visits grows linearly with the number of spheres, even with one distant sphere and one very large
+    /// sphere.
     #[test]
     fn visits_are_as_many_as_spheres() {
         let visits = |count: usize| {

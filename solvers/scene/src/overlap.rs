@@ -1,21 +1,21 @@
-//! Finds grains that overlap at the start, so that a mistyped position is an error and not an explosion.
+//! Detection of grains that overlap at the start, so that a mistyped position is an error and not an explosion.
 
 use crate::near::near_pairs;
 use crate::scene::{Domain, Grain, Wall, WallShape, across};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
-/// The deepest overlap of a scene relative to the smaller radius.
+/// Deepest overlap of a scene, relative to the smaller radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Deepest {
-    /// Two grains, by place.
+    /// Two grains, by index.
     Grains(usize, usize, f64),
-    /// A grain and a wall, by place.
+    /// Grain and wall, by index.
     GrainWall(usize, usize, f64),
 }
 
 impl Deepest {
-    /// Overlap divided by the smaller radius.
+    /// Returns the overlap divided by the smaller radius.
     #[must_use]
     pub const fn ratio(&self) -> f64 {
         match self {
@@ -23,7 +23,7 @@ impl Deepest {
         }
     }
 
-    /// The same, found among some grains of a scene that stand at these places of it.
+    /// Translates an overlap found in a subset of grains; `places` holds their indices in the scene.
     pub(crate) fn among(self, places: &[usize]) -> Self {
         match self {
             Self::Grains(a, b, ratio) => Self::Grains(places[a], places[b], ratio),
@@ -31,7 +31,7 @@ impl Deepest {
         }
     }
 
-    /// Who overlaps, and by how much.
+    /// Describes the overlapping bodies and the depth of the overlap.
     #[must_use]
     pub fn words(&self, walls: &[Wall]) -> String {
         let pair = match self {
@@ -42,9 +42,9 @@ impl Deepest {
     }
 }
 
-/// The deepest overlap among grains, and of grains with walls, if anything overlaps. Where one among grains is deeper than
-/// `enough` no deeper ones are looked for: of many grains in one place all pairs would be compared. The time grows with the
-/// number of grains.
+/// Returns the deepest overlap among grains, and between grains and walls; `None` if nothing overlaps. The search among
+/// grains ends at the first overlap above `enough`, because many grains at one position would require a comparison of
+/// all pairs. The time is proportional to the number of grains.
 #[must_use]
 pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>, enough: f64) -> Option<Deepest> {
     let pairs = grain_pairs(grains, domain, enough);
@@ -57,15 +57,15 @@ pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>, enough
     pairs.into_iter().chain(contacts).filter(|found| found.ratio() > 0.0).max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
 }
 
-/// The deepest among grains; of those that are as deep the first.
+/// Returns the deepest overlap among grains; the first one of equal depth.
 fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option<Deepest> {
     let centres: Vec<Vector3<f64>> = grains.iter().map(|grain| grain.position).collect();
     let radii: Vec<f64> = grains.iter().map(|grain| grain.radius).collect();
     let mut worst = (0.0, usize::MAX, usize::MAX);
-    // Ends early where one is deep enough: there is nothing else to be told.
+    // The search ends early at an overlap that is deep enough, because deeper overlaps are not reported.
     let _ = near_pairs(&centres, &radii, 0.0, domain, |a, b| {
         let (between, reach) = (nearest_image(centres[b] - centres[a], domain), radii[a] + radii[b]);
-        // Most pairs are apart: they need no root.
+        // Most pairs are apart and need no square root.
         if between.norm_squared() >= reach * reach {
             return ControlFlow::Continue(());
         }
@@ -80,7 +80,7 @@ fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option
     (ratio > 0.0).then_some(Deepest::Grains(first, second, ratio))
 }
 
-/// The shorter way between two places around a periodic domain (m).
+/// Returns the shortest vector between two positions in a periodic domain (m).
 #[must_use]
 pub fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
     if let Some(domain) = domain {
@@ -96,7 +96,7 @@ pub fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vect
     between
 }
 
-/// Distance from a point to a wall at the start (m); negative inside the solid of a plane.
+/// Returns the distance from a point to a wall at its initial position (m); negative in the solid behind a plane.
 #[must_use]
 pub fn distance(point: Vector3<f64>, shape: &WallShape) -> f64 {
     match shape {
@@ -108,14 +108,14 @@ pub fn distance(point: Vector3<f64>, shape: &WallShape) -> f64 {
     }
 }
 
-/// The point of a segment that is nearest to `point`.
+/// Returns the point of a segment nearest to `point`.
 #[must_use]
 pub fn nearest_on_segment(point: Vector3<f64>, ends: &[Vector3<f64>; 2]) -> Vector3<f64> {
     let along = ends[1] - ends[0];
     ends[0] + along * ((point - ends[0]).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
 }
 
-/// The point of a rectangle that is nearest to `point`.
+/// Returns the point of a rectangle nearest to `point`.
 #[must_use]
 pub fn nearest_on_rectangle(point: Vector3<f64>, corner: &Vector3<f64>, edges: &[Vector3<f64>; 2]) -> Vector3<f64> {
     edges
@@ -123,8 +123,9 @@ pub fn nearest_on_rectangle(point: Vector3<f64>, corner: &Vector3<f64>, edges: &
         .fold(*corner, |at, edge| at + edge * ((point - corner).dot(edge) / edge.norm_squared()).clamp(0.0, 1.0))
 }
 
-/// The point of the side of a cylinder or cone that is nearest to `point`: it lies in one half-plane with it, bounded by the
-/// axis, where the side is a segment. Of all that are nearest to a point of the axis it is one.
+/// Returns the point of a cylinder's or cone's lateral surface nearest to `point`. It lies in the half-plane through
+/// `point` bounded by the axis, where the surface is a segment. For a point on the axis, it is one of many nearest
+/// points.
 #[must_use]
 pub fn nearest_on_round(point: Vector3<f64>, axis: &[Vector3<f64>; 2], radii: &[f64; 2]) -> Vector3<f64> {
     let line = axis[1] - axis[0];
@@ -145,7 +146,7 @@ pub fn nearest_on_round(point: Vector3<f64>, axis: &[Vector3<f64>; 2], radii: &[
 mod tests {
     use super::*;
 
-    /// Two grains whose places in the domain are .15 m apart, though one starts a thousand lengths away.
+    /// Two grains are .15 m apart in the domain, although one starts a thousand periods away.
     #[test]
     fn grains_far_from_a_periodic_domain_meet_those_within() {
         let grain = |x: f64| Grain {
@@ -162,7 +163,7 @@ mod tests {
         assert!(matches!(found, Deepest::Grains(0, 2, _)) && (found.ratio() - 0.5).abs() < 1e-9, "{found:?}");
     }
 
-    /// Of many points of a cone none is nearer than the one that is found, and that is one of it.
+    /// No sampled point of the cone is nearer than the result, and the result lies on the cone.
     #[test]
     fn the_nearest_point_of_a_cone_is_nearest() {
         let axis = [Vector3::new(0.3, -0.2, 0.1), Vector3::new(1.3, 0.8, 2.1)];
@@ -188,13 +189,13 @@ mod tests {
                 let away = (found - axis[0] - line * (height / length)).norm();
                 assert!((away - radii[0] - (radii[1] - radii[0]) * height / length).abs() < 1e-12);
             }
-            // On the axis, where all directions are alike.
+            // On the axis, all directions are equivalent.
             let middle = nearest_on_round(axis[0] + line * 0.5, &axis, &radii);
             assert!(middle.iter().all(|number| number.is_finite()));
         }
     }
 
-    /// A million grains in one place: of all pairs this would take hours.
+    /// Comparing all pairs of a million grains at one position would take hours.
     #[test]
     fn grains_in_one_place_are_found_at_once() {
         let grain = Grain {

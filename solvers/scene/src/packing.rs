@@ -1,9 +1,9 @@
-//! Dense packings without overlap, from a seed: grains of given sizes grow in a box while overlaps are pushed apart.
+//! Dense packings without overlap, from a seed. Grains of given sizes grow in a box while overlaps are pushed apart.
 //!
-//! Grains start at random places at half their size. They grow in small stages; after each, every overlapping pair is
-//! moved apart along its line of centres in proportion to the inverse of the squared radii, pair after pair, until no
-//! pair overlaps. There is no friction and no time in it, so packings can be denser than those that grains with
-//! friction come to rest in.
+//! Grains start at random positions at half their size and grow in small stages. After each stage, overlapping pairs
+//! are moved apart along their line of centres, one pair after the other, until no pair overlaps. The displacements are
+//! inversely proportional to the squared radii. The algorithm has no friction and no time, so packings can be denser
+//! than the final state of settled grains with friction.
 
 use crate::near::near_pairs;
 use crate::scene::{Dimension, Domain};
@@ -15,39 +15,39 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// Most grains.
+/// Largest number of grains.
 pub const MOST: u32 = 20_000;
-/// Size at the start, as a fraction.
+/// Initial size, as a fraction of the full size.
 const SMALL: f64 = 0.5;
 const STAGES: u32 = 60;
 const SWEEPS_PER_STAGE: u32 = 20;
-/// Sweeps at full size before a packing is given up as impossible.
+/// Number of sweeps at full size before a packing counts as impossible.
 const SWEEPS: u32 = 40_000;
-/// By how much grains are taken larger than they are while the last overlaps are pushed apart, so that it ends in gaps.
+/// Relative oversize of grains while the last overlaps are removed, so that the result has gaps.
 const MARGIN: f64 = 1e-4;
 
-/// Centres (m) of grains of the given radii (m), in their order, in `domain`: across periodic faces grains touch their
-/// images, the other faces are smooth walls. `None` when overlaps cannot be pushed apart: the grains are too many for
-/// the box. The same seed gives the same packing on every machine.
+/// Returns the centres (m) of grains of the given radii (m), in their order, in `domain`. Grains touch their images
+/// across periodic faces; other faces are smooth walls. `None` means that overlaps remain, because the grains are too
+/// many for the box. The same seed gives the same packing on every machine.
 #[must_use]
 pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
     packed(radii, seed, domain, dimension, false)
 }
 
-/// The same, but faces that are not periodic hold centres and not whole grains: they cut those that lie at them.
+/// Returns a packing whose non-periodic faces bound the centres, so that these faces cut grains.
 #[must_use]
 pub fn pack_cut(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
     packed(radii, seed, domain, dimension, true)
 }
 
-/// What a packing is made from, to the bit.
+/// Inputs of a packing, bit for bit.
 type Recipe = (Vec<u64>, u64, [u64; 6], [bool; 3], usize, bool);
-/// A packing, made by whoever comes first.
+/// Packing, computed by the first thread that needs it.
 type Place = Arc<OnceLock<Option<Vec<Vector3<f64>>>>>;
-/// Packings that are remembered; one of the largest has half a megabyte.
+/// Number of packings in the cache. The largest packing takes half a megabyte.
 const REMEMBERED: usize = 32;
 
-/// Variants of a scene and its wrong copies begin with one packing: it is made once.
+/// Returns a packing from the cache or computes it. Variants and controls of a scene start from the same packing.
 fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<Vec<Vector3<f64>>> {
     static MADE: Mutex<VecDeque<(Recipe, Place)>> = Mutex::new(VecDeque::new());
     let bits = |at: usize| if at < 3 { domain.low[at] } else { domain.high[at - 3] }.to_bits();
@@ -74,7 +74,7 @@ fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: 
     place.get_or_init(|| made(radii, seed, domain, dimension, cut, SWEEPS)).clone()
 }
 
-/// The share of the domain that grains of these radii (m) would fill.
+/// Returns the fraction of the domain that grains of these radii (m) would fill.
 #[must_use]
 pub fn filled(radii: impl Iterator<Item = f64>, domain: &Domain, dimension: Dimension) -> f64 {
     let axes = dimension.count();
@@ -83,12 +83,13 @@ pub fn filled(radii: impl Iterator<Item = f64>, domain: &Domain, dimension: Dime
     radii.map(ball).sum::<f64>() / room
 }
 
-/// The largest share of the domain, to a hundredth, that the same grains fill without overlap if they shrink together until
-/// they do; less than a half is not looked for. Found with fewer sweeps than a packing is given.
+/// Returns the largest fraction of the domain that these grains can fill without overlap after scaling them down
+/// together. The fraction is rounded to a hundredth; fractions below one half are not tried. The search uses fewer
+/// sweeps than a packing.
 #[must_use]
 pub fn reachable(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<f64> {
     let asked = filled(radii.iter().copied(), domain, dimension);
-    // No packing of equal discs or spheres is denser (Thue, Hales); those of several sizes may be, a little.
+    // No packing of equal discs or spheres is denser (Thue, Hales). Packings of several sizes may be slightly denser.
     let most: u32 = if dimension == Dimension::Two { 90 } else { 74 };
     (50..=most).rev().map(|percent| f64::from(percent) / 100.0).filter(|share| *share < asked).find(|share| {
         let scale = if dimension == Dimension::Two { (share / asked).sqrt() } else { libm::cbrt(share / asked) };
@@ -106,7 +107,7 @@ fn made(
     sweeps: u32,
 ) -> Option<Vec<Vector3<f64>>> {
     let axes = dimension.count();
-    // More than fills the box need not be tried, and would list every pair.
+    // Grains that fill more than the box are not tried; all their pairs would be listed.
     if filled(radii.iter().copied(), domain, dimension) > 1.0 {
         return None;
     }
@@ -154,18 +155,18 @@ struct Packing<'a> {
     centres: Vec<Vector3<f64>>,
     domain: &'a Domain,
     axes: usize,
-    /// Whether faces that are not periodic hold centres.
+    /// True if non-periodic faces bound the centres.
     cut: bool,
-    /// Pairs that were within the skin when they were listed.
+    /// Pairs whose gap was below the skin when they were listed.
     pairs: Vec<(u32, u32)>,
-    /// Centres at that time.
+    /// Centres when the pairs were listed.
     listed: Vec<Vector3<f64>>,
-    /// Distance (m).
+    /// Skin (m).
     skin: f64,
 }
 
 impl Packing<'_> {
-    /// From b to a, the shortest way.
+    /// Returns the shortest vector from b to a.
     fn between(&self, a: usize, b: usize) -> Vector3<f64> {
         let mut apart = self.centres[a] - self.centres[b];
         for axis in (0..self.axes).filter(|&axis| self.domain.periodic[axis]) {
@@ -175,7 +176,7 @@ impl Packing<'_> {
         apart
     }
 
-    /// Lists the pairs that are within the skin.
+    /// Lists the pairs whose gap is below the skin.
     fn list(&mut self) {
         let radii: Vec<f64> = self.radii.iter().map(|radius| radius * self.scale).collect();
         let mut pairs = Vec::new();
@@ -186,14 +187,14 @@ impl Packing<'_> {
             }
             ControlFlow::Continue(())
         });
-        // The order of the pairs is part of the result.
+        // The order of the pairs affects the result.
         pairs.sort_unstable();
         pairs.dedup();
         self.pairs = pairs;
         self.listed.clone_from(&self.centres);
     }
 
-    /// Whether no pair overlaps at full size.
+    /// Returns true if no pair overlaps at full size.
     fn is_free(&self) -> bool {
         self.pairs.iter().all(|&(a, b)| {
             let (a, b) = (a as usize, b as usize);
@@ -201,7 +202,7 @@ impl Packing<'_> {
         })
     }
 
-    /// Pushes every overlapping pair apart, and grains off the walls; the largest overlap (m) that it met.
+    /// Moves every overlapping pair apart and grains off the walls. Returns the largest overlap found (m).
     fn sweep(&mut self) -> f64 {
         let mut worst: f64 = 0.0;
         for at in 0..self.pairs.len() {
@@ -261,7 +262,7 @@ mod tests {
         (0..count).map(|number| 1.0 + f64::from(number % 7) / 3.0).collect()
     }
 
-    /// Edge of a square in which the grains take up a fraction.
+    /// Returns the edge of a square in which the grains fill a fraction.
     fn edge(radii: &[f64], fraction: f64) -> f64 {
         (PI * radii.iter().map(|radius| radius * radius).sum::<f64>() / fraction).sqrt()
     }
@@ -299,7 +300,7 @@ mod tests {
         }
     }
 
-    /// What is said to be reachable is reached, and it is a dense packing.
+    /// A fraction reported as reachable is reached, and it is a dense packing.
     #[test]
     fn what_is_reachable_can_be_packed() {
         for asked in [0.9, 100.0] {
@@ -311,7 +312,7 @@ mod tests {
         }
     }
 
-    /// Packings are remembered by all that they are made from.
+    /// The cache key contains all inputs of a packing.
     #[test]
     fn another_recipe_is_another_packing() {
         let all = radii(60);

@@ -1,5 +1,5 @@
-//! Grains that are poured: one after the other at a rate, each somewhere in a box from a seed, so that the same grains come
-//! whatever the solver.
+//! Poured grains: inserted one after the other at a given rate, at random positions in a box from a seed. Every solver
+//! gets the same grains.
 
 use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
@@ -7,41 +7,41 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::VecDeque;
 
-/// What is poured.
+/// Parameters of pouring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pour {
-    /// How many grains.
+    /// Number of grains.
     pub count: u32,
-    /// Grains in a second (1/s).
+    /// Insertion rate (1/s).
     pub rate: f64,
     /// Seed of the generator.
     pub seed: u64,
     /// Radius of every grain (m).
     pub radius: f64,
-    /// Velocity at which they come (m/s).
+    /// Initial velocity of the grains (m/s).
     pub velocity: Vector3<f64>,
     /// Gravity (m/s²).
     pub gravity: Vector3<f64>,
-    /// Corners of the box in which centres are at first (m).
+    /// Corners of the box in which centres are inserted (m).
     pub corners: [Vector3<f64>; 2],
-    /// Time of the first (s).
+    /// Time of the first insertion (s).
     pub start: f64,
 }
 
-/// Why grains cannot be poured.
+/// Reason that grains cannot be poured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unpourable {
-    /// No room was found for one of them in 10,000 tries.
+    /// No room was found for a grain in 10,000 tries.
     NoRoom,
-    /// More than 20,000 are still near the box: they do not fall out of it, or it is a domain and no spout.
+    /// More than 20,000 grains are still near the box: they do not fall out of it, or the box spans the domain.
     Crowd,
 }
 
-/// Where and when each grain comes: time (s) and centre (m). A grain touches none of those before it as long as these fall
-/// freely: what stands in the way of the box is not looked at.
+/// Returns the time (s) and the centre (m) of each insertion. A grain does not overlap earlier grains as long as these
+/// fall freely. Other obstacles are not considered.
 ///
 /// # Errors
-/// When there is no room for all of them, or too many stay near the box.
+/// When there is no room for all grains, or too many grains remain near the box.
 pub fn poured(
     pour: &Pour,
     domain: Option<&Domain>,
@@ -52,7 +52,7 @@ pub fn poured(
     let mut generator = Pcg64::seed_from_u64(pour.seed);
     let [low, high] = pour.corners;
     let mut all = Vec::with_capacity(pour.count as usize);
-    // Those that may still be near the box.
+    // Grains that may still be near the box.
     let mut near: VecDeque<(f64, Vector3<f64>)> = VecDeque::new();
     for number in 0..pour.count {
         let time = pour.start + f64::from(number) / pour.rate;
@@ -136,7 +136,7 @@ mod tests {
     fn a_rate_that_leaves_no_room_is_told() {
         let with = |pour: Pour| poured(&pour, None, Dimension::Three);
         assert_eq!(with(Pour { rate: 4000.0, ..pour() }), Err(Unpourable::NoRoom));
-        // Times beyond all numbers, and grains that do not fall.
+        // An insertion time that is infinite, and grains that do not fall.
         assert_eq!(with(Pour { rate: 1e-320, ..pour() }), Err(Unpourable::NoRoom));
         let (still, corners) = (Vector3::zeros(), [Vector3::zeros(), Vector3::repeat(1e4)]);
         let resting = Pour { count: 1_000_000, velocity: still, gravity: still, corners, ..pour() };

@@ -7,13 +7,13 @@ use nalgebra::{Matrix3, Vector3};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What a record has of a solver that does not know.
+/// Value of a quantity that a solver does not report.
 const UNKNOWN: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
-/// A name, and what it is of a budget.
+/// Name of an energy, and its value in a budget.
 type Entry = (&'static str, fn(&Budget) -> f64);
 
-/// The entries of an energy budget, by name.
+/// Entries of an energy budget, by name.
 const ENERGIES: [Entry; 11] = [
     ("kinetic", |budget| budget.kinetic),
     ("elastic", |budget| budget.elastic),
@@ -31,7 +31,7 @@ const ENERGIES: [Entry; 11] = [
 /// Components of the stress, in the order of [`crate::record::PointState::stress`].
 const STRESSES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 
-/// How many of them there are: plane strain has four.
+/// Returns the number of stress components: four in plane strain.
 const fn stresses(dimension: Dimension) -> usize {
     match dimension {
         Dimension::Two => 4,
@@ -39,7 +39,7 @@ const fn stresses(dimension: Dimension) -> usize {
     }
 }
 
-/// The columns of every probe of a scene, still without samples.
+/// Returns the columns of all probes of a scene, without samples.
 pub(crate) fn empty_series(scene: &Scene) -> Series {
     let columns: Vec<Column> = scene
         .probes
@@ -65,14 +65,14 @@ pub(crate) fn sample(series: &mut Series, scene: &Scene, look: &Look) {
 }
 
 impl Probe {
-    /// Whether it looks at contacts one by one.
+    /// Returns true if the probe needs individual contacts.
     #[must_use]
     pub const fn looks_at_contacts(&self) -> bool {
         matches!(self.target, ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) | ProbeTarget::Stress)
     }
 }
 
-/// Components of the mean stress of grains.
+/// Returns the components of the mean stress of grains.
 const fn mean_stresses(dimension: Dimension) -> &'static [(usize, usize)] {
     match dimension {
         Dimension::Two => &[(0, 0), (1, 1), (0, 1)],
@@ -80,7 +80,7 @@ const fn mean_stresses(dimension: Dimension) -> &'static [(usize, usize)] {
     }
 }
 
-/// Mean stress of the grains from the contacts between them, and how many grains each touches; see
+/// Returns the mean stress of the grains from the contacts between them, and then the coordination number; see
 /// [`crate::file::ProbeSpec::stress`].
 fn mean_stress(snapshot: &Snapshot, dimension: Dimension) -> Vec<f64> {
     let (low, high) = snapshot.bounds;
@@ -258,9 +258,9 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
     }
 }
 
-/// Overlap, normal force, shear force and slipping of one contact; zeros while it does not touch, no
-/// numbers where contacts are not known. In the plane the
-/// shear force on the first grain is positive along `t = (e₂, −e₁)`, clockwise from the normal `e` to the partner.
+/// Returns overlap, normal force, shear force and slipping of one contact: zeros without contact, NaN if contacts are
+/// not reported. In the plane, the shear force on the first grain is positive along `t = (e₂, −e₁)`, clockwise from the
+/// normal `e` to the partner.
 fn contact_values(look: &Look, grain: usize, partner: Partner, flat: bool) -> Vec<f64> {
     let id = grain as u32 + 1;
     let Some(contacts) = &look.snapshot.contacts else { return vec![f64::NAN; 4] };
@@ -277,7 +277,8 @@ fn contact_values(look: &Look, grain: usize, partner: Partner, flat: bool) -> Ve
     )
 }
 
-/// The sign in the plane does not depend on which grain comes first: both force and direction turn around.
+/// Returns the shear force. In the plane, its sign does not depend on the order of the grains, because force and normal
+/// both change sign.
 fn shear(contact: &ContactState, flat: bool) -> f64 {
     let force = contact.shear_force;
     if flat { force.x * contact.normal.y - force.y * contact.normal.x } else { force.norm() }

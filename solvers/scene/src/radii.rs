@@ -1,14 +1,15 @@
-//! Distributions of radii, drawn from a generator: the same numbers on every machine.
+//! Size distributions, sampled from a generator. They give the same numbers on every machine.
 
 use rand::{Rng, RngExt};
 use std::f64::consts::TAU;
 
-/// How radii are distributed.
+/// Distribution of radii.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Radii {
-    /// Evenly between two (m).
+    /// Uniform distribution between two radii (m).
     Uniform([f64; 2]),
-    /// R = median · exp(deviation · n), n normally distributed; drawn again outside a range (m).
+    /// Log-normal distribution: R = median · exp(deviation · n) with n normally distributed. Values outside a range (m)
+    /// are redrawn.
     LogNormal {
         /// Median of R (m).
         median: f64,
@@ -21,20 +22,22 @@ pub enum Radii {
     ByMass(Vec<Part>),
 }
 
-/// Grains of radii between two sieves, over which their mass is spread evenly.
+/// Grains with radii between two sieves. Their mass is spread uniformly over the radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
     /// Smallest and largest R (m).
     pub range: [f64; 2],
-    /// Share of the number of grains up to the end of this part.
+    /// Fraction of the number of grains up to the end of this part.
     pub up_to: f64,
-    /// Power p of R that mass goes with: 3 for spheres, 2 for discs.
+    /// Power p of R to which the mass is proportional: 3 for spheres, 2 for discs.
     pub power: i32,
 }
 
 impl Radii {
-    /// A sieve curve: radii (m) with the share of the mass that is no larger, both rising, the latter from 0 to 1. With the
-    /// mass even over a part, numbers go as R⁻ᵖ: of a share w from a to b there are w/(b − a) ∫ R⁻ᵖ dR over the mass at R = 1.
+    /// Returns the distribution of a sieve curve: radii (m), each with the mass fraction of grains that are no larger.
+    /// Both rise, and the fraction rises from 0 to 1. With the mass uniform over a part, the number density is
+    /// proportional to R⁻ᵖ. A mass fraction w between a and b thus contains w/(b − a) ∫ R⁻ᵖ dR grains, in units of the
+    /// inverse mass of a grain with R = 1.
     #[must_use]
     pub fn by_mass(curve: &[(f64, f64)], power: i32) -> Self {
         let number = |a: f64, b: f64, share: f64| {
@@ -52,7 +55,7 @@ impl Radii {
         Self::ByMass(parts)
     }
 
-    /// The largest that there can be (m).
+    /// Returns the largest possible radius (m).
     #[must_use]
     pub fn largest(&self) -> f64 {
         match self {
@@ -61,7 +64,7 @@ impl Radii {
         }
     }
 
-    /// One of them (m).
+    /// Draws a radius (m).
     pub fn draw(&self, generator: &mut impl Rng) -> f64 {
         match self {
             Self::Uniform([small, large]) => small + (large - small) * generator.random::<f64>(),
@@ -80,7 +83,7 @@ impl Radii {
                     return a;
                 }
                 let (low, high) = (antiderivative(a, power), antiderivative(b, power));
-                // Of −R^(1 − p)/(p − 1) the inverse.
+                // Inverse of −R^(1 − p)/(p − 1).
                 let value = -f64::from(power - 1) * (low + within * (high - low));
                 libm::pow(value, -1.0 / f64::from(power - 1)).clamp(a, b)
             }
@@ -88,12 +91,12 @@ impl Radii {
     }
 }
 
-/// Of R⁻ᵖ.
+/// Returns the antiderivative of R⁻ᵖ.
 fn antiderivative(radius: f64, power: i32) -> f64 {
     -radius.powi(1 - power) / f64::from(power - 1)
 }
 
-/// A normally distributed number (Box & Muller).
+/// Draws a normally distributed number (Box & Muller).
 fn normal(generator: &mut impl Rng) -> f64 {
     let size = (-2.0 * libm::log(1.0 - generator.random::<f64>())).sqrt();
     size * libm::cos(TAU * generator.random::<f64>())
@@ -110,7 +113,7 @@ mod tests {
         (0..100_000).map(|_| radii.draw(&mut generator)).collect()
     }
 
-    /// Median and deviation of ln R; a hundred thousand draws tell the mean to a third of a hundredth of the deviation.
+    /// Median and standard deviation of ln R. The standard error of the mean of 10⁵ draws is 0.003 of the deviation.
     #[test]
     fn logarithms_are_normal() {
         let all = drawn(&Radii::LogNormal { median: 2.0, deviation: 0.3, range: [0.1, 40.0] });
@@ -120,7 +123,7 @@ mod tests {
         assert!((mean - 2.0_f64.ln()).abs() < 4e-3 && (square.sqrt() - 0.3).abs() < 3e-3, "{mean} {}", square.sqrt());
     }
 
-    /// A sieve curve comes back from the masses: a third of it evenly from 1 to 2, two thirds from 2 to 4, a step at 4.
+    /// The masses reproduce the sieve curve: a third from 1 to 2, rising to .8 at 4, with a step to 1 at 4.
     #[test]
     fn masses_follow_the_sieve_curve() {
         let curve = [(1.0, 0.0), (2.0, 1.0 / 3.0), (4.0, 0.8), (4.0, 1.0)];

@@ -1,4 +1,4 @@
-//! What a run leaves behind: time series, snapshots, cost, provenance.
+//! Output of a run: time series, snapshots, cost and provenance.
 
 use crate::budget::Budget;
 use crate::effects::Effects;
@@ -7,7 +7,7 @@ use crate::solver::Resolution;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// One column of a time series.
+/// Column of a time series.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Column {
     /// Name, such as `disc.x` or `wall-corner.normal_force`.
@@ -16,7 +16,7 @@ pub struct Column {
     pub unit: String,
 }
 
-/// Time series of all probes of a scene, sampled together.
+/// Time series of all probes of a scene, sampled at the same steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     /// Step (calculation cycle) of every sample.
@@ -30,7 +30,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// The values of a column, if there is one of that name.
+    /// Returns the values of the column of this name; `None` if there is none.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let at = self.columns.iter().position(|column| column.name == name)?;
@@ -38,12 +38,12 @@ impl Series {
     }
 }
 
-/// One grain as a snapshot shows it. In two dimensions z components are zero and spin is along z.
+/// Grain in a snapshot. In two dimensions, z components are zero and the spin is along z.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GrainState {
-    /// Identity, from 1, the same in every snapshot.
+    /// Id, from 1; the same in every snapshot.
     pub id: u32,
-    /// Place of its material in the scene, from 0.
+    /// Index of its material in the scene, from 0.
     pub material: u16,
     /// Radius (m).
     pub radius: f64,
@@ -53,29 +53,29 @@ pub struct GrainState {
     pub position: Vector3<f64>,
     /// Velocity at the time of the snapshot (m/s).
     pub velocity: Vector3<f64>,
-    /// Angular velocity (rad/s); not a number where nobody told it.
+    /// Angular velocity (rad/s); NaN if the solver does not report it.
     #[serde(with = "untold")]
     pub spin: Vector3<f64>,
-    /// Rotation since the start (rad), about z; absent in three dimensions, and where a program did not tell it.
+    /// Rotation about z since the start (rad); absent in three dimensions, or if the solver does not report it.
     pub angle: Option<f64>,
-    /// Sum of all forces, gravity excluded (N; N/m for discs); absent where a program did not tell it.
+    /// Sum of all forces except gravity (N; N/m for discs); absent if the solver does not report it.
     pub force: Option<Vector3<f64>>,
-    /// Sum of all torques (N m; N for discs); absent where a program did not tell it.
+    /// Sum of all torques (N m; N for discs); absent if the solver does not report it.
     pub torque: Option<Vector3<f64>>,
-    /// Equivalent plastic strain, its mean over the mass; zero for a grain that does not yield.
+    /// Equivalent plastic strain, averaged over the mass; zero for a grain that does not yield.
     #[serde(default)]
     pub plastic_strain: f64,
-    /// V σ of the instant: xx, yy, zz, xy, yz, zx (J; J/m for discs), where it is asked for (see [`crate::virial`]). Apart from
-    /// the grain, for few runs ask for it and large ones hold a million grains.
+    /// Instantaneous V σ, if requested: xx, yy, zz, xy, yz, zx (J; J/m for discs); see [`crate::virial`]. It is boxed
+    /// because few runs request it and large runs have a million grains.
     #[serde(default)]
     pub virial: Option<Box<[f64; 6]>>,
-    /// The same, its mean over the time since the snapshot before; none in the first.
+    /// Average of V σ over the time since the previous snapshot, if requested; absent in the first snapshot.
     #[serde(default)]
     pub mean_virial: Option<Box<[f64; 6]>>,
 }
 
 impl GrainState {
-    /// A grain of which nobody has told more than where it started: neither angle nor forces. Ids count from 1.
+    /// Returns a grain in its initial state, without angle and forces. Ids count from 1.
     #[must_use]
     pub fn start(id: u32, grain: &Grain) -> Self {
         Self {
@@ -96,42 +96,42 @@ impl GrainState {
     }
 }
 
-/// One body that is no grain, as a snapshot shows it.
+/// Deformable body other than a grain, in a snapshot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyState {
     /// Name in the scene.
     pub name: String,
     /// Mass (kg; per metre of depth in the plane).
     pub mass: f64,
-    /// Moment of inertia about its centre of mass, mean over the axes it can turn about (kg m²).
+    /// Moment of inertia about the centre of mass, averaged over the axes of possible rotation (kg m²).
     pub inertia: f64,
     /// Centre of mass (m).
     pub position: Vector3<f64>,
     /// Velocity of the centre of mass (m/s).
     pub velocity: Vector3<f64>,
-    /// Angular momentum over moment of inertia (rad/s).
+    /// Angular momentum divided by the moment of inertia (rad/s).
     pub spin: Vector3<f64>,
-    /// Rotation since the start (rad), about z; zero in three dimensions.
+    /// Rotation about z since the start (rad); zero in three dimensions.
     pub angle: f64,
-    /// Sum of all forces of contacts (N).
+    /// Sum of all contact forces (N).
     pub force: Vector3<f64>,
 }
 
-/// Which body a material point belongs to.
+/// Body to which a material point belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Owner {
-    /// A grain, by id.
+    /// Grain, by id.
     Grain(u32),
-    /// A body that is no grain, by its place in the scene, from 0.
+    /// Other body, by index in the scene, from 0.
     Body(u32),
 }
 
-/// One material point of a deformable body.
+/// Material point of a deformable body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PointState {
-    /// Which body it belongs to.
+    /// Body to which the point belongs.
     pub owner: Owner,
-    /// Position (m); along periodic axes not taken back into the domain.
+    /// Position (m), not wrapped into the domain along periodic axes.
     pub position: Vector3<f64>,
     /// Displacement since the start (m).
     pub displacement: Vector3<f64>,
@@ -141,105 +141,108 @@ pub struct PointState {
     pub stress: [f64; 6],
     /// Equivalent plastic strain.
     pub plastic_strain: f64,
-    /// Rotation R of the deformation F = R U (rad), about z, in the turn nearest to that of its body; zero in three
-    /// dimensions.
+    /// Rotation R of the deformation F = R U about z (rad), with the number of turns nearest to its body's rotation;
+    /// zero in three dimensions.
     #[serde(default)]
     pub rotation: f64,
     /// Volume (m³; m² in the plane).
     pub volume: f64,
 }
 
-/// The other side of a contact.
+/// Partner of a grain in a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Partner {
-    /// A grain, by id.
+    /// Grain, by id.
     Grain(u32),
-    /// A body that is no grain, by its place in the scene, from 0.
+    /// Other body, by index in the scene, from 0.
     Body(u32),
-    /// A wall, by its place in the scene, from 0.
+    /// Wall, by index in the scene, from 0.
     Wall(u16),
 }
 
-/// One contact as a snapshot shows it.
+/// Contact in a snapshot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
-    /// The grain, by id.
+    /// Grain, by id.
     pub grain: u32,
-    /// What it touches.
+    /// Partner of the grain.
     pub partner: Partner,
-    /// Contact point (m), halfway through the overlap.
+    /// Contact point (m), in the middle of the overlap.
     pub point: Vector3<f64>,
     /// Unit vector from the grain to its partner.
     pub normal: Vector3<f64>,
-    /// Overlap (m), positive while touching.
+    /// Overlap (m); positive in contact.
     pub overlap: f64,
-    /// Normal force, dashpot included (N), positive when it pushes apart.
+    /// Normal force, dashpot included (N); positive if repulsive.
     pub normal_force: f64,
     /// Tangential force on the grain, dashpot included (N).
     pub shear_force: Vector3<f64>,
-    /// Whether the Coulomb limit was reached in the last step.
+    /// True if the contact reached the Coulomb limit in the last step.
     pub slipping: bool,
 }
 
-/// One wall as a snapshot shows it.
+/// Wall in a snapshot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WallState {
     /// Name in the scene.
     pub name: String,
-    /// Corner points (m): two for a segment, four for a rectangle; point and normal for a plane; the ends of its axis, and a
-    /// point of the rim at each, for a cylinder or a cone; where the origin of its file and points 1 m along x and y from
-    /// there are, for a mesh; none of a wall that has been taken away.
+    /// Reference points of the wall (m); empty for a removed wall.
+    ///
+    /// - Segment: its two ends. Rectangle: its four corners. Plane: a point and the normal.
+    /// - Cylinder or cone: the ends of its axis, and a point of the rim at each end.
+    /// - Mesh: the origin of its file, and the points 1 m from the origin along x and y.
     pub corners: Vec<Vector3<f64>>,
-    /// True when `corners` is a point and the unit normal of an infinite plane.
+    /// True if `corners` holds a point and the unit normal of an infinite plane.
     pub infinite: bool,
-    /// Force of the grains on the wall (N; N/m for discs); absent where a program did not tell it.
+    /// Force of the grains on the wall (N; N/m for discs); absent if the solver does not report it.
     pub force: Option<Vector3<f64>>,
 }
 
-/// Everything at one time.
+/// State at one time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// Step (calculation cycle).
     pub step: u64,
     /// Time (s).
     pub time: f64,
-    /// Corners of the domain (m), for drawing and for dump headers.
+    /// Corners of the domain (m), for figures and dump headers.
     pub bounds: (Vector3<f64>, Vector3<f64>),
-    /// Which axes are periodic.
+    /// True for each periodic axis.
     pub periodic: [bool; 3],
-    /// Grains in order of id.
+    /// Grains, sorted by id.
     pub grains: Vec<GrainState>,
-    /// All contacts, in order of grain id; absent where a program did not tell them, which is not the same as none.
+    /// All contacts, sorted by grain id; absent if the solver does not report contacts, which differs from an empty
+    /// list.
     pub contacts: Option<Vec<ContactState>>,
     /// Walls in the order of the scene.
     pub walls: Vec<WallState>,
-    /// Bodies that are no grains, in the order of the scene.
+    /// Bodies other than grains, in the order of the scene.
     #[serde(default)]
     pub bodies: Vec<BodyState>,
-    /// Material points, where a solver has them.
+    /// Material points, if the solver has any.
     #[serde(default)]
     pub points: Vec<PointState>,
 }
 
 impl Snapshot {
-    /// The contacts that are told: none where nobody has told any, so that pictures show nothing where nothing is known.
-    /// What is judged asks for `contacts` itself.
+    /// Returns the reported contacts; empty if none were reported. For figures; evaluations read `contacts` to
+    /// distinguish the two cases.
     #[must_use]
     pub fn told_contacts(&self) -> &[ContactState] {
         self.contacts.as_deref().unwrap_or_default()
     }
 
-    /// Number of contacts, and how many of them slip; none where nobody has told them.
+    /// Returns the number of contacts and the number of slipping contacts; `None` if contacts are not reported.
     #[must_use]
     pub fn touching(&self) -> Option<[usize; 2]> {
         let contacts = self.contacts.as_ref()?;
         Some([contacts.len(), contacts.iter().filter(|contact| contact.slipping).count()])
     }
 
-    /// Place of the grain of an id in the list of grains; none where it is not there.
+    /// Returns the index of the grain with an id; `None` if it is absent.
     #[must_use]
     pub fn place_of(&self, id: u32) -> Option<usize> {
-        // Where all are there the id tells it.
+        // If all grains are present, the index follows from the id.
         let place = (id as usize).checked_sub(1)?;
         if self.grains.get(place).is_some_and(|grain| grain.id == id) {
             return Some(place);
@@ -247,14 +250,13 @@ impl Snapshot {
         self.grains.binary_search_by_key(&id, |grain| grain.id).ok()
     }
 
-    /// The grain of an id; none where it is not there.
+    /// Returns the grain with an id; `None` if it is absent.
     #[must_use]
     pub fn grain(&self, id: u32) -> Option<&GrainState> {
         self.place_of(id).map(|place| &self.grains[place])
     }
 
-    /// What a solver shows that knows of grains alone: no contacts, and walls as far as they have moved, without
-    /// forces.
+    /// Returns a snapshot of grains alone: without contacts, and with walls that have moved but report no forces.
     #[must_use]
     pub fn of_grains(scene: &Scene, step: u64, time: f64, grains: Vec<GrainState>) -> Self {
         let time_step = if step == 0 { 0.0 } else { time / step as f64 };
@@ -277,8 +279,8 @@ impl Snapshot {
     }
 }
 
-/// Corners of the domain (m), or of the box around all grains where the scene has none, or of that around its bodies as
-/// they start where there are no grains either; z from −0.5 to 0.5 in the plane.
+/// Returns the corners of the domain (m). Without a domain, these are the corners of the bounding box of all grains or,
+/// without grains, of the bodies at the start. In the plane, z extends from −0.5 m to 0.5 m.
 #[must_use]
 pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {
     if let Some(domain) = scene.domain {
@@ -303,32 +305,32 @@ pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f6
     (low, high)
 }
 
-/// A simulation at one step, with what its probes need beside the snapshot.
+/// State of a simulation at one step, with the data that probes need in addition to the snapshot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
-    /// Grains in order of id, contacts, walls.
+    /// Grains sorted by id, contacts and walls.
     pub snapshot: Snapshot,
-    /// Number of contacts, and how many of them slip, where they are known; they may be where none is shown.
+    /// Number of contacts and number of slipping contacts, if known. They may be known without a list of contacts.
     pub touching: Option<[usize; 2]>,
-    /// Energy in the springs of contacts and in deformed material (J).
+    /// Elastic energy of contact springs and deformed material (J).
     pub elastic_energy: f64,
-    /// Kinetic energy beyond that of the rigid motion of grains and bodies (J).
+    /// Kinetic energy in excess of the rigid motion of grains and bodies (J).
     pub inner_kinetic_energy: f64,
-    /// Energy of rotation ½ ω·Iω with the tensors I of inertia, beyond ½ I ω² with the scalars I of grains and bodies (J).
+    /// Rotational energy ½ ω·Iω with inertia tensors I, less ½ I ω² with the scalar moments I of grains and bodies (J).
     pub uneven_rotational_energy: f64,
-    /// Angular momentum Iω with the tensors I of inertia, beyond that with the scalars I of grains and bodies (kg m²/s).
+    /// Angular momentum Iω with inertia tensors I, less Iω with the scalar moments I of grains and bodies (kg m²/s).
     pub uneven_angular_momentum: Vector3<f64>,
-    /// The material at the places that probes ask for, in the order of [`Scene::spots`].
+    /// Material at the positions of point probes, in the order of [`Scene::spots`].
     pub spots: Vec<PointState>,
-    /// Force of the other grains on each group of driven ones (N), in the order of [`Scene::driven`]; empty where it is
-    /// not known.
+    /// Force of the free grains on each group of grains with prescribed motion (N), in the order of [`Scene::driven`];
+    /// empty if unknown.
     pub driven: Vec<Vector3<f64>>,
-    /// Where energy comes from and goes, where a probe asks for it and the solver knows.
+    /// Energy budget, if a probe requests it and the solver computes it.
     pub budget: Option<Budget>,
 }
 
 impl Look {
-    /// Of rigid grains.
+    /// Returns the state of a simulation with rigid grains.
     #[must_use]
     pub fn of_rigid(snapshot: Snapshot, elastic_energy: f64) -> Self {
         Self {
@@ -345,48 +347,48 @@ impl Look {
     }
 }
 
-/// What a solver of ours has done so far, whatever the machine: equal from run to run.
+/// Counts of one of our solvers so far. They do not depend on the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Steps taken.
     pub steps: u64,
-    /// Steps times grains, or times material points.
+    /// Steps times grains or material points.
     pub particle_steps: u64,
-    /// Contact laws evaluated.
+    /// Number of contact laws evaluated.
     pub contact_evaluations: u64,
-    /// Listed pairs tested for touching.
+    /// Number of listed pairs tested for contact.
     pub pair_tests: u64,
-    /// Neighbour lists built.
+    /// Number of neighbour lists built.
     pub neighbour_builds: u64,
-    /// Nodes of a grid that took a step, in all steps.
+    /// Number of active grid nodes, summed over all steps.
     pub node_updates: u64,
-    /// Memory that the state of the simulation takes up at its largest (B), where it is counted.
+    /// Largest memory of the simulation state (B), if it is measured.
     pub bytes: u64,
 }
 
-/// What a run cost: times depend on the machine, counts do not. What a program did not count is absent.
+/// Cost of a run. Times depend on the machine, counts do not. Counts that a solver does not report are absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
-    /// Steps taken.
+    /// Number of steps.
     pub steps: u64,
-    /// Steps times grains, or times material points.
+    /// Steps times grains or material points.
     pub particle_steps: u64,
-    /// Contact laws evaluated.
+    /// Number of contact laws evaluated.
     pub contact_evaluations: Option<u64>,
-    /// Listed pairs tested for touching.
+    /// Number of listed pairs tested for contact.
     pub pair_tests: Option<u64>,
-    /// Neighbour lists built.
+    /// Number of neighbour lists built.
     pub neighbour_builds: Option<u64>,
-    /// Nodes of a grid that took a step, in all steps.
+    /// Number of active grid nodes, summed over all steps.
     pub node_updates: Option<u64>,
-    /// Memory that the state of the simulation takes up at its largest (B).
+    /// Largest memory of the simulation state (B).
     pub bytes: Option<u64>,
-    /// Wall-clock time of the stepping loop (s); not a number where nobody took it.
+    /// Wall-clock time of the stepping loop (s); NaN if it was not measured.
     pub wall_seconds: f64,
 }
 
 impl Cost {
-    /// Of a solver of ours.
+    /// Returns the cost of one of our solvers.
     #[must_use]
     pub const fn of(counts: Counts, wall_seconds: f64) -> Self {
         Self {
@@ -401,40 +403,40 @@ impl Cost {
         }
     }
 
-    /// Particle-steps and contact evaluations together.
+    /// Returns the sum of particle-steps and contact evaluations.
     #[must_use]
     pub fn work(&self) -> u64 {
         self.particle_steps + self.contact_evaluations.unwrap_or_default()
     }
 
-    /// Of a program, which counts nothing for us: `grains` grains that took `steps` steps.
+    /// Returns the cost of an external program that reports no counts: `grains` grains that took `steps` steps.
     #[must_use]
     pub fn of_program(steps: u64, grains: usize, wall_seconds: f64) -> Self {
         Self { steps, particle_steps: steps * grains as u64, wall_seconds, ..Self::default() }
     }
 }
 
-/// Where a record comes from.
+/// Origin of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Title of the scene.
     pub scene: String,
     /// Solver and convention, such as `dem:lammps`.
     pub solver: String,
-    /// Resolution in words, such as `dt=.1`.
+    /// Resolution as text, such as `dt=.1`.
     pub resolution: String,
     /// Time step (s).
     pub time_step: f64,
-    /// Critical time step `2√(m_min/k_max)` (s); absent where the method has none.
+    /// Critical time step `2√(m_min/k_max)` (s); absent if the method has none.
     pub critical_time_step: Option<f64>,
-    /// Physics that the scene called for, in words.
+    /// Physical effects that the scene uses, as text.
     pub effects: Vec<String>,
-    /// Solver options in words.
+    /// Solver options, as text.
     pub options: Vec<String>,
 }
 
 impl Provenance {
-    /// Of a run of a scene at a time step (s), by a solver for which the scene's critical step is the critical one.
+    /// Returns the provenance of a run at a time step (s), for solvers whose critical time step is that of the scene.
     #[must_use]
     pub fn of(scene: &Scene, solver: String, resolution: &Resolution, time_step: f64, options: Vec<String>) -> Self {
         let critical = scene.critical_time_step();
@@ -450,31 +452,31 @@ impl Provenance {
     }
 }
 
-/// What there is of a run that broke or was ended.
+/// Partial output of a run that broke or was interrupted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remains {
-    /// Time series up to the last sample before.
+    /// Time series up to the last sample.
     pub series: Series,
-    /// Snapshots before, without those that the watcher took.
+    /// Snapshots so far, without those that the watcher took over.
     pub snapshots: Vec<Snapshot>,
-    /// The state that it broke in or was ended at. Of one that broke the contacts are not told.
+    /// State in which the run broke or was interrupted. If the run broke, contacts are absent.
     pub end: Snapshot,
 }
 
-/// What a run leaves behind.
+/// Output of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// Where it comes from.
+    /// Origin of the record.
     pub provenance: Provenance,
     /// Time series of the scene's probes.
     pub series: Series,
-    /// Snapshots in order of time; the last one is the end of the run.
+    /// Snapshots in order of time. The last snapshot is the end of the run.
     pub snapshots: Vec<Snapshot>,
-    /// What it cost.
+    /// Cost of the run.
     pub cost: Cost,
 }
 
-/// A vector that is not a number where nobody told it: absent in a file, for JSON has no such number.
+/// Vector that is NaN if it was not reported, and absent in files, because JSON has no NaN.
 mod untold {
     use nalgebra::Vector3;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -1,11 +1,11 @@
-//! Keeps the record of a run: knows at which steps something is due and takes it down.
+//! Recorder of a run. It knows the steps at which output is due, and records it.
 
 use crate::probe;
 use crate::record::{Look, Series, Snapshot};
 use crate::scene::{Sampling, Scene};
 use serde::{Deserialize, Serialize};
 
-/// The record of a run in the making.
+/// Record of a run in progress.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Recorder {
     /// Steps between samples.
@@ -18,7 +18,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// For a run of `steps` steps of `time_step` (s).
+    /// Creates the recorder of a run of `steps` steps of `time_step` (s).
     #[must_use]
     pub fn new(scene: &Scene, time_step: f64, steps: u64) -> Self {
         let interval = match scene.sampling {
@@ -26,7 +26,7 @@ impl Recorder {
             Sampling::Seconds(time) => (time / time_step).round() as u64,
             Sampling::Count(count) => steps / count.max(1),
         };
-        // More snapshots than steps are one a step, whatever number was asked for.
+        // There is at most one snapshot per step, whatever number was requested.
         let parts = (u128::from(scene.snapshots) + 1).min(u128::from(steps.max(1)));
         let mut snapshot_steps: Vec<u64> = (0..=parts).map(|part| (u128::from(steps) * part / parts) as u64).collect();
         let nearest = |time: &f64| ((time / time_step).round() as u64).min(steps);
@@ -37,8 +37,8 @@ impl Recorder {
         Self { interval: interval.max(1), snapshot_steps, steps, series, snapshots: Vec::new() }
     }
 
-    /// Whether this is a record of the run that another one begins: it asks for the same at the same steps, and holds a
-    /// value of each column for each sample.
+    /// Returns true if this record belongs to the same run as `begun`: both record the same quantities at the same
+    /// steps, and each column has one value per sample.
     #[must_use]
     pub fn is_of(&self, begun: &Self) -> bool {
         let Series { step, time, columns, values } = &self.series;
@@ -52,37 +52,37 @@ impl Recorder {
             && values.iter().all(each)
     }
 
-    /// Steps between samples.
+    /// Returns the number of steps between samples.
     #[must_use]
     pub const fn interval(&self) -> u64 {
         self.interval
     }
 
-    /// Whether probes are sampled at a step: every interval, and at the end.
+    /// Returns true if probes are sampled at a step: at every interval, and at the end.
     #[must_use]
     pub fn is_sample(&self, step: u64) -> bool {
         step.is_multiple_of(self.interval) || step == self.steps
     }
 
-    /// Whether a snapshot is due at a step.
+    /// Returns true if a snapshot is due at a step.
     #[must_use]
     pub fn is_snapshot(&self, step: u64) -> bool {
         self.snapshot_steps.binary_search(&step).is_ok()
     }
 
-    /// Steps at which snapshots are due, in order.
+    /// Returns the steps at which snapshots are due, in order.
     #[must_use]
     pub fn snapshot_steps(&self) -> &[u64] {
         &self.snapshot_steps
     }
 
-    /// Whether a sample or a snapshot is due at a step.
+    /// Returns true if a sample or a snapshot is due at a step.
     #[must_use]
     pub fn is_due(&self, step: u64) -> bool {
         self.is_sample(step) || self.is_snapshot(step)
     }
 
-    /// The next step after `step` at which something is due; the last step when nothing is.
+    /// Returns the next step after `step` at which output is due; the last step if there is none.
     #[must_use]
     pub fn next(&self, step: u64) -> u64 {
         let sample = (step / self.interval + 1).saturating_mul(self.interval);
@@ -91,14 +91,14 @@ impl Recorder {
         sample.min(snapshot).min(self.steps)
     }
 
-    /// Takes down the sample of a step, if one is due.
+    /// Records the sample of a step, if one is due.
     pub fn sample(&mut self, scene: &Scene, look: &Look) {
         if self.is_sample(look.snapshot.step) {
             probe::sample(&mut self.series, scene, look);
         }
     }
 
-    /// Takes down the sample of a step at a time (s), if one is due, of a scene without probes.
+    /// Records the time of a sample (s) for a scene without probes, if a sample is due at the step.
     pub fn sample_nothing(&mut self, step: u64, time: f64) {
         if self.is_sample(step) {
             self.series.step.push(step);
@@ -106,7 +106,7 @@ impl Recorder {
         }
     }
 
-    /// Takes down the sample that is due at the step of `look`; hands on the snapshot where one is due.
+    /// Records the sample at the step of `look`, if one is due, and returns the snapshot, if one is due.
     pub fn take(&mut self, scene: &Scene, look: Look) -> Option<Snapshot> {
         self.sample(scene, &look);
         self.is_snapshot(look.snapshot.step).then(|| {
@@ -116,18 +116,18 @@ impl Recorder {
         })
     }
 
-    /// Step of the last sample.
+    /// Returns the step of the last sample.
     #[must_use]
     pub fn last_sample(&self) -> Option<u64> {
         self.series.step.last().copied()
     }
 
-    /// Keeps a snapshot in the record.
+    /// Adds a snapshot to the record.
     pub fn keep(&mut self, snapshot: Snapshot) {
         self.snapshots.push(snapshot);
     }
 
-    /// The column whose last sample is no finite number, with that.
+    /// Returns the first column whose last sample is not finite, with the value.
     #[must_use]
     pub fn not_finite(&self) -> Option<(&str, f64)> {
         let last = |at: usize| self.series.values[at].last().copied();
@@ -136,7 +136,7 @@ impl Recorder {
         found.find(|(_, value)| !value.is_finite())
     }
 
-    /// The time series and the snapshots.
+    /// Returns the time series and the snapshots.
     #[must_use]
     pub fn finish(self) -> (Series, Vec<Snapshot>) {
         (self.series, self.snapshots)

@@ -1,11 +1,11 @@
-//! A run again with a finer time step, sampled at the same times.
+//! Run with a finer time step, sampled at the same times.
 
 use crate::motion::Moment;
 use crate::scene::{Duration, Sampling, Scene};
 use crate::solver::Resolution;
 
-/// A scene and a resolution that take `parts` steps for each one of a run of `steps` steps of `time_step` (s), sampled
-/// every `interval` of them.
+/// Returns a scene and a resolution with `parts` steps for each step of a run. The run has `steps` steps of `time_step`
+/// (s), and a sample every `interval` steps.
 #[must_use]
 pub fn refined(scene: &Scene, time_step: f64, [steps, interval]: [u64; 2], parts: u64) -> (Scene, Resolution) {
     let mut scene = Scene {
@@ -13,7 +13,7 @@ pub fn refined(scene: &Scene, time_step: f64, [steps, interval]: [u64; 2], parts
         sampling: Sampling::Cycles(interval * parts),
         ..scene.clone()
     };
-    // What lasts a number of cycles lasts so many times as many shorter ones.
+    // Moments given in cycles are multiplied by `parts`, because the cycles are shorter.
     for phase in scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases) {
         for moment in [&mut phase.start, &mut phase.stop] {
             if let Moment::Cycle(cycle) = moment {

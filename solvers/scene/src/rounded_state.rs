@@ -1,7 +1,7 @@
-//! A state at the end of a run in half the room: what a scene of a hundred thousand grains can begin from and be kept in a
-//! tree of sources.
+//! Compact form of a final state, about half as large. A scene of a hundred thousand grains can start from such a file,
+//! and the file is small enough for a source repository.
 //!
-//! It is rounded once, when it is written, and comes back as it was rounded, so that every solver begins with the same numbers:
+//! Values are rounded once, when the file is written, so that every solver starts from the same numbers:
 //!
 //! ```text
 //! positions                    to whole multiples of s = 2⁻³⁶ of the power of two at or below the smallest radius
@@ -9,73 +9,75 @@
 //! sizes, materials, contacts   not at all
 //! ```
 //!
-//! A centre is moved by s/2 along an axis, so that a contact of stiffness k is off by less than √3 k s: for spheres of diameter
-//! d with k = 2·10⁵ mg/d by 3·10⁻⁶ of a grain's weight, where the overlaps of a heap are of the order of 10⁻⁴ d, thus 10⁷ s.
-//! The heap comes to rest anew within a few contact times, and the springs of its contacts, which hold it, stay what they were
-//! within 6·10⁻⁸ of themselves.
+//! A centre moves by at most s/2 along each axis. The force of a contact of stiffness k thus changes by less than √3 k
+//! s. For spheres of diameter d with k = 2·10⁵ mg/d, this is 3·10⁻⁶ of a grain's weight. Overlaps in a heap are of the
+//! order of 10⁻⁴ d, or 10⁷ s. The heap comes to rest again within a few contact times. Its contact springs, which
+//! support it, keep their values within a relative error of 6·10⁻⁸.
 //!
-//! A bed at rest that is to be kept without its springs needs less yet: positions to multiples of 2⁻²⁰ of that power of two, and
-//! neither velocities nor spins. For spheres M1 of 1 mm, E = 1 GPa, that is 9·10⁻¹⁰ m, where a grain's weight alone makes an
-//! overlap of 3.5·10⁻⁸ m.
+//! A bed at rest stored without its springs needs even less space: positions are multiples of 2⁻²⁰ of that power of
+//! two, and velocities and spins are omitted. For spheres M1 of 1 mm with E = 1 GPa, this step is 9·10⁻¹⁰ m. The weight
+//! of a single grain causes an overlap of 3.5·10⁻⁸ m.
 //!
-//! On disk: the line `grainbench rounded state <format>`, length and hash (see `sealed`), and a zlib stream of a [`Packed`] in
-//! postcard's format. A column has the lowest bytes of all its numbers first, then all the next ones: high bytes hardly differ,
-//! and what does not differ takes no room.
+//! A file holds the line `grainbench rounded state <format>`, length and hash (see `sealed`), and a zlib stream of a
+//! [`Packed`] in postcard's format. Each column stores the lowest bytes of all its numbers first, then the next bytes,
+//! and so on. The high bytes hardly differ, so they compress well.
 
 use crate::end_state::{EndState, Springs, StateGrain};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a file begins with, before the number of its format.
+/// First bytes of a file, before the format number.
 pub(crate) const MAGIC: &[u8] = b"grainbench rounded state ";
-/// The format that this program writes.
+/// Format that this program writes.
 pub(crate) const FORMAT: u32 = 1;
-/// What positions are rounded to, in units of the power of two at or below the smallest radius: 2⁻³⁶.
+/// Rounding step of positions, in units of the power of two at or below the smallest radius: 2⁻³⁶.
 pub(crate) const ROUNDING: f64 = 1.0 / (1_u64 << 36) as f64;
-/// What those of a bed at rest are rounded to: 2⁻²⁰.
+/// Rounding step of positions in a bed at rest, in the same units: 2⁻²⁰.
 pub(crate) const ROUNDING_AT_REST: f64 = 1.0 / (1_u64 << 20) as f64;
-/// Multiples of the step that a position may be: as far as they are exact.
+/// Largest multiple of the rounding step that a position may be, so that multiples are exact.
 const FARTHEST: f64 = (1_u64 << 53) as f64;
 
-/// What is packed.
+/// Packed data of a state.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Packed {
     of: [String; 2],
     dimension: usize,
     time: f64,
     materials: Vec<String>,
-    /// What positions are multiples of (m).
+    /// Rounding step of positions (m).
     step: f64,
-    /// Materials and sizes that grains have.
+    /// Combinations of material and size.
     kinds: Vec<(u16, [f64; 3])>,
     layout: String,
-    /// How many numbers a contact remembers.
+    /// Number of history values per contact.
     numbers: u32,
-    /// Walls that contacts remember.
+    /// Names of the walls in the contact history.
     names: Vec<String>,
-    /// Kind, multiples along three axes, velocity and spin of grains.
+    /// Columns of the grains: index in `kinds`, position as multiples of the step along three axes, velocity and spin.
     grains: [Vec<u8>; 10],
-    /// Of contacts between grains: the first less that of the one before, the second less the first.
+    /// Contacts between grains: the difference of the first index to that of the previous contact, and of the second to
+    /// the first.
     pairs: [Vec<u8>; 2],
-    /// Of contacts with walls: the grain less that of the one before, the wall.
+    /// Contacts with walls: the difference of the grain index to that of the previous contact, and the index of the
+    /// wall name.
     walls: [Vec<u8>; 2],
-    /// What contacts between grains remember, then those with walls: a column a number.
+    /// History of the contacts between grains, then of those with walls: one column per value.
     springs: Vec<Vec<u8>>,
 }
 
-/// The power of two at or below a number: its exponent alone.
+/// Returns the largest power of two that is not above a number, from its exponent.
 fn power_of_two(number: f64) -> f64 {
     f64::from_bits(number.to_bits() & f64::INFINITY.to_bits())
 }
 
-/// Numbers byte by byte, all the lowest ones first.
+/// Stores numbers byte by byte, all lowest bytes first.
 fn column<const N: usize>(numbers: impl Iterator<Item = [u8; N]>) -> Vec<u8> {
     let all: Vec<[u8; N]> = numbers.collect();
     (0..N).flat_map(|byte| all.iter().map(move |number| number[byte])).collect()
 }
 
-/// The numbers of a column.
+/// Reads the numbers of a column.
 fn numbers<const N: usize>(column: &[u8]) -> Result<Vec<[u8; N]>, String> {
     if !column.len().is_multiple_of(N) {
         return Err(format!("a column of {} bytes, where each number has {N}", column.len()));
@@ -92,7 +94,7 @@ fn read_singles(column: &[u8]) -> Result<Vec<f64>, String> {
     Ok(numbers(column)?.into_iter().map(|bytes| f64::from(f32::from_le_bytes(bytes))).collect())
 }
 
-/// Places, each less the one that `from` says.
+/// Stores indices, each as the difference to `from`.
 fn places(values: impl Iterator<Item = (u32, u32)>) -> Vec<u8> {
     column(values.map(|(place, from)| place.wrapping_sub(from).to_le_bytes()))
 }
@@ -101,7 +103,7 @@ fn read_places(column: &[u8]) -> Result<Vec<u32>, String> {
     Ok(numbers(column)?.into_iter().map(u32::from_le_bytes).collect())
 }
 
-/// Places that each follow on the one before.
+/// Sums differences to indices.
 fn following(steps: &[u32]) -> Vec<u32> {
     let mut place = 0_u32;
     let next = |step: &u32| {
@@ -111,13 +113,13 @@ fn following(steps: &[u32]) -> Vec<u32> {
     steps.iter().map(next).collect()
 }
 
-/// Each with the one before it, the first with 0.
+/// Pairs each index with the previous one; the first with 0.
 fn after(places: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
     places.iter().copied().zip(std::iter::once(0).chain(places.iter().copied()))
 }
 
 impl Packed {
-    /// Rounds a state, its positions to this part of the power of two at or below the smallest radius.
+    /// Rounds a state. Positions are rounded to `rounding` times the power of two at or below the smallest radius.
     pub(crate) fn of(state: &EndState, rounding: f64) -> Result<Self, String> {
         let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);
         let step = if smallest.is_finite() { power_of_two(smallest) * rounding } else { 1.0 };
@@ -180,7 +182,7 @@ impl Packed {
         })
     }
 
-    /// The state as it was rounded.
+    /// Returns the rounded state.
     pub(crate) fn state(&self) -> Result<EndState, String> {
         let kinds = read_places(&self.grains[0])?;
         let positions = [1, 2, 3].map(|axis| numbers::<8>(&self.grains[axis]));

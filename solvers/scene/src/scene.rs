@@ -1,4 +1,4 @@
-//! A scene made definite: every grain, wall and law, checked, in SI. Solvers read this and nothing else.
+//! Resolved scene: every grain, wall and law, checked, in SI units. Solvers read nothing else.
 
 pub use crate::body::Block;
 use crate::body::Start;
@@ -18,14 +18,14 @@ use std::sync::Arc;
 /// Number of dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
-    /// The plane (x, y).
+    /// Plane (x, y).
     Two,
     /// Space.
     Three,
 }
 
 impl Dimension {
-    /// 2 or 3.
+    /// Returns 2 or 3.
     #[must_use]
     pub const fn count(self) -> usize {
         match self {
@@ -36,7 +36,7 @@ impl Dimension {
 }
 
 impl GrainShape {
-    /// Mass of a grain of this shape: discs per metre of depth (kg/m), spheres (kg).
+    /// Returns the mass of a grain of this shape: kg/m for discs (per metre of depth), kg for spheres.
     #[must_use]
     pub fn mass(self, radius: f64, density: f64) -> f64 {
         match self {
@@ -45,7 +45,7 @@ impl GrainShape {
         }
     }
 
-    /// I/(mR²): 1/2 for a disc, 2/5 for a sphere.
+    /// Returns I/(mR²): 1/2 for a disc, 2/5 for a sphere.
     #[must_use]
     pub const fn inertia_factor(self) -> f64 {
         match self {
@@ -55,14 +55,14 @@ impl GrainShape {
     }
 }
 
-/// One grain at the start.
+/// Initial state of a grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grain {
-    /// Place in [`Scene::materials`].
+    /// Index in [`Scene::materials`].
     pub material: u16,
     /// Radius R (m).
     pub radius: f64,
-    /// Mass m (kg; per metre for discs).
+    /// Mass m (kg; kg per metre of depth for discs).
     pub mass: f64,
     /// Moment of inertia I (kg m²).
     pub inertia: f64,
@@ -74,41 +74,41 @@ pub struct Grain {
     pub spin: Vector3<f64>,
 }
 
-/// Shape of a wall at the start.
+/// Initial shape of a wall.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WallShape {
-    /// Everything behind the plane through `point` with unit `normal` is solid.
+    /// Half-space behind the plane through `point` with unit `normal`.
     Plane {
-        /// A point on it (m).
+        /// Point on the plane (m).
         point: Vector3<f64>,
         /// Unit vector out of the solid.
         normal: Vector3<f64>,
     },
-    /// The segment between two points (m), in the plane.
+    /// Segment between two points (m), in the plane.
     Segment {
-        /// The ends.
+        /// Ends of the segment (m).
         ends: [Vector3<f64>; 2],
     },
-    /// A rectangle in space.
+    /// Rectangle in space.
     Rectangle {
-        /// One corner (m).
+        /// Corner (m).
         corner: Vector3<f64>,
-        /// The perpendicular edges from it (m).
+        /// Perpendicular edges from the corner (m).
         edges: [Vector3<f64>; 2],
     },
-    /// The side of a cylinder or of a part of a cone, in space.
+    /// Lateral surface of a cylinder or a truncated cone, in space.
     Round {
-        /// The ends of its axis (m).
+        /// Ends of the axis (m).
         axis: [Vector3<f64>; 2],
         /// Radius at each end (m).
         radii: [f64; 2],
     },
-    /// A surface of triangles, in space.
+    /// Surface of triangles, in space.
     Mesh(Mesh),
 }
 
 impl WallShape {
-    /// The shape after its wall has moved.
+    /// Returns the shape after a displacement of its wall.
     #[must_use]
     pub fn moved(&self, motion: &Motion, displacement: &Displacement) -> Self {
         let at = |point: Vector3<f64>| motion.moved(point, displacement);
@@ -122,7 +122,7 @@ impl WallShape {
         }
     }
 
-    /// Corner points, or point and normal of a plane, and which it is (see [`crate::record::WallState`]).
+    /// Returns the reference points of the shape, and true for a plane (see [`crate::record::WallState`]).
     #[must_use]
     pub fn corners(&self) -> (Vec<Vector3<f64>>, bool) {
         match *self {
@@ -138,31 +138,32 @@ impl WallShape {
     }
 }
 
-/// A unit vector across a direction; along an axis where the direction is along another.
+/// Returns a unit vector perpendicular to a direction. If the direction is along one axis, the result is along another.
 pub(crate) fn across(direction: Vector3<f64>) -> Vector3<f64> {
     let least = (0..3).min_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs())).unwrap_or(0);
     let axis = Vector3::ith(least, 1.0);
     (axis - direction * (direction.dot(&axis) / direction.norm_squared())).normalize()
 }
 
-/// A wall with its prescribed motion.
+/// Wall with its prescribed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wall {
     /// Name in the file.
     pub name: String,
-    /// Place in [`Scene::materials`].
+    /// Index in [`Scene::materials`].
     pub material: u16,
-    /// Shape at the start.
+    /// Initial shape.
     pub shape: WallShape,
-    /// How it moves.
+    /// Prescribed motion.
     pub motion: Motion,
-    /// What presses it.
+    /// Load on a pressed wall.
     pub piston: Option<Piston>,
-    /// When it is taken away (s).
+    /// Time of its removal (s).
     pub until: Option<f64>,
 }
 
-/// What presses a plane: M dv/dt = F − F_n − M c v along its normal, with the normal force F_n of the grains on it.
+/// Piston that presses a plane: M dv/dt = F − F_n − M c v along its normal, with the normal force F_n of the grains on
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piston {
     /// Force F along the normal (N).
@@ -173,24 +174,24 @@ pub struct Piston {
     pub damping: f64,
 }
 
-/// Grains that are moved as a wall is, whatever the forces on them: at a constant velocity and spin, and by a motion beside it.
+/// Grains with prescribed motion, whatever forces act on them: a constant velocity and spin, plus a further motion.
 #[derive(Clone, PartialEq)]
 pub struct Driven {
     /// Name in the file.
     pub name: String,
-    /// Which grains, by place in [`Scene::grains`].
+    /// Indices in [`Scene::grains`].
     pub grains: Vec<usize>,
     /// Velocity (m/s).
     pub velocity: Vector3<f64>,
-    /// From when on, and until when (s): before and after they are grains as all others are.
+    /// Start and end of the prescribed motion (s). Outside this span, the grains move freely.
     pub span: [f64; 2],
-    /// Angular velocity of each about its own centre (rad/s).
+    /// Angular velocity of each grain about its own centre (rad/s).
     pub spin: Vector3<f64>,
-    /// Motion beside the velocity, in which nothing turns.
+    /// Further motion without rotation.
     pub motion: Motion,
 }
 
-/// Spin and motion are shown where there are any, as [`Motion`] shows its functions.
+/// Prints spin and motion only if there are any, as [`Motion`] does with its functions.
 impl std::fmt::Debug for Driven {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut shown = formatter.debug_struct("Driven");
@@ -207,17 +208,19 @@ impl std::fmt::Debug for Driven {
 }
 
 impl Driven {
-    /// All of the run.
+    /// The whole run.
     pub const ALWAYS: [f64; 2] = [0.0, f64::INFINITY];
 
-    /// Whether they are moved over the step that begins at a time (s). A moment that is a whole number of steps is that step.
+    /// Returns true if the motion is prescribed over the step that begins at a time (s). A moment that is a whole
+    /// number of steps, apart from rounding, belongs to that step.
     #[must_use]
     pub fn is_moved_at(&self, time: f64) -> bool {
         let [start, stop] = self.span.map(|moment| moment * (1.0 - 1e-9));
         (start..stop).contains(&time)
     }
 
-    /// Velocity over the step that begins at a time (m/s; s): what they go in it over its length.
+    /// Returns the velocity (m/s) over the step that begins at a time (s): the displacement in the step divided by its
+    /// length.
     #[must_use]
     pub fn velocity_over(&self, time: f64, time_step: f64) -> Vector3<f64> {
         if self.motion.is_empty() {
@@ -227,7 +230,7 @@ impl Driven {
         self.velocity + (at(time + time_step) - at(time)) / time_step
     }
 
-    /// Velocity at a time (m/s; s): the mean of those of the steps that end and begin then.
+    /// Returns the velocity (m/s) at a time (s): the mean over the steps that end and begin then.
     #[must_use]
     pub fn velocity_at(&self, time: f64, time_step: f64) -> Vector3<f64> {
         if self.motion.is_empty() {
@@ -237,177 +240,178 @@ impl Driven {
         (self.velocity_over(before, time_step) + self.velocity_over(time, time_step)) * 0.5
     }
 
-    /// A bound of the speed that they ever have (m/s).
+    /// Returns an upper bound of the speed (m/s).
     #[must_use]
     pub fn fastest(&self) -> f64 {
         self.velocity.norm() + self.motion.fastest()
     }
 
-    /// Whether they are moved for a part of the run only.
+    /// Returns true if the motion is prescribed for only a part of the run.
     #[must_use]
     pub fn is_for_a_while(&self) -> bool {
         self.span != Self::ALWAYS
     }
 }
 
-/// How long the run lasts.
+/// Duration of the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Duration {
-    /// A time (s).
+    /// Time (s).
     Seconds(f64),
-    /// A number of calculation cycles.
+    /// Number of calculation cycles.
     Cycles(u64),
 }
 
 impl Duration {
-    /// The time (s), where it is one.
+    /// Returns the time (s); `None` for cycles.
     #[must_use]
     pub const fn seconds(self) -> Option<f64> {
         if let Self::Seconds(seconds) = self { Some(seconds) } else { None }
     }
 }
 
-/// How often probes are sampled.
+/// Sampling interval of the probes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {
-    /// Every so many seconds, rounded to whole cycles.
+    /// Interval (s), rounded to whole cycles.
     Seconds(f64),
-    /// Every so many cycles.
+    /// Interval in cycles.
     Cycles(u64),
-    /// So many samples over the run.
+    /// Number of samples over the run.
     Count(u64),
 }
 
-/// What a probe looks at.
+/// Target of a probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProbeTarget {
-    /// A grain, by place in [`Scene::grains`].
+    /// Grain, by index in [`Scene::grains`].
     Grain(usize),
-    /// A body that is no grain, by place in [`Scene::bodies`].
+    /// Body other than a grain, by index in [`Scene::bodies`].
     Body(usize),
-    /// The material at a place, by place among the probes of this kind.
+    /// Material at a position, by index in [`Scene::spots`].
     Point(usize),
-    /// A contact between two grains.
+    /// Contact between two grains.
     Pair(usize, usize),
-    /// A contact between a grain and a wall, by place in [`Scene::walls`].
+    /// Contact between a grain and a wall, by index in [`Scene::walls`].
     GrainWall(usize, usize),
-    /// A wall.
+    /// Wall, by index in [`Scene::walls`].
     Wall(usize),
-    /// How far a wall that is pressed has gone.
+    /// Displacement of a pressed wall.
     Piston(usize),
-    /// A group of driven grains, by place in [`Scene::driven`].
+    /// Group of grains with prescribed motion, by index in [`Scene::driven`].
     Driven(usize),
-    /// Where energy comes from and goes.
+    /// Energy budget.
     Budget,
-    /// Mean stress and number of contacts of the grains.
+    /// Mean stress and coordination number of the grains.
     Stress,
-    /// How many grains there are.
+    /// Number of grains.
     Count,
-    /// Everything.
+    /// Whole system.
     System,
 }
 
-/// A place in the material of a body.
+/// Position in the material of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
-    /// Which body.
+    /// Body that contains the position.
     pub body: BodyName,
-    /// Place at the start (m).
+    /// Initial position (m).
     pub at: Vector3<f64>,
 }
 
-/// A grain or another body.
+/// Grain or other body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyName {
-    /// A grain, by place in [`Scene::grains`].
+    /// Grain, by index in [`Scene::grains`].
     Grain(usize),
-    /// Another body, by place in [`Scene::bodies`].
+    /// Other body, by index in [`Scene::bodies`].
     Body(usize),
 }
 
 /// A named time series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
-    /// Name; columns are called `name.quantity`.
+    /// Name. Columns are called `name.quantity`.
     pub name: String,
-    /// What it looks at.
+    /// Target.
     pub target: ProbeTarget,
 }
 
-/// The box of a scene.
+/// Domain of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
     /// Lower corner (m); z is −0.5 in two dimensions.
     pub low: Vector3<f64>,
     /// Upper corner (m); z is 0.5 in two dimensions.
     pub high: Vector3<f64>,
-    /// Which axes are periodic.
+    /// True for each periodic axis.
     pub periodic: [bool; 3],
 }
 
-/// A scene, checked and complete.
+/// Scene, checked and complete.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Title, for reports.
     pub title: String,
     /// Number of dimensions.
     pub dimension: Dimension,
-    /// What a grain is.
+    /// Shape of the grains.
     pub grain_shape: GrainShape,
     /// Gravity (m/s²).
     pub gravity: Vector3<f64>,
-    /// The box, where one is given.
+    /// Domain, if one is given.
     pub domain: Option<Domain>,
     /// Global mass-proportional damping α (1/s).
     pub global_damping: f64,
-    /// How long the run lasts.
+    /// Duration of the run.
     pub duration: Duration,
     /// Names of the materials.
     pub materials: Vec<String>,
-    /// The pair table: [`Scene::law`] reads it.
+    /// Table of contact laws for all pairs of materials; [`Scene::law`] reads it.
     pub laws: Vec<Option<ContactLaw>>,
-    /// What deformable materials are made of, in the order of `materials`; none where the scene does not say.
+    /// Properties of deformable materials, in the order of `materials`; `None` if the scene gives none.
     pub deformable: Vec<Option<Deformable>>,
-    /// Grains; the id of a grain is its place here plus one.
+    /// Grains. The id of a grain is its index plus one.
     pub grains: Grains,
-    /// What their contacts remember at the start; nothing where absent.
+    /// Initial contact history; absent if there is none.
     pub springs: Option<Arc<Springs>>,
-    /// Which of them come or go.
+    /// Insertion and removal of grains.
     pub stays: Stays,
-    /// Deformable bodies that are no grains.
+    /// Deformable bodies other than grains.
     pub bodies: Vec<Block>,
-    /// How deformable bodies start.
+    /// Initial conditions of deformable bodies.
     pub start: Start,
-    /// Length that the cells of a grid refer to (m).
+    /// Reference length of the cells of a grid (m).
     pub reference_length: f64,
     /// Walls.
     pub walls: Vec<Wall>,
-    /// Groups of grains that are moved as walls are.
+    /// Groups of grains with prescribed motion.
     pub driven: Vec<Driven>,
-    /// How often probes are sampled.
+    /// Sampling interval of the probes.
     pub sampling: Sampling,
     /// Number of snapshots between the first and the last.
     pub snapshots: u32,
     /// Times of further snapshots (s).
     pub snapshot_times: Vec<f64>,
-    /// Whether snapshots of other programs hold the contacts between grains too.
+    /// True if snapshots of external solvers also hold the contacts between grains.
     pub snapshot_contacts: bool,
-    /// What snapshots hold.
+    /// Contents of snapshots.
     pub columns: Columns,
     /// Named time series.
     pub probes: Vec<Probe>,
-    /// Places that [`ProbeTarget::Point`] refers to.
+    /// Positions to which [`ProbeTarget::Point`] refers.
     pub spots: Vec<Spot>,
 }
 
 impl Scene {
-    /// The step on a grid of cells h (m) at which the shortest wave just stays bounded, of the deformable material for which it
-    /// is the least (s); infinite where nothing deforms.
+    /// Returns the stable time step on a grid of cells of length h (m): the smallest one of all deformable materials
+    /// (s); infinite if nothing deforms.
     ///
-    /// It is what a longitudinal wave takes through a cell, h/c with c = √(M/ρ) and M = K + 4G/3. A viscosity η_L = 4η/3 + ζ
-    /// that acts on the velocities of the step before shortens it: central differences of ẍ + 2ξωẋ + ω²x = 0 whose second term
-    /// lags stay bounded up to (2/ω)(√(1 + ξ²) − ξ) (Belytschko, Liu & Moran, *Nonlinear Finite Elements*, 2000, section 6.2),
-    /// and for the shortest wave of a grid ω = 2c/h and ξ = η_L/(ρ c h).
+    /// Without viscosity, it is the time h/c in which a longitudinal wave crosses a cell, with c = √(M/ρ) and M = K +
+    /// 4G/3. A viscosity η_L = 4η/3 + ζ that acts on the velocities of the previous step shortens it. Central
+    /// differences of ẍ + 2ξωẋ + ω²x = 0 with a lagging second term are bounded up to (2/ω)(√(1 + ξ²) − ξ) (Belytschko,
+    /// Liu & Moran, *Nonlinear Finite Elements*, 2000, section 6.2). The shortest wave of a grid has ω = 2c/h and
+    /// ξ = η_L/(ρ c h).
     #[must_use]
     pub fn crossing_time(&self, cell: f64) -> f64 {
         let of = |material: u16, density: f64| {
@@ -424,8 +428,7 @@ impl Scene {
         grains.chain(bodies).fold(f64::INFINITY, f64::min)
     }
 
-    /// The group of driven grains that each grain is in, by place in [`Scene::driven`]; none for those that move
-    /// freely.
+    /// Returns, for each grain, its group in [`Scene::driven`]; `None` for grains that move freely.
     #[must_use]
     pub fn driven_group_of_grains(&self) -> Vec<Option<u16>> {
         let mut group_of = vec![None; self.grains.len()];
@@ -435,19 +438,20 @@ impl Scene {
         group_of
     }
 
-    /// Whether a probe asks where energy comes from and goes.
+    /// Returns true if a probe requests the energy budget.
     #[must_use]
     pub fn asks_for_budget(&self) -> bool {
         self.probes.iter().any(|probe| probe.target == ProbeTarget::Budget)
     }
 
-    /// The law between two materials, if the scene has one.
+    /// Returns the law between two materials; `None` if the scene has none.
     #[must_use]
     pub fn law(&self, a: u16, b: u16) -> Option<&ContactLaw> {
         self.laws[usize::from(a) * self.materials.len() + usize::from(b)].as_ref()
     }
 
-    /// What is there for a while only, in words, if anything is: not every solver takes grains in or out, or walls away.
+    /// Names a feature that lasts for only a part of the run; `None` if there is none. Not every solver can insert or
+    /// remove grains, remove walls, or start with contact history.
     #[must_use]
     pub fn passing(&self) -> Option<&'static str> {
         if !self.stays.entries.is_empty() {
@@ -468,27 +472,28 @@ impl Scene {
         self.walls.iter().any(|wall| wall.until.is_some()).then_some("walls that are taken away")
     }
 
-    /// What snapshots are asked for that is found during the run, in words, if anything is: not every solver does that.
+    /// Names a snapshot quantity that is computed during the run; `None` if there is none. Not every solver computes
+    /// it.
     #[must_use]
     pub fn gathered(&self) -> Option<&'static str> {
         self.columns.has(Chosen::MeanVirial).then_some("a mean over time in its snapshots (`mean-virial`)")
     }
 
-    /// Walls that are round, in words, if there are any: not every solver has them.
+    /// Names a round wall; `None` if there is none. Not every solver has round walls.
     #[must_use]
     pub fn round_wall(&self) -> Option<String> {
         let round = self.walls.iter().find(|wall| matches!(wall.shape, WallShape::Round { .. }))?;
         Some(format!("wall `{}` is the side of a cylinder or a cone", round.name))
     }
 
-    /// Walls of triangles, in words, if there are any: not every solver has them.
+    /// Names a wall of triangles; `None` if there is none. Not every solver has such walls.
     #[must_use]
     pub fn mesh_wall(&self) -> Option<String> {
         let mesh = self.walls.iter().find(|wall| matches!(wall.shape, WallShape::Mesh(_)))?;
         Some(format!("wall `{}` is a mesh of triangles", mesh.name))
     }
 
-    /// What needs a solver of deformable bodies, in words, if anything does.
+    /// Names a feature that needs a solver for deformable bodies; `None` if there is none.
     #[must_use]
     pub fn needs_deformable(&self) -> Option<&'static str> {
         if !self.bodies.is_empty() {
@@ -500,21 +505,21 @@ impl Scene {
         self.start.needs_deformable()
     }
 
-    /// Applies a change to every law of the pair table.
+    /// Applies a change to every contact law.
     pub fn change_laws(&mut self, change: impl Fn(&mut ContactLaw)) {
         self.laws.iter_mut().flatten().for_each(change);
     }
 
-    /// Whether an axis (0, 1, 2) is periodic.
+    /// Returns true if any axis is periodic.
     #[must_use]
     pub fn is_periodic(&self) -> bool {
         self.domain.is_some_and(|domain| domain.periodic.contains(&true))
     }
 
-    /// Critical time step `2√(m_min/k_max)` of a mass on a spring to ground (s), over the contacts that can occur:
-    /// the smallest mass and the largest stiffness, normal or tangential (Cundall & Strack 1979, p. 53). It is an
-    /// estimate: assemblies need a fraction of it, which users choose. The stiffness of a Hertz contact is taken at an
-    /// overlap of a hundredth of the largest radius.
+    /// Returns the critical time step `2√(m_min/k_max)` of a mass on a spring to ground (s), from the smallest mass and
+    /// the largest normal or tangential stiffness (Cundall & Strack 1979, p. 53). It is an estimate: assemblies need a
+    /// fraction of it, which users choose. The stiffness of a Hertz contact is taken at an overlap of 0.01 of the
+    /// largest radius.
     #[must_use]
     pub fn critical_time_step(&self) -> f64 {
         let mass = self.grains.iter().map(|grain| grain.mass).fold(f64::INFINITY, f64::min);

@@ -1,27 +1,27 @@
-//! Files that are read back by this program alone: a line that says what it is and of which format, the number of bytes that
-//! follow the hash (8 bytes, little end first), their BLAKE3 hash (32 bytes), and the bytes.
+//! Sealed files, which only this program reads. A file holds a line with its kind and format, the number of bytes that
+//! follow the hash (8 bytes, little-endian), their BLAKE3 hash (32 bytes), and these bytes.
 
 /// Bytes of length and hash.
 const HEAD: u64 = 40;
-/// Digits that a format of ours may have, and the end of the line.
+/// Largest number of digits of one of our format numbers, plus the end of the line.
 const DIGITS: usize = 11;
 
-/// Why bytes are no such file.
+/// Reason that bytes are not a valid sealed file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Broken {
-    /// It is another kind of file.
+    /// Another kind of file.
     Foreign,
-    /// It is of an earlier format.
+    /// Earlier format.
     Older(u32),
-    /// It is of a later format.
+    /// Later format.
     Newer(u32),
-    /// It is longer or shorter than it says: what it says, and what it is (B).
+    /// Wrong length: the expected and the actual number of bytes after the first line (B).
     Length(u64, u64),
-    /// Its bytes are not those that were written.
+    /// The bytes differ from those that were written.
     Changed,
 }
 
-/// The bytes of a file of some kind and format.
+/// Returns the bytes of a file of some kind and format.
 pub(crate) fn seal(magic: &[u8], format: u32, body: &[u8]) -> Vec<u8> {
     let mut bytes = [magic, format.to_string().as_bytes(), b"\n"].concat();
     bytes.extend((body.len() as u64).to_le_bytes());
@@ -30,7 +30,7 @@ pub(crate) fn seal(magic: &[u8], format: u32, body: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// What was sealed.
+/// Returns the sealed bytes.
 pub(crate) fn open<'b>(magic: &[u8], format: u32, bytes: &'b [u8]) -> Result<&'b [u8], Broken> {
     let start = &bytes[..bytes.len().min(magic.len() + DIGITS)];
     let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();

@@ -1,10 +1,10 @@
-//! What a value of the file looks like that has more than one number: shown where another one stood. Walls that are in space
-//! alone are shown there.
+//! Shapes of values with more than one number, for error messages about a wrong value. Walls that exist only in three
+//! dimensions are shown in three dimensions.
 
 use crate::scene::Dimension;
 
-/// Keys with their shapes, where `@` stands for a vector, `%` for its components and `#` for a symmetric tensor; `table.key`
-/// where keys of one name differ.
+/// Keys with the shapes of their values. `@` stands for a vector, `%` for its components and `#` for a symmetric
+/// tensor. `table.key` distinguishes keys of the same name.
 const SHAPES: &[(&str, &str)] = &[
     ("plane", "{ point = @, normal = @ }"),
     ("segment", "[@, @]"),
@@ -78,10 +78,10 @@ const SHAPES: &[(&str, &str)] = &[
     ("output", "{ every = t }"),
 ];
 
-/// Tables whose keys are names of the user's.
+/// Tables whose keys are names chosen by the user.
 const OF_NAMES: [&str; 7] = ["materials", "contacts", "grains", "bodies", "walls", "driven", "probes"];
 
-/// A vector of a dimension, in words.
+/// Returns the shape of a vector.
 pub(crate) const fn vector(dimension: Dimension) -> &'static str {
     match dimension {
         Dimension::Two => "[x, y]",
@@ -89,7 +89,7 @@ pub(crate) const fn vector(dimension: Dimension) -> &'static str {
     }
 }
 
-/// A symmetric tensor of a dimension, row by row, in words.
+/// Returns the shape of a symmetric tensor, row by row.
 pub(crate) const fn symmetric(dimension: Dimension) -> &'static str {
     match dimension {
         Dimension::Two => "[[xx, xy], [xy, yy]]",
@@ -97,8 +97,8 @@ pub(crate) const fn symmetric(dimension: Dimension) -> &'static str {
     }
 }
 
-/// The key of a dotted path at which a value of another shape stands, and the shape that it should have. Numbers in
-/// brackets, which tell the parts of a value, belong to the value.
+/// Returns the key of a dotted path, and the expected shape of its value. Numbers in brackets at the end of the path,
+/// which denote parts of a value, are removed.
 pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String)> {
     let mut end = path.trim_end_matches(|letter| letter != '.').len();
     end += path[end..].find('[').unwrap_or(path.len() - end);
@@ -106,7 +106,7 @@ pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String
     let mut names = key.rsplit('.').map(|part| part.split('[').next().unwrap_or(part));
     let last = names.next()?;
     let above = names.next();
-    // A group that is called as a key is a table like all the others of its kind.
+    // A group with the name of a key is still a table of its kind.
     let kind = above.filter(|above| names.next().is_none() && OF_NAMES.contains(above));
     let of = |key: &str| SHAPES.iter().find(|(name, _)| *name == key).map(|(_, shape)| *shape);
     let shape = match (kind, above) {

@@ -1,4 +1,4 @@
-//! What a solver is: something that takes a scene and a resolution and leaves a record.
+//! Solvers: they take a scene and a resolution and return a record.
 
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
@@ -9,69 +9,70 @@ use nalgebra::Vector3;
 use std::fmt;
 use thiserror::Error;
 
-/// How finely a solver works: a resolution level.
+/// Resolution of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
-    /// Time step as a fraction of the critical one, `2√(m_min/k_max)`. Where the scene lasts a number of seconds the
+    /// Time step as a fraction of the critical time step `2√(m_min/k_max)`. If the duration is given in seconds, the
     /// step is shortened so that a whole number of steps fits.
     CriticalFraction(f64),
-    /// Time step (s), taken as it is.
+    /// Time step (s), used unchanged.
     TimeStep(f64),
-    /// Of engines for rigid bodies, whose contacts have no critical step. The step is shortened so that a whole number
-    /// of steps fits.
+    /// Resolution of rigid-body engines, whose contacts have no critical time step. The step is shortened so that a
+    /// whole number of steps fits.
     Rigid {
-        /// Step (s) that is divided into substeps.
+        /// Step that is divided into substeps (s).
         step: f64,
-        /// Time steps in it.
+        /// Number of time steps in it.
         substeps: u32,
         /// Iterations of the constraint solver in each time step.
         iterations: u32,
     },
-    /// Of methods with a grid. The step is shortened so that a whole number of steps fits.
+    /// Resolution of methods with a grid. The step is shortened so that a whole number of steps fits.
     Grid {
-        /// Cells per reference length of the scene: of a grain's radius, where there are grains.
+        /// Cells per reference length of the scene, which is the radius of a grain if there are grains.
         cells: f64,
         /// Material points per cell and axis.
         points: u32,
-        /// Courant number: step over the time that a longitudinal wave takes through a cell, c Δt/h.
+        /// Courant number c Δt/h: time step over the time in which a longitudinal wave crosses a cell.
         courant: f64,
     },
 }
 
 impl Resolution {
-    /// Step of an engine for rigid bodies (s), unless another one is asked for: sixty a second, as pictures are drawn.
+    /// Default step of a rigid-body engine (s): sixty per second, a usual frame rate.
     pub const RIGID_STEP: f64 = 1.0 / 60.0;
-    /// Iterations of its constraint solver, unless others are asked for.
+    /// Default number of iterations of its constraint solver.
     pub const RIGID_ITERATIONS: u32 = 4;
 
-    /// Courant number of a method with a grid, unless another one is asked for.
+    /// Default Courant number of a method with a grid.
     pub const COURANT: f64 = 0.4;
 
-    /// Part of the critical step that a command line takes where none is said.
+    /// Fraction of the critical time step that command lines use by default.
     pub const FRACTION: f64 = 0.1;
 
-    /// Cells per reference length that it takes.
+    /// Cells per reference length that command lines use by default.
     pub const CELLS: f64 = 8.0;
 
-    /// Material points per cell and axis that it takes.
+    /// Material points per cell and axis that command lines use by default.
     pub const POINTS: u32 = 3;
 
-    /// Substeps of a step of rigid bodies that it takes.
+    /// Substeps per step of rigid bodies that command lines use by default.
     pub const SUBSTEPS: u32 = 8;
 
-    /// Cells per reference length and points per cell and axis of a method with a grid, all else as usual.
+    /// Returns a grid resolution with the default Courant number.
     #[must_use]
     pub const fn grid(cells: f64, points: u32) -> Self {
         Self::Grid { cells, points, courant: Self::COURANT }
     }
 
-    /// Substeps of an engine for rigid bodies, all else as usual.
+    /// Returns a rigid-body resolution with the default step and iterations.
     #[must_use]
     pub const fn substeps(substeps: u32) -> Self {
         Self::Rigid { step: Self::RIGID_STEP, substeps, iterations: Self::RIGID_ITERATIONS }
     }
 
-    /// The resolution with steps or cells this many times as long; none of substeps that would be less than one.
+    /// Returns the resolution with steps or cells longer by a factor; `None` if the number of substeps would not be a
+    /// whole number.
     #[must_use]
     pub fn coarser(&self, factor: f64) -> Option<Self> {
         Some(match *self {
@@ -88,10 +89,11 @@ impl Resolution {
         })
     }
 
-    /// Time step (s) and number of steps of a scene, for solvers that take time steps.
+    /// Returns the time step (s) and the number of steps of a scene, for solvers with a time step.
     ///
     /// # Errors
-    /// Says what is wrong: the resolution is no time step, or the scene has no critical one to take a fraction of.
+    /// When the resolution is not a positive time step, the scene has no critical time step, or there are too many
+    /// steps.
     pub fn steps(&self, scene: &Scene) -> Result<(f64, u64), String> {
         let critical = scene.critical_time_step();
         let wanted = match *self {
@@ -120,11 +122,12 @@ impl Resolution {
         })
     }
 
-    /// Time step (s) and number of steps of a scene on a grid: the Courant number times [`Scene::crossing_time`], shortened so
-    /// that a whole number of steps fits.
+    /// Returns the time step (s) and the number of steps of a scene on a grid. The time step is the Courant number
+    /// times [`Scene::crossing_time`], shortened so that a whole number of steps fits.
     ///
     /// # Errors
-    /// Says what is wrong: the resolution is no grid, nothing in the scene deforms, or it lasts a number of cycles.
+    /// When the resolution is not a grid, nothing in the scene deforms, the duration is given in cycles, or there are
+    /// too many steps.
     pub fn steps_on_grid(&self, scene: &Scene) -> Result<(f64, u64), String> {
         let Self::Grid { cells, courant, .. } = *self else {
             return Err(format!("expected cells of a grid, found {self}"));
@@ -140,17 +143,17 @@ impl Resolution {
     }
 }
 
-/// A whole number of steps of at most a length (s) in a time (s), and how long they are then. The slack keeps a ratio that is
-/// whole but for rounding from gaining one.
+/// Returns the step (s) and the whole number of steps of at most `wanted` (s) that fill a time (s). A small tolerance
+/// prevents an extra step due to rounding.
 fn whole_steps(time: f64, wanted: f64) -> (f64, u64) {
     let steps = (time / wanted * (1.0 - 1e-12)).ceil().max(1.0);
     (time / steps, steps as u64)
 }
 
-/// Most steps that any solver takes: at a million a second they would take thirty years.
+/// Largest number of steps of any solver. At a million steps per second, these would take thirty years.
 const MOST_STEPS: f64 = 1e15;
 
-/// What is wrong with so many steps; none where they can be taken.
+/// Describes a number of steps that is too large; `None` if it is not.
 #[must_use]
 pub fn beyond_steps(steps: f64) -> Option<String> {
     (steps.is_nan() || steps >= MOST_STEPS)
@@ -179,15 +182,15 @@ impl fmt::Display for Resolution {
     }
 }
 
-/// A number to four significant digits, without zeros that say nothing.
+/// Rounds a number to four significant digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// A kind of solver, by what its resolution is.
+/// Kind of a solver, by its type of resolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Method {
-    /// Grains on springs: a time step.
+    /// Discrete element method: a time step.
     Dem,
     /// Rigid grains: substeps and iterations.
     Rigid,
@@ -196,7 +199,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// The kind of a solver of ours, by name.
+    /// Returns the kind of one of our solvers, by name.
     #[must_use]
     pub fn of(solver: &str) -> Option<Self> {
         match solver.split([':', '+']).next() {
@@ -207,7 +210,7 @@ impl Method {
         }
     }
 
-    /// What is left of an error when the resolution is as fine as one likes.
+    /// Returns the cause of the error that remains at the finest resolution.
     #[must_use]
     pub const fn floor(self) -> &'static str {
         match self {
@@ -218,97 +221,98 @@ impl Method {
     }
 }
 
-/// A defect that a solver has built in on purpose, for negative controls.
+/// Deliberate defect of a solver, for negative controls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Defect {
-    /// Every contact forgets its history after every step.
+    /// All contacts lose their history after every step.
     ForgetsHistory,
 }
 
-/// Why a simulation broke.
+/// Reason that a simulation broke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// A position or velocity is not a number or infinite.
+    /// A position or velocity is NaN or infinite.
     NotFinite,
-    /// A grain moved farther than its radius in one step.
+    /// A grain moved more than its radius in one step.
     Runaway {
-        /// Distance moved in the step (m).
+        /// Displacement in the step (m).
         moved: f64,
-        /// Its radius (m).
+        /// Radius (m).
         radius: f64,
     },
-    /// A contact became so stiff that the time step is above the critical one.
+    /// A contact became so stiff that the time step exceeds the critical one.
     StiffContact {
-        /// Stiffness of its springs (N/m).
+        /// Stiffness of the contact springs (N/m).
         stiffness: f64,
     },
-    /// A grain turned so far in one step that the direction of friction is lost.
+    /// A grain rotated so far in one step that the direction of friction is lost.
     Spun {
-        /// Angle turned in the step (rad).
+        /// Rotation in the step (rad).
         turned: f64,
     },
-    /// A material point moved farther than a cell in one step.
+    /// A material point moved more than a cell in one step.
     LeftCell {
-        /// Distance moved in the step (m).
+        /// Displacement in the step (m).
         moved: f64,
         /// Length of a cell (m).
         cell: f64,
     },
     /// A material point was turned inside out.
     Inverted {
-        /// Its volume over that at the start.
+        /// Volume relative to the initial volume.
         volume_ratio: f64,
     },
     /// A cell lost all its volume in one step.
     CollapsedCell {
-        /// Volume after the step over volume before.
+        /// Volume after the step relative to the volume before it.
         volume_ratio: f64,
     },
-    /// A material point has become so stiff that a wave takes less than a time step through a cell.
+    /// A material point became so stiff that a wave crosses a cell in less than a time step.
     Stiffened {
-        /// Time that the fastest wave takes through a cell now (s).
+        /// Present time in which the fastest wave crosses a cell (s).
         crossing: f64,
-        /// The same at the start (s).
+        /// Initial time in which the fastest wave crosses a cell (s).
         at_start: f64,
     },
-    /// A closed run has gained energy that nothing supplied.
+    /// A closed system gained energy without a source.
     GainedEnergy {
-        /// Energy gained since the start (J; J/m of discs).
+        /// Energy gained since the start (J; J/m for discs).
         gained: f64,
-        /// Largest gain that passes (J; J/m of discs).
+        /// Largest allowed gain (J; J/m for discs).
         allowed: f64,
     },
-    /// A surface starts so deep in another one that it is thrown out.
+    /// A surface starts so deep inside another surface that the contact springs would eject it.
     StartsInside {
         /// Overlap (m).
         depth: f64,
-        /// Strain of the surface layer that bears the springs of the overlap.
+        /// Strain of the surface layer that carries the spring forces of the overlap.
         strain: f64,
-        /// Largest strain that passes.
+        /// Largest allowed strain.
         allowed: f64,
     },
-    /// Bodies have spread farther than a grid can follow.
+    /// Bodies spread beyond the largest grid.
     LeftGrid {
-        /// Cells that would be needed.
+        /// Number of cells required.
         cells: f64,
     },
-    /// A grain that is poured came where another one was.
+    /// A poured grain was inserted into another grain.
     CameIntoGrain {
-        /// The other one, by id from 1.
+        /// Id of the other grain, from 1.
         other: u32,
-        /// Overlap over the smaller radius.
+        /// Overlap relative to the smaller radius.
         ratio: f64,
     },
-    /// A grain that is poured came where a wall was.
+    /// A poured grain was inserted into a wall.
     CameIntoWall {
-        /// The wall, from 1 in the order of the file.
+        /// Number of the wall in the order of the file, from 1.
         wall: u16,
-        /// Overlap over its radius.
+        /// Overlap relative to the radius.
         ratio: f64,
     },
 }
 
-/// Overlap over the smaller radius at which a grain that comes has no room: as much as a scene may begin with.
+/// Overlap, relative to the smaller radius, above which an inserted grain has no room: the default limit of initial
+/// overlaps.
 pub const LARGEST_ENTRY_OVERLAP: f64 = 0.1;
 
 impl fmt::Display for Cause {
@@ -364,14 +368,14 @@ impl fmt::Display for Cause {
     }
 }
 
-/// What broke.
+/// Particle that broke the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
-    /// A grain, by id from 1.
+    /// Grain, by id from 1.
     Grain(u32),
-    /// A material point of a grain, by id of the grain from 1.
+    /// Material point of a grain, by id of the grain from 1.
     PointOfGrain(u32),
-    /// A material point of a body that is no grain, by place of the body from 1.
+    /// Material point of another body, by number of the body from 1.
     PointOfBody(u32),
 }
 
@@ -385,7 +389,7 @@ impl fmt::Display for Subject {
     }
 }
 
-/// A simulation that broke: when, where and why, and what would have been stable.
+/// Simulation that broke: time, position, cause, and a stable alternative.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "the simulation broke at t = {time:.6e} s (step {step}): {subject} at ({:.4e}, {:.4e}, {:.4e}) m: {cause}; the time step \
@@ -397,21 +401,21 @@ pub struct Broken {
     pub time: f64,
     /// Step.
     pub step: u64,
-    /// What broke.
+    /// Particle that broke.
     pub subject: Subject,
-    /// Where it was last (m).
+    /// Last position (m).
     pub position: Vector3<f64>,
-    /// Why.
+    /// Cause.
     pub cause: Cause,
     /// Time step (s).
     pub time_step: f64,
     /// Critical time step (s).
     pub critical: f64,
-    /// What would have been stable.
+    /// Advice on a stable setting.
     pub advice: String,
 }
 
-/// A time step (s) beside the critical one (s), where there is one.
+/// Returns the ratio of a time step (s) to the critical one (s) as text; empty if there is no critical time step.
 fn of_critical(time_step: f64, critical: f64) -> String {
     if critical.is_finite() {
         format!(", {:.3} of the critical {critical:.4e} s", time_step / critical)
@@ -420,67 +424,67 @@ fn of_critical(time_step: f64, critical: f64) -> String {
     }
 }
 
-/// Why a solver left no record.
+/// Reason that a solver returned no record.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RunError {
-    /// The solver cannot express this scene.
+    /// The solver does not support this scene.
     #[error("{solver} cannot run this scene: {reason}")]
     Unsupported {
-        /// Which solver.
+        /// Name of the solver.
         solver: String,
-        /// What it lacks.
+        /// Missing feature.
         reason: String,
     },
-    /// A quantity is no finite number any more, though every grain is where it can be.
+    /// A sampled quantity became NaN or infinite, although all grain positions are valid.
     #[error("the simulation broke at t = {time:.6e} s (step {step}): `{column}` became {value}")]
     NotFinite {
         /// Time (s).
         time: f64,
         /// Step.
         step: u64,
-        /// The column of the series.
+        /// Column of the time series.
         column: String,
-        /// What it became.
+        /// Value.
         value: f64,
     },
-    /// The resolution makes no sense for this solver.
+    /// The resolution is not valid for this solver.
     #[error("{solver}: {reason}")]
     Resolution {
-        /// Which solver.
+        /// Name of the solver.
         solver: String,
-        /// What is wrong with it.
+        /// Error in the resolution.
         reason: String,
     },
-    /// The solver is a program that is not here.
+    /// The solver is an external program that is not installed.
     #[error("{solver} is not available: {reason}")]
     NotAvailable {
-        /// Which solver.
+        /// Name of the solver.
         solver: String,
-        /// Where it was looked for.
+        /// Searched locations.
         reason: String,
     },
-    /// The record would have been a stored one, and that is of another scene.
+    /// The stored record belongs to another scene.
     #[error("{solver}: the stored run is stale: {reason}")]
     Stale {
-        /// Which solver.
+        /// Name of the solver.
         solver: String,
-        /// What is to be done.
+        /// Required action.
         reason: String,
     },
-    /// The solver is a program that failed.
+    /// The solver is an external program that failed.
     #[error("{solver} {failure}{}", last_words(last_lines))]
     Program {
-        /// Which solver.
+        /// Name of the solver.
         solver: String,
-        /// How it failed.
+        /// Kind of failure.
         failure: Failure,
-        /// The last lines that it printed.
+        /// Last lines of its output.
         last_lines: Vec<String>,
     },
     /// The simulation broke.
     #[error(transparent)]
     Broken(#[from] Box<Broken>),
-    /// Who watches wanted it to end.
+    /// The watcher interrupted the run.
     #[error("the simulation was interrupted at t = {time:.6e} s (step {step})")]
     Interrupted {
         /// Time (s).
@@ -491,29 +495,29 @@ pub enum RunError {
     /// A snapshot could not be stored.
     #[error(transparent)]
     NotStored(#[from] NotStored),
-    /// It cannot be continued from this checkpoint, or its own checkpoint cannot be left.
+    /// The run cannot continue from this checkpoint, or a checkpoint cannot be stored.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
 }
 
-/// What a watcher could not store, and why.
+/// Error of a watcher that could not store output.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct NotStored(pub String);
 
-/// How another program failed.
+/// Failure of an external program.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Failure {
-    /// It could not be started, or its folder not be made.
+    /// The program could not be started, or its folder could not be created.
     #[error("could not be run: {0}")]
     NotRun(String),
-    /// It took too long and was ended, or what it left took too long to read.
+    /// The program or the reading of its output exceeded the time limit.
     #[error("was not done after {0} s")]
     TimeOut(u64),
-    /// It ended with another code than success.
+    /// The program ended with an error code.
     #[error("failed: {0}")]
     Crash(String),
-    /// What it left cannot be used.
+    /// The output of the program cannot be used.
     #[error("left output that cannot be used: {0}")]
     Output(String),
 }
@@ -522,83 +526,81 @@ fn last_words(lines: &[String]) -> String {
     if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) }
 }
 
-/// What lies ahead of a run.
+/// Size of a run, known before its first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ahead {
     /// Time step (s).
     pub time_step: f64,
     /// Number of steps.
     pub steps: u64,
-    /// Grains, or material points, that take each of them.
+    /// Number of grains or material points in each step.
     pub particles: u64,
 }
 
-/// Someone who wants to know how far a run is.
+/// Observer of a run.
 pub trait Watch {
     /// Called once, before the first step.
     fn begin(&mut self, _ahead: Ahead) {}
-    /// Threads that the run may take, of solvers that share their work among threads; asked for once. The record does not
-    /// depend on it in any bit.
+    /// Returns the number of threads for solvers that use several; called once. No bit of the record depends on it.
     fn threads(&self) -> usize {
         1
     }
-    /// Called now and then with the number of steps done and to do.
+    /// Called from time to time with the number of completed steps and the total.
     fn progress(&mut self, done: u64, total: u64);
-    /// Steps from one checkpoint to the next; asked for once, after [`Watch::begin`]. None when no checkpoint is
-    /// wanted.
+    /// Returns the number of steps between checkpoints; `None` for no checkpoints. Called once, after [`Watch::begin`].
     fn checkpoint_interval(&self) -> Option<u64> {
         None
     }
-    /// Called with every snapshot, in order of time. What is handed back stays in the record of the run and in its
-    /// checkpoints; what the watcher takes is in neither, and memory then holds one snapshot at a time.
+    /// Called with every snapshot, in order of time. A returned snapshot stays in the record of the run and in its
+    /// checkpoints. If the watcher takes it over, it is in neither, and memory holds one snapshot at a time.
     ///
     /// # Errors
-    /// When it cannot be stored: the run ends with this error.
+    /// When the snapshot cannot be stored. The run ends with this error.
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
         Ok(Some(snapshot))
     }
-    /// Rows of grains, contacts and points up to which a snapshot is wanted; asked for before the first step. Of one with more
-    /// [`Watch::in_short`] is called, and what it would take in memory is not taken.
+    /// Returns the largest number of rows of grains, contacts and points in a wanted snapshot; called before the first
+    /// step. For a larger snapshot, [`Watch::in_short`] is called, and no memory is used for its rows.
     fn most_rows(&self) -> u64 {
         u64::MAX
     }
-    /// Called in place of [`Watch::snapshot`] with one that is not wanted, and the rows it would have.
+    /// Called instead of [`Watch::snapshot`] for a snapshot that is not wanted, with a summary and its number of rows.
     fn in_short(&mut self, _brief: Brief, _rows: u64) {}
-    /// Whether a run goes on where its time step is above the critical one.
+    /// Returns true if a run continues although its time step exceeds the critical one.
     fn allows_unstable(&self) -> bool {
         false
     }
-    /// Whether every snapshot stays in the record.
+    /// Returns true if every snapshot stays in the record.
     fn keeps_snapshots(&self) -> bool {
         true
     }
-    /// Whether the state at the end is wanted, for another scene to begin with.
+    /// Returns true if the final state is wanted as the initial state of another scene.
     fn wants_end_state(&self) -> bool {
         false
     }
-    /// Called with the state at the end, of solvers that tell it.
+    /// Called with the final state, by solvers that provide it.
     fn end_state(&mut self, _state: EndState) {}
-    /// Whether the run is to end early; asked whenever progress is told.
+    /// Returns true if the run must end early; called after each progress report.
     fn is_over(&self) -> bool {
         false
     }
-    /// Called when the simulation broke or was ended, with what there is of it.
+    /// Called with the partial output when the simulation broke or was interrupted.
     fn broke(&mut self, _remains: Remains) {}
     /// Called with every checkpoint.
     ///
     /// # Errors
-    /// When it cannot be stored: the run ends with this error.
+    /// When the checkpoint cannot be stored. The run ends with this error.
     fn checkpoint(&mut self, _checkpoint: Checkpoint) -> Result<(), CheckpointError> {
         Ok(())
     }
 }
 
-/// Nobody watches.
+/// Watcher that does nothing.
 impl Watch for () {
     fn progress(&mut self, _done: u64, _total: u64) {}
 }
 
-/// Nobody watches, and the run may take so many threads.
+/// Watcher that only sets the number of threads.
 pub struct Threads(pub usize);
 
 impl Watch for Threads {
@@ -608,7 +610,7 @@ impl Watch for Threads {
     fn progress(&mut self, _done: u64, _total: u64) {}
 }
 
-/// A run that goes on where its time step is above the critical one.
+/// Watcher that allows time steps above the critical one.
 pub struct Unstable;
 
 impl Watch for Unstable {
@@ -618,27 +620,27 @@ impl Watch for Unstable {
     }
 }
 
-/// A solver, ours or anyone's.
+/// Solver, internal or external.
 pub trait Solver: Send + Sync {
     /// Name and convention, such as `dem:lammps`.
     fn name(&self) -> String;
 
-    /// Whether it can be run on this machine. Solvers of ours always can.
+    /// Checks that the solver can run on this machine. Our own solvers always can.
     ///
     /// # Errors
-    /// When it is a program that is not here: [`RunError::NotAvailable`].
+    /// When the solver is an external program that is not installed: [`RunError::NotAvailable`].
     fn available(&self) -> Result<(), RunError> {
         Ok(())
     }
 
-    /// Whether its contacts have the springs and dashpots of a scene. Of one with rigid contacts rows are not asked that look
-    /// at those.
+    /// Returns true if its contacts have the springs and dashpots of a scene. Claims about springs and dashpots are not
+    /// evaluated for solvers with rigid contacts.
     fn has_springs(&self) -> bool {
         true
     }
 
-    /// Whether its bodies deform: rows that look inside bodies, or at what deformation makes of a motion, are asked of such a
-    /// solver alone.
+    /// Returns true if its bodies deform. Claims about the interior of bodies, or about the effect of deformation on
+    /// motion, are evaluated only for such solvers.
     fn deforms(&self) -> bool {
         false
     }
@@ -646,15 +648,14 @@ pub trait Solver: Send + Sync {
     /// Runs a scene.
     ///
     /// # Errors
-    /// When the scene cannot be expressed, the resolution makes no sense, or the simulation breaks.
+    /// When the scene is not supported, the resolution is not valid, or the simulation breaks.
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError>;
 
-    /// Continues a run of the same scene at the same resolution from a checkpoint that it left. The record is that of
-    /// the whole run, in every bit but its times.
+    /// Continues a run of the same scene at the same resolution from one of its checkpoints. The record equals that of
+    /// an uninterrupted run in every bit except for wall-clock times.
     ///
     /// # Errors
-    /// As for [`Solver::run`], and when the checkpoint belongs to another run. A solver that leaves no checkpoints
-    /// refuses.
+    /// As for [`Solver::run`], and when the checkpoint belongs to another run or the solver writes no checkpoints.
     fn restart(
         &self,
         _scene: &Scene,

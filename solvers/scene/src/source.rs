@@ -1,4 +1,4 @@
-//! The text of a scene: parsing, variants, overrides, and finding the line of a key again.
+//! Text of a scene: parsing, variants, overrides, and the lines of keys.
 
 use crate::error::{SceneError, did_you_mean};
 use crate::file::SceneFile;
@@ -7,15 +7,15 @@ use crate::shape;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-/// The text of a scene file and where it came from.
+/// Text of a scene file, and its origin.
 #[derive(Clone, Debug)]
 pub struct SceneSource {
-    /// How errors call the file.
+    /// Name of the file in error messages.
     pub name: String,
     /// Directory that paths in the file are relative to.
     pub directory: PathBuf,
     text: String,
-    /// The text as a table: of all copies, whatever variant and overrides they have, it is read once.
+    /// The text as a table. All copies share it, whatever their variant and overrides, so the text is parsed once.
     read: Arc<OnceLock<toml::Table>>,
     variant: Option<String>,
     overrides: Vec<(String, String)>,
@@ -53,7 +53,7 @@ impl SceneSource {
         }
         let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
         let source = Self { name, directory, text, read: Arc::default(), variant: None, overrides: Vec::new() };
-        // A slip in a variant that nobody asked for today is one all the same.
+        // Errors in any variant are found, even if another variant is used.
         let table = source.parse()?;
         let mut varied = source.clone();
         for variant in variant_names(table) {
@@ -63,7 +63,7 @@ impl SceneSource {
         Ok(source)
     }
 
-    /// A scene from text that is already at hand.
+    /// Creates a scene source from text in memory.
     #[must_use]
     pub fn from_text(name: &str, directory: &Path, text: &str) -> Self {
         Self {
@@ -76,27 +76,27 @@ impl SceneSource {
         }
     }
 
-    /// The text.
+    /// Returns the text.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Takes a variant of the scene instead of the plain one.
+    /// Selects a variant of the scene.
     #[must_use]
     pub fn variant(mut self, name: &str) -> Self {
         self.variant = Some(name.to_owned());
         self
     }
 
-    /// Overrides one key: a dotted path and a TOML value; text that is no TOML value is taken as a string.
+    /// Overrides one key, given as a dotted path, with a TOML value. Text that is not TOML is used as a string.
     #[must_use]
     pub fn set(mut self, key: &str, value: &str) -> Self {
         self.overrides.push((key.to_owned(), value.to_owned()));
         self
     }
 
-    /// Names of the variants in the file, in its order.
+    /// Returns the names of the variants, in the order of the file.
     ///
     /// # Errors
     /// When the text is not TOML.
@@ -104,7 +104,7 @@ impl SceneSource {
         Ok(variant_names(self.parse()?))
     }
 
-    /// The file with its variant and overrides laid over it.
+    /// Returns the scene file with its variant and overrides applied.
     ///
     /// # Errors
     /// When the text is not TOML, the variant is unknown, or a key is unknown, missing or of the wrong type.
@@ -112,15 +112,15 @@ impl SceneSource {
         self.scene_file_of(self.parse()?)
     }
 
-    /// The same as a table, of which nothing but that it is TOML is known.
+    /// Returns the table with its variant and overrides applied. Its keys and types are not checked.
     ///
     /// # Errors
-    /// When the text is not TOML, the variant is unknown, or an override has no place.
+    /// When the text is not TOML, the variant is unknown, or an override cannot be applied.
     pub fn table(&self) -> Result<toml::Table, SceneError> {
         self.laid_over(self.parse()?)
     }
 
-    /// The file of the text as a table.
+    /// Deserialises a table with its variant and overrides applied.
     fn scene_file_of(&self, text: &toml::Table) -> Result<SceneFile, SceneError> {
         let table = self.laid_over(text)?;
         serde_path_to_error::deserialize(toml::Value::Table(table.clone())).map_err(|error| {
@@ -158,7 +158,7 @@ impl SceneSource {
         Ok(table)
     }
 
-    /// An error about a key of this scene.
+    /// Creates an error about a key of this scene.
     #[must_use]
     pub fn error(&self, key: &str, expected: &str, found: &str, help: Option<String>) -> SceneError {
         SceneError {
@@ -209,7 +209,7 @@ impl SceneSource {
         Ok(())
     }
 
-    /// Takes a key away that the file has: `--set key=`.
+    /// Removes an existing key: `--set key=`.
     fn take_away(&self, table: &mut toml::Table, key: &str) -> Result<(), SceneError> {
         let (path, last) = key.rsplit_once('.').map_or((None, key), |(path, last)| (Some(path), last));
         let mut parts = path.into_iter().flat_map(|path| path.split('.'));
@@ -220,14 +220,14 @@ impl SceneSource {
         }
     }
 
-    /// Where a key was written: the `--set`, or file and line of the key or of its nearest parent.
+    /// Returns the origin of a key: the `--set` option, or file and line of the key or its nearest parent.
     fn place(&self, key: &str) -> String {
         if let Some((set, value)) = self.overrides.iter().rev().find(|(set, _)| within(key, set)) {
             return format!("--set {set}={value}");
         }
         let variant = self.variant.as_ref().map(|variant| format!("variants.{variant}.{key}"));
         let exact = variant.and_then(|path| self.line(&path, true)).or_else(|| self.line(key, true));
-        // A parent that the file does not have came in with an override of something below it.
+        // A parent that is not in the file comes from an override of a key below it.
         if let (None, Some((set, value))) = (exact, self.overrides.iter().rev().find(|(set, _)| within(set, key))) {
             return format!("--set {set}={value}");
         }
@@ -235,7 +235,8 @@ impl SceneSource {
         line.map_or_else(|| self.name.clone(), |line| format!("{}:{line}", self.name))
     }
 
-    /// Line of a key; with `exact` only if the whole path is there, else of the deepest part that is.
+    /// Returns the line of a key. With `exact`, the whole path must exist; otherwise the line of its deepest existing
+    /// part counts.
     fn line(&self, key: &str, exact: bool) -> Option<usize> {
         let document = toml_edit::Document::parse(self.text.as_str()).ok()?;
         let mut item: &dyn toml_edit::TableLike = document.as_table();
@@ -256,7 +257,7 @@ impl SceneSource {
         line
     }
 
-    /// Turns serde's words into ours.
+    /// Translates a message of serde into a scene error.
     fn explain(&self, path: &str, message: &str, table: &toml::Table) -> SceneError {
         let message = message.trim();
         let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
@@ -303,7 +304,7 @@ impl SceneSource {
     }
 }
 
-/// `.5` as TOML has it, `0.5`, wherever a number begins so.
+/// Adds the zeros that TOML requires to numbers such as `.5`.
 fn with_zeros(value: &str) -> String {
     let mut text = String::new();
     for (at, letter) in value.char_indices() {
@@ -317,7 +318,7 @@ fn with_zeros(value: &str) -> String {
     text
 }
 
-/// The value at a dotted path, where there is one.
+/// Returns the value at a dotted path; `None` if there is none.
 fn value_at<'a>(table: &'a toml::Table, path: &str) -> Option<&'a toml::Value> {
     let mut parts = path.split(['.', '[']);
     let first = table.get(parts.next()?)?;
@@ -331,7 +332,7 @@ fn describe(value: &toml::Value) -> String {
     format!("{} `{}`", value.type_str(), shortened(value.to_string().trim()))
 }
 
-/// The first words of a text, in one line.
+/// Returns the first line of a text, cut to 60 characters.
 fn shortened(text: &str) -> String {
     const LONGEST: usize = 60;
     let line = text.lines().next().unwrap_or_default();
@@ -341,7 +342,7 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// Whether `key` is `set` or lies below it.
+/// Returns true if `key` is `set` or lies below it.
 fn within(key: &str, set: &str) -> bool {
     key.strip_prefix(set).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
@@ -354,7 +355,7 @@ fn variant_tables(table: &toml::Table) -> Option<&toml::Table> {
     table.get("variants").and_then(toml::Value::as_table)
 }
 
-/// Lays one table over another; an empty text takes a key away.
+/// Merges a table into another. An empty string removes a key.
 fn merge(base: &mut toml::Table, overlay: toml::Table) {
     for (key, value) in overlay {
         match (base.get_mut(&key), value) {

@@ -1,7 +1,7 @@
-//! Two and three dimensions from one source.
+//! Two and three dimensions from the same source.
 //!
-//! Everything that differs between the plane and space is a method of [`Space`]; solvers are generic over it and
-//! carry no feature flag and no twin file.
+//! Everything that differs between the plane and space is a method of [`Space`]. Solvers are generic over it and need
+//! no feature flag and no duplicate file.
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use serde::Serialize;
@@ -15,7 +15,7 @@ mod sealed {
     impl Sealed for super::Solid {}
 }
 
-/// What solvers ask of a vector.
+/// Vector operations that solvers need.
 pub trait Linear:
     Copy
     + Debug
@@ -52,7 +52,7 @@ impl<T> Linear for T where
 {
 }
 
-/// A space of two or three dimensions.
+/// Space of two or three dimensions.
 pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     /// Number of dimensions.
     const DIMENSION: usize;
@@ -60,61 +60,61 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     type Vector: Linear;
     /// Gradient of a vector.
     type Matrix: Linear + Mul<Output = Self::Matrix> + Mul<Self::Vector, Output = Self::Vector>;
-    /// Symmetric tensor with its parts out of the plane (plane strain): xx, yy, zz, xy, (yz, zx).
+    /// Symmetric tensor, including the out-of-plane component (plane strain): xx, yy, zz, xy, (yz, zx).
     type Symmetric: Copy + Debug + PartialEq + Default + Serialize + DeserializeOwned + Send + Sync + 'static;
-    /// The vector zero.
+    /// Zero vector.
     const ORIGIN: Self::Vector;
-    /// The gradient zero.
+    /// Zero gradient.
     const NO_GRADIENT: Self::Matrix;
 
-    /// Scalar product.
+    /// Returns the scalar product.
     fn dot(a: Self::Vector, b: Self::Vector) -> f64;
-    /// The vector in three dimensions, z = 0 for the plane.
+    /// Returns the vector in three dimensions, with z = 0 for the plane.
     fn embed(vector: Self::Vector) -> Vector3<f64>;
-    /// The vector without what this space does not have.
+    /// Returns the vector without the components that this space lacks.
     fn restrict(vector: Vector3<f64>) -> Self::Vector;
-    /// `a bᵀ`.
+    /// Returns `a bᵀ`.
     fn outer(a: Self::Vector, b: Self::Vector) -> Self::Matrix;
-    /// The gradient in three dimensions, zero out of the plane.
+    /// Returns the gradient in three dimensions, with zero out-of-plane components.
     fn embed_gradient(gradient: Self::Matrix) -> Matrix3<f64>;
-    /// The gradient without what this space does not have.
+    /// Returns the gradient without the components that this space lacks.
     fn restrict_gradient(gradient: Matrix3<f64>) -> Self::Matrix;
-    /// A symmetric tensor as a matrix.
+    /// Returns a symmetric tensor as a matrix.
     fn embed_symmetric(tensor: Self::Symmetric) -> Matrix3<f64>;
-    /// The components of a symmetric matrix that this space keeps.
+    /// Returns the components of a symmetric matrix that this space stores.
     fn restrict_symmetric(tensor: Matrix3<f64>) -> Self::Symmetric;
-    /// Determinant of a gradient.
+    /// Returns the determinant of a gradient.
     fn determinant(gradient: Self::Matrix) -> f64;
-    /// `F Fᵀ` of a deformation gradient that stretches nothing out of the plane.
+    /// Returns `F Fᵀ` of a deformation gradient without out-of-plane stretch.
     fn finger(deformation: Self::Matrix) -> Self::Symmetric;
-    /// Symmetric part of a gradient.
+    /// Returns the symmetric part of a gradient.
     fn symmetric_part(gradient: Self::Matrix) -> Self::Symmetric;
-    /// Displacement gradient H of a step on the configuration half-way through it, from that G on the configuration at its
-    /// start: H = G (1 + G/2)⁻¹ (Hughes & Winget 1980). Both are numbers without a unit.
+    /// Returns the displacement gradient H of a step with respect to the midpoint configuration, from the gradient G
+    /// with respect to the initial configuration: H = G (1 + G/2)⁻¹ (Hughes & Winget 1980). Both are dimensionless.
     ///
-    /// A rotation by θ, 1 + G = R, gives H = 2 (R − 1)(R + 1)⁻¹, which is skew with entries ±2 tan(θ/2): no strain. The
-    /// symmetric part of its G is (cos θ − 1) 1.
+    /// A rotation by θ, 1 + G = R, gives H = 2 (R − 1)(R + 1)⁻¹. This H is skew with entries ±2 tan(θ/2), so it
+    /// contains no strain. The symmetric part of its G is (cos θ − 1) 1.
     fn at_midpoint(gradient: Self::Matrix) -> Self::Matrix;
-    /// `R σ Rᵀ` with the rotation of the midpoint rule, R = (1 − W/2)⁻¹(1 + W/2), W the skew part of a displacement
-    /// gradient on the configuration half-way through a step (Hughes & Winget 1980).
+    /// Returns `R σ Rᵀ` with the rotation of the midpoint rule, R = (1 − W/2)⁻¹(1 + W/2). W is the skew part of a
+    /// displacement gradient with respect to the midpoint configuration (Hughes & Winget 1980).
     fn turned(tensor: Self::Symmetric, increment: Self::Matrix) -> Self::Symmetric;
-    /// `a f + b`.
+    /// Returns `a f + b`.
     fn scaled_sum(a: Self::Symmetric, factor: f64, b: Self::Symmetric) -> Self::Symmetric;
-    /// A multiple of the unit tensor of three dimensions.
+    /// Returns a multiple of the unit tensor of three dimensions.
     fn isotropic(value: f64) -> Self::Symmetric;
-    /// Trace in three dimensions.
+    /// Returns the trace in three dimensions.
     fn trace(tensor: Self::Symmetric) -> f64;
-    /// `σ : σ` in three dimensions.
+    /// Returns `σ : σ` in three dimensions.
     fn norm_squared(tensor: Self::Symmetric) -> f64;
-    /// `σ : ε` in three dimensions.
+    /// Returns `σ : ε` in three dimensions.
     fn double_dot(one: Self::Symmetric, other: Self::Symmetric) -> f64;
-    /// A symmetric tensor times a vector of this space.
+    /// Returns the product of a symmetric tensor and a vector of this space.
     fn apply(tensor: Self::Symmetric, vector: Self::Vector) -> Self::Vector;
-    /// A component of a vector.
+    /// Returns a component of a vector.
     fn component(vector: Self::Vector, axis: usize) -> f64;
 }
 
-/// The plane: vectors (x, y), spin about z.
+/// Plane: vectors (x, y), spin about z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plane;
 
@@ -176,7 +176,7 @@ impl Space for Plane {
     }
     #[inline(always)]
     fn at_midpoint(g: Matrix2<f64>) -> Matrix2<f64> {
-        // By Cayley and Hamilton: (G + ½ det G 1)/det(1 + G/2).
+        // By the Cayley–Hamilton theorem: (G + ½ det G 1)/det(1 + G/2).
         let minor = 0.5 * (g.m11 * g.m22 - g.m12 * g.m21);
         let inverse = 1.0 / (1.0 + 0.5 * (g.m11 + g.m22 + minor));
         Matrix2::new((g.m11 + minor) * inverse, g.m12 * inverse, g.m21 * inverse, (g.m22 + minor) * inverse)
@@ -276,8 +276,8 @@ impl Space for Solid {
     }
     #[inline(always)]
     fn at_midpoint(gradient: Matrix3<f64>) -> Matrix3<f64> {
-        // By Cayley and Hamilton: (G − ½ adj G + (½ tr adj G + ¼ det G) 1)/det(1 + G/2); the columns of adj G are products
-        // of the rows of G.
+        // By the Cayley–Hamilton theorem: (G − ½ adj G + (½ tr adj G + ¼ det G) 1)/det(1 + G/2). The columns of adj G
+        // are cross products of the rows of G.
         let [x, y, z] = [0, 1, 2].map(|row| gradient.row(row).transpose());
         let adjugate = Matrix3::from_columns(&[y.cross(&z), z.cross(&x), x.cross(&y)]);
         let (minors, quarter) = (0.5 * adjugate.trace(), 0.25 * x.dot(&y.cross(&z)));
@@ -286,7 +286,7 @@ impl Space for Solid {
     }
     #[inline(always)]
     fn turned(tensor: [f64; 6], increment: Matrix3<f64>) -> [f64; 6] {
-        // R = 1 + (W + W²/2)/(1 + |w|²/4), w the axial vector of W.
+        // R = 1 + (W + W²/2)/(1 + |w|²/4) with the axial vector w of W.
         let skew = (increment - increment.transpose()) * 0.5;
         let axial = skew.m12 * skew.m12 + skew.m23 * skew.m23 + skew.m31 * skew.m31;
         let rotation = Matrix3::identity() + (skew + skew * skew * 0.5) / (1.0 + 0.25 * axial);
@@ -327,7 +327,7 @@ impl Space for Solid {
 mod tests {
     use super::*;
 
-    /// Both spaces give the same for the same tensors of the plane.
+    /// Both spaces give the same results for plane tensors.
     #[test]
     fn plane_agrees_with_solid() {
         let (tensor, gradient) = ([1.0, -2.0, 0.5, 0.7], Matrix2::new(0.01, 0.2, -0.1, 0.03));
@@ -344,7 +344,7 @@ mod tests {
         assert!(same(Plane::finger(unit), Solid::finger(solid_unit)));
         assert!((Plane::determinant(unit) - Solid::determinant(solid_unit)).abs() < 1e-15);
     }
-    /// H (1 + G/2) = G for any G, and of a rotation about any axis nothing symmetric is left.
+    /// H (1 + G/2) = G for any G, and the H of a rotation about any axis has no symmetric part.
     #[test]
     fn a_rotation_has_no_strain_at_the_midpoint() {
         let gradient = Matrix3::new(0.11, 0.2, -0.3, -0.17, 0.03, 0.25, 0.07, -0.4, -0.2);
@@ -354,7 +354,7 @@ mod tests {
             let angle = 0.8_f64;
             let rotation = nalgebra::Rotation3::new(axis * angle).into_inner();
             let middle = Solid::at_midpoint(rotation - Matrix3::identity());
-            // 2 tan(θ/2) about the axis.
+            // 2 tan(θ/2) times the cross-product matrix of the axis.
             let expected = axis.cross_matrix() * (2.0 * (0.5 * angle).tan());
             assert!((middle - expected).norm() < 1e-15 * 10.0, "{middle}");
         }

@@ -1,38 +1,38 @@
-//! Grains that come or go, and walls that are taken away: what a scene has only for a while.
+//! Insertion and removal of grains.
 
 use nalgebra::Vector3;
 
-/// Which grains are there from when on, and where they are taken out.
+/// Insertion and removal of grains during a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stays {
-    /// Grains that are not there from the start, in order of time.
+    /// Grains that are absent at the start, in order of insertion time.
     pub entries: Vec<Entry>,
-    /// Where grains are taken out, if they are.
+    /// Removal of grains; absent if no grains are removed.
     pub removal: Option<Removal>,
 }
 
-/// A grain that enters.
+/// Inserted grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// The grain, by place in [`crate::scene::Scene::grains`]: where, how fast and with which spin it is there at first.
+    /// Index in [`crate::scene::Scene::grains`], which holds the initial position, velocity and spin.
     pub grain: usize,
-    /// When (s): it is there from the first step on that does not end before.
+    /// Insertion time (s). The grain is present from the first step that ends at or after this time.
     pub time: f64,
 }
 
-/// Where grains are taken out: beyond the sides of a box.
+/// Removal of grains outside a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Removal {
     /// Lower corner (m).
     pub low: Vector3<f64>,
     /// Upper corner (m).
     pub high: Vector3<f64>,
-    /// They are looked for every so many steps.
+    /// Number of steps between searches for such grains.
     pub every: u64,
 }
 
 impl Removal {
-    /// Whether a grain with its centre at a place (m) is taken out, in a space of so many dimensions.
+    /// Returns true if a grain with its centre at a position (m) is removed. `dimension` is the number of dimensions.
     #[must_use]
     pub fn takes(&self, place: Vector3<f64>, dimension: usize) -> bool {
         (0..dimension).any(|axis| !(self.low[axis]..=self.high[axis]).contains(&place[axis]))
@@ -40,13 +40,14 @@ impl Removal {
 }
 
 impl Stays {
-    /// Whether all grains are there all the time.
+    /// Returns true if no grains are inserted or removed.
     #[must_use]
     pub const fn is_always(&self) -> bool {
         self.entries.is_empty() && self.removal.is_none()
     }
 
-    /// How many of the entries have come at a time (s). Rounding keeps none from the step that ends at its time.
+    /// Returns the number of grains inserted until a time (s). A tolerance includes insertions at the end of the step
+    /// despite rounding.
     #[must_use]
     pub fn entered_by(&self, time: f64) -> usize {
         let now = time + 1e-9 * time.abs();

@@ -1,48 +1,48 @@
-//! What a solver claims of itself: how finely it is to be run, its order in the time step, and what its method owes
-//! less than others, with the physics.
+//! Conformance properties of a solver: its resolution in tests, its order of convergence in the time step, and its
+//! limitations with their physical reasons.
 
 use crate::solver::Resolution;
 
-/// What a solver claims of itself.
+/// Conformance properties of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
-    /// Resolution of all runs but those that show the order. The collisions last some 30 critical steps.
+    /// Resolution of all runs except those that determine the order. The collisions last about 30 critical time steps.
     pub resolution: Resolution,
-    /// Order in the time step; none where the solver claims none.
+    /// Order of convergence in the time step; `None` if the solver claims none.
     pub order: Option<Order>,
-    /// What it owes less than others.
+    /// Limitations compared with other methods.
     pub less: &'static [Less],
-    /// Whether scenes in space are run beside those in the plane, which take some methods long.
+    /// True if scenes in space are run too. They take some methods a long time.
     pub in_space: bool,
-    /// Whether runs that watch the energy take 10⁵ steps instead of some thousands.
+    /// True if runs that monitor the energy take 10⁵ steps instead of some thousands.
     pub long: bool,
 }
 
-/// A claim about the order in the time step, for smooth motion without dashpots.
+/// Claimed order of convergence in the time step, for smooth motion without dashpots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
-    /// The order.
+    /// Order.
     pub expected: f64,
-    /// Three resolutions, each of half the time step of the one before. The run lasts ten critical steps.
+    /// Three resolutions; each has half the time step of the previous one. The run lasts ten critical time steps.
     pub levels: [Resolution; 3],
 }
 
-/// Something that a method does not keep to rounding, and how far it is off at most.
+/// Limitation: property that a method satisfies only within an error limit, not to rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Less {
     /// Property, such as `rotation-invariance`.
     pub property: &'static str,
-    /// The beginning of the quantity, such as `angular`; empty for all of the property.
+    /// Prefix of the quantity, such as `angular`; empty for all quantities of the property.
     pub quantity: &'static str,
-    /// Error, as a part of the row's scale, beyond which the row is red all the same. It is set above what was seen, so
-    /// that it tells of a change and of nothing else: what is owed less is never green.
+    /// Error limit, relative to the scale of the row, above which the row fails. It is set above the observed error, so
+    /// that only a change of the solver exceeds it. A row with a limitation never passes as green.
     pub at_most: f64,
-    /// The physics of it.
+    /// Physical reason.
     pub because: &'static str,
 }
 
 impl Terms {
-    /// Central differences at steps that suit springs: second order.
+    /// Central differences at time steps that suit springs: second order.
     pub const SECOND_ORDER: Self = Self {
         resolution: Resolution::CriticalFraction(0.02),
         order: Some(Order {
@@ -58,31 +58,31 @@ impl Terms {
         long: false,
     };
 
-    /// No claim about the order.
+    /// Returns properties without a claimed order.
     #[must_use]
     pub const fn at(resolution: Resolution) -> Self {
         Self { resolution, order: None, less: &[], in_space: true, long: false }
     }
 
-    /// The same of a method that owes less.
+    /// Returns the properties with limitations.
     #[must_use]
     pub const fn owing_less(self, less: &'static [Less]) -> Self {
         Self { less, ..self }
     }
 
-    /// The same for scenes in the plane alone.
+    /// Returns the properties for scenes in the plane only.
     #[must_use]
     pub const fn in_the_plane(self) -> Self {
         Self { in_space: false, ..self }
     }
 
-    /// The terms with long runs where the energy is watched.
+    /// Returns the properties with long energy runs.
     #[must_use]
     pub const fn at_length(self) -> Self {
         Self { long: true, ..self }
     }
 
-    /// What is owed less of a quantity.
+    /// Returns the limitation that applies to a quantity; `None` if there is none.
     #[must_use]
     pub fn less_of(&self, property: &str, quantity: &str) -> Option<&'static Less> {
         self.less.iter().find(|less| less.property == property && quantity.starts_with(less.quantity))

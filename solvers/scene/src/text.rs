@@ -1,16 +1,16 @@
-//! Other people's text: where it is read, and where it is shown, as titles, keys and names of files.
+//! Text from users: reading of files, and safe display of titles, keys and file names.
 
 use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Most bytes of a file that a person wrote.
+/// Largest size of a file written by a user (B).
 const MOST: u64 = 1 << 20;
 
-/// The text of a file that a person wrote.
+/// Reads a text file written by a user.
 ///
 /// # Errors
-/// What was expected, and what was found.
+/// When the file cannot be read; the error holds the expected and the found value.
 pub fn written(path: &Path) -> Result<String, (&'static str, String)> {
     let readable = |reason: io::Error| ("a file that can be read", reason.to_string());
     let found = fs::metadata(path).map_err(readable)?;
@@ -21,14 +21,14 @@ pub fn written(path: &Path) -> Result<String, (&'static str, String)> {
     String::from_utf8(text).map_err(|_| ("UTF-8", "other bytes".to_owned()))
 }
 
-/// The line of a text in which TOML found something wrong.
+/// Returns the line of a text in which TOML found an error.
 #[must_use]
 pub fn line_of(text: &str, error: &toml::de::Error) -> Option<usize> {
     error.span().map(|span| text[..span.start.min(text.len())].lines().count().max(1))
 }
 
-/// The text with every character written out that would steer a terminal, hide, or turn the direction of writing; those
-/// that `keeps` names stay.
+/// Returns the text with escaped characters instead of control, invisible and direction-changing characters. Characters
+/// for which `keeps` is true are not escaped.
 #[must_use]
 pub fn tamed(text: &str, keeps: impl Fn(char) -> bool) -> String {
     let mut safe = String::with_capacity(text.len());

@@ -1,26 +1,27 @@
-//! What contacts do to the stress inside a grain.
+//! Contribution of contacts to the stress inside a grain.
 //!
 //! ```text
 //! V σ = Σ Δx⊗F over the contacts of a grain
 //! ```
 //!
-//! Δx goes from the centre of the grain to the contact, halfway through the overlap, and F acts on the grain there; σ is the
-//! mean stress of a grain of volume V in equilibrium, by Gauss' theorem. Compression is negative. What is kept is the symmetric
-//! part of V σ (J; J per metre of depth for discs): no volume need be known for it, and it adds up over grains.
+//! The vector Δx points from the centre of the grain to the contact point in the middle of the overlap. The force F
+//! acts on the grain at this point. By Gauss' theorem, σ is the mean stress of a grain of volume V in equilibrium.
+//! Compression is negative. The symmetric part of V σ (J; J per metre of depth for discs) is stored: it needs no volume
+//! and is additive over grains.
 
 use crate::record::{ContactState, Partner, Snapshot};
 
-/// xx, yy, zz, xy, yz, zx.
+/// Indices of xx, yy, zz, xy, yz, zx.
 pub const COMPONENTS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]];
 
-/// The grains that touch at a contact, by id.
+/// Returns the ids of the grains in a contact.
 pub fn touching(contact: &ContactState) -> impl Iterator<Item = u32> {
     let other = if let Partner::Grain(id) = contact.partner { Some(id) } else { None };
     [Some(contact.grain), other].into_iter().flatten()
 }
 
-/// Adds what a contact does to the V σ (J) of one of its grains, which has a radius (m). It is the same formula for both: arm
-/// and force both turn about from one to the other.
+/// Adds the contribution of a contact to V σ (J) of one of its grains, which has the given radius (m). The formula is
+/// the same for both grains, because lever arm and force change sign together.
 pub fn add(sum: &mut [f64; 6], contact: &ContactState, radius: f64) {
     let force = contact.shear_force - contact.normal * contact.normal_force;
     let arm = contact.normal * (radius - 0.5 * contact.overlap);
@@ -29,7 +30,8 @@ pub fn add(sum: &mut [f64; 6], contact: &ContactState, radius: f64) {
     }
 }
 
-/// V σ of every grain of a snapshot (J), in their order; none where contacts were not told, for that is not zero.
+/// Returns V σ of every grain of a snapshot (J), in their order; `None` if contacts are not reported, which differs
+/// from zero.
 #[must_use]
 pub fn virials(snapshot: &Snapshot) -> Option<Vec<[f64; 6]>> {
     let mut sums = vec![[0.0; 6]; snapshot.grains.len()];

@@ -1,4 +1,4 @@
-//! What can be written of grains that are placed by rule.
+//! Scene keys for grains placed by rule.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use grainbench_scene::scene::Scene;
@@ -83,7 +83,7 @@ fn grains_at_random_have_their_radii_and_their_region() {
     }
 }
 
-/// An empty text takes a key away, in a variant as with `--set`.
+/// An empty string removes a key, in a variant as with `--set`.
 #[test]
 fn a_variant_takes_keys_away() {
     const VARIANTS: &str = "[walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\

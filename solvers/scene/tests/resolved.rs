@@ -1,5 +1,4 @@
-//! What the resolver makes of a scene, against numbers worked out by hand: closed forms that read the resolved scene would
-//! share its mistakes.
+//! Resolved scenes against values computed by hand. Closed forms that read the resolved scene would share its errors.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -13,7 +12,7 @@ fn scene(text: &str) -> Scene {
     source.scene(&|_| Err("no files".to_owned())).unwrap()
 }
 
-/// Why a scene is refused.
+/// Returns the error of an invalid scene.
 fn refusal(text: &str) -> String {
     let source = SceneSource::from_text("test", Path::new(""), text);
     source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string()
@@ -48,8 +47,8 @@ fn moduli_of_two_materials() {
     close(shear, 8.0 * 1e9 / 0.082_761_904_761_904_76 * 8.164_965_809_277_26e-5);
 }
 
-/// 9.8 m/s² on a slope of 60°: sin 60° = .8660254037844386. A disc of 1000 kg/m³ and .5 m a metre deep has 785.398163 kg
-/// and half m R²; a sphere 523.598776 kg and 2/5 m R².
+/// Gravity of 9.8 m/s² on a slope of 60°: sin 60° = .8660254037844386. A disc of 1000 kg/m³ with R = .5 m, one metre
+/// deep, has m = 785.398163 kg and I = m R²/2. A sphere has m = 523.598776 kg and I = 2 m R²/5.
 #[test]
 fn slopes_masses_and_inertia() {
     let of = |dimension: u8, position: &str| {
@@ -75,8 +74,8 @@ fn slopes_masses_and_inertia() {
     close(sphere.grains[0].inertia, 52.359_877_559_829_89);
 }
 
-/// Two discs of .5 m, or three, in a period of 10 m overlap across its face by .7 m, 1.4 of the radius; so do two that start
-/// a period away. .1 m more between them than a period has room for is told too.
+/// Grains of R = .5 m in a period of 10 m overlap across its face by .7 m, which is 1.4 of the radius. The overlap is
+/// found for two discs, for three discs, and for a disc that starts a period away.
 #[test]
 fn overlaps_are_found_across_a_period() {
     for xs in [vec![0.2, 9.9], vec![0.2, 5.0, 9.9], vec![9.9, 0.2], vec![10.2, 9.9], vec![0.2, 0.2 + 9.7]] {
@@ -91,7 +90,8 @@ fn overlaps_are_found_across_a_period() {
     }
 }
 
-/// A grain whose centre is on a face of the domain is in it, wherever the domain is; one beyond it is not.
+/// A grain with its centre on a face of the domain belongs to the domain, at any position of the domain. A grain beyond
+/// the face does not.
 #[test]
 fn a_grain_on_a_face_is_in_its_domain() {
     let text = |low: f64, x: f64| {
@@ -113,7 +113,7 @@ fn a_grain_on_a_face_is_in_its_domain() {
     }
 }
 
-/// A disc of .5 m whose centre is .4 m above a plane is .2 of its radius deep in it.
+/// The centre of a disc of R = .5 m is .4 m above a plane, so the overlap is .2 of the radius.
 #[test]
 fn overlaps_with_walls_are_parts_of_the_radius() {
     let text = |height: f64| {

@@ -1,4 +1,4 @@
-//! What the probe of a whole system adds up, of a disc and of a body that is no grain, by hand.
+//! Sums of the system and stress probes, for discs and another body, computed by hand.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,10 +8,12 @@ use grainbench_scene::source::SceneSource;
 use nalgebra::Vector3;
 use std::path::Path;
 
-/// A disc of 1000 kg and 125 kg m² at (2, 3) m with (4, 5) m/s and 6 rad/s, and a body of 20 kg and 7 kg m² at (1, −2) m with
-/// (3, −1) m/s and −2 rad/s, under 10 m/s² downwards; 11 J within the material and 13 J in springs.
-/// Motion ½ 1000 41 + ½ 20 10 + 11, turning ½ 125 36 + ½ 7 4, height 10 (1000 3 − 20 2); about the origin
-/// 1000 (2·5 − 3·4) + 125·6 + 20 (1·(−1) + 2·3) − 7·2.
+/// A disc of 1000 kg and 125 kg m² is at (2, 3) m with (4, 5) m/s and 6 rad/s. A body of 20 kg and 7 kg m² is at (1,
+/// −2) m with (3, −1) m/s and −2 rad/s. Gravity is 10 m/s² downwards. The internal kinetic energy is 11 J, and the
+/// springs hold 13 J. Uneven rotation adds 3 J and −8 kg m²/s.
+///
+/// - Kinetic: ½ 1000 41 + ½ 20 10 + 11. Rotational: ½ 125 36 + ½ 7 4 + 3. Gravitational: 10 (1000 3 − 20 2).
+/// - Angular momentum about the origin: 1000 (2·5 − 3·4) + 125·6 + 20 (1·(−1) + 2·3) − 7·2 − 8.
 #[test]
 fn energies_and_momenta() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\ngravity = [0.0, -10.0]\n\
@@ -61,10 +63,12 @@ fn energies_and_momenta() {
     }
 }
 
-/// Three discs of .5 m in a periodic square of 2 m: the second .9 m beside the first and pushed apart by 10 N with 3 N of
-/// friction up on the first, the third .8 m above it with 20 N and 4 N to the right; the wall does not count. σ_ij = Σ l_i
-/// f_j/V with the line l and the force f on the first: .9 (−10, 3) in the first row, .8 (4, −20) in the second, over 4 m².
-/// Two contacts of three discs: each touches 4/3.
+/// Three discs of R = .5 m lie in a periodic square of 2 m. The second is .9 m beside the first, with a repulsion of 10
+/// N and a friction of 3 N upwards on the first. The third is .8 m above the first, with 20 N and with 4 N to the
+/// right. The wall does not count.
+///
+/// With the vector l between centres and the force f on the first disc, σ_ij = Σ l_i f_j/V. The first row is .9 (−10,
+/// 3)/V, the second .8 (4, −20)/V, with V = 4 m². Two contacts of three discs give a coordination number of 4/3.
 #[test]
 fn mean_stress_and_coordination() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\n\

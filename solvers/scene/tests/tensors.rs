@@ -1,9 +1,10 @@
-//! Products of vectors and tensors in the plane and in space, with numbers that no exchange of two components leaves alone.
+//! Products of vectors and tensors in the plane and in space. With these numbers, any exchange of components changes a
+//! result.
 
 use grainbench_scene::space::{Plane, Solid, Space};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
-/// xx, yy, zz, xy and xx, yy, zz, xy, yz, zx.
+/// Components xx, yy, zz, xy, and xx, yy, zz, xy, yz, zx.
 const FLAT: [f64; 4] = [2.0, 3.0, 5.0, 7.0];
 const FULL: [f64; 6] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0];
 
@@ -22,7 +23,7 @@ fn vectors_make_a_dyad() {
     );
 }
 
-/// Shear counts twice.
+/// Shear components count twice.
 #[test]
 fn invariants_and_works() {
     assert_eq!((Plane::trace(FLAT), Solid::trace(FULL)), (10.0, 10.0));
@@ -32,13 +33,13 @@ fn invariants_and_works() {
     let other = [1.0, 10.0, 100.0, 1e3, 1e4, 1e5];
     assert_eq!(Solid::double_dot(FULL, other), 2.0 + 30.0 + 500.0 + 14e3 + 22e4 + 26e5);
     assert_eq!(Plane::determinant(Matrix2::new(2.0, 3.0, 5.0, 11.0)), 7.0);
-    // F = ((2, 3), (5, 7)): F Fᵀ = ((13, 31), (31, 74)), and 1 across the plane.
+    // F = ((2, 3), (5, 7)) gives F Fᵀ = ((13, 31), (31, 74)), and 1 out of the plane.
     assert_eq!(Plane::finger(Matrix2::new(2.0, 3.0, 5.0, 7.0)), [13.0, 74.0, 1.0, 31.0]);
     assert_eq!(Plane::symmetric_part(Matrix2::new(2.0, 3.0, 6.0, 5.0)), [2.0, 5.0, 0.0, 4.5]);
 }
 
-/// tan(θ/2) = w/2 with the spin w = (L₂₁ − L₁₂)/2 of the increment: w = 2 is a quarter turn, which exchanges the stresses
-/// along the axes and turns the sign of the shear.
+/// The rotation angle θ of an increment with spin w = (L₂₁ − L₁₂)/2 satisfies tan(θ/2) = w/2. For w = 2 it is a quarter
+/// turn, which exchanges the axial stresses and changes the sign of the shear stress.
 #[test]
 fn a_quarter_turn_exchanges_the_axes() {
     let turned = Plane::turned(FLAT, Matrix2::new(0.0, -2.0, 2.0, 0.0));

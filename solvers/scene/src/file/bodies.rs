@@ -1,51 +1,51 @@
-//! The keys of `bodies`: deformable bodies that are no grains.
+//! Keys of `bodies`: deformable bodies other than grains.
 
 use super::grains::SpinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A deformable body that is no grain: exactly one of `box` and `annulus`.
+/// Deformable body other than a grain: exactly one of `box` and `annulus`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySpec {
-    /// Material by name.
+    /// Name of the material.
     pub material: String,
-    /// A box along the axes.
+    /// Axis-aligned box.
     #[serde(default, rename = "box")]
     pub cuboid: Option<BoxSpec>,
-    /// A ring; two dimensions only.
+    /// Ring; two dimensions only.
     #[serde(default)]
     pub annulus: Option<AnnulusSpec>,
     /// Velocity (m/s).
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
-    /// Angular velocity at the start about the middle of its shape (rad/s): one number about z in two dimensions, a vector in
-    /// three.
+    /// Initial angular velocity about the centre of its shape (rad/s): one number about z in two dimensions, a vector
+    /// in three.
     #[serde(default)]
     pub spin: Option<SpinSpec>,
-    /// Rates at which it is stretched at the start along the axes (1/s): a velocity of rate times distance from the middle of
-    /// its shape. The same rate along all axes lets a ring expand.
+    /// Initial stretch rates along the axes (1/s). They add a velocity of rate times distance from the centre of the
+    /// shape. Equal rates along all axes make a ring expand.
     #[serde(default)]
     pub stretch: Option<Vec<f64>>,
-    /// Stress at the start in the middle of its shape (Pa, tension positive), `[[xx, xy], [xy, yy]]` in two dimensions.
+    /// Initial stress at the centre of the shape (Pa, tension positive), `[[xx, xy], [xy, yy]]` in two dimensions.
     #[serde(default)]
     pub stress: Option<Vec<Vec<f64>>>,
-    /// What that stress gains a metre along the axes.
+    /// Gradient of the initial stress along the axes.
     #[serde(default)]
     pub stress_gradient: Option<StressGradientSpec>,
-    /// An initial velocity along x that grows from the lower end of a box as the sine of a mode of a held bar.
+    /// Initial velocity along x: a sine mode of a bar fixed at the lower end of the box.
     #[serde(default)]
     pub wave: Option<WaveSpec>,
-    /// Sides of a box that do not move at all.
+    /// Fixed sides of a box, which do not move.
     #[serde(default)]
     pub fixed: Vec<SideSpec>,
-    /// Sides of a box that do not move along their normal.
+    /// Sides of a box that do not move along their normal (symmetry boundaries).
     #[serde(default)]
     pub sliding: Vec<SideSpec>,
 }
 
-/// What a stress gains a metre along each axis (Pa/m): for soil under its weight with a lateral stress of K₀ times the vertical
-/// one, `y = [[K₀ρg, 0.0], [0.0, ρg]]`.
+/// Gradient of a stress along each axis (Pa/m). For soil under its own weight with a lateral stress of K₀ times the
+/// vertical stress, `y = [[K₀ρg, 0.0], [0.0, ρg]]`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StressGradientSpec {
@@ -60,7 +60,7 @@ pub struct StressGradientSpec {
     pub z: Option<Vec<Vec<f64>>>,
 }
 
-/// A box along the axes.
+/// Axis-aligned box.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxSpec {
@@ -70,7 +70,7 @@ pub struct BoxSpec {
     pub high: Vec<f64>,
 }
 
-/// A ring.
+/// Ring.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AnnulusSpec {
@@ -82,7 +82,7 @@ pub struct AnnulusSpec {
     pub outer: f64,
 }
 
-/// v₀ sin((2n − 1)π (x − x_low)/2L) along x.
+/// Initial velocity v₀ sin((2n − 1)π (x − x_low)/2L) along x.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaveSpec {
@@ -97,7 +97,7 @@ const fn first_mode() -> u32 {
     1
 }
 
-/// A side of a box.
+/// Side of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SideSpec {

@@ -1,12 +1,11 @@
-//! The keys of `driven`: grains with a prescribed motion.
+//! Keys of `driven`: grains with prescribed motion.
 
 use super::{MotionSpec, SideSpec, SpinSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Grains that do not obey forces: they move at a given velocity and spin, and do not deform. Exactly one of `grains`,
-/// `material`, `face` and `region`. Between `start` and `stop` only, where these are given: before and after they are grains
-/// as all others are.
+/// Grains with prescribed motion: they have a given velocity and spin, ignore forces, and do not deform. Give exactly
+/// one of `grains`, `material`, `face` and `region`. Before `start` and after `stop`, they move freely.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrivenSpec {
@@ -16,31 +15,31 @@ pub struct DrivenSpec {
     /// All grains of a material, by its name.
     #[serde(default)]
     pub material: Option<String>,
-    /// The grains that a face of the domain cuts at the start.
+    /// The grains that intersect a face of the domain at the start.
     #[serde(default)]
     pub face: Option<SideSpec>,
-    /// The grains whose centre is in a box at the start.
+    /// The grains with their centres in a box at the start.
     #[serde(default)]
     pub region: Option<RegionSpec>,
-    /// Velocity (m/s); at rest when absent.
+    /// Velocity (m/s). Default zero.
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
-    /// Angular velocity of each about its own centre (rad/s): one number about z in two dimensions, a vector in three. They do
-    /// not turn when absent.
+    /// Angular velocity of each grain about its own centre (rad/s): one number about z in two dimensions, a vector in
+    /// three. Default zero.
     #[serde(default)]
     pub spin: Option<SpinSpec>,
-    /// Motion beside the velocity, as of a wall, but without a spin: parts that add up.
+    /// Further motion in addition to the velocity, as for a wall but without spin. The parts add up.
     #[serde(default)]
     pub motion: Vec<MotionSpec>,
-    /// From when on (s); from the start when absent.
+    /// Start of the prescribed motion (s). Default: the start of the run.
     #[serde(default)]
     pub start: Option<f64>,
-    /// Until when (s); to the end when absent.
+    /// End of the prescribed motion (s). Default: the end of the run.
     #[serde(default)]
     pub stop: Option<f64>,
 }
 
-/// A box whose sides are along the axes.
+/// Axis-aligned box.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionSpec {

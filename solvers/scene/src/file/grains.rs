@@ -1,16 +1,16 @@
-//! The keys of `grains`: groups of grains, placed one by one, in order or at random.
+//! Keys of `grains`: groups of grains, placed one by one, in order or at random.
 
 use super::driven::RegionSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A group of grains: exactly one of `position`, `lattice`, `random`, `packed`, `poured`, `state` and `file`.
+/// Group of grains: exactly one of `position`, `lattice`, `random`, `packed`, `poured`, `state` and `file`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrainsSpec {
-    /// Material by name.
+    /// Name of the material.
     pub material: String,
-    /// Radius R (m). Needed unless `random` gives a range, or `packed` or `file` give sizes.
+    /// Radius R (m). Required unless `random`, `packed`, `state` or `file` gives sizes.
     #[serde(default)]
     pub radius: Option<f64>,
     /// Velocity of every grain of the group (m/s).
@@ -19,7 +19,7 @@ pub struct GrainsSpec {
     /// Angular velocity (rad/s): one number about z in two dimensions, a vector in three.
     #[serde(default)]
     pub spin: Option<SpinSpec>,
-    /// A single grain at this place (m).
+    /// Position of a single grain (m).
     #[serde(default)]
     pub position: Option<Vec<f64>>,
     /// Grains on a lattice.
@@ -28,16 +28,16 @@ pub struct GrainsSpec {
     /// Grains placed at random without overlap, from a seed.
     #[serde(default)]
     pub random: Option<RandomSpec>,
-    /// Grains of given sizes, packed densely without overlap, from a seed.
+    /// Grains of given sizes in a dense packing without overlap, from a seed.
     #[serde(default)]
     pub packed: Option<PackedSpec>,
-    /// Grains that come one after the other, from a seed. They come with the group's velocity.
+    /// Grains inserted one after the other, from a seed. They start with the velocity of the group.
     #[serde(default)]
     pub poured: Option<PouredSpec>,
-    /// Grains as a run ended with them, with what their contacts remember.
+    /// Grains in the final state of a run, with their contact history.
     #[serde(default)]
     pub state: Option<StateSpec>,
-    /// Grains read from a LAMMPS data file (atom style sphere), plain or gzip.
+    /// Grains from a LAMMPS data file (atom style sphere), plain or gzip.
     #[serde(default)]
     pub file: Option<FileSpec>,
 }
@@ -52,24 +52,26 @@ pub enum SpinSpec {
     Vector(Vec<f64>),
 }
 
-/// A lattice: square or simple cubic, or close-packed.
+/// Lattice: square, simple cubic, or close-packed.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeSpec {
     /// Centre of the first grain (m).
     pub origin: Vec<f64>,
-    /// Distance between neighbours along each axis (m); close-packed, one number: that of nearest neighbours.
+    /// Distance between neighbours along each axis (m). For `close_packed`, one number: the distance of nearest
+    /// neighbours.
     pub spacing: SpacingSpec,
-    /// Number of grains along each axis; x runs fastest.
+    /// Number of grains along each axis. Grains are numbered along x first.
     pub count: Vec<u32>,
-    /// Close-packed: rows along x, every other one half a spacing further, √3/2 of a spacing apart (hexagonal); in space layers
-    /// of them along z, √(2/3) of a spacing apart, each third one above the first (face-centred cubic).
+    /// Close-packed lattice. Rows along x are √3/2 of a spacing apart, and every second row is shifted by half a
+    /// spacing (hexagonal). In three dimensions, such layers are √(2/3) of a spacing apart along z, and the fourth
+    /// layer lies above the first (face-centred cubic).
     #[serde(default)]
     pub close_packed: bool,
-    /// Centres are moved by up to this length (m), each in a direction of its own, from `seed`.
+    /// Largest random displacement of the centres (m), each in a random direction, from `seed`.
     #[serde(default)]
     pub perturbation: f64,
-    /// Seed of the perturbation: the same seed gives the same grains on every machine.
+    /// Seed of the perturbation. The same seed gives the same grains on every machine.
     #[serde(default)]
     pub seed: u64,
 }
@@ -78,9 +80,9 @@ pub struct LatticeSpec {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(untagged, expecting = "distances along each axis such as [1.0, 1.0], or, close-packed, one number")]
 pub enum SpacingSpec {
-    /// Of nearest neighbours (m).
+    /// Distance of nearest neighbours (m).
     Nearest(f64),
-    /// Along each axis (m).
+    /// Distance along each axis (m).
     Along(Vec<f64>),
 }
 
@@ -88,38 +90,39 @@ pub enum SpacingSpec {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSpec {
-    /// How many.
+    /// Number of grains.
     pub count: u32,
-    /// Seed of the generator: the same seed gives the same grains on every machine.
+    /// Seed of the generator. The same seed gives the same grains on every machine.
     pub seed: u64,
-    /// Smallest and largest radius (m), uniformly distributed; `radius` of the group when absent.
+    /// Smallest and largest radius (m) of a uniform distribution. Default: `radius` of the group.
     #[serde(default)]
     pub radius_range: Option<[f64; 2]>,
     /// Speed of every grain (m/s), in a random direction.
     #[serde(default)]
     pub speed: f64,
-    /// Radii of another distribution, in place of `radius_range`.
+    /// Another distribution of radii, instead of `radius_range`.
     #[serde(default)]
     pub radii: Option<RadiiSpec>,
-    /// The part of the domain that they are placed in, faces of which they keep off; all of it when absent.
+    /// Part of the domain in which grains are placed without crossing its faces. Default: the whole domain.
     #[serde(default)]
     pub region: Option<RegionSpec>,
 }
 
-/// A distribution of radii: exactly one of `log_normal` and `by_mass`.
+/// Distribution of radii: exactly one of `log_normal` and `by_mass`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RadiiSpec {
-    /// ln R is normally distributed.
+    /// Log-normal distribution: ln R is normally distributed.
     #[serde(default)]
     pub log_normal: Option<LogNormalSpec>,
-    /// A sieve curve: pairs of radius (m) and the share of the mass that is no larger, both rising, from a share of 0 to one of
-    /// 1; between two of them the mass is spread evenly over the radii.
+    /// Sieve curve: pairs of a radius (m) and the mass fraction of grains that are no larger. Both rise, and the
+    /// fraction rises from 0 to 1. Between two pairs, the mass is spread uniformly over the radii.
     #[serde(default)]
     pub by_mass: Option<Vec<(f64, f64)>>,
 }
 
-/// R = median · exp(deviation · n), n normally distributed; drawn again outside `range`.
+/// Log-normal distribution R = median · exp(deviation · n) with n normally distributed. Values outside `range` are
+/// redrawn.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LogNormalSpec {
@@ -131,46 +134,47 @@ pub struct LogNormalSpec {
     pub range: [f64; 2],
 }
 
-/// Grains packed densely into the domain without overlap; faces that are not periodic are walls to the packing.
+/// Dense packing in the domain without overlap. Faces that are not periodic are walls for the packing.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PackedSpec {
     /// Sizes: pairs of radius (m) and number of grains.
     pub radii: Vec<(f64, u32)>,
-    /// Seed of the generator: the same seed gives the same packing on every machine.
+    /// Seed of the generator. The same seed gives the same packing on every machine.
     pub seed: u64,
-    /// Whether faces that are not periodic cut grains: such a face holds centres then, not whole grains.
+    /// If true, faces that are not periodic bound the centres of grains, so that these faces cut grains. Default false.
     #[serde(default)]
     pub cut: bool,
 }
 
-/// Grains that come one after the other, each somewhere in a box.
+/// Grains inserted one after the other at random positions in a box.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PouredSpec {
-    /// How many.
+    /// Number of grains.
     pub count: u32,
-    /// Grains in a second (1/s).
+    /// Insertion rate (1/s).
     pub rate: f64,
-    /// Seed of the generator: the same seed gives the same grains on every machine and to every solver.
+    /// Seed of the generator. The same seed gives the same grains on every machine and in every solver.
     pub seed: u64,
-    /// Lower corner of the box in which centres are at first (m).
+    /// Lower corner of the box in which centres are inserted (m).
     pub low: Vec<f64>,
     /// Upper corner (m).
     pub high: Vec<f64>,
-    /// When the first comes (s).
+    /// Time of the first insertion (s).
     #[serde(default)]
     pub start: f64,
 }
 
-/// Grains as a run ended with them, in a file that `simulate --state` left. Walls are found again by name; what contacts with
-/// walls remember that this scene does not have is forgotten.
+/// Grains in the final state of a run, from a file written by `simulate --state`. Walls are matched by name. The
+/// history of contacts with walls that this scene lacks is dropped.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StateSpec {
     /// Path, relative to the scene file.
     pub path: String,
-    /// Whether contacts go on remembering. Programs that read the grains from a data file cannot have that.
+    /// If true, contacts keep their history. Programs that read the grains from a data file do not support this.
+    /// Default true.
     #[serde(default = "yes")]
     pub springs: bool,
 }
@@ -179,7 +183,7 @@ const fn yes() -> bool {
     true
 }
 
-/// Where grains are taken out: beyond the sides of a box.
+/// Removal of grains outside a box.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RemovalSpec {
@@ -187,7 +191,7 @@ pub struct RemovalSpec {
     pub low: Vec<f64>,
     /// Upper corner (m).
     pub high: Vec<f64>,
-    /// Grains are looked for every so many calculation cycles.
+    /// Calculation cycles between searches for such grains. Default 100.
     #[serde(default = "default_removal_cycles")]
     pub every_cycles: u64,
 }
@@ -196,13 +200,13 @@ const fn default_removal_cycles() -> u64 {
     100
 }
 
-/// Grains read from a file.
+/// Grains from a file.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FileSpec {
     /// Path, relative to the scene file.
     pub path: String,
-    /// Materials of atom types 1, 2, … by name; the group's material for all when absent.
+    /// Names of the materials of atom types 1, 2, …. Default: the group's material for all types.
     #[serde(default)]
     pub types: Vec<String>,
 }

@@ -1,13 +1,13 @@
-//! The keys of `manufactured`: motions that a body force makes exact.
+//! Keys of `manufactured`: motions that a body force makes exact.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A chosen motion that a body force makes exact: exactly one of `axis-aligned` and `vortex`.
+/// Chosen motion that a body force makes exact: exactly one of `axis-aligned` and `vortex`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ManufacturedSpec {
-    /// u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ), in a periodic box of length L along x.
+    /// Motion u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ), in a periodic box of length L along x.
     #[serde(default)]
     pub axis_aligned: Option<AxisAlignedSpec>,
     /// Rotation of each circle about the origin, between the radii .75 m and 1.25 m.
@@ -15,7 +15,7 @@ pub struct ManufacturedSpec {
     pub vortex: Option<VortexSpec>,
 }
 
-/// u_x = A sin(2πX/L) sin(cπt/L).
+/// Motion u_x = A sin(2πX/L) sin(cπt/L).
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AxisAlignedSpec {
@@ -36,6 +36,6 @@ const fn one_metre() -> f64 {
 pub struct VortexSpec {
     /// Largest angle A (rad).
     pub amplitude: f64,
-    /// B (1/s): the motion has the period 2/B.
+    /// Rate B (1/s). The period of the motion is 2/B.
     pub rate: f64,
 }

@@ -1,4 +1,4 @@
-//! The scene file: every key a user can write, as serde reads it, one file for each table.
+//! Scene file: every key that users can write, as serde reads it, with one module per table.
 //!
 //! Doc comments here are the documentation of the keys: `grainbench schema` prints them.
 
@@ -30,8 +30,8 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A scene: what exists and which physics acts. Numbers are SI; in two dimensions masses, forces and energies of
-/// discs are per metre of depth. Vectors have as many components as the scene has dimensions.
+/// Scene: its contents and its physics. Numbers are in SI units. In two dimensions, masses, forces and energies of
+/// discs are per metre of depth. Vectors have one component per dimension of the scene.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Scene")]
@@ -40,14 +40,14 @@ pub struct SceneFile {
     pub title: String,
     /// Number of dimensions: 2 or 3.
     pub dimension: u8,
-    /// What a grain is: `disc` (a cylinder one metre deep, m = ρπR², I = mR²/2; the default in two dimensions) or
-    /// `sphere` (m = ρ(4/3)πR³, I = 2mR²/5; in two dimensions a sphere kept in the plane).
+    /// Shape of the grains: `disc` (a cylinder one metre deep, m = ρπR², I = mR²/2; the default in two dimensions) or
+    /// `sphere` (m = ρ(4/3)πR³, I = 2mR²/5; in two dimensions, a sphere that moves in the plane).
     #[serde(default)]
     pub grain_shape: Option<GrainShape>,
-    /// Gravity (m/s²): a vector, or magnitude and slope. None when absent.
+    /// Gravity (m/s²): a vector, or magnitude and slope. Default zero.
     #[serde(default)]
     pub gravity: Option<GravitySpec>,
-    /// Box of the scene (m). Needed for periodic axes and for `random` grains.
+    /// Domain of the scene (m). Required for periodic axes and for `random` and `packed` grains.
     #[serde(default)]
     pub domain: Option<DomainSpec>,
     /// Global mass-proportional damping α (1/s): a force −α m v and a torque −α I ω on every grain.
@@ -59,50 +59,50 @@ pub struct SceneFile {
     /// Simulated time in calculation cycles. Give this or `duration`.
     #[serde(default)]
     pub duration_cycles: Option<u64>,
-    /// Largest initial overlap of two grains or a grain and a wall, as a fraction of the smaller radius, that is taken
-    /// for intended. Default 0.1.
+    /// Largest initial overlap of two grains, or of a grain and a wall, as a fraction of the smaller radius. Larger
+    /// overlaps are errors. Default 0.1.
     #[serde(default = "default_largest_initial_overlap")]
     pub largest_initial_overlap: f64,
-    /// Length that resolutions of solvers with a grid refer to (m): the smallest radius, or the smallest edge of a body
-    /// where there are no grains, when absent.
+    /// Reference length for the resolution of solvers with a grid (m). Default: the smallest radius, or the smallest
+    /// edge of a body if there are no grains.
     #[serde(default)]
     pub reference_length: Option<f64>,
-    /// Stress that deformable bodies start with; none when absent.
+    /// Initial stress of deformable bodies. Default none.
     #[serde(default)]
     pub initial_pressure: Option<InitialPressure>,
-    /// A damped phase before the clock starts, for deformable bodies.
+    /// Damped relaxation of deformable bodies before t = 0.
     #[serde(default)]
     pub settle: Option<SettleSpec>,
-    /// A body force, and initial velocities, that make a chosen motion of neo-Hookean bodies the exact one.
+    /// Body force and initial velocities that make a chosen motion of neo-Hookean bodies exact.
     #[serde(default)]
     pub manufactured: Option<ManufacturedSpec>,
     /// Materials by name.
     pub materials: IndexMap<String, MaterialSpec>,
-    /// Contact laws by name: the pair table. Every pair of materials that can meet needs one.
+    /// Contact laws by name. Every pair of materials that can come into contact needs one.
     #[serde(default)]
     pub contacts: IndexMap<String, ContactSpec>,
     /// Groups of grains by name. Grains are numbered from 1 in the order of the file.
     #[serde(default)]
     pub grains: IndexMap<String, GrainsSpec>,
-    /// Where grains are taken out; nowhere when absent.
+    /// Removal of grains. Default none.
     #[serde(default)]
     pub removal: Option<RemovalSpec>,
-    /// Deformable bodies that are no grains, by name.
+    /// Deformable bodies other than grains, by name.
     #[serde(default)]
     pub bodies: IndexMap<String, BodySpec>,
     /// Walls by name.
     #[serde(default)]
     pub walls: IndexMap<String, WallSpec>,
-    /// Grains that are moved as walls are, by a name for each group of them.
+    /// Groups of grains with prescribed motion, by name.
     #[serde(default)]
     pub driven: IndexMap<String, DrivenSpec>,
-    /// What is written down during the run.
+    /// Output of the run.
     #[serde(default)]
     pub output: OutputSpec,
     /// Named time series.
     #[serde(default)]
     pub probes: IndexMap<String, ProbeSpec>,
-    /// Variants: tables of overrides, laid over this file key by key.
+    /// Variants by name: tables of overrides, applied to this file key by key.
     #[serde(default)]
     #[schemars(with = "IndexMap<String, serde_json::Value>")]
     pub variants: IndexMap<String, toml::Table>,
@@ -112,13 +112,13 @@ const fn default_largest_initial_overlap() -> f64 {
     0.1
 }
 
-/// What a grain is.
+/// Shape of the grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum GrainShape {
-    /// A cylinder one metre deep that moves in the plane.
+    /// Cylinder one metre deep that moves in the plane.
     Disc,
-    /// A sphere.
+    /// Sphere.
     Sphere,
 }
 
@@ -128,11 +128,11 @@ pub enum GrainShape {
 pub enum GravitySpec {
     /// Acceleration (m/s²).
     Vector(Vec<f64>),
-    /// Gravity seen from a plane inclined by `slope_deg`: (g sin θ, −g cos θ), so that down the slope is +x.
+    /// Gravity in the frame of a plane inclined by `slope_deg`: (g sin θ, −g cos θ). Down the slope is +x.
     Slope(SlopeSpec),
 }
 
-/// Gravity seen from an inclined plane.
+/// Gravity in the frame of an inclined plane.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SlopeSpec {
@@ -142,7 +142,7 @@ pub struct SlopeSpec {
     pub slope_deg: f64,
 }
 
-/// The box of the scene.
+/// Domain of the scene.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DomainSpec {
@@ -150,7 +150,7 @@ pub struct DomainSpec {
     pub low: Vec<f64>,
     /// Upper corner (m).
     pub high: Vec<f64>,
-    /// Which axes are periodic, by name (`["x"]`) or one by one (`[true, false]`); none when absent.
+    /// Periodic axes, by name (`["x"]`) or one by one (`[true, false]`). Default none.
     #[serde(default)]
     pub periodic: PeriodicSpec,
 }
@@ -159,9 +159,9 @@ pub struct DomainSpec {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(untagged, expecting = "names of axes such as [\"x\"], or whether each is periodic such as [true, false]")]
 pub enum PeriodicSpec {
-    /// Whether each axis is.
+    /// One flag per axis.
     Each(Vec<bool>),
-    /// Those that are.
+    /// Names of the periodic axes.
     Named(Vec<AxisName>),
 }
 
@@ -171,28 +171,28 @@ impl Default for PeriodicSpec {
     }
 }
 
-/// An axis.
+/// Axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum AxisName {
-    /// The first.
+    /// First axis.
     X,
-    /// The second, upwards in the plane.
+    /// Second axis, upwards in the plane.
     Y,
-    /// The third.
+    /// Third axis.
     Z,
 }
 
-/// A damped phase before the clock starts, in which bodies at rest come to equilibrium; then they are given their
-/// velocities and spins and are released.
+/// Damped relaxation before t = 0. Bodies at rest come to equilibrium, then receive their velocities and spins and are
+/// released.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SettleSpec {
-    /// How long (s).
+    /// Duration (s).
     pub duration: f64,
     /// Mass-proportional damping α (1/s).
     pub damping: f64,
-    /// Gravity meanwhile; that of the scene when absent.
+    /// Gravity during the relaxation. Default: gravity of the scene.
     #[serde(default)]
     pub gravity: Option<GravitySpec>,
 }

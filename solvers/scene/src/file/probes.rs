@@ -1,70 +1,70 @@
-//! The keys of `probes`: what becomes a time series.
+//! Keys of `probes`: quantities recorded as time series.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `piston`, `driven`, `stress`, `budget`,
-/// `count` and `system`.
+/// Named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `piston`, `driven`, `stress`,
+/// `budget`, `count` and `system`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeSpec {
-    /// A grain: the name of a group of one, or `group.k` for the k-th of a group, from 1. Columns x, y, (z), vx, …,
-    /// omega (z; or omega_x, …), angle (two dimensions).
+    /// Grain: the name of a group with one grain, or `group.k` for the k-th grain of a group, from 1. Columns x, y,
+    /// (z), vx, …, omega (about z; or omega_x, …), angle (two dimensions).
     #[serde(default)]
     pub grain: Option<String>,
-    /// A body that is no grain: the columns of a grain.
+    /// Body other than a grain, with the same columns as a grain.
     #[serde(default)]
     pub body: Option<String>,
-    /// The material of a deformable grain or body at a place: columns ux, … (displacement), vx, …, sigma_xx, sigma_yy,
-    /// sigma_zz, sigma_xy (and sigma_yz, sigma_zx), plastic_strain, mean over the material points nearest to it at the
-    /// start.
+    /// Material of a deformable grain or body at a position, averaged over the nearest material points at the start.
+    /// Columns ux, … (displacement), vx, …, sigma_xx, sigma_yy, sigma_zz, sigma_xy (and sigma_yz, sigma_zx),
+    /// plastic_strain.
     #[serde(default)]
     pub point: Option<PointSpec>,
-    /// A contact between a grain and a grain or wall. Columns overlap, normal_force, shear_force (signed in two
-    /// dimensions), slipping (0 or 1). Of `dem` the forces are those that moved the grains, whose dashpots feel the
-    /// velocities of half a step before, kδ − γ v(n−½); LAMMPS and LIGGGHTS do so at walls, but evaluate a contact between
-    /// grains anew when they print it, with the velocities at the step, kδ − γ v(n), which differs by γ a Δt/2.
+    /// Contact between a grain and a grain or wall. Columns overlap, normal_force, shear_force (signed in two
+    /// dimensions), slipping (0 or 1). The forces of `dem` are those that moved the grains. Their dashpots use the
+    /// velocities of half a step before, kδ − γ v(n−½). LAMMPS and LIGGGHTS do the same at walls, but recompute a
+    /// contact between grains for output. They then use the velocities at the step, kδ − γ v(n), which differs by γ a
+    /// Δt/2.
     #[serde(default)]
     pub contact: Option<[String; 2]>,
-    /// A wall: columns force_x, … of the grains on it.
+    /// Wall. Columns force_x, … of the grains on the wall.
     #[serde(default)]
     pub wall: Option<String>,
-    /// A wall that is pressed: column advance, how far it has gone along its normal (m).
+    /// Pressed wall. Column advance: its displacement along its normal (m).
     #[serde(default)]
     pub piston: Option<String>,
-    /// A group of driven grains: columns force_x, … of the other grains on them.
+    /// Group of grains with prescribed motion. Columns force_x, … of the other grains on the group.
     #[serde(default)]
     pub driven: Option<String>,
-    /// Where energy comes from and goes: columns kinetic, elastic, springs, gravitational, work, plastic, friction,
-    /// damping, transfer, contact (J), unbalanced (J), and momentum_x, impulse_x, … (kg m/s); see
-    /// [`crate::budget::Budget`].
+    /// Energy budget. Columns kinetic, elastic, springs, gravitational, work, plastic, friction, damping, transfer,
+    /// contact (J), unbalanced (J), and momentum_x, impulse_x, … (kg m/s); see [`crate::budget::Budget`].
     #[serde(default)]
     pub budget: Option<bool>,
-    /// Mean stress of the grains, from the contacts between them: σ_ij = (1/V) Σ l_i f_j with the line l from the
-    /// centre of one grain to that of the other, the force f on the first, and V the volume of the domain (Love 1927;
-    /// Weber 1966). Tension is positive, walls are left out. Columns sigma_xx, sigma_yy, sigma_xy (and sigma_zz,
-    /// sigma_xz, sigma_yz), and coordination, the mean number of grains that a grain touches.
+    /// Mean stress of the grains from the contacts between them, σ_ij = (1/V) Σ l_i f_j (Love 1927; Weber 1966). The
+    /// vector l points from the centre of one grain to that of the other, f is the force on the first, and V is the
+    /// volume of the domain. Tension is positive; walls are not included. Columns sigma_xx, sigma_yy, sigma_xy (and
+    /// sigma_zz, sigma_xz, sigma_yz), and coordination, the mean number of contacts with other grains per grain.
     #[serde(default)]
     pub stress: Option<bool>,
-    /// How many grains there are, and have come and gone: columns present, entered (the first ones too), left.
+    /// Number of grains. Columns present, entered (including the initial grains), left.
     #[serde(default)]
     pub count: Option<bool>,
-    /// The whole system: kinetic, rotational, elastic and gravitational energy, their sum, momentum, angular momentum
-    /// about the origin, number of contacts.
+    /// Whole system. Columns are the kinetic, rotational, elastic and gravitational energy, their sum, the momentum,
+    /// the angular momentum about the origin, and the number of contacts.
     #[serde(default)]
     pub system: Option<bool>,
 }
 
-/// A place in the material of a grain or body.
+/// Position in the material of a grain or body.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointSpec {
-    /// A grain.
+    /// Name of the grain.
     #[serde(default)]
     pub grain: Option<String>,
-    /// Or a body that is no grain.
+    /// Or name of a body other than a grain.
     #[serde(default)]
     pub body: Option<String>,
-    /// Place at the start (m).
+    /// Initial position (m).
     pub at: Vec<f64>,
 }

@@ -1,123 +1,125 @@
-//! The keys of `walls`, and the prescribed motion of a wall.
+//! Keys of `walls`, and the prescribed motion of a wall.
 
 use super::SpinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A wall: exactly one of `plane`, `segment`, `rectangle`, `cylinder`, `cone` and `mesh`.
+/// Wall: exactly one of `plane`, `segment`, `rectangle`, `cylinder`, `cone` and `mesh`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallSpec {
-    /// Material by name.
+    /// Name of the material.
     pub material: String,
-    /// An infinite plane (a line in two dimensions), solid behind its normal.
+    /// Infinite plane (a line in two dimensions), solid behind its normal.
     #[serde(default)]
     pub plane: Option<PlaneSpec>,
-    /// A segment between two points (m), solid on both sides; two dimensions only. Each wall is a surface of its own: a
-    /// grain at the joint of two touches both, and feels both.
+    /// Segment between two points (m), solid on both sides; two dimensions only. Each wall is a separate surface: a
+    /// grain at the joint of two segments is in contact with both.
     #[serde(default)]
     pub segment: Option<[Vec<f64>; 2]>,
-    /// A rectangle, solid on both sides; three dimensions only. At the joint of two a grain touches both.
+    /// Rectangle, solid on both sides; three dimensions only. A grain at the joint of two rectangles is in contact with
+    /// both.
     #[serde(default)]
     pub rectangle: Option<RectangleSpec>,
-    /// The side of a cylinder, without its ends, solid on both sides; three dimensions only. It may turn about its axis. A
-    /// contact law takes it for the plane that touches it: its curvature is in no law.
+    /// Lateral surface of a cylinder, without its ends, solid on both sides; three dimensions only. It may rotate about
+    /// its axis. Contact laws replace it by its tangent plane and ignore its curvature.
     #[serde(default)]
     pub cylinder: Option<CylinderSpec>,
-    /// The side of a cone or of a part of one, as of a cylinder.
+    /// Lateral surface of a cone or truncated cone, treated like that of a cylinder.
     #[serde(default)]
     pub cone: Option<ConeSpec>,
-    /// A surface of triangles, solid on both sides; three dimensions only. A grain touches each flat part, each edge between
-    /// two and each corner once at most, however they are cut into triangles: over a seam it feels nothing.
+    /// Surface of triangles, solid on both sides; three dimensions only. A grain has at most one contact with each flat
+    /// part, each edge between two flat parts, and each corner. The result does not depend on the triangulation.
     #[serde(default)]
     pub mesh: Option<MeshSpec>,
-    /// What presses it: then it moves along its normal as a piston does, beside its prescribed motion. Planes only.
+    /// Piston: the wall moves along its normal under a load, in addition to its prescribed motion. Planes only.
     #[serde(default)]
     pub piston: Option<PistonSpec>,
-    /// When it is taken away (s), as the plug of an orifice is; never when absent.
+    /// Time of its removal (s), as for the plug of an orifice. Default never.
     #[serde(default)]
     pub until: Option<f64>,
-    /// Prescribed motion: parts that add up.
+    /// Prescribed motion. The parts add up.
     #[serde(default)]
     pub motion: Vec<MotionSpec>,
 }
 
-/// An infinite plane.
+/// Infinite plane.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneSpec {
-    /// A point on it (m).
+    /// Point on the plane (m).
     pub point: Vec<f64>,
-    /// Direction out of the solid; need not have unit length.
+    /// Direction out of the solid. Its length does not matter.
     pub normal: Vec<f64>,
 }
 
-/// A rectangle: a corner and two perpendicular edges from it.
+/// Rectangle: a corner and two perpendicular edges from it.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RectangleSpec {
-    /// One corner (m).
+    /// Corner (m).
     pub corner: Vec<f64>,
-    /// The two edges from it (m).
+    /// The two edges from the corner (m).
     pub edges: [Vec<f64>; 2],
 }
 
-/// A plane that is pressed: M dv/dt = F − F_n − M c v along its normal, with the normal force F_n of the grains on it. At rest
-/// it presses with F.
+/// Piston that presses a plane: M dv/dt = F − F_n − M c v along its normal, with the normal force F_n of the grains on
+/// it. At rest it presses with F.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PistonSpec {
-    /// Force F along its normal (N; N/m in two dimensions).
+    /// Force F along the normal (N; N/m in two dimensions).
     pub force: f64,
-    /// Mass M (kg; kg/m in two dimensions): no less than that of the grains together that it touches, or the step at which they
-    /// are stable is too long for it.
+    /// Mass M (kg; kg/m in two dimensions). It must not be less than the total mass of the grains in contact with the
+    /// plane; otherwise the stable time step of the grains is too long for the piston.
     pub mass: f64,
     /// Damping c (1/s).
     #[serde(default)]
     pub damping: f64,
 }
 
-/// The side of a cylinder.
+/// Lateral surface of a cylinder.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderSpec {
-    /// The ends of its axis (m).
+    /// Ends of the axis (m).
     pub axis: [Vec<f64>; 2],
     /// Radius (m).
     pub radius: f64,
 }
 
-/// The side of a cone.
+/// Lateral surface of a cone.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConeSpec {
-    /// The ends of its axis (m).
+    /// Ends of the axis (m).
     pub axis: [Vec<f64>; 2],
-    /// Radius at each end (m); one of them may be zero.
+    /// Radius at each end (m). One of them may be zero.
     pub radii: [f64; 2],
 }
 
-/// A surface of triangles from a file beside the scene: STL, as text or binary.
+/// Surface of triangles from an STL file beside the scene, as text or binary.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshSpec {
-    /// The file, relative to that of the scene.
+    /// Path of the file, relative to the scene file.
     pub file: String,
-    /// The unit of its coordinates: `m` or `mm`. The format has none.
+    /// Unit of the coordinates: `m` or `mm`. The format does not store a unit.
     pub unit: LengthUnit,
-    /// Whether edges of one triangle only are meant, as of a funnel; else they are refused.
+    /// If true, the mesh may have edges of one triangle only, as a funnel has. Otherwise such edges are errors. Default
+    /// false.
     #[serde(default)]
     pub open: bool,
-    /// Whether the normals of a mesh that is closed point into what it encloses, as of a vessel that is drawn from within; else
-    /// that is refused.
+    /// If true, the normals of a closed mesh must point into the enclosed volume, as for a vessel drawn from within.
+    /// Otherwise they must point outwards. Default false.
     #[serde(default)]
     pub inward: bool,
-    /// Corners that are no farther apart are taken for one (m); those that are equal are one anyway.
+    /// Largest distance of corners that are merged (m). Equal corners are always merged. Default 0.
     #[serde(default)]
     pub merge: f64,
 }
 
-/// A unit of length.
+/// Unit of length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum LengthUnit {
@@ -127,7 +129,7 @@ pub enum LengthUnit {
     Mm,
 }
 
-/// One part of a motion: a `velocity` or `spin` from `start` to `stop`, reached at once or by a `ramp`; a `table`; or a `sine`.
+/// Part of a motion: a `velocity` or `spin` from `start` to `stop`, immediate or with a `ramp`; a `table`; or a `sine`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionSpec {
@@ -137,13 +139,13 @@ pub struct MotionSpec {
     /// Angular velocity (rad/s) about `centre`.
     #[serde(default)]
     pub spin: Option<SpinSpec>,
-    /// Centre of rotation (m), which moves along with the wall. Needed with `spin`.
+    /// Centre of rotation (m), which moves with the wall. Required with `spin`.
     #[serde(default)]
     pub centre: Option<Vec<f64>>,
-    /// Start (s). The beginning of the run when both starts are absent.
+    /// Start (s). Default: the start of the run.
     #[serde(default)]
     pub start: Option<f64>,
-    /// Stop (s). Never when both stops are absent.
+    /// Stop (s). Default: never.
     #[serde(default)]
     pub stop: Option<f64>,
     /// Start in calculation cycles.
@@ -152,19 +154,19 @@ pub struct MotionSpec {
     /// Stop in calculation cycles.
     #[serde(default)]
     pub stop_cycle: Option<u64>,
-    /// Time over which the velocity is reached, evenly, from the start on (s).
+    /// Time in which the velocity is reached at a constant rate from the start (s).
     #[serde(default)]
     pub ramp: Option<f64>,
-    /// Where it is beside its place at the start, by time: rows of time (s), x, y, (z) (m), with rising times and straight lines
-    /// between them; before the first row and after the last it stands still.
+    /// Displacement from the initial position by time: rows of time (s), x, y, (z) (m) with rising times, joined by
+    /// straight lines. Before the first row and after the last row the wall is at rest.
     #[serde(default)]
     pub table: Option<Vec<Vec<f64>>>,
-    /// An oscillation.
+    /// Oscillation.
     #[serde(default)]
     pub sine: Option<SineSpec>,
 }
 
-/// A (sin(2πft + φ) − sin φ) from its start on.
+/// Oscillation A (sin(2πft + φ) − sin φ) from its start.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SineSpec {

@@ -1,4 +1,4 @@
-//! From the facets of a file to a surface: corners merged, triangles checked, and how they hang together.
+//! Construction of a surface from the facets of a file: merging of corners, checks, and connectivity.
 
 use super::flaw::Flaw;
 use super::geometry::{Part, nearest};
@@ -8,29 +8,30 @@ use super::tree::Tree;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// Least height of a triangle over its longest side: below it the direction of its normal is rounding.
+/// Smallest ratio of a triangle's height to its longest side. Below it, the direction of the normal is dominated by
+/// rounding.
 const FLAT: f64 = 1e-9;
 
-/// How a file is taken.
+/// Options for reading a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// What its unit is (m).
+    /// Unit of the coordinates (m).
     pub unit: f64,
-    /// Corners that are no farther apart are one (m); those that are equal are one anyway.
+    /// Largest distance of corners that are merged (m). Equal corners are always merged.
     pub merge: f64,
-    /// Whether edges of one triangle only are meant.
+    /// True if edges of one triangle only are allowed.
     pub open: bool,
-    /// Whether its normals point into what it encloses.
+    /// True if the normals point into the enclosed volume.
     pub inward: bool,
 }
 
-/// An edge between two corners.
+/// Edge between two corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Edge {
     pub(super) ends: [u32; 2],
-    /// The triangles that it is a side of; the last twice where it is open.
+    /// Adjacent triangles; the same one twice for an open edge.
     pub(super) faces: [u32; 2],
-    /// Unit vectors from it into these, across it.
+    /// Unit vectors perpendicular to the edge, into each of these triangles.
     pub(super) into: [Vector3<f64>; 2],
 }
 
@@ -40,30 +41,30 @@ impl Edge {
     }
 }
 
-/// A surface of triangles.
+/// Surface of triangles.
 pub struct Surface {
     pub(super) corners: Vec<Vector3<f64>>,
     pub(super) faces: Vec<[u32; 3]>,
     pub(super) triangles: Vec<[Vector3<f64>; 3]>,
     pub(super) normals: Vec<Vector3<f64>>,
-    /// The edges of each triangle, from the corner of that number to the next.
+    /// Edges of each triangle: edge i leads from its corner i to the next corner.
     pub(super) sides: Vec<[u32; 3]>,
     pub(super) edges: Vec<Edge>,
-    /// Where the directions of the edges from each corner begin, and unit vectors along these.
+    /// Start of each corner's range in `directions`, which holds unit vectors along the edges from the corner.
     pub(super) from_corner: Vec<u32>,
     pub(super) directions: Vec<Vector3<f64>>,
     pub(super) groups: Groups,
     pub(super) tree: Tree,
 }
 
-/// Two surfaces are one where their triangles are.
+/// Surfaces are equal if their triangles are equal.
 impl PartialEq for Surface {
     fn eq(&self, other: &Self) -> bool {
         self.triangles == other.triangles
     }
 }
 
-/// Shown by the number and the hash of its triangles: what scenes are known by.
+/// Prints the number and the hash of the triangles, by which fingerprints of scenes identify a surface.
 impl std::fmt::Debug for Surface {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut hash = blake3::Hasher::new();
@@ -75,12 +76,14 @@ impl std::fmt::Debug for Surface {
 }
 
 impl Surface {
-    /// The surface of some facets.
+    /// Builds the surface from facets.
     ///
     /// # Errors
-    /// When a triangle has no area or is there twice, when its normal says another side than the order of its corners, when
-    /// neighbours do, when more than two meet at an edge or, unless that is meant, one only, when a corner lies on an edge that
-    /// it should end, or when what is enclosed lies on the wrong side.
+    /// - When a triangle has no area or occurs twice.
+    /// - When a normal contradicts the order of the corners, or the order of a neighbour.
+    /// - When an edge has more than two triangles or, unless open edges are allowed, only one.
+    /// - When a corner of an open edge lies inside another open edge.
+    /// - When the normals of a closed surface point to the wrong side.
     pub fn new(facets: &[Facet], reading: Reading) -> Result<Self, Flaw> {
         let (corners, faces) = merged(facets, reading);
         let triangles: Vec<_> = faces.iter().map(|face| face.map(|corner| corners[corner as usize])).collect();
@@ -104,26 +107,26 @@ impl Surface {
         Ok(surface)
     }
 
-    /// The corners of every triangle (m).
+    /// Returns the corners of every triangle (m).
     #[must_use]
     pub fn triangles(&self) -> &[[Vector3<f64>; 3]] {
         &self.triangles
     }
 
-    /// The corners of the box around it (m).
+    /// Returns the corners of the bounding box (m).
     #[must_use]
     pub fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
         let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         self.corners.iter().fold(start, |(low, high), corner| (low.inf(corner), high.sup(corner)))
     }
 
-    /// How many patches, ridges and corners a sphere may touch.
+    /// Returns the numbers of patches, ridges and corners that can be in contact with a sphere.
     #[must_use]
     pub fn parts(&self) -> [usize; 3] {
         self.groups.counts()
     }
 
-    /// Volume that the triangles enclose (m³), negative where their normals point into it.
+    /// Returns the enclosed volume (m³); negative if the normals point into it.
     fn volume(&self) -> f64 {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
         let of = |[a, b, c]: &[Vector3<f64>; 3]| (a - middle).dot(&(b - middle).cross(&(c - middle))) / 6.0;
@@ -141,8 +144,8 @@ impl Surface {
         }
     }
 
-    /// Refuses a corner of an open edge that lies in the middle of another: what looks like a seam is two rims, and a grain
-    /// there would touch both.
+    /// Rejects a corner of an open edge that lies inside another open edge. Such an apparent seam consists of two rims,
+    /// and a grain there would be in contact with both.
     fn refuse_corners_on_edges(&self, merge: f64, name: &dyn Fn(usize) -> String) -> Result<(), Flaw> {
         let (low, high) = self.bounds();
         let near = merge.max(1e-9 * (high - low).norm());
@@ -182,7 +185,7 @@ impl Surface {
         Ok(())
     }
 
-    /// The point of the surface that is nearest to a place (m).
+    /// Returns the point of the surface nearest to a position (m).
     #[must_use]
     pub fn nearest(&self, place: Vector3<f64>) -> Vector3<f64> {
         let mut point = nearest(place, &self.triangles[0]).0;
@@ -207,7 +210,7 @@ impl Surface {
         }
     }
 
-    /// Adds every triangle within a distance (m) of a place to a list, in order.
+    /// Appends the triangles within a distance (m) of a position to a list, in order.
     pub fn near(&self, place: Vector3<f64>, reach: f64, list: &mut Vec<u32>) {
         let from = list.len();
         self.tree.near(place, |face| {
@@ -218,13 +221,13 @@ impl Surface {
     }
 }
 
-/// The corners without those that are there more than once, and which each facet has.
+/// Returns the corners after merging, and the corner indices of each facet.
 fn merged(facets: &[Facet], reading: Reading) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     let mut corners: Vec<Vector3<f64>> = Vec::new();
     let mut known: BTreeMap<[i64; 3], Vec<u32>> = BTreeMap::new();
     let merge = reading.merge;
     let mut number = |corner: &Vector3<f64>| {
-        // Of zero there are two.
+        // Addition of zero turns −0 into +0.
         let corner = corner * reading.unit + Vector3::zeros();
         let cell: [i64; 3] = if merge > 0.0 {
             (corner / merge).map(|part| part.floor() as i64).into()
@@ -293,7 +296,7 @@ fn refuse_twice(faces: &[[u32; 3]], name: &dyn Fn(usize) -> String) -> Result<()
     Ok(())
 }
 
-/// The edges, and those of each triangle.
+/// Returns the edges, and the edge indices of each triangle.
 fn edges(
     faces: &[[u32; 3]],
     corners: &[Vector3<f64>],
@@ -344,7 +347,7 @@ fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], name: &dyn Fn(
         a.as_slice(),
         b.as_slice()
     );
-    // What is nearly another corner is a seam that rounding has opened.
+    // A corner very near to this one indicates a seam that rounding has opened.
     let size = (b - a).norm();
     let nearly =
         corners.iter().map(|corner| (corner - a).norm()).filter(|&away| away > 0.0).fold(f64::INFINITY, f64::min);
@@ -356,7 +359,7 @@ fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], name: &dyn Fn(
     Flaw::new("two triangles at every edge", &found).help(&help)
 }
 
-/// Unit vectors along the edges from every corner.
+/// Returns the unit vectors along the edges from every corner.
 fn directions(corners: &[Vector3<f64>], edges: &[Edge]) -> (Vec<u32>, Vec<Vector3<f64>>) {
     let mut from = vec![0; corners.len() + 1];
     edges.iter().flat_map(|edge| edge.ends).for_each(|end| from[end as usize + 1] += 1);

@@ -1,13 +1,13 @@
-//! What is wrong with a mesh.
+//! Errors in a mesh.
 
-/// What was expected of a mesh, what was found and where, and how to mend it.
+/// Error in a mesh: expected and found value, position, and suggested correction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flaw {
-    /// What was expected.
+    /// Expected value.
     pub expected: String,
-    /// What stood there, and where.
+    /// Found value, and its position.
     pub found: String,
-    /// How to mend it, where that is known.
+    /// Suggested correction, if one is known.
     pub help: Option<String>,
 }
 

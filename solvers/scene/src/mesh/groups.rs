@@ -1,16 +1,16 @@
-//! What a surface is made of, however it is cut into triangles: patches, ridges and corners.
+//! Patches, ridges and corners of a surface, independent of its triangulation.
 
 use super::build::Edge;
 use nalgebra::Vector3;
 
-/// Sine of the angle by which triangles may differ from the first of their patch, and edges from the first of their ridge. A
-/// file of single precision turns the triangles of a plane by as much as 10⁻⁵; a cylinder of as many sides as it takes to be
-/// flat by this has 60 000.
+/// Sine of the largest angle between triangles and the first triangle of their patch, and between edges and the first
+/// edge of their ridge. Single precision in a file rotates the triangles of a plane by up to 10⁻⁵. A cylinder needs 60
+/// 000 sides to count as flat.
 const STRAIGHT: f64 = 1e-4;
-/// Not in a group yet.
+/// Not assigned to a group yet.
 const NONE: u32 = u32::MAX;
 
-/// The patch, ridge or corner that every part of a triangle belongs to: numbers of patches come first, then those of ridges.
+/// Group of every part of a triangle: patch, ridge or corner. Patches are numbered first, then ridges, then corners.
 #[derive(Clone, Debug)]
 pub(super) struct Groups {
     pub(super) of_face: Vec<u32>,
@@ -33,7 +33,7 @@ impl Groups {
             (!edge.is_open() && a == b).then_some(a)
         };
         let mut of_edge: Vec<u32> = edges.iter().map(|edge| in_patch(edge).unwrap_or(NONE)).collect();
-        // The edges that are no seams, of each corner.
+        // Edges of each corner that are not seams within a patch.
         let mut sharp: Vec<Vec<u32>> = vec![Vec::new(); corners.len()];
         for (number, edge) in edges.iter().enumerate().filter(|(number, _)| of_edge[*number] == NONE) {
             edge.ends.iter().for_each(|&end| sharp[end as usize].push(number as u32));
@@ -68,7 +68,7 @@ impl Groups {
     }
 }
 
-/// The patch of every triangle, and how many there are.
+/// Returns the patch of every triangle, and the number of patches.
 fn patches(normals: &[Vector3<f64>], edges: &[Edge], sides: &[[u32; 3]]) -> (Vec<u32>, u32) {
     let mut of_face = vec![NONE; normals.len()];
     let (mut count, mut open) = (0, Vec::new());
@@ -93,7 +93,7 @@ fn patches(normals: &[Vector3<f64>], edges: &[Edge], sides: &[[u32; 3]]) -> (Vec
     (of_face, count)
 }
 
-/// Finds the ridge of every edge that is no seam. Gives how many there are.
+/// Assigns a ridge to every edge that is not a seam. Returns the number of ridges.
 fn ridges(corners: &[Vector3<f64>], edges: &[Edge], sharp: &[Vec<u32>], of_edge: &mut [u32], patches: u32) -> u32 {
     let along = |edge: &Edge| (corners[edge.ends[1] as usize] - corners[edge.ends[0] as usize]).normalize();
     let (mut count, mut open) = (0, Vec::new());
@@ -123,7 +123,7 @@ fn ridges(corners: &[Vector3<f64>], edges: &[Edge], sharp: &[Vec<u32>], of_edge:
     count
 }
 
-/// Whether an edge goes on in another beyond their common end, and does not turn back.
+/// Returns true if an edge continues in another one beyond their common end, instead of turning back.
 fn goes_on(edges: &[Edge], a: usize, b: usize, end: u32, along: &dyn Fn(&Edge) -> Vector3<f64>) -> bool {
     let away = |edge: &Edge| if edge.ends[0] == end { along(edge) } else { -along(edge) };
     away(&edges[a]).dot(&away(&edges[b])) < 0.0

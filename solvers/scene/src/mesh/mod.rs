@@ -1,8 +1,8 @@
-//! Walls of triangles: read from STL, checked, and asked what a sphere touches.
+//! Walls of triangles: read from STL, checked, and searched for contacts with spheres.
 //!
-//! A mesh is taken for the surface that it is, whatever its triangles are: triangles in one plane that hang together are one
-//! *patch*, edges in one line between the same patches one *ridge*, and what is left are *corners*. A sphere touches each of
-//! these once at most (`touch`).
+//! Contacts do not depend on the triangulation. Connected triangles in one plane form a *patch*, and edges in one line
+//! between the same patches form a *ridge*. The remaining parts are *corners*. A sphere has at most one contact with
+//! each of them (`touch`).
 
 mod build;
 mod flaw;
@@ -20,25 +20,25 @@ use crate::motion::{Displacement, Motion};
 use nalgebra::{Rotation3, Vector3};
 use std::sync::Arc;
 
-/// A mesh where it is now: it is turned about where its file has its origin, and that origin moves.
+/// Mesh at its present position. It rotates about the origin of its file, and that origin moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// The surface in the coordinates of its file (m).
+    /// Surface in the coordinates of its file (m).
     pub surface: Arc<Surface>,
-    /// How it is turned.
+    /// Present rotation.
     pub turn: Rotation3<f64>,
-    /// Where the origin is (m).
+    /// Present position of the origin (m).
     pub origin: Vector3<f64>,
 }
 
 impl Mesh {
-    /// A surface where its file has it.
+    /// Returns a mesh at its initial position.
     #[must_use]
     pub fn at_rest(surface: Surface) -> Self {
         Self { surface: Arc::new(surface), turn: Rotation3::identity(), origin: Vector3::zeros() }
     }
 
-    /// After its wall has moved.
+    /// Returns the mesh after a displacement of its wall.
     #[must_use]
     pub fn moved(&self, motion: &Motion, displacement: &Displacement) -> Self {
         Self {
@@ -48,25 +48,25 @@ impl Mesh {
         }
     }
 
-    /// A place in the coordinates of the file (m).
+    /// Converts a position to the coordinates of the file (m).
     #[must_use]
     pub fn within(&self, place: Vector3<f64>) -> Vector3<f64> {
         self.turn.inverse_transform_vector(&(place - self.origin))
     }
 
-    /// Where a point of the surface is (m).
+    /// Returns the present position of a point of the surface (m).
     #[must_use]
     pub fn place(&self, point: Vector3<f64>) -> Vector3<f64> {
         self.origin + self.turn * point
     }
 
-    /// The point of the surface that is nearest to a place (m).
+    /// Returns the point of the surface nearest to a position (m).
     #[must_use]
     pub fn nearest(&self, place: Vector3<f64>) -> Vector3<f64> {
         self.place(self.surface.nearest(self.within(place)))
     }
 
-    /// The corners of all triangles where they are now (m).
+    /// Returns the present corners of all triangles (m).
     pub fn triangles(&self) -> impl Iterator<Item = [Vector3<f64>; 3]> + '_ {
         self.surface.triangles().iter().map(|triangle| triangle.map(|corner| self.place(corner)))
     }

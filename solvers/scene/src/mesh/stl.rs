@@ -1,29 +1,29 @@
-//! Triangles from the two forms of STL, with the place of each in its file.
+//! Reader for both forms of STL, which stores the position of each triangle in its file.
 
 use super::Flaw;
 use nalgebra::Vector3;
 
-/// Bytes of the binary form before the first triangle, and of each.
+/// Bytes of the binary form: before the first triangle, and per triangle.
 const HEAD: usize = 84;
 const EACH: usize = 50;
 
-/// A triangle as it stands in a file.
+/// Triangle as stored in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet {
-    /// Its corners, in the unit of the file.
+    /// Corners, in the unit of the file.
     pub corners: [Vector3<f64>; 3],
-    /// The normal that is told; zero where none is.
+    /// Normal as stored in the file; it may be zero.
     pub normal: Vector3<f64>,
-    /// Where it begins: a line of text, from 1, or a byte, from 0.
+    /// Start of the facet: a line of text, from 1, or a byte offset, from 0.
     pub place: Place,
 }
 
-/// A place in a file.
+/// Position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// A line of text.
+    /// Line of text.
     Line(usize),
-    /// A byte.
+    /// Byte offset.
     Byte(usize),
 }
 
@@ -36,11 +36,11 @@ impl std::fmt::Display for Place {
     }
 }
 
-/// The triangles of a file. What begins with `solid` may be of either form: it is binary where its length is what its number of
-/// triangles asks for, or where it holds zero bytes, which text has not.
+/// Reads the triangles of a file. A file that begins with `solid` may have either form. It is binary if its length
+/// matches its number of triangles, or if it contains zero bytes, which text does not.
 ///
 /// # Errors
-/// When the file is cut off, has more in it than it should, or a number in it is none or is not finite.
+/// When the file is truncated, has additional data, or contains an invalid or infinite number.
 pub fn read(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
     if bytes.is_empty() {
         return Err(Flaw::new("triangles as STL", "an empty file"));
@@ -90,14 +90,14 @@ fn binary(bytes: &[u8], count: Option<usize>) -> Result<Vec<Facet>, Flaw> {
         .collect()
 }
 
-/// Words of a text, with the line that each stands in.
+/// Words of a text, with the line of each.
 struct Words<'a> {
     text: &'a str,
     line: usize,
 }
 
 impl<'a> Words<'a> {
-    /// The next word and its line.
+    /// Returns the next word and its line.
     fn next(&mut self) -> Option<(&'a str, usize)> {
         let start = self.text.find(|letter: char| !letter.is_whitespace());
         let before = &self.text[..start.unwrap_or(self.text.len())];
@@ -108,7 +108,7 @@ impl<'a> Words<'a> {
         Some((word, self.line))
     }
 
-    /// Leaves out the rest of a line: names may hold anything.
+    /// Skips the rest of a line, because names may contain anything.
     fn skip_line(&mut self) {
         self.text = &self.text[self.text.find('\n').unwrap_or(self.text.len())..];
     }
@@ -124,7 +124,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Takes one of these words.
+    /// Reads one of the expected words.
     fn take(&mut self, expected: &[&str]) -> Result<(&'a str, usize), Flaw> {
         let found = self.next();
         found.filter(|(word, _)| expected.iter().any(|expected| word.eq_ignore_ascii_case(expected))).ok_or_else(|| {
@@ -158,7 +158,7 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
                 break;
             }
             words.take(&["normal"])?;
-            // What is told of a normal is often nothing that can be relied upon: it must be numbers only.
+            // Stored normals are often unreliable; they only have to be numbers.
             let normal = words.vector()?;
             words.take(&["outer"])?;
             words.take(&["loop"])?;
@@ -172,7 +172,7 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
             facets.push(Facet { corners, normal, place: Place::Line(line) });
         }
         words.skip_line();
-        // A file may hold several solids.
+        // A file may contain several solids.
         match words.next() {
             None => return Ok(facets),
             Some((word, _)) if word.eq_ignore_ascii_case("solid") => {}
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(binary[0].place, Place::Byte(84));
     }
 
-    /// Wherever a file is cut off, it is refused: no half of a mesh is taken for the whole.
+    /// A truncated file is rejected at any length, so that a part of a mesh never counts as the whole.
     #[test]
     fn what_is_cut_off_is_refused() {
         let end = ONE.find("endsolid").unwrap() + "endsolid".len();

@@ -1,38 +1,39 @@
-//! Where a sphere touches a surface.
+//! Contacts between a sphere and a surface.
 //!
-//! It touches wherever the distance from its centre has a least value along the surface that is below its radius: on a triangle
-//! at the foot of its centre; on an edge where all that hangs on it goes away from the centre; at a corner likewise. That is the
-//! contact of a sphere with the solid itself: one on a plane, two in the corner of two planes, one on the ridge of two. Which
-//! side of a triangle the centre is on does not matter, but what lies behind another triangle is not touched.
+//! A contact exists where the distance from the sphere's centre along the surface has a local minimum below the radius.
+//! On a triangle, this is the foot of the perpendicular from the centre. On an edge or at a corner, it is the nearest
+//! point, provided that all adjacent parts lead away from the centre. These are the contacts of a sphere with the
+//! solid: one on a plane, two in the concave edge of two planes, one on their convex edge. The centre may be on either
+//! side of a triangle, but parts behind another triangle are not in contact.
 
 use super::build::Surface;
 use super::geometry::{Part, lies_across, nearest};
 use nalgebra::Vector3;
 
-/// Cosine up to which what hangs on an edge counts as going away: rounding, with which a sphere over a seam is over one side or
-/// over both, and never over none.
+/// Tolerance on the cosine at which an adjacent part counts as leading away. With it, rounding may give a sphere over a
+/// seam one contact side or both, but never none.
 const ROUNDING: f64 = 1e-9;
 
-/// A place at which a sphere touches, in the coordinates of the surface.
+/// Contact of a sphere, in the coordinates of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touched {
-    /// The patch, ridge or corner.
+    /// Patch, ridge or corner.
     pub group: u32,
-    /// The point (m).
+    /// Contact point (m).
     pub point: Vector3<f64>,
-    /// Unit vector from the centre to it.
+    /// Unit vector from the centre to the contact point.
     pub direction: Vector3<f64>,
-    /// Distance between the two (m).
+    /// Distance between centre and contact point (m).
     pub distance: f64,
 }
 
 impl Surface {
-    /// Finds where a sphere touches, among triangles that are near. Of each patch, ridge and corner that is one place at most.
+    /// Finds the contacts of a sphere with nearby triangles: at most one for each patch, ridge and corner.
     pub fn touched(&self, centre: Vector3<f64>, radius: f64, near: &[u32], found: &mut Vec<Touched>) {
         found.clear();
         for &face in near {
             let Some(touched) = self.candidate(centre, radius, face as usize) else { continue };
-            // A place on the border of two parts is one place: with rounding both may claim it.
+            // A point on the border of two parts is one contact, although both may report it due to rounding.
             let same = |other: &Touched| {
                 other.group == touched.group || (other.point - touched.point).norm() <= 10.0 * ROUNDING * radius
             };
@@ -50,7 +51,7 @@ impl Surface {
         }
     }
 
-    /// The point of a triangle that is nearest, where the sphere touches it there.
+    /// Returns the nearest point of a triangle, if the sphere is in contact there.
     fn candidate(&self, centre: Vector3<f64>, radius: f64, face: usize) -> Option<Touched> {
         let triangle = &self.triangles[face];
         let (point, part) = nearest(centre, triangle);
@@ -107,7 +108,7 @@ mod tests {
         found
     }
 
-    /// A cube of edges of 1 m from the origin.
+    /// Cube with edges of 1 m and a corner at the origin.
     fn cube() -> Surface {
         let corner = |bits: usize| [0, 1, 2].map(|axis| f64::from((bits >> axis & 1) as u8));
         let mut triangles = Vec::new();
@@ -123,7 +124,7 @@ mod tests {
         assert_eq!(cube().parts(), [6, 12, 8]);
     }
 
-    /// A plane of many triangles: one contact wherever the sphere is, on seams and on the corners of triangles too.
+    /// Plane of many triangles: one contact at every position, including seams and corners of triangles.
     #[test]
     fn a_plane_is_touched_once_everywhere() {
         let at = |i: u32, j: u32| [0.1 * f64::from(i) + 0.017 * f64::from(j), 0.1 * f64::from(j), 0.3];
@@ -137,7 +138,7 @@ mod tests {
         let plane = surface(&triangles, true);
         assert_eq!(plane.parts()[0], 1);
         for number in 0..4000 {
-            // Every other one on the diagonals of the triangles, as nearly as rounding has it.
+            // Every second position lies on the diagonals of the triangles, apart from rounding.
             let (part, row) = ((f64::from(number) * 0.754_877).fract(), f64::from(number % 10) * 0.1 + 0.1);
             let [x, y] =
                 if number % 2 == 0 { [0.2 + part, 0.3 + 0.5 * part] } else { [row + 0.117 * part, row + 0.1 * part] };
@@ -147,7 +148,7 @@ mod tests {
         }
     }
 
-    /// Beside a cube: a face, a ridge and a corner from without; three faces in a corner from within.
+    /// Positions outside a cube at a face, a ridge and a corner; and inside at a corner of three faces.
     #[test]
     fn a_cube_is_touched_as_a_cube() {
         let cube = cube();
@@ -168,7 +169,7 @@ mod tests {
         assert!(touched(&cube, [0.5, 0.5, 0.5], 0.4).is_empty());
     }
 
-    /// The far side of a thin plate lies behind the near one.
+    /// The far side of a thin plate lies behind the near side.
     #[test]
     fn a_thin_plate_is_touched_on_one_side() {
         let thin = |bits: usize| {

@@ -1,23 +1,23 @@
-//! A tree of boxes around triangles, by which those near a place are found.
+//! Tree of bounding boxes around triangles, for searches near a position.
 
 use nalgebra::Vector3;
 
-/// Most triangles in a leaf.
+/// Largest number of triangles in a leaf.
 const LEAF: usize = 4;
 
-/// A box around some triangles, which stand next to one another in the order of the tree.
+/// Bounding box of triangles that are consecutive in the order of the tree.
 #[derive(Clone, Debug)]
 struct Node {
     low: Vector3<f64>,
     high: Vector3<f64>,
-    /// Places in the order.
+    /// Range in `order`.
     from: u32,
     to: u32,
-    /// The second of its two parts; the first follows it. Zero for a leaf.
+    /// Second child; the first child follows its parent. Zero for a leaf.
     second: u32,
 }
 
-/// Boxes within boxes around triangles.
+/// Hierarchy of bounding boxes around triangles.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
@@ -50,11 +50,11 @@ impl Tree {
         self.add(triangles, from + half, to);
     }
 
-    /// Hands over every triangle whose box is within a distance (m) of a place, that distance being asked for anew each time:
-    /// whoever looks for the nearest may shorten it.
+    /// Visits the triangles of all leaves whose bounding box lies within a radius (m) of a position. The radius is read
+    /// again at each node, by a visit without a triangle, so that a nearest-neighbour search can reduce it.
     pub(super) fn near(&self, place: Vector3<f64>, mut visit: impl FnMut(Option<u32>) -> f64) {
         let mut at = 0;
-        // In the order of the nodes; the parts of one that is too far are passed over.
+        // Nodes are visited in order; the children of a distant node are skipped.
         while let Some(node) = self.nodes.get(at) {
             let away = (node.low - place).sup(&(place - node.high)).sup(&Vector3::zeros());
             let is_leaf = node.second == 0;
@@ -71,7 +71,7 @@ impl Tree {
         }
     }
 
-    /// The node after all parts of one.
+    /// Returns the node after all descendants of a node.
     fn after(&self, at: usize) -> usize {
         let mut last = at;
         while self.nodes[last].second != 0 {

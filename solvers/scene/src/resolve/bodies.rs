@@ -1,4 +1,4 @@
-//! Deformable bodies that are no grains.
+//! Deformable bodies other than grains.
 
 use super::Resolver;
 use crate::body::{Block, BlockShape, Hold, InitialStress, Sides, Wave};
@@ -61,7 +61,7 @@ impl Resolver<'_> {
         let Some(moduli) = of_material.deformable(&spec.material, check)? else {
             return Err(check.error(&key("stress"), "a material with elastic moduli", &format!("`{}`", spec.material)));
         };
-        // In the plane nothing stretches out of it, and the stress there is that of plane strain.
+        // In the plane, there is no out-of-plane strain, so the out-of-plane stress is that of plane strain.
         let tensor = |part: &str, rows: Option<&Vec<Vec<f64>>>| -> Result<Matrix3<f64>, SceneError> {
             let mut stress = rows.map_or(Ok(Matrix3::zeros()), |rows| check.symmetric(&key(part), rows))?;
             if check.dimension == Dimension::Two {
@@ -135,7 +135,8 @@ impl Resolver<'_> {
         Ok(sides)
     }
 
-    /// The length that is given, or that of the smallest grain, or of the smallest body.
+    /// Returns the given reference length, or the smallest grain radius, or the smallest characteristic length of a
+    /// body (m).
     pub(super) fn reference_length(&self, grains: &[Grain], bodies: &[Block]) -> Result<f64, SceneError> {
         if let Some(length) = self.file.reference_length {
             return self.check.positive("reference_length", length, "length (m)");

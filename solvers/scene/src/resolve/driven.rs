@@ -1,4 +1,4 @@
-//! Grains that are moved as walls are.
+//! Grains with prescribed motion.
 
 use super::{Groups, Resolver};
 use crate::error::SceneError;
@@ -7,7 +7,8 @@ use crate::motion::Moment;
 use crate::scene::{Domain, Driven, Grain};
 
 impl Resolver<'_> {
-    /// The groups of driven grains, whose velocity and spin from the start are those that they keep.
+    /// Returns the groups of grains with prescribed motion, and gives these grains their velocity and spin if the
+    /// motion starts at once.
     pub(super) fn driven(
         &self,
         grains: &mut [Grain],
@@ -52,7 +53,7 @@ impl Resolver<'_> {
         Ok(all)
     }
 
-    /// From when to when they are driven.
+    /// Returns the start and the end of the prescribed motion (s).
     fn span(&self, key: &str, spec: &DrivenSpec) -> Result<[f64; 2], SceneError> {
         let start = self.check.not_negative(&format!("{key}.start"), spec.start.unwrap_or(0.0), "time (s)")?;
         let Some(stop) = spec.stop else { return Ok([start, f64::INFINITY]) };

@@ -1,4 +1,4 @@
-//! Grains of the file, one by one.
+//! Grains of a scene file.
 
 use super::{Groups, Resolver};
 use crate::end_state::Springs;
@@ -14,16 +14,16 @@ use indexmap::IndexMap;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// What a grain takes in a scene, a solver and a snapshot of all (B).
+/// Memory per grain in a scene, a solver and a snapshot together (B).
 const BYTES_OF_A_GRAIN: f64 = 1e3;
 
-/// Grains with what is known of them at the start.
+/// Grains with their initial state.
 pub(super) struct Placed {
     pub(super) grains: Vec<Grain>,
     pub(super) groups: Groups,
-    /// Those that come later.
+    /// Grains inserted later.
     pub(super) entries: Vec<Entry>,
-    /// What their contacts remember.
+    /// Initial contact history.
     pub(super) springs: Option<Arc<Springs>>,
 }
 
@@ -168,7 +168,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Centres and radii of a packing (m).
+    /// Returns the centres and radii of a packing (m).
     fn packed(
         &self,
         name: &str,
@@ -203,7 +203,7 @@ impl Resolver<'_> {
         Ok(centres.into_iter().zip(radii).collect())
     }
 
-    /// Radius, density and domain may each be a fine number and still give a grain without one.
+    /// Rejects grains whose mass, moment of inertia or position is not finite, although radius, density and domain are.
     fn refuse_beyond_numbers(&self, group: &str, grains: &[Grain]) -> Result<(), SceneError> {
         let key = format!("grains.{group}");
         for grain in grains {
@@ -218,7 +218,8 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// A grain wider than a period would touch itself, and one outside sides that are fixed is in no domain.
+    /// Rejects a grain wider than a period, which would overlap itself, and a grain outside the faces of a non-periodic
+    /// axis.
     pub(super) fn refuse_outside(&self, domain: &Domain, grains: &[Grain], groups: &Groups) -> Result<(), SceneError> {
         for (name, range) in groups {
             for (at, grain) in range.clone().zip(&grains[range.clone()]) {
@@ -242,7 +243,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Memory for more grains than any machine steps is asked for by mistake.
+    /// Rejects more grains than the memory can hold; such a number is a mistake.
     fn refuse_too_many(&self, key: &str, count: u128) -> Result<(), SceneError> {
         if count > 100_000_000 {
             return Err(self.check.error(key, "at most 100 million grains", &count.to_string()));
@@ -309,9 +310,9 @@ impl Resolver<'_> {
     ) -> Result<(), SceneError> {
         let bound = self.file.largest_initial_overlap;
         self.check.not_negative("largest_initial_overlap", bound, "ratio")?;
-        // Where the centre of one lies within another it is of no use to know which pair is worse still.
+        // If the centre of a grain lies within another grain, the search for deeper overlaps is of no use.
         let mut later = vec![false; grains.len()];
-        // Who comes at time zero is there from the start.
+        // Grains inserted at time zero are present from the start.
         stays.entries[stays.entered_by(0.0)..].iter().for_each(|entry| later[entry.grain] = true);
         let first: Vec<usize> = (0..grains.len()).filter(|&grain| !later[grain]).collect();
         let found = if stays.entries.is_empty() {

@@ -1,4 +1,4 @@
-//! The pair table: contact laws between materials.
+//! Table of contact laws between materials.
 
 use super::Resolver;
 use crate::contact_law::{ContactLaw, Surroundings};
@@ -7,7 +7,8 @@ use crate::scene::{Block, Grain, Wall};
 use std::collections::BTreeSet;
 
 impl Resolver<'_> {
-    /// For each pair of `materials`, places in the file. Laws between others are checked too, and have no place.
+    /// Returns the law of each pair of `materials` (indices in the file). Laws of other pairs are checked but not
+    /// stored.
     pub(super) fn laws(
         &self,
         materials: &[usize],
@@ -43,7 +44,8 @@ impl Resolver<'_> {
         Ok(table)
     }
 
-    /// Every pair of materials that can meet must have a law: silence would let grains pass through each other.
+    /// Rejects a pair of materials that can come into contact but has no law, because such grains would pass through
+    /// each other.
     fn require_laws(
         &self,
         materials: &[usize],

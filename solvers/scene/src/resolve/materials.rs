@@ -1,16 +1,16 @@
-//! Materials: those that something is made of, and what deforms.
+//! Materials: those in use, and those that deform.
 
 use super::Resolver;
 use crate::error::SceneError;
 use crate::material::Deformable;
 use crate::scene::{Block, Grain, Wall};
 
-/// Most materials that things are made of: each pair of them has a place in a table.
+/// Largest number of materials in use, because each pair of them has an entry in a table.
 const MOST_MATERIALS: usize = 1000;
 
 impl Resolver<'_> {
-    /// The materials that something is made of, by place in the file. Grains, bodies and walls name them by place among
-    /// these from now on: a library of materials in the file costs nothing.
+    /// Returns the materials in use, by index in the file. Grains, bodies and walls then refer to indices in this list.
+    /// Unused materials in the file thus cost nothing.
     pub(super) fn used_materials(
         &self,
         grains: &mut [Grain],
@@ -37,12 +37,12 @@ impl Resolver<'_> {
         Ok(kept)
     }
 
-    /// Name of a material, by place in the file.
+    /// Returns the name of a material, by index in the file.
     pub(super) fn material_name(&self, place: usize) -> &str {
         self.file.materials.get_index(place).map_or("", |(name, _)| name.as_str())
     }
 
-    /// What each material is made of, where the file says so.
+    /// Returns the deformable properties of each material; `None` if the file gives none.
     pub(super) fn deformable(&self) -> Result<Vec<Option<Deformable>>, SceneError> {
         self.file.materials.iter().map(|(name, material)| material.deformable(name, &self.check)).collect()
     }

@@ -7,10 +7,10 @@ use crate::mesh::{Flaw, Mesh, Reading, Surface, stl};
 use crate::scene::{Dimension, Domain, Grain, Wall, WallShape};
 use nalgebra::Vector3;
 
-/// Most bytes of a file: some ten million triangles of the binary form.
+/// Largest size of a file (B): about ten million triangles in binary form.
 const MOST: u64 = 1 << 29;
-/// How much larger than all grains together a mesh may be: one in millimetres that is taken for metres is a thousand times
-/// as large as it should be, and no less than what it holds.
+/// Largest ratio of the size of a mesh to that of all grains or the domain. A mesh in millimetres read as metres is a
+/// thousand times too large, and a mesh is usually no smaller than its contents.
 const TOO_LARGE: f64 = 300.0;
 
 impl Resolver<'_> {
@@ -48,7 +48,7 @@ impl Resolver<'_> {
         Ok(WallShape::Mesh(Mesh::at_rest(surface)))
     }
 
-    /// Refuses a mesh that is so much larger than all grains together, or than the domain, that its unit is another.
+    /// Rejects a mesh so much larger than all grains and the domain that its unit must be wrong.
     pub(super) fn refuse_other_units(
         &self,
         grains: &[Grain],

@@ -1,4 +1,4 @@
-//! From a scene file to a scene: every name looked up, every number checked, every grain placed.
+//! Resolution of a scene file into a scene: all names looked up, all numbers checked, all grains placed.
 
 use crate::body::{Settle, Start};
 use crate::check::Checker;
@@ -29,7 +29,7 @@ mod state;
 mod stays;
 mod walls;
 
-/// A grain as a data file describes it.
+/// Grain in a data file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FileGrain {
     /// Atom type, from 1.
@@ -46,14 +46,14 @@ pub struct FileGrain {
     pub spin: Vector3<f64>,
 }
 
-/// Reads grains from a data file; the error says file, line, expected and found.
+/// Reader of grains from a data file. Its error names file, line, expected and found value.
 pub type ReadGrains<'a> = &'a dyn Fn(&Path) -> Result<Vec<FileGrain>, String>;
 
 impl SceneSource {
-    /// The scene: parsed, with variant and overrides, checked and complete.
+    /// Returns the scene, with variant and overrides, checked and complete.
     ///
     /// # Errors
-    /// When anything in the file is wrong; the error names file, line, key, what was expected and what was found.
+    /// When anything in the file is wrong. The error names file, line, key, expected and found value.
     pub fn scene(&self, read_grains: ReadGrains<'_>) -> Result<Scene, SceneError> {
         let file = self.scene_file()?;
         let dimension = match file.dimension {
@@ -66,7 +66,7 @@ impl SceneSource {
     }
 }
 
-/// Which grains belong to which group of the file.
+/// Range of grain indices of each group of the file.
 type Groups = IndexMap<String, Range<usize>>;
 
 struct Resolver<'a> {

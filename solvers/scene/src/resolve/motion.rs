@@ -1,4 +1,4 @@
-//! Motions of walls and of driven grains.
+//! Motions of walls and of grains with prescribed motion.
 
 use super::Resolver;
 use crate::error::SceneError;
@@ -41,7 +41,7 @@ impl Resolver<'_> {
         Ok(motion)
     }
 
-    /// Adds a part of a motion that is a table or a function; whether it is one.
+    /// Adds a part of a motion that is a table or a function. Returns false if the part has another form.
     fn in_other_form(&self, key: &str, spec: &MotionSpec, motion: &mut Motion) -> Result<bool, SceneError> {
         let forms = [
             ("table", spec.table.is_some()),
@@ -93,7 +93,7 @@ impl Resolver<'_> {
         Ok(true)
     }
 
-    /// A table as phases of constant velocity, one for each straight line that its rows lie on.
+    /// Converts a table to phases of constant velocity. Consecutive rows on one straight line form one phase.
     fn table(&self, key: &str, rows: &[Vec<f64>]) -> Result<Vec<Phase>, SceneError> {
         let check = &self.check;
         let shape = if check.dimension.count() == 2 { "[t, x, y]" } else { "[t, x, y, z]" };

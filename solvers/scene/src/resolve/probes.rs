@@ -1,4 +1,4 @@
-//! Probes, and the names they refer to.
+//! Probes, and the names to which they refer.
 
 use super::{Groups, Resolver};
 use crate::check::Checker;
@@ -95,7 +95,7 @@ impl Resolver<'_> {
     }
 }
 
-/// What probes can refer to.
+/// Objects to which probes can refer.
 pub(super) struct Names<'a> {
     pub(super) groups: &'a Groups,
     pub(super) grains: &'a [Grain],
@@ -110,7 +110,7 @@ impl Names<'_> {
         check.place_of(key, name, "a body of this scene", self.bodies.iter().map(|body| &body.name))
     }
 
-    /// How far outside a body a place is at the start (m), if it is.
+    /// Returns the distance of a position outside a body at the start (m); `None` if it lies inside.
     fn outside(&self, body: &BodyName, at: Vector3<f64>, dimensions: usize) -> Option<f64> {
         let (away, size) = match *body {
             BodyName::Grain(grain) => {
@@ -122,11 +122,11 @@ impl Names<'_> {
                 (shape.outside(at, dimensions), shape.length(dimensions))
             }
         };
-        // The slack is for places on the surface that are rounded.
+        // The tolerance accepts rounded positions on the surface.
         (away > 1e-6 * size).then_some(away)
     }
 
-    /// The grain of a name, where a wall could stand too.
+    /// Returns the grain of a name that could also be the name of a wall.
     fn grain_or_wall(&self, check: &Checker<'_>, key: &str, name: &str) -> Result<usize, SceneError> {
         let group = name.rsplit_once('.').map_or(name, |(group, _)| group);
         if !self.groups.contains_key(name) && !self.groups.contains_key(group) {
@@ -136,7 +136,7 @@ impl Names<'_> {
         self.grain(check, key, name)
     }
 
-    /// The grain called `group` (when the group has one) or `group.k`.
+    /// Returns the grain called `group` (if the group has one grain) or `group.k`.
     fn grain(&self, check: &Checker<'_>, key: &str, name: &str) -> Result<usize, SceneError> {
         let (group, number) = match name.rsplit_once('.').and_then(|(group, k)| Some((group, k.parse::<usize>().ok()?)))
         {

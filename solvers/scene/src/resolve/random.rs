@@ -1,4 +1,4 @@
-//! Radii and place of grains that are placed at random.
+//! Radii and region of randomly placed grains.
 
 use super::Resolver;
 use crate::error::SceneError;
@@ -6,11 +6,11 @@ use crate::file::{GrainShape, RandomSpec, RegionSpec};
 use crate::radii::Radii;
 use crate::scene::Domain;
 
-/// Share of a distribution that its range must hold: radii are drawn again until they are within it.
+/// Smallest fraction of a distribution within its range, because radii outside the range are redrawn.
 const LEAST: f64 = 0.01;
 
 impl Resolver<'_> {
-    /// The distribution of radii, of the group's `radius` where none is given.
+    /// Returns the distribution of radii; by default, all grains have the `radius` of the group.
     pub(super) fn radii(
         &self,
         key: &str,
@@ -58,7 +58,7 @@ impl Resolver<'_> {
         Ok(Radii::by_mass(curve, if shape == GrainShape::Disc { 2 } else { 3 }))
     }
 
-    /// A smallest and a largest radius (m).
+    /// Checks a smallest and a largest radius (m).
     fn range(&self, key: &str, [small, large]: [f64; 2]) -> Result<[f64; 2], SceneError> {
         self.check.positive(key, small, "radius (m)")?;
         if !large.is_finite() || large < small {
@@ -67,7 +67,7 @@ impl Resolver<'_> {
         Ok([small, large])
     }
 
-    /// The part of the domain within a box, which is periodic where it reaches from face to face.
+    /// Returns the part of the domain within a box. It is periodic along axes on which the box spans the domain.
     pub(super) fn region_of(&self, key: &str, spec: &RegionSpec, domain: &Domain) -> Result<Domain, SceneError> {
         let [low, high] = self.corners(key, &spec.low, &spec.high)?;
         let mut part = *domain;

@@ -1,4 +1,4 @@
-//! Grains as a run ended with them.
+//! Grains from the final state of a run.
 
 use super::Resolver;
 use crate::end_state::{EndState, Springs};
@@ -31,7 +31,7 @@ impl Resolver<'_> {
             let key = format!("grains.{name}.{given}");
             return Err(check.error(&key, "none, for the state tells it", "one"));
         }
-        // Of one material it is that of the group, whatever it was called there.
+        // A single material is replaced by the material of the group, whatever its name.
         let materials: Vec<u16> = match &state.materials[..] {
             [_] => vec![material],
             several => several.iter().map(|material| self.material(&key, material)).collect::<Result<_, _>>()?,

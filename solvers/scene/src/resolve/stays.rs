@@ -1,4 +1,4 @@
-//! Grains that come or go.
+//! Insertion and removal of grains.
 
 use super::{Groups, Resolver};
 use crate::error::SceneError;
@@ -9,7 +9,7 @@ use crate::stays::{Entry, Removal, Stays};
 use nalgebra::Vector3;
 
 impl Resolver<'_> {
-    /// When (s) and where (m) the grains of a group come.
+    /// Returns the insertion times (s) and centres (m) of the grains of a group.
     pub(super) fn pour(
         &self,
         name: &str,
@@ -48,7 +48,7 @@ impl Resolver<'_> {
                 Unpourable::NoRoom => "room in the box for each grain when it comes",
                 Unpourable::Crowd => "a box that grains fall out of: with a velocity, gravity or a lower rate",
             };
-            // A half, a quarter, …: what is slow enough for grains to fall away in time.
+            // Tries a half, a quarter, … of the rate, until grains fall away in time.
             let slower = (1..=10).map(|halvings| pour.rate / f64::from(1 << halvings));
             let fits = |rate: &f64| poured(&Pour { rate: *rate, ..pour }, domain, check.dimension).is_ok();
             let help = slower.into_iter().find(fits).map(|rate| format!("at {rate} 1/s there is"));
@@ -67,7 +67,7 @@ impl Resolver<'_> {
         Ok(Some(Removal { low, high, every: spec.every_cycles }))
     }
 
-    /// A grain that comes where grains are taken out is never there.
+    /// Rejects a grain that would be removed as soon as it is inserted.
     pub(super) fn refuse_lost_pours(&self, stays: &Stays, grains: &[Grain], groups: &Groups) -> Result<(), SceneError> {
         let Some(removal) = stays.removal else { return Ok(()) };
         let dimension = self.check.dimension.count();
@@ -79,7 +79,8 @@ impl Resolver<'_> {
         Err(self.check.error(&format!("grains.{group}.poured"), expected, &format!("a grain that comes at {place:?}")))
     }
 
-    /// The corners of a box that is wide along every axis, of the keys `low` and `high` under a key.
+    /// Returns the corners of a box with a positive length along every axis, from the keys `low` and `high` below
+    /// `key`.
     pub(super) fn corners(&self, key: &str, low: &[f64], high: &[f64]) -> Result<[Vector3<f64>; 2], SceneError> {
         let check = &self.check;
         let (of_low, of_high) = (format!("{key}.low"), format!("{key}.high"));
@@ -91,7 +92,7 @@ impl Resolver<'_> {
         Ok([low, high])
     }
 
-    /// What is moved as a wall is must be there all the time, and deformable bodies are.
+    /// Rejects inserted or removed grains in scenes with prescribed motion of grains or with deformable bodies.
     pub(super) fn refuse_passing(&self, stays: &Stays, driven: &[Driven], bodies: &[Block]) -> Result<(), SceneError> {
         let key = if stays.entries.is_empty() { "removal" } else { "grains" };
         if !stays.is_always() && !driven.is_empty() {

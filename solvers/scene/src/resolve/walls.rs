@@ -1,4 +1,4 @@
-//! Walls and how they move.
+//! Walls and their motion.
 
 use super::Resolver;
 use crate::error::SceneError;
