@@ -33,7 +33,7 @@ pub fn to_bytes(name: &str, record: &Record) -> Result<Vec<u8>, String> {
 /// Returns the bytes without header and hash. Two records of one name are equal bit for bit if these bytes are.
 ///
 /// # Errors
-/// As for [`to_bytes`].
+/// When the record cannot be serialised.
 pub fn body(name: &str, record: &Record) -> Result<Vec<u8>, String> {
     postcard::to_allocvec(&Written { name, record }).map_err(|error| error.to_string())
 }

@@ -257,7 +257,7 @@ pub enum Cause {
         /// Length of a cell (m).
         cell: f64,
     },
-    /// A material point was turned inside out.
+    /// A material point was inverted.
     Inverted {
         /// Volume relative to the initial volume.
         volume_ratio: f64,
@@ -655,7 +655,7 @@ pub trait Solver: Send + Sync {
     /// an uninterrupted run in every bit except for wall-clock times.
     ///
     /// # Errors
-    /// As for [`Solver::run`], and when the checkpoint belongs to another run or the solver writes no checkpoints.
+    /// When [`Solver::run`] fails, the checkpoint belongs to another run, or the solver writes no checkpoints.
     fn restart(
         &self,
         _scene: &Scene,
