@@ -1,10 +1,10 @@
-//! The energy budget of a run: what it adds up from step to step.
+//! Energy budget of a run, summed from step to step.
 //!
-//! Over a step a driven grain or a wall moves by V Δt while the force on it goes from F to F': its work is −½ (F +
-//! F')·V Δt, which is to second order what positions and velocities half a step apart take from it. The work of
-//! friction, and the energy that tangential springs release as their stiffness changes, are those of
-//! [`Tangential::lost`](crate::contact::tangential::Tangential::lost). The energy that is left in the tangential spring of a
-//! contact when it ends is in no entry: nothing where surfaces slip in the end, as they do with finite friction.
+//! In a step, a wall or a grain with prescribed motion moves by V Δt while the force on it changes from F to F'. Its
+//! work is −½ (F + F')·V Δt. To second order, this is the energy that positions and velocities half a step apart
+//! receive. [`Tangential::lost`](crate::contact::tangential::Tangential::lost) gives the frictional work, and the
+//! energy that tangential springs release when their stiffness changes. The energy left in the tangential spring at the
+//! end of a contact is not counted. It is zero if the surfaces slip at the end, as they do with finite friction.
 
 use grainbench_scene::budget::Budget;
 use grainbench_scene::effects::Effects;
@@ -13,22 +13,22 @@ use grainbench_scene::scene::{Driven, Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Sums since the start, and the forces from which the next step adds to them.
+/// Sums since the start, and the last forces, which the next step needs.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Accounts {
-    /// Work of walls and driven grains (J).
+    /// Work of walls and grains with prescribed motion (J).
     work: f64,
-    /// Work of friction (J).
+    /// Frictional work (J).
     friction: f64,
     /// Energy released by tangential springs whose stiffness changed (J).
     released: f64,
-    /// Impulse of walls, driven grains and gravity (N s).
+    /// Impulse of walls, of grains with prescribed motion, and of gravity (N s).
     impulse: Vector3<f64>,
-    /// Forces on driven groups, then on walls, at the last evaluation (N).
+    /// Forces on groups with prescribed motion, then on walls, at the last evaluation (N).
     forces: Vec<Vector3<f64>>,
 }
 
-/// Why the energy budget of a scene cannot be computed, if it cannot.
+/// Returns the reason why the energy budget of a scene cannot be computed; `None` if it can.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let effects = Effects::of(scene);
     let lossy = effects.contact_damping || effects.global_damping || effects.rolling_resistance;
@@ -47,17 +47,17 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     Some(format!("a probe asks for its energy budget, and what {what} take or give is not added up"))
 }
 
-/// What a step did, from the forces that were found at its end.
+/// Contribution of a step, from the forces at its end.
 pub(crate) struct Step {
-    /// Forces on driven groups, then on walls (N).
+    /// Forces on groups with prescribed motion, then on walls (N).
     pub(crate) forces: Vec<Vector3<f64>>,
-    /// Velocities of driven groups, then of walls (m/s).
+    /// Velocities of groups with prescribed motion, then of walls (m/s).
     pub(crate) velocities: Vec<Vector3<f64>>,
     /// Gravity g (m/s²).
     pub(crate) gravity: Vector3<f64>,
-    /// Mass of the grains that are not driven (kg).
+    /// Mass of the grains without prescribed motion (kg).
     pub(crate) free_mass: f64,
-    /// Work of friction (J).
+    /// Frictional work (J).
     pub(crate) friction: f64,
     /// Energy released by tangential springs whose stiffness changed (J).
     pub(crate) released: f64,
@@ -66,7 +66,7 @@ pub(crate) struct Step {
 }
 
 impl Accounts {
-    /// Adds up what a step did.
+    /// Adds the contribution of a step.
     pub(crate) fn add(&mut self, step: Step) {
         for ((before, now), velocity) in self.forces.iter().zip(&step.forces).zip(&step.velocities) {
             let impulse = (before + now) * (-0.5 * step.time_step);
@@ -79,7 +79,7 @@ impl Accounts {
         self.forces = step.forces;
     }
 
-    /// The budget at the time of the positions, from the grains then and the energy in the springs (J).
+    /// Returns the budget at the time of the positions, from the grains at that time and the energy of the springs (J).
     pub(crate) fn budget(&self, scene: &Scene, grains: &[GrainState], springs: f64) -> Budget {
         let kinetic = |(state, grain): (&GrainState, &Grain)| {
             0.5 * (state.mass * state.velocity.norm_squared() + grain.inertia * state.spin.norm_squared())

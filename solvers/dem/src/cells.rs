@@ -1,24 +1,24 @@
-//! A grid of cells over the grains, and their order by cell.
+//! Grid of cells over the grains, and the order of the grains by cell.
 
 use crate::geometry::Geometry;
 use grainbench_lanes::Quad;
 use nalgebra::Vector3;
 
-/// A grid over the bounding box of the grains but the few that are far larger than the others. Cells are at least `reach` wide,
-/// so that what lies within reach of a grain lies in its cell or the next; there are never more than a few cells a grain.
+/// Grid over the bounding box of the grains, except for the few very large ones. Cells are at least `reach` wide, so
+/// grains within reach of each other are in the same or adjacent cells. The number of cells is at most a few per grain.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     low: Vector3<f64>,
     width: Vector3<f64>,
     reach: f64,
     pub(crate) count: [usize; 3],
-    /// First slot of every cell, and the number of grains at the end. Before the first are the grains without a cell.
+    /// First slot of every cell, and the number of grains at the end. Grains without a cell are before the first cell.
     pub(crate) start: Vec<u32>,
 }
 
 impl Cells {
-    /// Lays the grid and gives the order that sorts the grains by cell (a stable sort). Grains with radii above `limit` have no
-    /// cell and come first, so that what they touch comes after them.
+    /// Creates the grid, and returns the order that sorts the grains by cell (a stable sort). Grains with radii above
+    /// `limit` have no cell and come first, so that their partners come after them.
     pub(crate) fn sort<S: Geometry>(place: &[Quad], reach: f64, limit: f64) -> (Self, Vec<u32>) {
         let mut low = Vector3::repeat(f64::INFINITY);
         let mut high = Vector3::repeat(f64::NEG_INFINITY);
@@ -44,7 +44,7 @@ impl Cells {
         }
         let width = Vector3::from_fn(|axis, _| (extent[axis] / count[axis] as f64).max(reach));
         let mut cells = Self { low, width, reach, count, start: Vec::new() };
-        // Those without a cell are sorted as if they had one more, before the others.
+        // Grains without a cell are sorted as if they had a further cell before all others.
         let last = count.iter().product::<usize>();
         let cell = |grain: &Quad| if has_cell(&grain) { 1 + cells.index(S::vector_in_space(grain)) } else { 0 };
         let cell_of: Vec<u32> = place.iter().map(|grain| cell(grain) as u32).collect();
@@ -64,34 +64,34 @@ impl Cells {
         (cells, order)
     }
 
-    /// Cell coordinates of a point, the nearest cell's when it lies outside.
+    /// Returns the cell coordinates of a point; those of the nearest cell if it lies outside the grid.
     pub(crate) fn coordinates(&self, position: Vector3<f64>) -> [usize; 3] {
         let mut coordinates = [0; 3];
         for (axis, coordinate) in coordinates.iter_mut().enumerate() {
-            // A whole number of it is what stands before the point, and zero below zero.
+            // The conversion to an integer truncates, and gives zero for negative values.
             let along = (position[axis] - self.low[axis]) / self.width[axis];
             *coordinate = (along as usize).min(self.count[axis] - 1);
         }
         coordinates
     }
 
-    /// The cell of a slot.
+    /// Returns the cell of a slot.
     pub(crate) fn of(&self, slot: usize) -> usize {
         self.start.partition_point(|&start| start as usize <= slot) - 1
     }
 
-    /// Cell coordinates of a cell.
+    /// Returns the coordinates of a cell.
     pub(crate) fn place(&self, cell: usize) -> [usize; 3] {
         let [along, across, _] = self.count;
         [cell % along, cell / along % across, cell / (along * across)]
     }
 
-    /// How far apart the centres of two grains with cells can be that are near (m).
+    /// Returns the largest distance between the centres of two nearby grains with cells (m).
     pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// How many grains have no cell: theirs are the first slots.
+    /// Returns the number of grains without a cell, which have the first slots.
     pub(crate) fn without(&self) -> usize {
         self.start.first().map_or(0, |&first| first as usize)
     }
@@ -101,7 +101,7 @@ impl Cells {
         (k * self.count[1] + j) * self.count[0] + i
     }
 
-    /// Slots of the cells `from` to `to` (inclusive) of one row.
+    /// Returns the slots of the cells `from` to `to` (inclusive) of one row.
     pub(crate) fn row(&self, from: usize, to: usize, j: usize, k: usize) -> std::ops::Range<usize> {
         let row = (k * self.count[1] + j) * self.count[0];
         self.start[row + from] as usize..self.start[row + to + 1] as usize
@@ -113,8 +113,8 @@ mod tests {
     use super::*;
     use grainbench_scene::space::Plane;
 
-    /// Grains on a lattice as wide as a cell have a cell each, wherever they are: what a grain is tested against does not
-    /// grow with their number.
+    /// On a lattice with the spacing of the cells, each grain has its own cell for any origin. The number of tests per
+    /// grain thus does not grow with the number of grains.
     #[test]
     fn a_lattice_has_one_grain_a_cell() {
         for origin in [-100.0, 0.0, 100.0] {
@@ -123,7 +123,7 @@ mod tests {
                 Quad([along(number % 8), along(number / 8), 0.0, 0.4])
             };
             let (cells, order) = Cells::sort::<Plane>(&(0..64).map(at).collect::<Vec<_>>(), 1.0, f64::MAX);
-            // The last of a row is on the border of the grid and shares the cell before it.
+            // The last grain of a row lies on the border of the grid and shares the previous cell.
             assert_eq!(cells.count, [7, 7, 1]);
             let most = (0..7).flat_map(|j| (0..7).map(move |i| (i, j))).map(|(i, j)| cells.row(i, i, j, 0).len()).max();
             assert_eq!((most, order.len()), (Some(4), 64), "from {origin}");

@@ -1,107 +1,108 @@
-//! What separates one discrete element code from another when the scene is the same: named options, and presets.
+//! Conventions in which discrete element codes differ for the same scene: named options, and presets.
 
 use std::fmt;
 
-/// What Coulomb's limit acts on.
+/// Force to which the Coulomb limit applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoulombCap {
-    /// The tangential spring; the tangential dashpot is added only while the contact sticks
-    /// (Cundall & Strack 1979; LIGGGHTS `tangential history`).
+    /// Force of the tangential spring. The tangential dashpot is added only while the contact sticks (Cundall & Strack
+    /// 1979; LIGGGHTS `tangential history`).
     Spring,
-    /// Spring and dashpot together; the spring is reset to match (Luding 2008, Granular Matter 10, 235, eq. 22; LAMMPS
-    /// `gran/hooke/history`).
+    /// Force of spring and dashpot together. The spring is reset to match (Luding 2008, Granular Matter 10, 235, eq.
+    /// 22; LAMMPS `gran/hooke/history`).
     SpringAndDashpot,
 }
 
-/// Which normal force Coulomb's limit is proportional to.
+/// Normal force to which the Coulomb limit is proportional.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CapNormal {
-    /// The spring's (Cundall & Strack 1979, eq. 19).
+    /// Normal force of the spring (Cundall & Strack 1979, eq. 19).
     Spring,
-    /// The magnitude of spring and dashpot together (LAMMPS, LIGGGHTS).
+    /// Magnitude of the force of spring and dashpot together (LAMMPS, LIGGGHTS).
     Total,
-    /// Spring and dashpot together where they push, none where they pull: Coulomb's law as it is written,
-    /// |F_s| ≤ F_n tan φ + c.
+    /// Force of spring and dashpot together if it is repulsive, otherwise zero: Coulomb's law as written, |F_s| ≤ F_n
+    /// tan φ + c.
     Pushing,
 }
 
-/// Distance from a grain's centre at which tangential forces act.
+/// Lever arm of tangential forces, from the centre of the grain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TorqueArm {
-    /// The radius R.
+    /// Radius R.
     Radius,
-    /// R − overlap/2, the contact point halfway through the overlap.
+    /// R − overlap/2, the distance to the contact point in the middle of the overlap.
     ContactPoint,
 }
 
-/// Whether a normal dashpot may pull on grains that are about to part.
+/// Treatment of a normal dashpot that pulls on separating grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tension {
-    /// It may: the contact ends when the overlap does.
+    /// Tension is allowed: the contact ends with the overlap.
     Allowed,
-    /// The normal force is never below zero (LAMMPS `limit_damping`, LIGGGHTS `limitForce on`).
+    /// The normal force is never negative (LAMMPS `limit_damping`, LIGGGHTS `limitForce on`).
     Clipped,
 }
 
-/// Transport of the tangential and the rolling spring at a contact that turns or whose stiffness changes.
+/// Transport of the tangential and rolling springs at a contact that rotates or whose stiffness changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum History {
-    /// The springs turn with the contact: with its normal, and about the normal with the mean spin of both bodies. In the
-    /// plane that is a scalar along the tangent (Cundall & Strack 1979). A tangential spring whose stiffness grows keeps its
-    /// force, and one whose stiffness falls its stretch (`mindlin_rescale` of LAMMPS; Thornton, Cummins & Cleary, Powder
-    /// Technology 233 (2013) 30-46): no closed cycle yields work.
+    /// The springs rotate with the normal of the contact, and about the normal with the mean spin of both bodies. In
+    /// the plane, the spring displacement is a scalar along the tangent (Cundall & Strack 1979). If its stiffness
+    /// grows, a tangential spring keeps its force; if it falls, the spring keeps its displacement. Then no closed cycle
+    /// yields work (`mindlin_rescale` of LAMMPS; Thornton, Cummins & Cleary, Powder Technology 233 (2013) 30-46).
     Turned,
-    /// A vector whose normal part is taken off (LAMMPS, LIGGGHTS), with a force of stiffness times stretch.
+    /// The spring displacement is a vector without its normal part (LAMMPS, LIGGGHTS). The force is stiffness times
+    /// displacement.
     Projected,
 }
 
 /// Normal along which the velocities of a step are decomposed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VelocityNormal {
-    /// The mean of the normals at the start and at the end of the step, as velocities belong to its middle: second order
-    /// at contacts that turn.
+    /// Mean of the normals at the start and the end of the step, because velocities belong to its middle. It is
+    /// second-order accurate at rotating contacts.
     MidStep,
-    /// The normal at the end of the step (Cundall & Strack 1979, LAMMPS, LIGGGHTS): first order at contacts that turn. A wall
-    /// that turns has the velocity of its place at the end of the step.
+    /// Normal at the end of the step (Cundall & Strack 1979, LAMMPS, LIGGGHTS). It is first-order accurate at rotating
+    /// contacts. The velocity of a rotating wall is taken at its position at the end of the step.
     EndOfStep,
 }
 
-/// Angular velocity that rolls at a wall.
+/// Angular velocity for rolling resistance at a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WallRolling {
-    /// The grain's relative to the wall's, ω − Ω.
+    /// Angular velocity of the grain relative to the wall, ω − Ω.
     RelativeSpin,
-    /// The grain's own, ω, also at a wall that turns (LAMMPS `wall/gran` with `rolling sds`).
+    /// Angular velocity ω of the grain, even at a rotating wall (LAMMPS `wall/gran` with `rolling sds`).
     Spin,
-    /// The velocity of its surface at the torque arm over the distance of the wall, ω (R − δ/2)/(R − δ): between grains
-    /// the two are the same (LIGGGHTS `rolling_friction epsd`).
+    /// Surface velocity at the lever arm divided by the distance of the wall, ω (R − δ/2)/(R − δ). Between grains, it
+    /// equals ω (LIGGGHTS `rolling_friction epsd`).
     Surface,
 }
 
-/// A convention: the options together.
+/// Convention: a set of options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Convention {
-    /// Name of the solver that has it.
+    /// Name of the solver with this convention.
     pub name: &'static str,
-    /// What Coulomb's limit acts on.
+    /// Force to which the Coulomb limit applies.
     pub coulomb_cap: CoulombCap,
-    /// Which normal force the limit is proportional to.
+    /// Normal force to which the limit is proportional.
     pub cap_normal: CapNormal,
-    /// Torque arm.
+    /// Lever arm of tangential forces.
     pub torque_arm: TorqueArm,
-    /// Tension at release.
+    /// Treatment of tension.
     pub tension: Tension,
     /// Transport of springs.
     pub history: History,
-    /// Normal of velocities.
+    /// Normal along which velocities are decomposed.
     pub velocity_normal: VelocityNormal,
-    /// Angular velocity against which walls resist.
+    /// Angular velocity for rolling resistance at walls.
     pub wall_rolling: WallRolling,
 }
 
 impl Convention {
-    /// The default: Coulomb's limit holds at every step, for spring and dashpot together, and a damped contact ends when its
-    /// normal force returns to zero.
+    /// Default convention. The Coulomb limit holds at every step for spring and dashpot together, and a damped contact
+    /// ends when its normal force returns to zero.
     pub const DEFAULT: Self = Self {
         name: "dem",
         coulomb_cap: CoulombCap::SpringAndDashpot,
@@ -112,8 +113,8 @@ impl Convention {
         velocity_normal: VelocityNormal::MidStep,
         wall_rolling: WallRolling::RelativeSpin,
     };
-    /// Cundall & Strack 1979 to the letter: the limit is that of the springs, and the tangential dashpot is added to it
-    /// while the contact sticks, however large it is.
+    /// Cundall & Strack 1979 exactly as published. The Coulomb limit applies to the springs, and while the contact
+    /// sticks, the tangential dashpot is added to it without limit.
     pub const CUNDALL_STRACK: Self = Self {
         name: "dem:1979",
         coulomb_cap: CoulombCap::Spring,
@@ -147,10 +148,10 @@ impl Convention {
         wall_rolling: WallRolling::Surface,
     };
 
-    /// Every preset.
+    /// All presets.
     pub const ALL: [Self; 4] = [Self::DEFAULT, Self::CUNDALL_STRACK, Self::LAMMPS, Self::LIGGGHTS];
 
-    /// The options in words, for a record.
+    /// Returns the options as text, for a record.
     #[must_use]
     pub fn words(&self) -> Vec<String> {
         vec![

@@ -1,4 +1,4 @@
-//! The critical step followed during a run: contacts that stiffen until the time step is too long for them.
+//! Check of the critical time step during a run, for contacts that stiffen until the time step is too long.
 
 use crate::geometry::Geometry;
 use crate::simulation::Simulated;
@@ -6,7 +6,7 @@ use crate::walls::MovingWall;
 use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
 use grainbench_scene::solver::{Broken, Cause, Subject};
 
-/// A contact as it is looked at.
+/// Contact to be checked.
 struct Look<'a> {
     law: Option<&'a ContactLaw>,
     /// Slot of a grain.
@@ -20,15 +20,15 @@ struct Look<'a> {
 }
 
 impl<S: Geometry> Simulated<S> {
-    /// Looks at contacts from time to time, unless unstable steps are allowed: those whose stiffness changes, and all if the
-    /// step is above the critical one of the scene from the start.
+    /// Enables periodic checks of contacts, unless unstable steps are allowed. They apply if the stiffness of contacts
+    /// changes, or if the time step already exceeds the critical one of the scene.
     pub(crate) fn follow_critical_step(&mut self, allow_unstable: bool) {
         let curved = self.scene.laws.iter().flatten().any(|law| law.springs.kind() == SpringsKind::HertzMindlin);
         self.follows_critical = !allow_unstable && (curved || self.motion.time_step > self.critical);
     }
 
-    /// Refuses a contact whose critical step 2√(m/k) is below the time step, with the smaller mass m and the larger stiffness k
-    /// along normal and tangent.
+    /// Rejects a contact whose critical step 2√(m/k) is below the time step. m is the smaller mass, and k the larger
+    /// one of the normal and tangential stiffness.
     pub(crate) fn refuse_stiff_contacts(&self) -> Result<(), Box<Broken>> {
         let grains = &self.grains;
         for share in &self.neighbours.shares {

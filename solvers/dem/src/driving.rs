@@ -1,17 +1,17 @@
-//! Grains that are moved as walls are, for the whole run or for a while.
+//! Grains with prescribed motion, for the whole run or a part of it.
 
 use crate::geometry::Geometry;
 use crate::simulation::Simulated;
 use grainbench_scene::scene::Driven;
 use nalgebra::Vector3;
 
-/// Whether grains are driven over the step before this one, and over this one.
+/// Returns two flags: motion is prescribed over the previous step, and over this step.
 fn moved_before_and_at(driven: &Driven, step: u64, time_step: f64) -> [bool; 2] {
     [step - 1, step].map(|step| driven.is_moved_at(step as f64 * time_step))
 }
 
 impl<S: Geometry> Simulated<S> {
-    /// Sets the forces and torques on driven grains to zero: nothing that acts on them moves them.
+    /// Sets the forces and torques on grains with prescribed motion to zero, because forces do not move them.
     pub(crate) fn shield_driven(&mut self) {
         let (time, grains) = (self.time(), &mut self.grains);
         let moved = self.scene.driven.iter().filter(|driven| driven.is_moved_at(time));
@@ -20,8 +20,7 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
-    /// Grains that are driven from this step on are as heavy as walls to the forces that are found next; those that no longer are
-    /// have their mass.
+    /// Gives grains an infinite mass when their prescribed motion starts, and their own mass when it ends.
     pub(crate) fn begin_and_end_driving(&mut self) {
         let Self { scene, grains, motion, step, .. } = self;
         for driven in &scene.driven {
@@ -32,8 +31,8 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
-    /// Grains that are no longer driven from this step on have the velocity that they were driven with now, and not half a step
-    /// before.
+    /// Shifts the velocity half a step back for grains whose prescribed motion ends at this step, because the
+    /// prescribed velocity is that at the present time.
     pub(crate) fn let_go(&mut self) {
         let Self { scene, grains, motion, step, .. } = self;
         for driven in &scene.driven {
@@ -44,8 +43,8 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
-    /// Gives driven grains the velocity and spin they are driven with over this step, and takes back what gravity and global
-    /// damping have changed in their positions in the time `drifted` (s).
+    /// Gives grains their prescribed velocity and spin over this step. It also corrects their positions for the effect
+    /// of gravity and global damping during the time `drifted` (s).
     pub(crate) fn drive(&mut self, drifted: f64) {
         let (time, time_step, grains) = (self.time(), self.motion.time_step, &mut self.grains);
         for driven in self.scene.driven.iter().filter(|driven| driven.is_moved_at(time)) {
@@ -61,7 +60,7 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
-    /// Force of the other grains on each group of driven grains (N).
+    /// Returns the force of the free grains on each group with prescribed motion (N).
     pub(crate) fn forces_on_driven(&self) -> Vec<Vector3<f64>> {
         self.scene.driven.iter().map(|driven| self.grains.force_on(&driven.grains)).collect()
     }

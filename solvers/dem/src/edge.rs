@@ -1,4 +1,4 @@
-//! A simulation as the solver holds it, whatever it was compiled for.
+//! Interface of a simulation for the solver, independent of the compiled contact laws.
 
 use crate::geometry::Geometry;
 use crate::simulation::Simulated;
@@ -9,43 +9,43 @@ use grainbench_scene::record::{Counts, Look};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::solver::Broken;
 
-/// A simulation as the solver holds it, whatever it was compiled for.
+/// Interface of a simulation, independent of the compiled contact laws.
 pub trait Simulation: Send {
     /// Takes `steps` cycles.
     ///
     /// # Errors
     /// When the state of a grain is no longer finite, or a grain moves by more than its radius in a step.
     fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>>;
-    /// Forgets the history of every contact, as a restart that does not store it would.
+    /// Clears the history of every contact, as a restart without stored history would.
     fn forget_history(&mut self);
-    /// A checkpoint of the state after the last step, with the record so far.
+    /// Returns a checkpoint of the state after the last step, with the record so far.
     ///
     /// # Errors
-    /// When it cannot be stored.
+    /// When the checkpoint cannot be stored.
     fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError>;
-    /// Goes to the state that a run of the same identity left, and gives the record so far.
+    /// Restores the state of a run with the same identity, and returns the record so far.
     ///
     /// # Errors
-    /// When the checkpoint is of another run or damaged.
+    /// When the checkpoint belongs to another run or is damaged.
     fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Recorder, CheckpointError>;
-    /// The loops over contacts in words: the space and the stages that they were compiled for.
+    /// Returns the space and the stages for which the loops over contacts were compiled, as text.
     fn layout(&self) -> &'static str;
-    /// Steps, pairs and contacts counted so far; no times.
+    /// Returns the counts of steps, pairs and contacts so far, without times.
     fn counts(&self) -> Counts;
-    /// Cycles taken.
+    /// Returns the number of cycles taken.
     fn step(&self) -> u64;
-    /// The state after the last step, for another scene to begin with, of what the named solver made.
+    /// Returns the state after the last step as the initial state of another scene, with the name of the solver.
     fn end_state(&self, solver: &str) -> EndState;
-    /// The state at this step: grains, contacts, walls and energies. The contacts are taken away: whoever looks again at the
-    /// same step is told none.
+    /// Returns the state at this step: grains, contacts, walls and energies. It takes the contacts, so a second call at
+    /// the same step returns none.
     fn look(&mut self) -> Look;
-    /// The same for a snapshot, with means over the time since the last one.
+    /// Returns the state for a snapshot, with averages over the time since the last snapshot.
     fn look_for_snapshot(&mut self) -> Look;
-    /// Rows of grains and contacts that a snapshot has now.
+    /// Returns the number of rows of grains and contacts that a snapshot would have now.
     fn rows(&self) -> u64;
-    /// Whether a snapshot can be shown now that has at most so many rows.
+    /// Returns true if a snapshot would have at most `most_rows` rows now.
     fn shows(&self, most_rows: u64) -> bool;
-    /// The state at this step in short. No contacts are taken away.
+    /// Summarises the state at this step, without taking the contacts.
     fn brief(&self) -> Brief;
 }
 

@@ -1,4 +1,4 @@
-//! The state at the end of a run, and a start from one: grains at the time of their positions, and what contacts remember.
+//! Final state of a run, and start from such a state: grains at the time of their positions, and contact history.
 
 use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;
@@ -11,16 +11,16 @@ use grainbench_scene::end_state::{EndState, Springs, StateGrain};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// What stands between the name of a mesh and the number of a part of it.
+/// Separator between the name of a mesh and the number of a part of it.
 const PART: &str = ", part ";
 
-/// What contacts remember, in words that change when it does.
+/// Returns the layout of the contact history, as text that changes with the layout.
 pub(crate) fn words([tangential, rolling, dimension]: [usize; 3]) -> String {
     format!("{tangential} numbers of a tangential and {rolling} of a rolling spring in {dimension} dimensions")
 }
 
 impl<S: Geometry> Simulated<S> {
-    /// The state after the last step, of what the named solver made. Grains that are not there have no place in it.
+    /// Returns the state after the last step, with the name of the solver. Absent grains are not included.
     pub(crate) fn end_state(&self, solver: &str) -> EndState {
         let scene = &self.scene;
         let states: Vec<_> = grain_states(self).collect();
@@ -50,7 +50,7 @@ impl<S: Geometry> Simulated<S> {
                 )
                 .collect(),
         };
-        // Lists of several threads have another order.
+        // With several threads, the lists are in another order.
         springs.pairs.sort_by_key(|&(first, second, _)| (first, second));
         springs.walls.sort_by(|one, other| (one.0, &one.1).cmp(&(other.0, &other.1)));
         let grain = |grain: &grainbench_scene::record::GrainState| StateGrain {
@@ -70,8 +70,8 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
-    /// Lets the contacts remember what they did where the scene begins, before the first list is made. What is told of walls
-    /// that are not there is forgotten.
+    /// Restores the contact history with which the scene starts, before the first list is built. History at walls that
+    /// do not exist is dropped.
     pub(crate) fn begin_with(&mut self, springs: &Springs) {
         let memory = |numbers: &[f64]| -> Memory<f64> {
             let mut memory = [0.0; MEMORY];
@@ -99,7 +99,7 @@ impl<S: Geometry> Simulated<S> {
             let (Some(wall), Some(slot)) = (wall, slot(*grain)) else { continue };
             match part {
                 None => wall.near.push((slot, memory(numbers))),
-                // Nothing goes on from where no part is.
+                // The infinite position prevents the contact from continuing on another part.
                 Some(group) => wall.at_mesh.held.push(Held {
                     slot,
                     group,

@@ -1,8 +1,8 @@
-//! The loops over contacts, whatever laws they were compiled for; and the one over grains at walls.
+//! Loops over contacts for any combination of contact laws, and the loop over grains at walls.
 //!
-//! They hand what touches to the chain of stages ([`crate::contact`]) and add the answers to the forces and torques on the
-//! grains, in the order of the list. Only the loop over walls and that over pairs ([`crate::pairs`]) are compiled for the laws
-//! of a scene, the latter for each path of the processor too. Pairs that are recorded are taken one by one.
+//! The loops pass contacts to the chain of stages ([`crate::contact`]) and add the results to the forces and torques on
+//! the grains, in the order of the list. Only the loops over walls and over pairs ([`crate::pairs`]) are compiled for
+//! the laws of a scene, the latter also for each instruction set. Recorded pairs are processed one by one.
 
 use crate::contact::at_wall::AtWall;
 use crate::contact::chain::{Evaluation, Layout};
@@ -22,12 +22,12 @@ use grainbench_lanes::{Processor, Quad};
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
 
-/// What every contact of an evaluation is computed with.
+/// Parameters common to all contacts of an evaluation.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms<'a> {
-    /// The contact laws of the scene.
+    /// Contact laws of the scene.
     pub(crate) laws: &'a Laws,
-    /// The options of the convention.
+    /// Options of the convention.
     pub(crate) options: &'a Options,
     /// Time since the last evaluation (s).
     pub(crate) elapsed: f64,
@@ -39,10 +39,10 @@ impl<'a> Terms<'a> {
     }
 }
 
-/// The loops over contacts, whatever laws they were compiled for.
+/// Loops over contacts for any combination of contact laws.
 pub(crate) trait Forces<S: Geometry>: Send + Sync {
-    /// Adds the forces and torques of the pairs that touch to the sums that are there. Where `seen` is given every contact in
-    /// whose first grain's row they are is kept in it. The pairs come with the number of the block.
+    /// Adds the forces and torques of the pairs in contact to the sums. With `seen`, it records every contact whose
+    /// first grain is in the summed rows. The number in `pairs` is that of the block.
     fn of_pairs(
         &self,
         processor: Processor,
@@ -52,7 +52,7 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
         touching: &Touching,
         seen: Option<&mut Seen>,
     );
-    /// Adds the forces and torques at a wall, finds the force on it and how many grains touch it.
+    /// Adds the forces and torques at a wall, computes the force on the wall, and returns the number of contacts.
     fn at_wall(
         &self,
         terms: Terms<'_>,
@@ -61,17 +61,17 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
         number: u16,
         seen: Option<&mut Seen>,
     ) -> u64;
-    /// What a contact remembers.
+    /// Returns the layout of the contact history.
     fn layout(&self) -> Layout;
-    /// How many numbers of a tangential and of a rolling spring a contact remembers, and in how many dimensions.
+    /// Returns the numbers of history values of the tangential and rolling springs, and the number of dimensions.
     fn springs(&self) -> [usize; 3];
-    /// Whether tangential forces turn the grains.
+    /// Returns true if tangential forces rotate the grains.
     fn turn(&self) -> bool;
-    /// The space and the stages in words.
+    /// Returns the space and the stages as text.
     fn words(&self) -> &'static str;
 }
 
-/// Adds the forces and torques of a contact between the grain in a slot and a wall of a number.
+/// Adds the forces and torques of a contact between the grain in `slot` and the wall with index `number`.
 #[inline(always)]
 fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     terms: Terms<'_>,
@@ -109,7 +109,7 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     }
 }
 
-/// A normal, a tangential and a rolling stage in a space.
+/// Chain of a normal, a tangential and a rolling stage in a space.
 pub(crate) struct Chain<S, N, T, R>(PhantomData<(S, N, T, R)>);
 
 impl<S, N, T, R> Chain<S, N, T, R> {
@@ -119,7 +119,7 @@ impl<S, N, T, R> Chain<S, N, T, R> {
 }
 
 impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Chain<S, N, T, R> {
-    /// The loop over grains at a wall that is a mesh: each may touch several parts of it.
+    /// Loops over grains at a mesh wall. Each grain may be in contact with several parts of the mesh.
     fn at_mesh(
         &self,
         terms: Terms<'_>,

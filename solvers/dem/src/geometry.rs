@@ -1,4 +1,4 @@
-//! Vectors and spins of numbers, one or several at a time: what contact laws compute with, in the plane and in space.
+//! Vectors and spins of one or several numbers at a time, in the plane and in space, for contact laws.
 
 use grainbench_lanes::{Number, Quad};
 use grainbench_scene::space::{Plane, Solid, Space};
@@ -10,24 +10,24 @@ use std::ops::{Add, Mul, Neg, Sub};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Components<X, const D: usize>(pub(crate) [X; D]);
 
-/// What contact laws ask of a vector, a spin or a tangential displacement.
+/// Operations that contact laws need for a vector, a spin or a tangential displacement.
 pub(crate) trait Linear<X: Number>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<X, Output = Self> + Neg<Output = Self>
 {
-    /// How many numbers it has.
+    /// Number of components.
     const COUNT: usize;
-    /// Scalar product.
+    /// Returns the scalar product.
     fn dot(self, other: Self) -> X;
-    /// `yes` where it is so, else `no`.
+    /// Returns `yes` where the mask is set, otherwise `no`.
     #[must_use]
     fn choose(mask: X::Mask, yes: Self, no: Self) -> Self;
-    /// The first numbers of a row.
+    /// Reads the components from the start of a row.
     fn read(row: &[X]) -> Self;
-    /// Writes its numbers to the first of a row.
+    /// Writes the components to the start of a row.
     fn write(self, row: &mut [X]);
 }
 
-/// An operator on components.
+/// Implements an operator by component.
 macro_rules! operator {
     ($Operator:ident, $operator:ident) => {
         impl<X: Number, const D: usize> $Operator for Components<X, D> {
@@ -98,14 +98,15 @@ impl<X: Number, const D: usize> Linear<X> for Components<X, D> {
     }
 }
 
-/// A space for vectors of any numbers, and how a grain lies in memory in it.
+/// Space for vectors of any number type, and the memory layout of a grain.
 ///
-/// The unit normal `e` of a contact points from the first grain to the second. In the plane the tangential direction
-/// is `t = (e₂, −e₁)`, the clockwise perpendicular (Cundall & Strack 1979, eq. 10), and a tangential quantity is the
-/// scalar along it, so that it turns with the contact. In space it is a vector perpendicular to `e`.
+/// The unit normal `e` of a contact points from the first grain to the second. In the plane, the tangential direction
+/// is `t = (e₂, −e₁)`, the clockwise perpendicular (Cundall & Strack 1979, eq. 10). A tangential quantity is the scalar
+/// along it, and thus rotates with the contact. In space, it is a vector perpendicular to `e`.
 ///
-/// A grain's quads are place (x, y, z, radius), velocity (v, inverse mass), spin (ω) and the sums of forces and torques. In
-/// the plane the angle stands for z, the spin for its velocity and the torque for its force, and there are no others.
+/// The quads of a grain are its position (x, y, z, radius), its velocity (v, inverse mass), its spin (ω), and the sums
+/// of forces and torques. In the plane, the angle replaces z, the spin its velocity and the torque its force, and there
+/// are no further quads.
 pub(crate) trait Geometry: Space {
     /// Vector of this space.
     type Vectors<X: Number>: Linear<X>;
@@ -114,44 +115,45 @@ pub(crate) trait Geometry: Space {
     /// Tangential quantity: a scalar along `t`, or a vector.
     type Tangents<X: Number>: Linear<X>;
 
-    /// The vector that a quad holds.
+    /// Returns the vector in a quad.
     fn vector<X: Number>(quad: [X; 4]) -> Self::Vectors<X>;
-    /// The spin of a grain, from the quads of its velocity and of its spin.
+    /// Returns the spin of a grain, from the quads of its velocity and of its spin.
     fn spin<X: Number>(movement: [X; 4], turning: [X; 4]) -> Self::Spins<X>;
-    /// The quads of a force and a torque, `zero` where nothing stands.
+    /// Returns the quads of a force and a torque, with `zero` in unused components.
     fn load<X: Number>(force: Self::Vectors<X>, torque: Self::Spins<X>, zero: X) -> [[X; 4]; 2];
-    /// A spin or torque with one component, in the plane, or three.
+    /// Returns a spin or torque with one component in the plane, or three in space.
     fn as_spin<X: Number>(vector: [X; 3]) -> Self::Spins<X>;
-    /// A vector in three dimensions, `zero` out of the plane.
+    /// Returns a vector in three dimensions, with `zero` out of the plane.
     fn whole<X: Number>(vector: Self::Vectors<X>, zero: X) -> [X; 3];
-    /// Torque of a force at an arm.
+    /// Returns the torque of a force at a lever arm.
     fn torque_of<X: Number>(arm: Self::Vectors<X>, force: Self::Vectors<X>) -> Self::Spins<X>;
-    /// Slip velocity along the tangent where two surfaces touch: `velocity` is that of the first centre relative to the
-    /// second and `rolling` is ω₁a₁ + ω₂a₂ with torque arms a.
+    /// Returns the tangential slip velocity of two surfaces in contact. `velocity` is that of the first centre relative
+    /// to the second, and `rolling` is ω₁a₁ + ω₂a₂ with lever arms a.
     fn slip<X: Number>(
         velocity: Self::Vectors<X>,
         rolling: Self::Spins<X>,
         normal: Self::Vectors<X>,
     ) -> Self::Tangents<X>;
-    /// A vector's part along the tangent.
+    /// Returns the tangential part of a vector.
     fn tangential<X: Number>(vector: Self::Vectors<X>, normal: Self::Vectors<X>) -> Self::Tangents<X>;
-    /// A tangential quantity as a vector.
+    /// Returns a tangential quantity as a vector.
     fn along<X: Number>(tangent: Self::Tangents<X>, normal: Self::Vectors<X>) -> Self::Vectors<X>;
-    /// A relative spin without its part along the normal, which is twisting and not rolling; in the plane all of it
-    /// rolls.
+    /// Returns a relative spin without its normal part, which is twisting and not rolling. In the plane, all of it is
+    /// rolling.
     fn rolled<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> Self::Spins<X>;
 
-    /// Part of a spin along the normal; none in the plane.
+    /// Returns the part of a spin along the normal; zero in the plane.
     fn twist<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> X;
-    /// A remembered tangential quantity at a contact that has turned: its normal has the mean `middle` over the step, and it
-    /// turns about `normal` by an angle whose half has the tangent `half_twist`. In the plane a scalar, which stays.
+    /// Returns a stored tangential quantity after the rotation of its contact. `middle` is the mean normal over the
+    /// step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In the plane, the
+    /// scalar does not change.
     fn turned<X: Number>(
         tangent: Self::Tangents<X>,
         middle: Self::Vectors<X>,
         normal: Self::Vectors<X>,
         half_twist: X,
     ) -> Self::Tangents<X>;
-    /// A remembered rolling angle, turned alike.
+    /// Returns a stored rolling angle after the same rotation.
     fn turned_spin<X: Number>(
         spin: Self::Spins<X>,
         middle: Self::Vectors<X>,
@@ -159,18 +161,18 @@ pub(crate) trait Geometry: Space {
         half_twist: X,
     ) -> Self::Spins<X>;
 
-    /// The vector of a quad, in three dimensions.
+    /// Returns the vector in a quad, in three dimensions.
     #[inline(always)]
     fn vector_in_space(quad: &Quad) -> Vector3<f64> {
         let [x, y, z, _] = quad.0;
         Vector3::new(x, y, if Self::DIMENSION == 3 { z } else { 0.0 })
     }
-    /// Puts a vector of this space into the first components of a quad.
+    /// Writes a vector of this space to the first components of a quad.
     #[inline(always)]
     fn put(vector: Vector3<f64>, quad: &mut Quad) {
         quad.0[..Self::DIMENSION].copy_from_slice(&vector.as_slice()[..Self::DIMENSION]);
     }
-    /// A vector of this space.
+    /// Returns a vector of this space.
     #[inline(always)]
     fn vector_of(vector: Vector3<f64>) -> Self::Vectors<f64> {
         Self::vector([vector.x, vector.y, vector.z, 0.0])
@@ -264,15 +266,16 @@ impl Geometry for Plane {
     }
 }
 
-/// a × b.
+/// Returns a × b.
 #[inline(always)]
 fn cross<X: Number>(Components(a): Components<X, 3>, Components(b): Components<X, 3>) -> Components<X, 3> {
     Components([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
 
-/// A vector ξ perpendicular to the normal e at the start of a step, at its end: reflected at the plane perpendicular to the
-/// mean normal m, which takes e to −e', ξ' = ξ − 2 (ξ·m) m/(m·m), and turned about e' by an angle φ with t = tan φ/2,
-/// ξ'' = [(1 − t²) ξ' + 2t e'×ξ']/(1 + t²). Both keep its length.
+/// Transports a vector ξ that is perpendicular to the normal e at the start of a step to the end of the step. It is
+/// reflected in the plane perpendicular to the mean normal m, which maps e to −e': ξ' = ξ − 2 (ξ·m) m/(m·m). Then it is
+/// rotated about e' by an angle φ with t = tan φ/2: ξ'' = [(1 − t²) ξ' + 2t e'×ξ']/(1 + t²). Both steps conserve its
+/// length.
 #[inline(always)]
 fn turned<X: Number>(
     vector: Components<X, 3>,

@@ -1,8 +1,8 @@
-//! The grains in memory: quads of numbers in the order of the cells they lie in, so that neighbours in space are
-//! neighbours there and a grain is a few aligned loads.
+//! Grains in memory: quads of numbers, sorted by cell, so that neighbours in space are close in memory, and a grain
+//! needs only a few aligned loads.
 //!
-//! Where no contact has a tangential force nothing exerts a torque: then grains do not rotate, and what only rotation
-//! needs takes no memory and is not computed with.
+//! Without tangential forces at contacts there are no torques. Grains then do not rotate, and data needed only for
+//! rotation are neither stored nor computed.
 
 use crate::geometry::Geometry;
 use grainbench_lanes::{Quad, take_off};
@@ -11,34 +11,35 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
 
-/// The slot of a grain that is not there.
+/// Slot of an absent grain.
 pub(crate) const ABSENT: u32 = u32::MAX;
 
-/// All grains that are there, by slot. The slot of a grain changes when the grains are sorted, its place in the scene never.
+/// All grains that are present, by slot. The slot of a grain changes when the grains are sorted; its index in the scene
+/// does not.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Grains<S: Geometry> {
-    /// Position (m) and radius (m); in the plane x, y, the angle θ (rad) and the radius.
+    /// Position (m) and radius (m). In the plane x, y, the angle θ (rad) and the radius.
     pub(crate) place: Vec<Quad>,
-    /// Velocity (m/s) and inverse mass (1/kg); in the plane vx, vy, the spin ω (rad/s) and the inverse mass. In space, where
-    /// grains rotate, each is followed by the angular velocity ω (rad/s) and the radius (m) once more.
+    /// Velocity (m/s) and inverse mass (1/kg). In the plane vx, vy, the spin ω (rad/s) and the inverse mass. In space,
+    /// if grains rotate, each velocity is followed by the angular velocity ω (rad/s) and a copy of the radius (m).
     pub(crate) movement: Vec<Quad>,
-    /// Force F (N), the sum over contacts, without the weight; in the plane Fx, Fy and the torque M (N m). In space, where
-    /// grains rotate, each is followed by the torque M (N m).
+    /// Sum of contact forces F (N), without the weight. In the plane Fx, Fy and the torque M (N m). In space, if grains
+    /// rotate, each force is followed by the torque M (N m).
     pub(crate) load: Vec<Quad>,
-    /// Inverse moment of inertia 1/I (1/(kg m²)); empty where grains do not rotate.
+    /// Inverse moment of inertia 1/I (1/(kg m²)); empty if grains do not rotate.
     pub(crate) inverse_inertia: Vec<f64>,
-    /// Number of the material.
+    /// Index of the material.
     pub(crate) material: Vec<u16>,
-    /// Place of the grain in the scene.
+    /// Index of the grain in the scene.
     pub(crate) id: Vec<u32>,
-    /// Slot of every place in the scene, [`ABSENT`] of a grain that is not there.
+    /// Slot of every grain of the scene; [`ABSENT`] for an absent grain.
     pub(crate) slot: Vec<u32>,
     space: PhantomData<S>,
 }
 
 impl<S: Geometry> Grains<S> {
-    /// Whether these can be grains of a scene that are there, sorted somehow.
+    /// Returns true if these can be the present grains of a scene, in any order.
     pub(crate) fn is_of(&self, scene: &Scene, rotate: bool) -> bool {
         let Self { place, movement, load, inverse_inertia, material, id, slot, space: _ } = self;
         let count = place.len();
@@ -57,7 +58,7 @@ impl<S: Geometry> Grains<S> {
             && material.iter().zip(id).all(|(&material, &id)| material == scene.grains[id as usize].material)
     }
 
-    /// The grains that a scene has at the start, as they are then, without forces.
+    /// Returns the grains that a scene has at the start, in their initial state and without forces.
     pub(crate) fn new(scene: &Scene, rotate: bool) -> Self {
         let count = scene.grains.len();
         let mut later = vec![false; count];
@@ -84,7 +85,7 @@ impl<S: Geometry> Grains<S> {
         grains
     }
 
-    /// Nothing moves a grain that is driven: to what meets it, it is as heavy as a wall.
+    /// Sets the inverse mass of grains with prescribed motion to zero, as for a wall, or back to its own value.
     pub(crate) fn weigh(&mut self, scene: &Scene, driven: &Driven, is_moved: bool) {
         for &grain in &driven.grains {
             let slot = self.slot[grain] as usize;
@@ -94,7 +95,7 @@ impl<S: Geometry> Grains<S> {
         }
     }
 
-    /// Adds a grain as it is in the scene, with its place there, after all others.
+    /// Appends a grain with its state and index in the scene.
     pub(crate) fn enter(&mut self, id: u32, grain: &Grain, rotate: bool) {
         let quad = |vector: Vector3<f64>, last: f64| {
             let mut quad = Quad([0.0, 0.0, 0.0, last]);
@@ -111,7 +112,7 @@ impl<S: Geometry> Grains<S> {
         if rotate {
             self.inverse_inertia.push(1.0 / grain.inertia);
             if S::DIMENSION == 3 {
-                // The fourth number of a spin is free: whoever reads the spin has the radius with it.
+                // The fourth number of a spin is free, so it stores the radius, which is read together with the spin.
                 self.movement.push(Quad([0.0, 0.0, 0.0, grain.radius]));
                 self.load.push(Quad::default());
             }
@@ -119,73 +120,73 @@ impl<S: Geometry> Grains<S> {
         self.set_spin(slot, grain.spin);
     }
 
-    /// Takes out all grains but those in some slots, which keep their order.
+    /// Removes all grains except those in some slots, which keep their order.
     pub(crate) fn keep(&mut self, slots: &[u32]) {
         self.slot.fill(ABSENT);
         self.reorder(slots);
     }
 
-    /// Number of grains.
+    /// Returns the number of grains.
     pub(crate) fn len(&self) -> usize {
         self.place.len()
     }
 
-    /// Quads of a grain's velocity and spin, and of its force and torque.
+    /// Returns the number of quads for a grain's velocity and spin, and for its force and torque.
     pub(crate) fn quads(&self) -> usize {
         quads::<S>(self.rotate())
     }
 
-    /// Where those of a slot begin.
+    /// Returns the index of the first of these quads of a slot.
     pub(crate) fn first_quad(&self, slot: usize) -> usize {
         slot * self.quads()
     }
 
-    /// Whether the grains rotate. (Where there is none it is all one.)
+    /// Returns true if the grains rotate. (Without grains, the result does not matter.)
     pub(crate) fn rotate(&self) -> bool {
         !self.inverse_inertia.is_empty()
     }
 
-    /// Position (m).
+    /// Returns the position (m).
     pub(crate) fn position(&self, slot: usize) -> Vector3<f64> {
         S::vector_in_space(&self.place[slot])
     }
 
-    /// Radius R (m).
+    /// Returns the radius R (m).
     pub(crate) fn radius(&self, slot: usize) -> f64 {
         self.place[slot].0[3]
     }
 
-    /// Velocity (m/s).
+    /// Returns the velocity (m/s).
     pub(crate) fn velocity(&self, slot: usize) -> Vector3<f64> {
         S::vector_in_space(&self.movement[self.first_quad(slot)])
     }
 
-    /// Inverse mass (1/kg).
+    /// Returns the inverse mass (1/kg).
     pub(crate) fn inverse_mass(&self, slot: usize) -> f64 {
         self.movement[self.first_quad(slot)].0[3]
     }
 
-    /// Angular velocity ω (rad/s); `None` where grains do not rotate.
+    /// Returns the angular velocity ω (rad/s); `None` if grains do not rotate.
     pub(crate) fn spin(&self, slot: usize) -> Option<Vector3<f64>> {
         self.rotate().then(|| turned::<S>(&self.movement[self.first_quad(slot)..]))
     }
 
-    /// Angle θ about the z axis by which the grain has turned since the start (rad); zero in space.
+    /// Returns the rotation angle θ about the z axis since the start (rad); zero in space.
     pub(crate) fn angle(&self, slot: usize) -> f64 {
         if S::DIMENSION == 2 { self.place[slot].0[2] } else { 0.0 }
     }
 
-    /// Sum of the forces of its contacts (N).
+    /// Returns the sum of the contact forces (N).
     pub(crate) fn force(&self, slot: usize) -> Vector3<f64> {
         S::vector_in_space(&self.load[self.first_quad(slot)])
     }
 
-    /// Sum of the torques of its contacts (N m).
+    /// Returns the sum of the contact torques (N m).
     pub(crate) fn torque(&self, slot: usize) -> Vector3<f64> {
         if self.rotate() { turned::<S>(&self.load[self.first_quad(slot)..]) } else { Vector3::zeros() }
     }
 
-    /// Replaces the angular velocity ω (rad/s), if grains rotate.
+    /// Sets the angular velocity ω (rad/s), if grains rotate.
     pub(crate) fn set_spin(&mut self, slot: usize, spin: Vector3<f64>) {
         let at = self.first_quad(slot);
         match (self.rotate(), S::DIMENSION) {
@@ -202,12 +203,12 @@ impl<S: Geometry> Grains<S> {
         self.load[at..end].fill(Quad::default());
     }
 
-    /// Force on a group of grains together (N); `group` holds their places in the scene.
+    /// Returns the total force on a group of grains (N); `group` holds their indices in the scene.
     pub(crate) fn force_on(&self, group: &[usize]) -> Vector3<f64> {
         group.iter().map(|&id| self.force(self.slot[id] as usize)).sum()
     }
 
-    /// Sorts: slot `k` gets what was in slot `order[k]`.
+    /// Sorts the grains: slot `k` gets the grain of slot `order[k]`.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         fn gather<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
             if !values.is_empty() {
@@ -228,7 +229,7 @@ impl<S: Geometry> Grains<S> {
     }
 }
 
-/// What the loops over pairs read of grains. The tables have one length: a place in one of them is a place in all.
+/// Grain data that the loops over pairs read. All tables have the same length, so an index is valid in all of them.
 #[derive(Clone, Copy)]
 pub(crate) struct Read<'a> {
     pub(crate) place: &'a [Quad],
@@ -238,34 +239,34 @@ pub(crate) struct Read<'a> {
     pub(crate) id: &'a [u32],
 }
 
-/// What is added up of grains in slots that follow one another.
+/// Sums of force and torque for grains in consecutive slots.
 pub(crate) struct Sums<'a> {
-    /// The first of the slots.
+    /// First slot.
     pub(crate) first: usize,
-    /// How many.
+    /// Number of slots.
     pub(crate) count: usize,
     pub(crate) load: &'a mut [Quad],
 }
 
 impl<'a> Sums<'a> {
-    /// The same, for a while.
+    /// Returns a mutable view of the sums.
     pub(crate) fn lent(&mut self) -> Sums<'_> {
         Sums { first: self.first, count: self.count, load: self.load }
     }
 
-    /// Whether a slot is one of these.
+    /// Returns true if a slot is one of these slots.
     #[inline(always)]
     pub(crate) fn holds(&self, slot: usize) -> bool {
         slot.wrapping_sub(self.first) < self.count
     }
 
-    /// Those of all grains, if these are.
+    /// Returns the sums of all grains; `None` if these slots do not cover all grains.
     #[inline(always)]
     pub(crate) fn all(&mut self, grains: usize) -> Option<All<'_>> {
         (self.first == 0 && self.count >= grains).then_some(All { grains, load: self.load })
     }
 
-    /// Takes off the sums of the first grains, so many.
+    /// Splits off the sums of the first `count` grains.
     pub(crate) fn take_off(&mut self, count: usize) -> Self {
         let (first, quads) = (self.first, self.load.len() / self.count.max(1));
         self.first += count;
@@ -274,9 +275,9 @@ impl<'a> Sums<'a> {
     }
 }
 
-/// Where forces and torques are added up.
+/// Destination of forces and torques.
 pub(crate) trait Loads {
-    /// The force and torque of a grain, if its slot is one of these.
+    /// Returns the force and torque of a grain; `None` if its slot is not included.
     fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]>;
 }
 
@@ -287,7 +288,7 @@ impl Loads for Sums<'_> {
     }
 }
 
-/// The sums of all grains, so many: every slot is one of these.
+/// Sums of all grains: every slot is included.
 pub(crate) struct All<'a> {
     grains: usize,
     load: &'a mut [Quad],
@@ -301,7 +302,7 @@ impl Loads for All<'_> {
 }
 
 impl<S: Geometry> Grains<S> {
-    /// What is read of the grains, and what is added up.
+    /// Returns the data that are read and the sums.
     pub(crate) fn parts(&mut self) -> (Read<'_>, Sums<'_>) {
         let Self { place, movement, load, inverse_inertia, material, id, .. } = self;
         let count = place.len();
@@ -309,19 +310,19 @@ impl<S: Geometry> Grains<S> {
     }
 }
 
-/// Quads of a grain's velocity and spin, and of its force and torque.
+/// Returns the number of quads for a grain's velocity and spin, and for its force and torque.
 fn quads<S: Geometry>(rotate: bool) -> usize {
     if rotate && S::DIMENSION == 3 { 2 } else { 1 }
 }
 
-/// A spin or torque: the third number of a quad in the plane, a quad of its own in space.
+/// Returns a spin or torque: the third number of a quad in the plane, a separate quad in space.
 fn turned<S: Geometry>(quads: &[Quad]) -> Vector3<f64> {
     if S::DIMENSION == 2 { Vector3::new(0.0, 0.0, quads[0].0[2]) } else { S::vector_in_space(&quads[1]) }
 }
 
 #[cfg(test)]
 impl<S: Geometry> Grains<S> {
-    /// Equal grains that do not rotate, at rest at these points.
+    /// Returns equal grains that do not rotate, at rest at these points.
     pub(crate) fn at(points: &[Vector3<f64>], radius: f64) -> Self {
         let count = points.len();
         let place = |point: &Vector3<f64>| {

@@ -1,4 +1,4 @@
-//! The contact laws of a scene as the kernels read them: one row of numbers for every two materials.
+//! Contact laws of a scene in the form that kernels read: one row of numbers per pair of materials.
 
 use crate::contact::Options;
 use grainbench_lanes::{Lanes, Quad, WIDEST, Wide};
@@ -6,8 +6,8 @@ use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::Scene;
 
-/// The numbers of a contact law, one or several at a time. Which law they belong to is the type of the kernel's stages, so
-/// that a stage reads its numbers without asking; [`ContactLaw`] says what each means.
+/// Numbers of a contact law, one or several at a time. The stages of a kernel determine the type of law, so a stage
+/// reads its numbers without a check. [`ContactLaw`] documents each number.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Constants<X> {
     /// Constants of the springs: k_n and k_s (N/m), or E* and G* (Pa).
@@ -22,7 +22,7 @@ pub(crate) struct Constants<X> {
     pub(crate) normal_damping: X,
     /// Mass-proportional tangential damping γ_t (1/s).
     pub(crate) tangential_damping: X,
-    /// Damping ratio ζ that gives the coefficient of restitution at the release of the convention.
+    /// Damping ratio ζ for the coefficient of restitution, given the end of contact in the convention.
     pub(crate) damping_ratio: X,
     /// Coefficient of rolling resistance μ_r.
     pub(crate) rolling_friction: X,
@@ -31,8 +31,8 @@ pub(crate) struct Constants<X> {
 }
 
 impl Constants<f64> {
-    /// The numbers of a law. One without friction has no tangential spring or dashpot either, also in a scene that has friction
-    /// elsewhere.
+    /// Returns the numbers of a law. A law without friction has no tangential spring or dashpot, even if other laws of
+    /// the scene have friction.
     fn new(law: &ContactLaw, options: &Options) -> Self {
         let [normal, tangential] = law.springs.constants();
         let if_sheared = |number: f64| if law.has_friction() { number } else { 0.0 };
@@ -50,22 +50,22 @@ impl Constants<f64> {
     }
 }
 
-/// Damping ratio ζ of a law that gives its coefficient of restitution at the release of a convention.
+/// Returns the damping ratio ζ for the coefficient of restitution of a law, given the end of contact in a convention.
 pub(crate) fn damping_ratio(law: &ContactLaw, options: &Options) -> f64 {
     if options.may_pull() { law.damping_ratio } else { no_tension_ratio(law.damping_ratio) }
 }
 
-/// The law between every two materials.
+/// Laws between all pairs of materials.
 pub(crate) struct Laws {
-    /// Row after row: the laws of a material with every other.
+    /// Laws, row by row: one material with all materials.
     laws: Vec<Constants<f64>>,
-    /// The same in quads: springs, friction and cohesion; dashpots; rolling.
+    /// Laws as quads: springs, friction and cohesion; dashpots; rolling.
     quads: [Vec<Quad>; 3],
     material_count: usize,
 }
 
 impl Laws {
-    /// The laws of a scene in a convention.
+    /// Returns the laws of a scene in a convention.
     pub(crate) fn new(scene: &Scene, options: &Options) -> Self {
         let constants =
             |law: &Option<ContactLaw>| law.as_ref().map(|law| Constants::new(law, options)).unwrap_or_default();
@@ -82,18 +82,18 @@ impl Laws {
         }
     }
 
-    /// Whether there is one law only.
+    /// Returns true if there is only one law.
     pub(crate) fn is_one(&self) -> bool {
         self.material_count == 1
     }
 
-    /// The number of the law between two materials.
+    /// Returns the index of the law between two materials.
     #[inline(always)]
     pub(crate) fn number(&self, one: u16, other: u16) -> usize {
         usize::from(one) * self.material_count + usize::from(other)
     }
 
-    /// The numbers of the laws between the grains of some pairs, of these materials.
+    /// Returns the indices of the laws between the grains of some pairs.
     #[inline(always)]
     pub(crate) fn numbers(&self, material: &[u16], [first, second]: [&[usize; WIDEST]; 2]) -> [usize; WIDEST] {
         let mut numbers = [0; WIDEST];
@@ -103,12 +103,12 @@ impl Laws {
         numbers
     }
 
-    /// The law between two materials.
+    /// Returns the law between two materials.
     pub(crate) fn between(&self, one: u16, other: u16) -> &Constants<f64> {
         &self.laws[self.number(one, other)]
     }
 
-    /// The laws of these numbers, in lanes.
+    /// Returns the laws with these indices, in lanes.
     #[inline(always)]
     pub(crate) fn gather<L: Lanes>(&self, lanes: L, numbers: &[usize; WIDEST]) -> Constants<Wide<L>> {
         let [normal, tangential, friction, cohesion] = gathered(lanes, &self.quads[0], numbers);
@@ -129,13 +129,13 @@ impl Laws {
     }
 }
 
-/// The quads of a table at the first places of `at`, in lanes.
+/// Returns the quads of a table at the indices `at`, in lanes.
 #[inline(always)]
 pub(crate) fn gathered<L: Lanes>(lanes: L, table: &[Quad], at: &[usize; WIDEST]) -> [Wide<L>; 4] {
     gathered_of(lanes, table.as_chunks::<1>().0, 0, at)
 }
 
-/// The same of one of several quads that an entry has.
+/// Returns one of the several quads of each entry, in lanes.
 #[inline(always)]
 pub(crate) fn gathered_of<L: Lanes, const N: usize>(
     lanes: L,
@@ -147,8 +147,8 @@ pub(crate) fn gathered_of<L: Lanes, const N: usize>(
     [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
 }
 
-/// One of several quads that entries of a table have, at the first places of `to` less at those of `from`, in lanes; of the
-/// fourth numbers the sum.
+/// Returns, in lanes, the differences of a quad between the entries at `to` and at `from`. The fourth number is the sum
+/// instead.
 #[inline(always)]
 pub(crate) fn between<L: Lanes, const N: usize>(
     lanes: L,
@@ -160,10 +160,11 @@ pub(crate) fn between<L: Lanes, const N: usize>(
     [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
 }
 
-/// Places in tables of a length, as many as a register holds: looked at once, so that no table must.
+/// Returns as many indices as a register holds. They are checked once against the length of the tables, so that no
+/// table needs a further check.
 ///
 /// # Panics
-/// When one of them lies beyond the tables.
+/// When an index is out of range.
 #[inline(always)]
 pub(crate) fn places<L: Lanes>(_: L, of: &[u32], length: usize) -> [usize; WIDEST] {
     let of = &of[..L::WIDTH];

@@ -1,20 +1,21 @@
 //! Cundall–Strack discrete element method in two and three dimensions.
 //!
-//! Rigid grains overlap a little where they touch. A force–displacement law gives the forces from the overlaps, and
-//! Newton's law the motion from the forces, in a central-difference cycle with velocity v (m/s), position x (m), force
-//! F (N) and mass m (kg):
+//! Rigid grains overlap slightly at contacts. A force–displacement law gives the forces from the overlaps, and Newton's
+//! law gives the motion from the forces. The central-difference cycle uses velocity v (m/s), position x (m), force F
+//! (N) and mass m (kg):
 //!
 //! ```text
 //! v(n+½) = v(n−½) + F(n)/m Δt        x(n+1) = x(n) + v(n+½) Δt        F(n+1) from x(n+1), v(n+½)
 //! ```
 //!
-//! Source: P. A. Cundall and O. D. L. Strack, Géotechnique 29 (1979) 47–65. What later codes do differently is named in
+//! Source: P. A. Cundall and O. D. L. Strack, Géotechnique 29 (1979) 47–65. Deviations of later codes are options in
 //! [`convention`].
 //!
-//! One cycle is written in `simulation`, its motion in `motion`. The pairs that touch are picked from the list in
-//! `touching`, and the loops over contacts stand in `forces` and `pairs`: these alone are compiled for each combination of
-//! effects (`contact`), picked in [`solver`], and for each path of the processor. Threads have a `share` of the list each. The
-//! bits are the same on all.
+//! The cycle is in `simulation`, and its integration step in `motion`. `touching` selects the pairs in contact from the
+//! neighbour list, and the loops over contacts are in `forces` and `pairs`. Only these loops are compiled for each
+//! combination of effects (`contact`), which [`solver`] selects, and for each instruction set of the processor. Each
+//! thread has its own partition of the list (`share`). The results are equal bit for bit on all processors and for any
+//! number of threads.
 
 mod accounts;
 mod cells;

@@ -1,4 +1,4 @@
-//! Listed pairs, in rows, with what their contacts remember in the order of those that touch.
+//! Listed pairs, in rows, with the contact history in the order of the pairs in contact.
 
 use crate::contact::chain::Layout;
 use crate::contact::{MEMORY, Memory};
@@ -6,33 +6,35 @@ use grainbench_lanes::{Quad, WIDEST};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Listed pairs that are looked at before the forces of those that touch are found: so few that their grains are still at
-/// hand, and so many that little is lost at the end. A multiple of eight.
+/// Number of listed pairs in a block. The contacts of a block are found before their forces are computed. Blocks are
+/// small enough for their grains to stay in the cache, and large enough that little is lost at their end. A multiple of
+/// eight.
 pub(crate) const BLOCK: usize = 2048;
 
-/// What the contacts of a block of pairs remember, number by number: of those that touched when they were looked at last, in
-/// their order, after nothing. Empty where so many numbers are not remembered.
+/// Contact history of a block of pairs, by value. Each list holds an entry of zero, and then one value per contact of
+/// the last evaluation, in order. Lists of unused values are empty.
 pub(crate) type Remembered = [Vec<f64>; MEMORY];
 
-/// Pairs of grains, in rows: a row holds the partners of one grain. Partners, rows and shifts are filled up beyond the last
-/// pair, so that registers can be.
+/// Pairs of grains, in rows: a row holds the partners of one grain. Partners, rows and shifts are padded after the last
+/// pair so that registers can be filled.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Pairs {
-    /// The first of its rows. Where other rows than its own have pairs here too, these stand before its own and after.
+    /// First of its own rows. Pairs of other rows come before and after the pairs of its own rows.
     #[serde(skip)]
     first_row: usize,
-    /// Number of the first pair of every row of its own, and where the last ends.
+    /// Index of the first pair of every own row, and the end of the last row.
     start: Vec<u32>,
     /// Slot of the first grain of each pair: its row.
     pub(crate) row: Vec<u32>,
     /// Slot of the partner of each pair.
     pub(crate) partner: Vec<u32>,
-    /// Shift of each pair across a periodic face: what is added to the position of the first grain (m). Empty where none is.
+    /// Shift of each pair across a periodic face (m), which is added to the position of the first grain. Empty without
+    /// such pairs.
     pub(crate) shift: Vec<Quad>,
-    /// Whether each pair touched when it was looked at last, as bits, the first of eight lowest. Empty where nothing is
-    /// remembered.
+    /// Bit of each pair, set if it was in contact at the last evaluation; the first of eight pairs is the lowest bit.
+    /// Empty without contact history.
     pub(crate) touches: Vec<u8>,
-    /// What contacts remember, by blocks of pairs. Empty where nothing is.
+    /// Contact history, by blocks of pairs. Empty without contact history.
     pub(crate) memory: Vec<Remembered>,
 }
 
@@ -49,12 +51,12 @@ impl Pairs {
         }
     }
 
-    /// Number of pairs.
+    /// Returns the number of pairs.
     pub(crate) fn len(&self) -> usize {
         self.partner.len() - WIDEST
     }
 
-    /// Lists what `partners` gives of each row, with room for what the contacts remember.
+    /// Lists the partners of each row that `partners` returns, with empty contact history.
     pub(crate) fn list(
         rows: Range<usize>,
         layout: Layout,
@@ -75,7 +77,7 @@ impl Pairs {
         pairs
     }
 
-    /// Pairs that touch, of so many rows, with what each remembers.
+    /// Creates a list of pairs in contact, with their history, for a number of rows.
     pub(crate) fn remembering(rows: usize, layout: Layout, springs: &[(u32, u32, Memory<f64>)]) -> Self {
         let mut sorted: Vec<&(u32, u32, Memory<f64>)> = springs.iter().collect();
         sorted.sort_by_key(|(row, ..)| *row);
@@ -94,7 +96,7 @@ impl Pairs {
         pairs
     }
 
-    /// Row, partner and what is remembered, of each pair in rows of its own that touches.
+    /// Returns row, partner and history of each pair in contact in its own rows.
     pub(crate) fn remembered(&self) -> impl Iterator<Item = (u32, u32, Memory<f64>)> {
         let own = self.own();
         self.places().into_iter().enumerate().filter_map(move |(at, place)| {
@@ -104,7 +106,7 @@ impl Pairs {
         })
     }
 
-    /// Room beyond the last pair, so that registers can be filled.
+    /// Adds padding after the last pair so that registers can be filled.
     fn fill_up(&mut self) {
         for places in [&mut self.row, &mut self.partner] {
             places.resize(places.len() + WIDEST, 0);
@@ -114,8 +116,8 @@ impl Pairs {
         }
     }
 
-    /// Of lists whose rows follow one another, the pairs in some rows and the others whose partners are to be kept, in their
-    /// order and with what their contacts remember. The rows of its own are the given ones.
+    /// Selects pairs from lists with consecutive rows: the pairs in `rows`, and other pairs whose partners `keep`
+    /// accepts. Order and contact history are kept. The own rows of the result are `rows`.
     pub(crate) fn chosen(lists: &[&Self], rows: Range<usize>, keep: impl Fn(usize) -> bool) -> Self {
         if lists.iter().all(|list| list.start == [0]) {
             return Self::empty();
@@ -160,18 +162,18 @@ impl Pairs {
         chosen
     }
 
-    /// The pairs in rows of its own.
+    /// Returns the range of pairs in its own rows.
     pub(crate) fn own(&self) -> Range<usize> {
         let end = |of: Option<&u32>| of.map_or(0, |&end| end as usize);
         end(self.start.first())..end(self.start.last())
     }
 
-    /// Whether a pair touched when it was looked at last; of none where nothing is remembered.
+    /// Returns true if a pair was in contact at the last evaluation; false without contact history.
     fn touches_at(&self, pair: usize) -> bool {
         self.touches.get(pair / WIDEST).is_some_and(|bits| bits >> (pair % WIDEST) & 1 == 1)
     }
 
-    /// Whether these are pairs of so many grains: rows that follow one another, and for each pair what it must have.
+    /// Returns true if this is a valid list for a number of grains: rows are consecutive, and each pair has its data.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         let Self { start, row, partner, shift, touches, memory, first_row: _ } = self;
         let Some(count) = partner.len().checked_sub(WIDEST) else { return false };
@@ -193,11 +195,11 @@ impl Pairs {
             && touches.len() == remembers(count.div_ceil(WIDEST))
             && memory.len() == remembers(count.div_ceil(BLOCK))
             && touches.chunks(BLOCK / WIDEST).zip(memory).all(told)
-            // Beyond the last pair stands the first slot, of no grain where none are left.
+            // The padding after the last pair holds slot 0, even if there are no grains.
             && row.iter().chain(partner).all(|&slot| (slot as usize) < grains.max(1))
     }
 
-    /// Number of a pair in the rows of its own.
+    /// Returns the index of a pair in its own rows.
     pub(crate) fn find(&self, row: u32, partner: u32) -> Option<usize> {
         let row = (row as usize).checked_sub(self.first_row)?;
         let range = *self.start.get(row)? as usize..*self.start.get(row + 1)? as usize;
@@ -205,7 +207,7 @@ impl Pairs {
         Some(range.start + at)
     }
 
-    /// Place in the memory of its block of every pair that touched when it was looked at last, zero of the others.
+    /// Returns the history index in its block of every pair in contact at the last evaluation; zero for other pairs.
     pub(crate) fn places(&self) -> Vec<u32> {
         let mut touched = 0;
         let place = |pair: usize| {
@@ -219,8 +221,8 @@ impl Pairs {
         (0..self.len()).map(place).collect()
     }
 
-    /// Remembers of the next pair `at` what another list does of a pair, in a place of its block's memory; with the roles of
-    /// first and second grain exchanged if `exchanged` is given.
+    /// Copies the history of a pair of another list to pair `at`, which must follow the previous one. If `exchanged` is
+    /// given, the roles of the first and second grain are exchanged.
     pub(crate) fn take(&mut self, at: usize, other: &Self, (from, place): (usize, u32), exchanged: Option<&Layout>) {
         self.touches[at / WIDEST] |= 1 << (at % WIDEST);
         let memories = self.memory[at / BLOCK].iter_mut().zip(&other.memory[from / BLOCK]);
@@ -231,14 +233,15 @@ impl Pairs {
         }
     }
 
-    /// Makes the memory of a block ready for so many contacts: in place where they are those that touched before, else it is
-    /// made anew, and what was remembered lies in `before`. Room follows the last, so that registers can be filled.
+    /// Prepares the history of a block for a number of contacts. If the contacts are unchanged, it is updated in place.
+    /// Otherwise it is rebuilt, and `before` receives the previous history. Padding follows the last contact so that
+    /// registers can be filled.
     pub(crate) fn make_room(&mut self, block: usize, count: usize, before: Option<&mut Remembered>) {
         let Some(memory) = self.memory.get_mut(block) else { return };
         if let Some(before) = before {
             std::mem::swap(memory, before);
             for (of, before) in memory.iter_mut().zip(before) {
-                // What stands there will be written over, but for the first, which is nothing.
+                // All entries will be overwritten, except for the first, which is zero.
                 of.resize(if before.is_empty() { 0 } else { of.len().max(1) }, 0.0);
             }
         }
@@ -249,7 +252,7 @@ impl Pairs {
         }
     }
 
-    /// What the contacts of a block remember is what was written, of so many.
+    /// Removes the padding of a block's history after a number of contacts has been written.
     pub(crate) fn remember(&mut self, block: usize, count: usize) {
         if let Some(memory) = self.memory.get_mut(block) {
             memory.iter_mut().for_each(|of| of.truncate(1 + count));
@@ -261,12 +264,12 @@ impl Pairs {
     }
 }
 
-/// The memory of a block without contacts.
+/// Returns the history of a block without contacts.
 fn nothing(layout: Layout) -> Remembered {
     std::array::from_fn(|number| vec![0.0; usize::from(number < layout.numbers)])
 }
 
-/// Makes room for more: where it must grow, by an eighth at least, for there may be millions.
+/// Reserves memory for more entries. A list grows by at least an eighth, because it may have millions of entries.
 pub(crate) fn reserve<T>(list: &mut Vec<T>, more: usize) {
     if list.capacity() - list.len() < more {
         list.reserve_exact(more.max(list.len() / 8));
@@ -277,7 +280,7 @@ pub(crate) fn reserve<T>(list: &mut Vec<T>, more: usize) {
 mod tests {
     use super::*;
 
-    /// What a checkpoint may hold that some other program wrote.
+    /// Checks of lists that another program could have written to a checkpoint.
     #[test]
     fn lists_of_other_grains_are_told() {
         let layout = Layout { numbers: 1, exchanged: [1.0; MEMORY] };

@@ -1,19 +1,19 @@
-//! V σ of every grain, its mean over the steps between two snapshots: what is seen at an instant is aliased, for a collision is
-//! shorter than the time between them.
+//! Average of V σ of every grain over the steps between two snapshots. Instantaneous values are aliased, because a
+//! collision is shorter than the time between snapshots.
 
 use grainbench_scene::record::{ContactState, GrainState};
 use grainbench_scene::scene::Grain;
 use grainbench_scene::virial;
 use serde::{Deserialize, Serialize};
 
-/// The sums since the last snapshot.
+/// Sums since the last snapshot.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct MeanVirial {
-    /// Steps between those that are looked at.
+    /// Number of steps between samples.
     every: u64,
-    /// Of every grain of the scene, in their order (J).
+    /// Sum for every grain of the scene, in their order (J).
     sums: Vec<[f64; 6]>,
-    /// Steps that they are the sums over. A grain that was not there had none.
+    /// Number of samples in the sums. Absent grains contribute nothing to them.
     steps: u64,
 }
 
@@ -22,17 +22,17 @@ impl MeanVirial {
         Self { every, sums: vec![[0.0; 6]; grains], steps: 0 }
     }
 
-    /// Whether this is of so many grains, looked at so often.
+    /// Returns true if the numbers of grains and the sampling intervals are equal.
     pub(crate) fn is_of(&self, begun: &Self) -> bool {
         self.every == begun.every && self.sums.len() == begun.sums.len()
     }
 
-    /// Whether a step is looked at.
+    /// Returns true if a step is a sample.
     pub(crate) const fn is_due(&self, step: u64) -> bool {
         step.is_multiple_of(self.every)
     }
 
-    /// Adds a step. The contacts come in an order that does not depend on who found them.
+    /// Adds a sample. The order of the contacts does not depend on the number of threads.
     pub(crate) fn add<'c>(&mut self, contacts: impl Iterator<Item = &'c ContactState>, grains: &[Grain]) {
         self.steps += 1;
         for contact in contacts {
@@ -43,7 +43,7 @@ impl MeanVirial {
         }
     }
 
-    /// Tells grains their means, and begins anew; of no step there is none.
+    /// Stores the averages in the grains and clears the sums; does nothing without samples.
     pub(crate) fn tell(&mut self, grains: &mut [GrainState]) {
         if self.steps == 0 {
             return;

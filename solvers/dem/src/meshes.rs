@@ -1,7 +1,7 @@
-//! Grains at a wall of triangles: which triangles are near each, and what each contact remembers.
+//! Grains at a wall of triangles: their nearby triangles and their contact history.
 //!
-//! A contact belongs to a patch, a ridge or a corner of the surface ([`grainbench_scene::mesh`]). Where a grain leaves one for
-//! another in the same place, as when it rolls over a ridge, the contact goes on, and what it remembers with it.
+//! A contact belongs to a patch, a ridge or a corner of the surface ([`grainbench_scene::mesh`]). If a grain moves from
+//! one part to another at nearly the same point, as when it rolls over a ridge, the contact continues with its history.
 
 use crate::contact::Memory;
 use crate::geometry::Geometry;
@@ -10,33 +10,33 @@ use grainbench_scene::mesh::{Mesh, Touched};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// How far a contact may go in a step from one part of the surface to another, over the radius of the grain: grains go no
-/// farther than a part of their radius in a step.
+/// Largest displacement of a continuing contact from one part of the surface to another in a step, relative to the
+/// grain radius. Grains move by only a fraction of their radius in a step.
 const GOES_ON: f64 = 0.1;
 
-/// A contact as it was when it was looked at last.
+/// Contact in the last evaluation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Held {
     /// Slot of the grain.
     pub(crate) slot: u32,
-    /// The patch, ridge or corner.
+    /// Patch, ridge or corner.
     pub(crate) group: u32,
-    /// The point, in the coordinates of the surface (m).
+    /// Contact point in the coordinates of the surface (m).
     pub(crate) point: Vector3<f64>,
-    /// What it remembers.
+    /// Contact history.
     pub(crate) memory: Memory<f64>,
 }
 
-/// What a mesh knows of the grains.
+/// Grains near a mesh.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct AtMesh {
-    /// Slot of every grain that is near, and where its triangles end, in order of slots.
+    /// Slot of every nearby grain, and the end of its range in `triangles`, sorted by slot.
     near: Vec<(u32, u32)>,
-    /// The triangles that are near each.
+    /// Triangles near each grain.
     triangles: Vec<u32>,
-    /// Contacts, in order of slots.
+    /// Contacts, sorted by slot.
     pub(crate) held: Vec<Held>,
-    /// Room for the contacts of a grain, and for those of the next evaluation.
+    /// Buffers for the contacts of a grain, and for those of the next evaluation.
     #[serde(skip)]
     found: Vec<Touched>,
     #[serde(skip)]
@@ -44,7 +44,7 @@ pub(crate) struct AtMesh {
 }
 
 impl AtMesh {
-    /// Whether it is of so many grains and of this surface.
+    /// Returns true if the data fit a number of grains and a surface.
     pub(crate) fn is_of(&self, grains: usize, mesh: &Mesh) -> bool {
         let (faces, mut from) = (mesh.surface.triangles().len(), 0);
         let ends_rise = self.near.iter().all(|&(_, end)| {
@@ -61,24 +61,24 @@ impl AtMesh {
             && self.held.iter().all(|held| (held.slot as usize) < grains)
     }
 
-    /// Whether nothing is known.
+    /// Returns true if there are no data.
     pub(crate) fn is_empty(&self) -> bool {
         self.near.is_empty() && self.triangles.is_empty() && self.held.is_empty()
     }
 
-    /// Number of pairs of a grain and a triangle that are near.
+    /// Returns the number of nearby pairs of grain and triangle.
     pub(crate) fn pairs(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Begins the list anew. Gives the contacts that there were.
+    /// Starts a new list. Returns the previous contacts.
     pub(crate) fn begin_list(&mut self) -> Vec<Held> {
         self.near.clear();
         self.triangles.clear();
         std::mem::take(&mut self.held)
     }
 
-    /// Lists the triangles within a distance (m) of a grain at a place. Grains come in order of slots.
+    /// Lists the triangles within a distance (m) of a grain. Grains must be listed in order of their slots.
     pub(crate) fn list(&mut self, mesh: &Mesh, slot: usize, place: Vector3<f64>, reach: f64) {
         mesh.surface.near(mesh.within(place), reach, &mut self.triangles);
         let end = self.triangles.len() as u32;
@@ -87,12 +87,12 @@ impl AtMesh {
         }
     }
 
-    /// Forgets what every contact remembers.
+    /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
         self.held.clear();
     }
 
-    /// Finds what every near grain touches, and has each contact looked at with what it remembers. Gives how many there are.
+    /// Finds the contacts of every nearby grain and evaluates each with its history. Returns the number of contacts.
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
         mesh: &Mesh,
@@ -106,7 +106,7 @@ impl AtMesh {
             let (place, radius) = (grains.position(slot as usize), grains.radius(slot as usize));
             mesh.surface.touched(mesh.within(place), radius, &triangles[from as usize..end as usize], found);
             from = end;
-            // Grains that are no longer near touch nothing.
+            // Grains that are no longer near have no contacts.
             before += held[before..].iter().take_while(|other| other.slot < slot).count();
             let count = held[before..].iter().take_while(|other| other.slot == slot).count();
             let own = &held[before..before + count];
@@ -122,8 +122,8 @@ impl AtMesh {
     }
 }
 
-/// What a contact remembers: of the same part of the surface; or of the nearest part that the grain has just left, unless
-/// another contact is nearer to that.
+/// Returns the history of a contact: that of the same part of the surface, or of the nearest part that the grain has
+/// just left. In the second case, no other new contact may be nearer to that part.
 fn remembered(own: &[Held], found: &[Touched], touched: &Touched, radius: f64) -> Memory<f64> {
     if let Some(same) = own.iter().find(|held| held.group == touched.group) {
         return same.memory;

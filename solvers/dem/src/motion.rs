@@ -1,4 +1,4 @@
-//! Newton's law for every grain, in central differences, with gravity and global damping where the scene has them.
+//! Newton's law for every grain in central differences, with gravity and global damping if the scene has them.
 //!
 //! ```text
 //! v ← keep·v + gain·(F/m + g)        x ← x + v Δt        ω ← keep·ω + gain·M/I
@@ -15,10 +15,10 @@ use std::ops::Range;
 
 /// Global damping of the equation of motion, or its absence.
 trait Drag {
-    /// `keep`, the part of a velocity that is left after a step, and `gain` (s), what an acceleration is multiplied by;
-    /// from the rate α (1/s) and the time step Δt (s).
+    /// Returns `keep`, the fraction of a velocity that remains after a step, and `gain` (s), the factor of the
+    /// acceleration. They depend on the damping rate α (1/s) and the time step Δt (s).
     fn factors(rate: f64, time_step: f64) -> (f64, f64);
-    /// `keep · velocity`, without arithmetic where nothing is lost.
+    /// Returns `keep · velocity`, without arithmetic if there is no damping.
     fn keep(velocity: f64, keep: f64) -> f64;
 }
 
@@ -35,7 +35,7 @@ impl Drag for NoDrag {
     }
 }
 
-/// A force −α m v, taken at mid-step: v ← [v(1 − αΔt/2) + aΔt]/(1 + αΔt/2) (Cundall & Strack 1979, eq. 35).
+/// Force −α m v, evaluated at mid-step: v ← [v(1 − αΔt/2) + aΔt]/(1 + αΔt/2) (Cundall & Strack 1979, eq. 35).
 struct MassProportional;
 
 impl Drag for MassProportional {
@@ -49,10 +49,10 @@ impl Drag for MassProportional {
     }
 }
 
-/// What acts on every grain beside its contacts, and for how long.
+/// Gravity, global damping and time step, common to all grains.
 #[derive(Clone, Copy)]
 pub(crate) struct Motion {
-    /// Gravity g (m/s²), nothing out of the plane in two dimensions.
+    /// Gravity g (m/s²), without an out-of-plane component in two dimensions.
     pub(crate) gravity: Vector3<f64>,
     /// Rate α of global damping (1/s).
     pub(crate) global_damping: f64,
@@ -60,18 +60,18 @@ pub(crate) struct Motion {
     pub(crate) time_step: f64,
 }
 
-/// What motion reads and writes of grains.
+/// Data of grains that motion reads and writes.
 pub(crate) struct Moving<'a> {
     place: &'a mut [Quad],
     movement: &'a mut [Quad],
     load: &'a mut [Quad],
-    /// Quads of a grain's velocity and spin, and of its force and torque.
+    /// Number of quads for a grain's velocity and spin, and for its force and torque.
     quads: usize,
     inverse_inertia: &'a [f64],
 }
 
 impl<'a> Moving<'a> {
-    /// Of the grains in these slots.
+    /// Returns the data of the grains in these slots.
     pub(crate) fn of<S: Geometry>(grains: &'a mut Grains<S>, slots: Range<usize>) -> Self {
         let quads = grains.quads();
         let Grains { place, movement, load, inverse_inertia, .. } = grains;
@@ -85,7 +85,7 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// Takes off the first grains, so many.
+    /// Splits off the data of the first `count` grains.
     pub(crate) fn take_off(&mut self, count: usize) -> Self {
         let (inertia, others) = self.inverse_inertia.split_at(count.min(self.inverse_inertia.len()));
         self.inverse_inertia = others;
@@ -100,8 +100,8 @@ impl<'a> Moving<'a> {
 }
 
 impl Motion {
-    /// Moves grains over one step, by the forces on them, and sets those to zero. Gives the speed of the fastest, squared
-    /// (m²/s²), infinite where one is not a number.
+    /// Moves grains over one step by the forces on them, and sets the forces to zero. Returns the square of the largest
+    /// speed (m²/s²), infinite if any speed is NaN.
     pub(crate) fn advance<S: Geometry>(&self, processor: Processor, grains: Moving<'_>) -> f64 {
         match (self.global_damping == 0.0, self.gravity == Vector3::zeros()) {
             (true, true) => processor.run(Drift::<S, NoDrag, false>::new(self, grains)),
@@ -111,14 +111,14 @@ impl Motion {
         }
     }
 
-    /// The velocity half a step before (m/s) of a grain that has one (m/s) and that nothing touches.
+    /// Returns the velocity (m/s) half a step before, for a grain with this velocity (m/s) and without contacts.
     pub(crate) fn half_before(&self, velocity: Vector3<f64>) -> Vector3<f64> {
         let half = 0.5 * self.time_step;
         velocity * (1.0 + self.global_damping * half) - self.gravity * half
     }
 
-    /// Takes the velocities of grains that begin to move by forces to half a step before, so that the first cycle ends at half a
-    /// step after it.
+    /// Shifts the velocities of grains that start to move freely to half a step before, so that the first cycle ends
+    /// half a step after it.
     pub(crate) fn step_back_half<S: Geometry>(&self, grains: &mut Grains<S>, slots: impl Iterator<Item = usize>) {
         let half = 0.5 * self.time_step;
         let drag = 1.0 + self.global_damping * half;
@@ -135,7 +135,7 @@ impl Motion {
     }
 }
 
-/// The loop over grains, compiled for one kind of damping, with gravity or without, and for each path of the processor.
+/// Loop over grains, compiled for each kind of damping, with and without gravity, and for each instruction set.
 struct Drift<'a, S, D, const GRAVITY: bool> {
     motion: &'a Motion,
     grains: Moving<'a>,
@@ -148,8 +148,8 @@ impl<'a, S: Geometry, D: Drag, const GRAVITY: bool> Drift<'a, S, D, GRAVITY> {
     }
 }
 
-/// What moves grains over a step, in the numbers of a quad: the fourth, an inverse mass or a radius, is kept by adding nothing
-/// to it, so that a quad is one register.
+/// Factors of a step, as the numbers of a quad. The fourth number, an inverse mass or a radius, stays unchanged because
+/// zero is added to it; a quad is thus one register.
 struct Step {
     keep: [f64; 4],
     gain: [f64; 4],
@@ -169,7 +169,7 @@ impl Step {
         }
     }
 
-    /// Adds to velocities what forces do to them, of these inverse masses.
+    /// Adds the effect of forces to velocities, with these inverse masses.
     #[inline(always)]
     fn push<D: Drag, const GRAVITY: bool>(&self, Quad(velocity): &mut Quad, load: &mut Quad, inverse: [f64; 4]) {
         for axis in 0..4 {
@@ -182,7 +182,7 @@ impl Step {
         *load = Quad::default();
     }
 
-    /// Moves a grain by its velocity, in the plane also its angle by its spin. Gives its speed, squared.
+    /// Moves a grain by its velocity; in the plane also its angle by its spin. Returns the square of the speed.
     #[inline(always)]
     fn carry<S: Geometry>(&self, Quad(place): &mut Quad, Quad(velocity): &Quad) -> f64 {
         for axis in 0..4 {
@@ -201,7 +201,7 @@ impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVI
     fn run<L: Lanes>(self, _: L) -> f64 {
         let step = Step::new::<D>(self.motion);
         let Moving { place, movement, load, quads, inverse_inertia } = self.grains;
-        // No number is negative here, so that as whole numbers they are in the same order, and what is not a number is last.
+        // The bits of non-negative numbers, read as integers, are in the same order as the numbers, with NaN last.
         let mut fastest = 0;
         if quads == 2 {
             let movement = movement.as_chunks_mut::<2>().0;

@@ -1,8 +1,9 @@
-//! The neighbour list: pairs that may touch, with a skin, built anew only when something has moved by half of the skin.
+//! Neighbour list: pairs that may come into contact, listed with a skin. The list is rebuilt only when something has
+//! moved by half of the skin.
 //!
-//! The list has a row for each grain, and each pair is in it once. What contacts remember stands beside it, in the order of
-//! those that touch. Pairs across a periodic face have a list of their own, with their shift, so that the loop over the
-//! others knows nothing of periodic axes. Threads have a share of the rows each ([`crate::share`]).
+//! The list has one row per grain and contains each pair once. Contact history is stored beside the list, in the order
+//! of the pairs in contact. Pairs across periodic faces are in a separate list with their shifts, so that the main loop
+//! needs no periodic shifts. Each thread has a partition of the rows ([`crate::share`]).
 
 use crate::cells::Cells;
 use crate::contact::chain::Layout;
@@ -16,38 +17,38 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// The neighbour list.
+/// Neighbour list.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Neighbours {
-    /// Shares of the rows, in their order: one where a run has one thread, and in a checkpoint.
+    /// Partitions of the rows, in order; a single one for runs with one thread and in checkpoints.
     pub(crate) shares: Vec<Share>,
     /// Positions of the grains when the list was built (m).
     pub(crate) reference: Vec<Quad>,
-    /// Skin: pairs are listed whose surfaces are nearer than this (m).
+    /// Skin: pairs with smaller gaps are listed (m).
     pub(crate) skin: f64,
     /// Step at which the list was built.
     pub(crate) built_at: u64,
-    /// How often the list was built.
+    /// Number of builds.
     pub(crate) builds: u64,
 }
 
 impl Neighbours {
-    /// Whether this is the whole list of so many grains.
+    /// Returns true if this is a complete list of `grains` grains.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         self.reference.len() == grains && matches!(&self.shares[..], [whole] if whole.is_of(grains, layout))
     }
 
-    /// Number of listed pairs.
+    /// Returns the number of listed pairs.
     pub(crate) fn pairs(&self) -> usize {
         self.shares.iter().map(Share::pairs).sum()
     }
 
-    /// No list yet.
+    /// Creates an empty list.
     pub(crate) fn new(skin: f64) -> Self {
         Self { shares: Vec::new(), reference: Vec::new(), skin, built_at: 0, builds: 0 }
     }
 
-    /// The same list in so many shares.
+    /// Returns the list in `count` partitions.
     pub(crate) fn in_shares(&self, count: usize) -> Self {
         let Self { reference, skin, built_at, builds, .. } = self;
         let rows = rows_of(reference.len(), count);
@@ -55,10 +56,12 @@ impl Neighbours {
         Self { shares, reference: reference.clone(), skin: *skin, built_at: *built_at, builds: *builds }
     }
 
-    /// Wraps the positions into the domain, sorts the grains and lists the pairs anew, in so many shares. Contacts go on
-    /// remembering: `slots` are those that the grains had when the list was made, [`crate::grains::ABSENT`] of those that have
-    /// come since; they are as they were where none are given. `largest` is the largest radius of a grain up to `limit` (m):
-    /// those above it are few, and each looks for its partners over all cells that it reaches, where no axis is periodic.
+    /// Wraps the positions into the domain, sorts the grains, and lists the pairs in `count` partitions. Contacts keep
+    /// their history.
+    ///
+    /// `slots` holds the slots of the grains in the previous list, [`crate::grains::ABSENT`] for grains inserted since.
+    /// Without `slots`, they are unchanged. `largest` is the largest radius up to `limit` (m). The few grains above
+    /// `limit` search all cells within their reach; this requires axes that are not periodic.
     pub(crate) fn rebuild<S: Geometry>(
         &mut self,
         team: &Team,
@@ -104,7 +107,7 @@ impl Neighbours {
         self.builds += 1;
     }
 
-    /// How far any grain is from where it was when the pairs were listed (m); infinite where that is not a number.
+    /// Returns the largest displacement of a grain since the pairs were listed (m); infinite if it is NaN.
     pub(crate) fn farthest<S: Geometry>(&self, grains: &Grains<S>) -> f64 {
         let away = |(now, then): (&Quad, &Quad)| {
             let away = S::vector(now.0) - S::vector(then.0);
@@ -114,13 +117,13 @@ impl Neighbours {
         grains.place.iter().zip(&self.reference).map(away).fold(0.0, f64::max).sqrt()
     }
 
-    /// Forgets what every contact remembers.
+    /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
         self.shares.iter_mut().for_each(Share::forget);
     }
 }
 
-/// The periodic image of a position (m) that lies inside the domain of so many dimensions.
+/// Returns the periodic image of a position (m) inside the domain.
 pub(crate) fn wrapped(mut position: Vector3<f64>, domain: &Domain, dimension: usize) -> Vector3<f64> {
     for axis in 0..dimension {
         if domain.periodic[axis] {
@@ -134,7 +137,7 @@ pub(crate) fn wrapped(mut position: Vector3<f64>, domain: &Domain, dimension: us
     position
 }
 
-/// Whether a grain, shifted, and another are nearer to each other than the skin (m).
+/// Returns true if the gap between two grains is smaller than the skin (m). The first grain is already shifted.
 #[inline(always)]
 fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
     let between = S::vector(b.0) - S::vector(a.0);
@@ -142,9 +145,9 @@ fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
     between.dot(between) < reach * reach
 }
 
-/// Every pair of some rows that is near in the domain itself, once, in the row of the grain that comes first: once its row has
-/// been gone through a grain may move. Each grain with those after it in its own cells and in
-/// the next.
+/// Lists each near pair of some rows inside the domain once, in the row of the grain with the lower slot. A grain may
+/// thus move as soon as its row has been processed. Each grain is tested against later grains in its own cell and in
+/// the following cells.
 fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range<usize>, layout: Layout) -> Pairs {
     let without = cells.without();
     let mut cell = if without < place.len() { cells.of(rows.start.clamp(without, place.len() - 1)) } else { 0 };
@@ -161,7 +164,8 @@ fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range
         let [i, j, k] = at;
         let (left, right) = (i.saturating_sub(1), (i + 1).min(cells.count[0] - 1));
         let mut scan = |range: Range<usize>| {
-            // Which are near cannot be foretold: each is written down, and those that are not are written over.
+            // A branch would be unpredictable, so every candidate is written, and those that are not near are
+            // overwritten.
             let mut count = partners.len();
             partners.resize(count + range.len(), 0);
             for other in range {
@@ -182,8 +186,8 @@ fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range
     })
 }
 
-/// What is near to a grain that is far larger than others and has no cell: of those in cells all that it reaches, and of those
-/// without the ones after it.
+/// Finds the partners near a very large grain, which has no cell: all grains in the cells within its reach, and later
+/// grains without a cell.
 fn beside_a_large_one<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, slot: usize, partners: &mut Vec<u32>) {
     let (grain, without) = (&place[slot], cells.without());
     let mut take = |range: Range<usize>| {
@@ -202,7 +206,7 @@ fn beside_a_large_one<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, slo
     }
 }
 
-/// One of each pair of opposite periodic shifts (m).
+/// Returns one of each pair of opposite periodic shifts (m).
 fn half_of_the_shifts(domain: &Domain) -> Vec<Vector3<f64>> {
     let steps = |axis: usize| if domain.periodic[axis] { -1..=1 } else { 0..=0 };
     let length = domain.high - domain.low;
@@ -219,7 +223,7 @@ fn half_of_the_shifts(domain: &Domain) -> Vec<Vector3<f64>> {
     shifts
 }
 
-/// Every pair of some rows that is near across a periodic face, once, with its shift (m).
+/// Lists each near pair of some rows across a periodic face once, with its shift (m).
 fn pairs_across<S: Geometry>(
     place: &[Quad],
     cells: &Cells,
@@ -256,7 +260,7 @@ fn pairs_across<S: Geometry>(
     })
 }
 
-/// Lowest and highest coordinates of the grains' centres (m).
+/// Returns the lowest and highest coordinates of the grains' centres (m).
 fn bounds<S: Geometry>(place: &[Quad]) -> (Vector3<f64>, Vector3<f64>) {
     let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     place.iter().map(S::vector_in_space).fold(start, |(low, high), at| (low.inf(&at), high.sup(&at)))
@@ -272,7 +276,7 @@ mod tests {
 
     const NOTHING: Layout = Layout { numbers: 0, exchanged: [1.0; MEMORY] };
 
-    /// A cheap reproducible scatter.
+    /// Returns reproducible pseudo-random positions.
     fn scatter(count: usize, dimension: usize, size: f64) -> Vec<Vector3<f64>> {
         let mut state = 0x9e37_79b9_7f4a_7c15_u64;
         let mut next = || {
@@ -325,7 +329,7 @@ mod tests {
         }
     }
 
-    /// Two grains ten times as large as the others, one of them far from all cells.
+    /// Two of the grains are ten times as large as most others, and a third one is far from all cells.
     #[test]
     fn lists_what_is_near_to_large_grains_once() {
         let (radius, large, skin) = (0.1, 1.0, 0.05);

@@ -1,4 +1,4 @@
-//! What a simulation shows at a step: grains with their velocities at the time of the positions, contacts, walls and
+//! Output of a simulation at a step: grains with their velocities at the time of the positions, contacts, walls and
 //! energies.
 
 use crate::geometry::Geometry;
@@ -10,8 +10,8 @@ use grainbench_scene::record::{self, GrainState, Look, Snapshot, WallState};
 use grainbench_scene::scene::{Driven, Scene};
 use nalgebra::Vector3;
 
-/// The state at this step: grains, contacts, walls and energies. The contacts are taken away: whoever looks again at the same
-/// step is told none.
+/// Returns the state at this step: grains, contacts, walls and energies. It takes the contacts, so a second call at the
+/// same step returns none.
 pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
     let touching = simulation.touching();
     let contacts = simulation.take_contacts();
@@ -41,12 +41,12 @@ pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
     Look { touching, driven: simulation.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
 }
 
-/// The state at this step in short.
+/// Summarises the state at this step.
 pub(crate) fn brief<S: Geometry>(simulation: &Simulated<S>) -> Brief {
     Brief::of_grains((simulation.step, simulation.time()), grain_states(simulation), simulation.touching())
 }
 
-/// The grains that are there, in order of id.
+/// Returns the grains that are present, sorted by id.
 pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> impl Iterator<Item = GrainState> {
     let (scene, time) = (&simulation.scene, simulation.time());
     let is_there = |id: &usize| simulation.grains.slot[*id] != ABSENT;
@@ -65,7 +65,8 @@ pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> impl Itera
     })
 }
 
-/// A grain, with its velocity (m/s) and spin (rad/s) brought from half a step before to the time of the positions.
+/// Returns a grain, with its velocity (m/s) and spin (rad/s) advanced from half a step before to the time of the
+/// positions.
 fn grain_state<S: Geometry>(simulation: &Simulated<S>, id: usize) -> GrainState {
     let (scene, grains) = (&simulation.scene, &simulation.grains);
     let slot = grains.slot[id] as usize;
@@ -95,8 +96,8 @@ fn grain_state<S: Geometry>(simulation: &Simulated<S>, id: usize) -> GrainState 
     }
 }
 
-/// The angular velocity (rad/s) of a grain on which nothing exerts a torque: only global damping acts, once a step
-/// (Cundall & Strack 1979, eq. 36).
+/// Returns the angular velocity (rad/s) of a grain without torques: only global damping acts, once per step (Cundall &
+/// Strack 1979, eq. 36).
 fn free_spin(scene: &Scene, start: Vector3<f64>, time_step: f64, step: u64) -> Vector3<f64> {
     let half = 0.5 * scene.global_damping * time_step;
     start * libm::pow((1.0 - half) / (1.0 + half), step as f64)

@@ -1,4 +1,4 @@
-//! The loop over pairs that touch, as many at a time as registers hold.
+//! Loop over pairs in contact, as many at a time as a register holds.
 
 use crate::contact::chain::Answer;
 use crate::contact::normal::Normal;
@@ -17,40 +17,41 @@ use grainbench_lanes::{Kernel, Lanes, Number, Plain, Processor, Quad, WIDEST, Wi
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
 
-/// The loop over pairs that touch, of grains whose velocity and spin are `Q` quads.
+/// Loop over pairs in contact. The velocity and spin of each grain take `Q` quads.
 pub(crate) struct OfPairs<'a, S: Geometry, N, T, R, const Q: usize> {
     terms: Terms<'a>,
     touching: &'a Touching,
     grains: Read<'a>,
     sums: Sums<'a>,
     shift: &'a [Quad],
-    /// What the contacts of the block remember, to be written over: of before, where they are steady.
+    /// Contact history of the block, which is overwritten. If the block is unchanged, it still holds the previous
+    /// history.
     memory: [&'a mut [f64]; MEMORY],
     seen: Option<&'a mut Seen>,
     chain: PhantomData<(S, N, T, R)>,
 }
 
-/// Registers of pairs whose distances are found before their forces. A root and a quotient take long, and all of a force waits
-/// for them: so several of each are under way at once. As few as stay at hand. The widest registers, of which there are more,
-/// lose as much by storing what they found as they gain.
+/// Number of registers of pairs whose distances are computed before their forces. Square roots and divisions have long
+/// latencies, so several of them overlap. The number is small enough to stay in registers. The widest vectors do not
+/// use it, because storing the distances costs as much as the overlap saves.
 const ROUND: usize = 8;
 
-/// How far the grains of pairs are apart.
+/// Distances between the grains of pairs.
 #[derive(Clone, Copy)]
 struct Apart<S: Geometry, X: Number> {
     /// Vector from the first centre to the second (m).
     between: S::Vectors<X>,
-    /// Its length (m), and the inverse of that (1/m).
+    /// Its length (m), and the inverse of the length (1/m).
     distance: X,
     inverse_distance: X,
     /// Sum of the radii (m).
     reach: X,
-    /// Radii R (m), where they are read with the places.
+    /// Radii R (m), if they are read together with the positions.
     radii: [X; 2],
 }
 
 impl<S: Geometry, L: Lanes> Apart<S, Wide<L>> {
-    /// Not found yet.
+    /// Returns placeholder values.
     #[inline(always)]
     fn none(lanes: L) -> Self {
         let zero = Wide::splat(lanes, 0.0);
@@ -66,10 +67,10 @@ struct Slots {
 }
 
 impl Slots {
-    /// Of so many grains.
+    /// Reads the slots of pairs and checks them against the number of grains.
     ///
     /// # Panics
-    /// When one lies beyond them.
+    /// When a slot is out of range.
     #[inline(always)]
     fn of<L: Lanes>(lanes: L, (first, second): (&[u32], &[u32]), grains: usize) -> Self {
         Self { first: places(lanes, first, grains), second: places(lanes, second, grains) }
@@ -77,10 +78,10 @@ impl Slots {
 }
 
 impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> OfPairs<'a, S, N, T, R, Q> {
-    /// Numbers that are remembered.
+    /// Number of history values.
     const NUMBERS: usize = T::NUMBERS + R::NUMBERS;
 
-    /// The loop over these pairs.
+    /// Creates the loop over the pairs of a block.
     pub(crate) fn new(
         terms: Terms<'a>,
         (grains, sums): (Read<'a>, Sums<'a>),
@@ -96,7 +97,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         Self { terms, touching, grains, sums, shift, memory, seen, chain: PhantomData }
     }
 
-    /// Runs it; contacts that are recorded are taken one by one.
+    /// Runs the loop. Recorded contacts are processed one by one.
     pub(crate) fn run_on(self, processor: Processor) {
         if self.seen.is_some() {
             self.run(Plain::<1>);
@@ -105,7 +106,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
     }
 
-    /// How far the grains of some pairs are apart.
+    /// Computes the distances between the grains of some pairs.
     #[inline(always)]
     fn apart<L: Lanes>(&self, lanes: L, slots: &Slots, from: usize) -> Apart<S, Wide<L>> {
         let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
@@ -116,7 +117,8 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
             between = S::vector(at[1]) - S::vector(at[0]);
             (radii, reach) = ([at[0][3], at[1][3]], at[0][3] + at[1][3]);
         } else {
-            // Differences are taken before quads are turned: half as many are. What only some laws read is left alone by others.
+            // Differences are taken before the quads are transposed, which halves the number of transpositions. Radii
+            // are read only for laws that need them.
             let away = laws::between(lanes, place.as_chunks::<1>().0, 0, [first, second]);
             (between, reach) = (S::vector(away), away[3]);
             radii = if !T::ACTIVE && (N::CURVED || R::ACTIVE) {
@@ -133,7 +135,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         Apart { between, distance, inverse_distance: distance.like(1.0) / distance, reach, radii }
     }
 
-    /// The grains of some pairs, made ready for the chain of stages.
+    /// Prepares some pairs for the chain of stages.
     #[inline(always)]
     fn pair<'l, L: Lanes>(
         &self,
@@ -191,7 +193,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
     }
 
-    /// What some contacts remember.
+    /// Reads the history of some contacts.
     #[inline(always)]
     fn remembered<L: Lanes>(&self, lanes: L, from: usize) -> Memory<Wide<L>> {
         let mut memory = [Wide::splat(lanes, 0.0); MEMORY];
@@ -206,7 +208,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
         let mut places = [0; WIDEST];
         places.copy_from_slice(&remembered[from..from + WIDEST]);
-        // Where a block is not as it was, most contacts still follow one another as they did.
+        // Even if a block has changed, most contacts are still consecutive in the previous history.
         let follow = places[..L::WIDTH].iter().zip(0..).all(|(&place, lane)| place == places[0] + lane);
         for (number, before) in memory.iter_mut().zip(before).take(Self::NUMBERS) {
             let mut values = [0.0; WIDEST];
@@ -222,7 +224,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         memory
     }
 
-    /// Keeps what contacts remember from now on.
+    /// Stores the history of some contacts.
     #[inline(always)]
     fn remember<L: Lanes>(&mut self, memory: &Memory<Wide<L>>, from: usize) {
         for (number, now) in memory.iter().zip(&mut self.memory).take(Self::NUMBERS) {
@@ -230,20 +232,20 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
     }
 
-    /// Adds the forces and torques of so many contacts, one after the other.
+    /// Adds the forces and torques of `count` contacts, one after the other.
     #[inline(always)]
     fn add<L: Lanes>(&mut self, lanes: L, answer: &Answer<S, Wide<L>>, slots: &Slots, count: usize) {
         let zero = Wide::splat(lanes, 0.0);
         let one = S::load(answer.force, answer.torques[0], zero);
         let added = [one, S::load(-answer.force, answer.torques[1], zero)];
-        // Where all grains are added up and registers are full, no slot and no lane is to be looked at.
+        // If the sums cover all grains and the register is full, no slot and no lane needs a check.
         match self.sums.all(self.grains.place.len()) {
             Some(mut all) if count == L::WIDTH => Self::add_to(lanes, &mut all, added, slots, L::WIDTH),
             _ => Self::add_to(lanes, &mut self.sums, added, slots, count),
         }
     }
 
-    /// Adds the quads of a force and a torque to the first grain of each contact, and those of the others to the second.
+    /// Adds the quads of force and torque to the first grain of each contact, and their counterparts to the second.
     #[inline(always)]
     fn add_to<L: Lanes>(
         lanes: L,
@@ -293,7 +295,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
         let grains = self.grains.place.len();
-        // Said here, so that it is looked at once and not for every contact.
+        // These slices let the compiler check the bounds once instead of at every contact.
         self.grains.movement = &self.grains.movement[..grains * Q];
         self.grains.material = &self.grains.material[..grains];
         let (laws, touching) = (self.terms.laws, self.touching);
@@ -336,13 +338,13 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
     }
 }
 
-/// A quad for each lane.
+/// Returns one quad per lane.
 #[inline(always)]
 fn spread<L: Lanes>(lanes: L, [a, b, c, d]: [Wide<L>; 4]) -> [Quad; WIDEST] {
     lanes.quads([a.register(), b.register(), c.register(), d.register()])
 }
 
-/// Two quads for each lane.
+/// Returns two quads per lane.
 #[inline(always)]
 fn spread_pairs<L: Lanes>(lanes: L, [[a, b, c, d], [e, f, g, h]]: [[Wide<L>; 4]; 2]) -> [L::Pair; WIDEST] {
     let one = [a.register(), b.register(), c.register(), d.register()];

@@ -1,5 +1,5 @@
-//! Loops over pairs are compiled once for every path of the processor, and threads share them; what they compute is the
-//! same.
+//! Tests of the loops over pairs, which are compiled for every instruction set and run on several threads. All variants
+//! must give the same results.
 
 use crate::convention::Convention;
 use crate::geometry::Geometry;
@@ -13,7 +13,8 @@ use grainbench_scene::space::Space;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Grains of two materials in a box with periodic faces and a floor, some of which touch at the start and some meet later.
+/// Returns grains of two materials in a box with periodic faces and a floor. Some are in contact at the start, others
+/// collide later.
 fn scene(dimension: usize) -> Scene {
     let vector = |x: f64, y: f64, z: f64| {
         let all = [x, y, z];
@@ -51,7 +52,7 @@ fn scene(dimension: usize) -> Scene {
     source.scene(&|_| Err("no data files here".to_owned())).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// State after some steps, and what was seen at the end, as text.
+/// Returns the state after 300 steps and the recorded contacts, as text.
 fn state<S: Geometry>(mut simulation: Simulated<S>, path: Processor) -> String {
     simulation.processor = path;
     simulation.fewest_in_a_share = 5;
@@ -67,7 +68,7 @@ fn state<S: Geometry>(mut simulation: Simulated<S>, path: Processor) -> String {
     format!("{:?} {listed:?} {contacts:?} {energies:?} {:?}", simulation.grains, simulation.cost)
 }
 
-/// Laws with every combination of effects, some of which only one of the materials has.
+/// Returns laws with every combination of effects. Some effects apply to only one of the materials.
 fn laws() -> Vec<(String, ContactLaw, ContactLaw)> {
     let mut laws = Vec::new();
     for effects in 0..16_u32 {
@@ -135,7 +136,7 @@ fn runs_leave_the_same_bits_on_all_paths_and_threads_in_space() {
     same_on_all(|scene, convention, team| simulated(scene, convention, solid(scene, convention), team));
 }
 
-/// Grains that are moved while they are at hand end where they do when every cycle is taken by itself.
+/// Grains moved within a block end at the same state as in single cycles.
 #[test]
 fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
     let mut scene = scene(3);
@@ -151,8 +152,8 @@ fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
     }
 }
 
-/// A ball that comes from below to beads, far larger than they are, so that it has no cell of the grid. Their pairs fill more
-/// than a block, and those that it touches stand in the first.
+/// Returns a ball that approaches beads from below. It is so much larger than the beads that it has no cell of the
+/// grid. Its pairs fill more than one block, and its contacts are in the first.
 fn ball_under_beads() -> Scene {
     let text = "title = 'ball'\ndimension = 3\nduration = 1.0\nlargest_initial_overlap = 0.5\nmaterials.m.density = 1000.0\n\
          [contacts.all]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\ntangential_stiffness = 6.0e5\nfriction = 0.3\n\
@@ -163,7 +164,8 @@ fn ball_under_beads() -> Scene {
     source.scene(&|_| Err("no data files here".to_owned())).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What a ball touches has not moved before the ball is reached, however many cycles are taken together and by whom.
+/// Partners of a ball must not move before the row of the ball, for any number of combined cycles and any number of
+/// threads.
 #[test]
 fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
     let scene = ball_under_beads();
@@ -180,7 +182,7 @@ fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
     assert!(end(60, Team::new(3)) == alone, "three threads");
 }
 
-/// However wide the skin has become, all that touches is listed.
+/// All contacts are listed, even after the skin has grown.
 #[test]
 fn whatever_touches_is_listed_while_the_skin_widens() {
     let scene = ball_under_beads();
@@ -201,7 +203,7 @@ fn whatever_touches_is_listed_while_the_skin_widens() {
     assert!(simulation.neighbours.skin > first, "the skin has widened");
 }
 
-/// A checkpoint of some other program may hold another radius beside a spin, and torque arms would follow it.
+/// A checkpoint of another program could hold a different radius beside the spin, which would change the lever arm.
 #[test]
 fn a_radius_beside_a_spin_is_that_of_its_grain() {
     use crate::grains::Grains;

@@ -1,4 +1,4 @@
-//! Contacts as the last force evaluation saw them: what a snapshot and the energy budget are made of.
+//! Contacts recorded in the last force evaluation, for snapshots and the energy budget.
 
 use crate::contact::chain::Answer;
 use crate::geometry::Geometry;
@@ -7,32 +7,32 @@ use grainbench_lanes::Number;
 use grainbench_scene::record::{ContactState, Partner};
 use nalgebra::Vector3;
 
-/// Contacts as the last force evaluation that was recorded saw them.
+/// Contacts in the last recorded force evaluation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
-    /// As a snapshot shows them, where they are kept one by one. Whoever looks takes them away.
+    /// Individual contacts as in a snapshot, if they are recorded. Output takes them away.
     pub(crate) contacts: Vec<ContactState>,
-    /// Whether they are.
+    /// True if individual contacts are recorded.
     one_by_one: bool,
-    /// How many slip.
+    /// Number of slipping contacts.
     pub(crate) slipping: usize,
-    /// What each does to the energy.
+    /// Energies of each contact.
     pub(crate) energies: Vec<Energies>,
 }
 
-/// What a contact does to the energy.
+/// Energies of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Energies {
     /// Energy in the springs (J).
     pub(crate) elastic: f64,
-    /// Work of friction in the step (J).
+    /// Frictional work in the step (J).
     pub(crate) rubbed: f64,
     /// Energy released by a change of stiffness in the step (J).
     pub(crate) released: f64,
 }
 
 impl Seen {
-    /// Begins anew; contacts are kept `one_by_one`, or what they come to.
+    /// Starts a new recording, of individual contacts if `one_by_one` is set.
     pub(crate) fn begin(&mut self, one_by_one: bool) {
         (self.one_by_one, self.slipping) = (one_by_one, 0);
         if one_by_one {
@@ -43,7 +43,7 @@ impl Seen {
         self.energies.clear();
     }
 
-    /// Makes room for more contacts.
+    /// Reserves memory for more contacts.
     pub(crate) fn make_room(&mut self, more: usize) {
         if self.one_by_one {
             reserve(&mut self.contacts, more);
@@ -51,8 +51,8 @@ impl Seen {
         reserve(&mut self.energies, more);
     }
 
-    /// Adds what is seen of an answer, the first if there are several, at the contact of a grain whose centre (m) and radius
-    /// (m) are given.
+    /// Records an answer; of several answers in lanes, the first. `centre` (m) and `radius` (m) are those of the first
+    /// grain.
     pub(crate) fn add<S: Geometry, X: Number>(
         &mut self,
         answer: &Answer<S, X>,

@@ -1,7 +1,9 @@
-//! A thread's share of the neighbour list: the pairs of some rows, and those of other rows that reach a grain of its own.
+//! Thread partition of the neighbour list: the pairs of some rows, and the pairs of other rows with a grain of the
+//! partition.
 //!
-//! A pair between grains of two shares is in both, and both find its force, each for its own grain. They do so from the same
-//! numbers, and the sums of a grain are taken in the order of the whole list: so the bits do not depend on how many share it.
+//! A pair between grains of two partitions is in both. Each partition computes its force for its own grain, from the
+//! same numbers. The forces on a grain are summed in the order of the whole list, so the result does not depend on the
+//! number of partitions.
 
 use crate::contact::chain::Layout;
 use crate::forces::{Forces, Terms};
@@ -14,61 +16,61 @@ use grainbench_lanes::Processor;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Fewest grains in a share: with fewer threads wait for one another longer than they work.
+/// Smallest number of grains in a partition. With fewer grains, threads wait for each other longer than they work.
 pub(crate) const FEWEST: usize = 500;
 
-/// A share of the rows.
+/// Thread partition of the rows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Share {
-    /// Rows of its own: slots of its grains.
+    /// Own rows, which are the slots of its grains.
     pub(crate) rows: Range<usize>,
-    /// Pairs that are near in the domain itself.
+    /// Nearby pairs inside the domain.
     pub(crate) near: Pairs,
-    /// Pairs that are near across a periodic face.
+    /// Nearby pairs across a periodic face.
     pub(crate) across: Pairs,
-    /// What it works with.
+    /// Working memory.
     #[serde(skip)]
     work: Work,
 }
 
-/// What a share works with from one force evaluation to the next.
+/// Working memory of a partition between force evaluations.
 #[derive(Clone, Debug, Default)]
 struct Work {
-    /// Pairs of a block that touch.
+    /// Pairs in contact of a block.
     touching: [Touching; 2],
-    /// Contacts that were recorded, of pairs across a face and of the others.
+    /// Recorded contacts: of pairs across a face, and of other pairs.
     seen: [Seen; 2],
-    /// Place in the memory of every pair across a face and of the others.
+    /// Index in the history of every pair: across a face, and of other pairs.
     places: [Vec<u32>; 2],
 }
 
-/// What forces are found with.
+/// Parameters of a force evaluation.
 pub(crate) struct Evaluation<'a, S: Geometry> {
-    /// The loops over contacts.
+    /// Loops over contacts.
     pub(crate) forces: &'a dyn Forces<S>,
-    /// The path through them.
+    /// Instruction set for these loops.
     pub(crate) processor: Processor,
-    /// What every contact is computed with.
+    /// Parameters common to all contacts.
     pub(crate) terms: Terms<'a>,
-    /// Whether contacts are recorded.
+    /// True if contacts are recorded.
     pub(crate) record: bool,
-    /// Whether they are recorded one by one.
+    /// True if they are recorded individually.
     pub(crate) one_by_one: bool,
 }
 
-/// Shares of so many rows, as equal as can be.
+/// Splits rows into partitions of nearly equal size.
 pub(crate) fn rows_of(rows: usize, shares: usize) -> Vec<Range<usize>> {
     let shares = shares.clamp(1, rows.max(1));
     (0..shares).map(|share| share * rows / shares..(share + 1) * rows / shares).collect()
 }
 
 impl Share {
-    /// A share of these rows, with nothing in it yet.
+    /// Creates an empty partition of these rows.
     pub(crate) fn new(rows: Range<usize>) -> Self {
         Self { rows, near: Pairs::empty(), across: Pairs::empty(), work: Work::default() }
     }
 
-    /// What of these shares is in some rows or reaches their grains.
+    /// Selects the pairs in some rows, and the pairs that involve their grains.
     pub(crate) fn reaching(shares: &[Self], rows: Range<usize>) -> Self {
         let lists = |of: fn(&Self) -> &Pairs| shares.iter().map(of).collect::<Vec<_>>();
         let chosen = |lists: &[&Pairs]| Pairs::chosen(lists, rows.clone(), |partner| rows.contains(&partner));
@@ -79,7 +81,7 @@ impl Share {
         }
     }
 
-    /// Whether this is the whole list of so many grains.
+    /// Returns true if this is a complete list of `grains` grains.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         let Self { near, across, rows, .. } = self;
         let shifted = across.shift.len() == across.partner.len() || across.len() == 0;
@@ -90,18 +92,19 @@ impl Share {
             && across.is_of(grains, layout)
     }
 
-    /// Finds the place in the memory of every pair.
+    /// Finds the index in the history of every pair.
     pub(crate) fn find_places(&mut self) {
         self.work.places = [self.across.places(), self.near.places()];
     }
 
-    /// Remembers what `old` shares do, whose places have been found, of grains that were sorted in this `order`.
+    /// Takes over the contact history of the `old` partitions, for grains sorted in this `order`. The history indices
+    /// must be known.
     pub(crate) fn take_over(&mut self, old: &[Self], order: &[u32], layout: &Layout) {
         if old.is_empty() {
             return;
         }
         let found = |a: u32, b: u32| {
-            // A grain that has come since has no row.
+            // A grain inserted since then has no row.
             let share = old.get(old.partition_point(|share| share.rows.end <= a as usize))?;
             let mut lists = [&share.near, &share.across].into_iter().zip(share.work.places.iter().rev());
             lists.find_map(|(list, places)| list.find(a, b).map(|from| (list, (from, places[from]))))
@@ -120,28 +123,28 @@ impl Share {
         }
     }
 
-    /// Forgets what every contact remembers.
+    /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
         self.near.forget();
         self.across.forget();
     }
 
-    /// Number of its pairs.
+    /// Returns the number of its own pairs.
     pub(crate) fn pairs(&self) -> usize {
         self.near.own().len() + self.across.own().len()
     }
 
-    /// What was recorded of pairs across a face, and of the others.
+    /// Returns the recorded contacts: of pairs across a face, and of other pairs.
     pub(crate) fn seen(&self) -> &[Seen; 2] {
         &self.work.seen
     }
 
-    /// The same, to be taken away.
+    /// Returns mutable access to the recorded contacts, from which they can be taken.
     pub(crate) fn seen_mut(&mut self) -> &mut [Seen; 2] {
         &mut self.work.seen
     }
 
-    /// The lists, in the order in which their forces are found: of pairs across a face, and of the others.
+    /// Returns the lists in the order of evaluation: pairs across a face, then other pairs.
     pub(crate) fn lists(&mut self) -> [List<'_>; 2] {
         let Self { rows, near, across, work: Work { touching, seen: [seen_across, seen_near], .. } } = self;
         let [touching_across, touching_near] = touching;
@@ -151,7 +154,7 @@ impl Share {
         ]
     }
 
-    /// Finds the forces of its pairs. Gives the number of contacts of its own.
+    /// Computes the forces of its pairs. Returns the number of its own contacts.
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
         evaluation: &Evaluation<'_, S>,
@@ -169,24 +172,24 @@ impl Share {
     }
 }
 
-/// A list whose forces are being found, block by block.
+/// List under evaluation, block by block.
 pub(crate) struct List<'a> {
     rows: Range<usize>,
     pairs: &'a mut Pairs,
     touching: &'a mut Touching,
     seen: &'a mut Seen,
-    /// Contacts in rows of its own, so far.
+    /// Number of contacts in its own rows so far.
     own: u64,
 }
 
 impl List<'_> {
-    /// Blocks of pairs, to be taken one after the other; contacts that are recorded are so `one_by_one`.
+    /// Returns the blocks of pairs, to be evaluated in order. With `one_by_one`, contacts are recorded individually.
     pub(crate) fn blocks(&mut self, one_by_one: bool) -> impl Iterator<Item = Range<usize>> + use<> {
         self.seen.begin(one_by_one);
         blocks(self.pairs.len())
     }
 
-    /// Finds the forces of the pairs in a block.
+    /// Computes the forces of the pairs in a block.
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
         evaluation: &Evaluation<'_, S>,
@@ -218,13 +221,13 @@ impl List<'_> {
         pairs.remember(number, touching.count);
     }
 
-    /// The row of the pair that comes after a block, where one does: all pairs of the grains in the rows before have been
-    /// looked at.
+    /// Returns the row of the first pair after a block; `None` after the last block. All pairs of the grains in earlier
+    /// rows have been evaluated.
     pub(crate) fn row_after(&self, block: &Range<usize>) -> Option<usize> {
         (block.end < self.pairs.len()).then(|| self.pairs.row[block.end] as usize)
     }
 
-    /// Number of contacts in rows of its own.
+    /// Returns the number of contacts in its own rows.
     pub(crate) fn own(self) -> u64 {
         self.own
     }

@@ -1,7 +1,8 @@
 //! One simulation: the calculation cycle of Cundall & Strack.
 //!
-//! A cycle moves the grains by the forces of the last one ([`crate::motion`]), moves the walls, lists the neighbours
-//! anew if it must ([`crate::neighbours`]), and finds the forces for the next ([`crate::forces`]).
+//! A cycle moves the grains by the forces of the previous cycle ([`crate::motion`]) and moves the walls. It rebuilds
+//! the neighbour list if necessary ([`crate::neighbours`]), and computes the forces for the next cycle
+//! ([`crate::forces`]).
 
 use crate::accounts::{Accounts, Step};
 use crate::contact::{MEMORY, Options};
@@ -26,42 +27,43 @@ use grainbench_scene::scene::{Driven, Probe, Scene};
 use grainbench_scene::solver::{Broken, Cause, LARGEST_ENTRY_OVERLAP, Subject};
 use nalgebra::Vector3;
 
-/// Radius from which on a grain is far larger than others, in mean radii: cells as wide as it would hold hundreds of those.
+/// Radius, in mean radii, above which a grain has no cell of the grid. Cells of its size would hold hundreds of other
+/// grains.
 const FAR_LARGER: f64 = 4.0;
 
-/// Steps from one look at the stiffness of contacts to the next: a collision takes some thirty steps at a tenth of the critical
-/// one, and a look costs about as much as a step.
+/// Steps between two checks of contact stiffness. A collision takes about thirty steps at a tenth of the critical time
+/// step, and a check costs about as much as a step.
 const STEPS_BETWEEN_LOOKS: u64 = 32;
 
-/// A simulation in a space.
+/// Simulation in a space of two or three dimensions.
 pub(crate) struct Simulated<S: Geometry> {
     pub(crate) scene: Scene,
     laws: Laws,
     options: Options,
-    /// Gravity, global damping and the time step.
+    /// Gravity, global damping and time step.
     pub(crate) motion: Motion,
     pub(crate) grains: Grains<S>,
     pub(crate) neighbours: Neighbours,
     pub(crate) walls: Vec<MovingWall>,
-    /// The loops over contacts, compiled for the laws of the scene.
+    /// Loops over contacts, compiled for the laws of the scene.
     pub(crate) forces: Box<dyn Forces<S>>,
-    /// The path through them.
+    /// Instruction set for these loops.
     pub(crate) processor: Processor,
-    /// The threads of the run.
+    /// Threads of the run.
     team: Team,
-    /// Fewest grains in a share.
+    /// Smallest number of grains in a thread partition.
     pub(crate) fewest_in_a_share: usize,
-    /// Every contact with a wall in the last force evaluation, if it was recorded.
+    /// Contacts with walls in the last recorded force evaluation.
     seen_at_walls: Seen,
-    /// Step of which contacts were recorded, if nobody has taken them away.
+    /// Step whose contacts are recorded; `None` after they have been taken.
     seen_at: Option<u64>,
-    /// Rows of grains and contacts up to which a snapshot is wanted.
+    /// Largest number of rows of grains and contacts in a wanted snapshot.
     most_rows: u64,
-    /// Whether contacts are looked at one by one in every step that is recorded.
+    /// True if every recorded step needs individual contacts.
     looks_at_contacts: bool,
-    /// Whether the contacts that were recorded last were so one by one.
+    /// True if the last recorded contacts are individual contacts, not only their energies.
     one_by_one: bool,
-    /// Contacts in the last force evaluation.
+    /// Number of contacts in the last force evaluation.
     contacts: u64,
     /// Largest radius of a grain (m).
     largest_radius: f64,
@@ -69,30 +71,31 @@ pub(crate) struct Simulated<S: Geometry> {
     mean_radius: f64,
     /// Critical time step 2√(m_min/k_max) of the scene (s).
     pub(crate) critical: f64,
-    /// Whether contacts are looked at for stiffness that the time step is too long for.
+    /// True if the stiffness of contacts is checked against the time step.
     pub(crate) follows_critical: bool,
-    /// Cycles taken.
+    /// Number of cycles taken.
     pub(crate) step: u64,
-    /// Bound on how far any grain has moved since the pairs were listed (m).
+    /// Upper bound of the displacement of any grain since the pairs were listed (m).
     pub(crate) travelled: f64,
-    /// Speed of the fastest driven group (m/s).
+    /// Largest speed of a group with prescribed motion (m/s).
     driven_speed: f64,
-    /// Bound on the distance from any wall's centre of rotation to any grain (m).
+    /// Upper bound of the distance from any wall's centre of rotation to any grain (m).
     pub(crate) extent: f64,
     pub(crate) cost: Counts,
-    /// Whether the energy budget is asked for.
+    /// True if the energy budget is requested.
     pub(crate) accounting: bool,
     pub(crate) accounts: Accounts,
-    /// Mean V σ of grains, where snapshots are asked for it.
+    /// Mean V σ of grains, if snapshots request it.
     pub(crate) mean_virial: Option<Box<MeanVirial>>,
-    /// Mass of the grains that are not driven (kg).
+    /// Mass of the grains without prescribed motion (kg).
     free_mass: f64,
-    /// How many of the entries of the scene have come.
+    /// Number of grains inserted so far.
     pub(crate) entered: usize,
 }
 
 impl<S: Geometry> Simulated<S> {
-    /// Sets up a scene: the forces at the start, and velocities half a step before it, so that all cycles are alike.
+    /// Sets up a scene: computes the initial forces, and shifts velocities half a step back so that all cycles are
+    /// alike.
     pub(crate) fn new(
         scene: &Scene,
         forces: Box<dyn Forces<S>>,
@@ -161,28 +164,29 @@ impl<S: Geometry> Simulated<S> {
         Ok(simulation)
     }
 
-    /// Shares that the list is in: as many as there are threads, if there are grains enough.
+    /// Returns the number of thread partitions: one per thread, or fewer for few grains.
     pub(crate) fn shares(&self) -> usize {
         self.team.members().min(self.grains.len() / self.fewest_in_a_share).max(1)
     }
 
-    /// What the contacts of the last force evaluation that was recorded do to the energy.
+    /// Returns the energies of the contacts in the last recorded force evaluation.
     pub(crate) fn energies(&self) -> impl Iterator<Item = &Energies> {
         let of = |list: usize| self.neighbours.shares.iter().flat_map(move |share| &share.seen()[list].energies);
         self.seen_at_walls.energies.iter().chain(of(0)).chain(of(1))
     }
 
-    /// Rows of grains and contacts.
+    /// Returns the number of rows of grains and contacts.
     pub(crate) fn rows(&self) -> u64 {
         self.grains.len() as u64 + self.contacts
     }
 
-    /// Whether a snapshot can be shown that has at most so many rows.
+    /// Returns true if a snapshot has individual contacts and at most `most_rows` rows.
     pub(crate) fn shows(&self, most_rows: u64) -> bool {
         self.one_by_one && self.rows() <= most_rows
     }
 
-    /// Number of contacts, before any force has been found; of those that are listed at walls all.
+    /// Returns an upper bound of the number of contacts before the first force evaluation. It counts all pairs listed
+    /// at walls.
     fn touching_at_start(&self) -> usize {
         let touch = |a: usize, b: usize, shift: Vector3<f64>| {
             let apart = self.grains.position(b) - self.grains.position(a) - shift;
@@ -201,22 +205,23 @@ impl<S: Geometry> Simulated<S> {
         pairs.sum::<usize>() + self.walls.iter().map(MovingWall::pairs).sum::<usize>()
     }
 
-    /// Number of contacts of this step, and how many of them slip; none where they were not recorded or have been taken.
+    /// Returns the numbers of contacts and of slipping contacts in this step; `None` if they were not recorded or have
+    /// been taken.
     pub(crate) fn touching(&self) -> Option<[usize; 2]> {
         self.seen_at.filter(|&at| at == self.step)?;
         let lists = self.neighbours.shares.iter().flat_map(Share::seen).chain([&self.seen_at_walls]);
         Some(lists.fold([0, 0], |[count, slipping], seen| [count + seen.energies.len(), slipping + seen.slipping]))
     }
 
-    /// Takes away the contacts of this step, in order of the id of their first grain; none where they were not recorded or
-    /// have been taken. Contacts of a grain with walls come first, then those across periodic faces.
+    /// Takes the contacts of this step, sorted by the id of their first grain; `None` if they were not recorded or have
+    /// been taken. For each grain, contacts with walls come first, then contacts across periodic faces.
     pub(crate) fn take_contacts(&mut self) -> Option<Vec<ContactState>> {
         self.seen_at.take().filter(|&at| at == self.step && self.one_by_one)?;
         let [mut before, mut contacts] = [std::mem::take(&mut self.seen_at_walls.contacts), Vec::new()];
         for share in &mut self.neighbours.shares {
             before.append(&mut share.seen_mut()[0].contacts);
         }
-        // What is largest is not copied: of one share the list itself is given.
+        // The largest list is not copied if there is only one partition.
         for share in &mut self.neighbours.shares {
             let mut others = std::mem::take(&mut share.seen_mut()[1].contacts);
             if contacts.is_empty() {
@@ -234,7 +239,7 @@ impl<S: Geometry> Simulated<S> {
         Some(contacts)
     }
 
-    /// Adds the contacts of this step, which were recorded, to the mean V σ, if it is one of those that are looked at.
+    /// Adds the recorded contacts of this step to the mean V σ, if the step is one of its samples.
     fn add_virials(&mut self) {
         let Self { mean_virial, neighbours, seen_at_walls, scene, step, .. } = self;
         if let Some(mean) = mean_virial.as_mut().filter(|mean| mean.is_due(*step)) {
@@ -250,11 +255,12 @@ impl<S: Geometry> Simulated<S> {
     }
 
     fn cycles(&mut self, steps: u64) -> Result<(), Box<Broken>> {
-        // Where nothing is done between finding forces and moving by them, grains are moved while they are at hand.
+        // If nothing happens between the force evaluation and the motion, each block of grains is moved right after its
+        // forces.
         let at_once = !self.accounting && self.scene.driven.is_empty();
         let mut has_moved = false;
         for left in (0..steps).rev() {
-            // The last cycle leaves its contacts to be looked at.
+            // The last cycle records its contacts for output.
             let looked_at = self.mean_virial.as_ref().is_some_and(|mean| mean.is_due(self.step + 1));
             let (record, move_on) = (self.accounting || left == 0 || looked_at, at_once && left > 0);
             self.cycle(record, has_moved, move_on)?;
@@ -266,8 +272,9 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
-    /// One cycle: motion by the forces of the last, unless the grains have moved already, walls, and the forces for the
-    /// next, after which they `move_on`. With `record` its contacts are kept.
+    /// Takes one cycle: motion by the previous forces, unless the grains have moved already, motion of walls, and the
+    /// next forces. With `move_on`, the grains move after the force evaluation. With `record`, the contacts are
+    /// recorded.
     fn cycle(&mut self, record: bool, has_moved: bool, move_on: bool) -> Result<(), Box<Broken>> {
         let half_skin = 0.5 * self.neighbours.skin;
         if !has_moved {
@@ -308,7 +315,7 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
-    /// Moves all grains over one step, by the forces on them.
+    /// Moves all grains over one step by the forces on them.
     fn move_grains(&mut self) {
         let Self { motion, grains, neighbours, team, processor, .. } = self;
         let all = 0..grains.len();
@@ -318,7 +325,8 @@ impl<S: Geometry> Simulated<S> {
         self.travel(fastest);
     }
 
-    /// Finds the forces and torques at all contacts; springs are stretched by what slipped and rolled in `elapsed` (s).
+    /// Computes the forces and torques at all contacts. Spring displacements grow by the slip and roll during `elapsed`
+    /// (s).
     fn evaluate_forces(&mut self, record: bool, elapsed: f64, move_on: bool) {
         let Self {
             laws,
@@ -373,17 +381,17 @@ impl<S: Geometry> Simulated<S> {
         }
     }
 
-    /// Takes note of a step of grains the fastest of which has a speed, squared (m²/s²).
+    /// Adds a step to the travelled distance. `fastest` is the square of the largest speed (m²/s²).
     fn travel(&mut self, fastest: f64) {
         self.travelled += fastest.sqrt().max(self.driven_speed) * self.motion.time_step;
     }
 
-    /// Time of the positions (s).
+    /// Returns the time of the positions (s).
     pub(crate) fn time(&self) -> f64 {
         self.step as f64 * self.motion.time_step
     }
 
-    /// Adds to the energy budget what the step did whose forces have just been found.
+    /// Adds the step of the last force evaluation to the energy budget.
     fn account(&mut self) {
         let (driven, walls) = (&self.scene.driven, &self.walls);
         let mut forces = self.forces_on_driven();
@@ -400,18 +408,18 @@ impl<S: Geometry> Simulated<S> {
         });
     }
 
-    /// Forgets what every contact remembers.
+    /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
         self.neighbours.forget();
         self.walls.iter_mut().for_each(MovingWall::forget);
     }
 
-    /// Whether grains come at a time (s).
+    /// Returns true if grains are to be inserted until a time (s).
     fn has_comers(&self, time: f64) -> bool {
         self.scene.stays.entered_by(time) > self.entered
     }
 
-    /// Whether grains are where they are taken out, at a step at which that is looked for.
+    /// Returns true if grains are to be removed at this step.
     fn has_leavers(&self) -> bool {
         let Some(removal) = self.scene.stays.removal.filter(|removal| self.step.is_multiple_of(removal.every)) else {
             return false;
@@ -419,7 +427,8 @@ impl<S: Geometry> Simulated<S> {
         (0..self.grains.len()).any(|slot| removal.takes(self.grains.position(slot), S::DIMENSION))
     }
 
-    /// Lets grains come and go that do so at this step. Gives the slots that those that are there had before, where any did.
+    /// Inserts and removes grains that are due at this step. Returns the previous slot of each grain; `None` if nothing
+    /// changed.
     fn come_and_go(&mut self) -> Option<Vec<u32>> {
         let time = self.step as f64 * self.motion.time_step;
         let coming = self.entered..self.scene.stays.entered_by(time);
@@ -444,7 +453,7 @@ impl<S: Geometry> Simulated<S> {
         Some(slots)
     }
 
-    /// Fits the skin to how long the list has lasted.
+    /// Adjusts the skin to the number of steps for which the list has lasted.
     fn fit_skin(&mut self) {
         let Self { neighbours, grains, mean_radius, step, .. } = self;
         let pairs = neighbours.pairs();
@@ -453,7 +462,7 @@ impl<S: Geometry> Simulated<S> {
         neighbours.skin = skin::next(neighbours.skin, *mean_radius, of, S::DIMENSION);
     }
 
-    /// Lists the neighbours anew, after a look at every grain.
+    /// Rebuilds the neighbour list, after a check of every grain.
     fn rebuild(&mut self) -> Result<(), Box<Broken>> {
         self.refuse_broken_state()?;
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
@@ -503,7 +512,7 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
-    /// The largest radius of a grain that has a cell of the grid, and the radius above which none has (m).
+    /// Returns the largest radius of a grain in a cell of the grid, and the radius above which grains have no cell (m).
     fn radii_of_cells(&self) -> [f64; 2] {
         let limit = if self.scene.is_periodic() { f64::MAX } else { FAR_LARGER * self.mean_radius };
         if self.largest_radius <= limit {
@@ -513,8 +522,8 @@ impl<S: Geometry> Simulated<S> {
         [radii.filter(|radius| *radius <= limit).fold(0.0, f64::max), limit]
     }
 
-    /// Refuses a grain that comes where another one or a wall is: `slots` are those that grains had before, and those that come
-    /// had none.
+    /// Returns an error if an inserted grain overlaps another grain or a wall too much. `slots` holds the previous
+    /// slots, which are absent for inserted grains.
     fn refuse_crowded(&self, slots: &[u32]) -> Result<(), Box<Broken>> {
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
         for slot in (0..slots.len()).filter(|&slot| slots[slot] == ABSENT) {
@@ -539,8 +548,7 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
-    /// Refuses a state in which a position or velocity is not finite, or a grain moves by more than its radius in a
-    /// step.
+    /// Returns an error if a position or velocity is not finite, or if a grain moves by more than its radius in a step.
     fn refuse_broken_state(&self) -> Result<(), Box<Broken>> {
         for slot in 0..self.grains.len() {
             let (position, radius) = (self.grains.position(slot), self.grains.radius(slot));
@@ -557,7 +565,7 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
-    /// The error for a grain that broke the run, with advice about the time step.
+    /// Returns the error for a grain that broke the run, with advice on the time step.
     fn broken(&self, slot: usize, position: Vector3<f64>, cause: Cause) -> Box<Broken> {
         let stable = stable_fraction(&self.scene);
         let fraction = self.motion.time_step / self.critical;
@@ -586,8 +594,8 @@ impl<S: Geometry> Simulated<S> {
     }
 }
 
-/// Finds the forces of all pairs, and moves the grains while they are at hand, if they are to be moved. Gives the number of
-/// contacts and the speed of the fastest grain, squared (m²/s²).
+/// Computes the forces of all pairs. With `motion`, it moves each block of grains as soon as its forces are complete.
+/// Returns the number of contacts and the square of the largest speed (m²/s²).
 fn evaluate_and_move<S: Geometry>(
     whole: &mut Share,
     evaluation: &Evaluation<'_, S>,

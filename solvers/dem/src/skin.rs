@@ -1,32 +1,32 @@
-//! The skin of the neighbour list: how much farther than touch its pairs are looked for.
+//! Skin of the neighbour list: the gap up to which pairs are listed.
 //!
-//! The list holds until something has moved by half of the skin. A wider one is built anew less often and tests more pairs in
-//! vain at every step. With `P` pairs in the list of `N` grains, which was good for `n` steps, a step costs
+//! A list is valid until something has moved by half of the skin. With a wider skin, it is rebuilt less often, but each
+//! step tests more pairs without contact. For a list of `P` pairs of `N` grains that lasts `n` steps, a step costs
 //!
 //! ```text
 //! w(s) = P(s)·test + (N·grain + P·pair)/n(s)        P ∝ (2R + s)^d        n ∝ s
 //! ```
 //!
-//! whose least is where `P·test·d·s/(2R + s) = (N·grain + P·pair)/n`. The skin is never thinner than a tenth of a diameter: in a
-//! bed at rest, where the list is hardly ever built, that costs nothing that could be measured.
+//! The minimum is at `P·test·d·s/(2R + s) = (N·grain + P·pair)/n`. The skin is at least a tenth of a diameter. In a bed
+//! at rest, where the list is rarely rebuilt, the cost of this limit was not measurable.
 
-/// Thinnest and widest skin, in mean radii R.
+/// Smallest and largest skin, in mean radii R.
 const RANGE: [f64; 2] = [0.2, 1.0];
-/// What the list costs where it is built, for each grain and each pair, and what testing a pair costs (ns): measured with
-/// skins of .1 to .9 R on a gas, sheared discs and a bed. Only their ratios matter.
+/// Cost of building the list per grain and per pair, and cost of testing a pair (ns). They were measured with skins of
+/// .1 to .9 R on a gas, sheared discs and a bed. Only their ratios matter.
 const GRAIN: f64 = 45.0;
 const PAIR: f64 = 60.0;
 const TEST: f64 = 1.2;
-/// By what the skin is changed at once, where one of the two sides is more than so much larger.
+/// Factor by which the skin changes, if one side of the condition exceeds the other by more than this factor.
 const CHANGE: f64 = 1.2;
 
-/// The skin that a list begins with (m), of grains of a mean radius (m).
+/// Returns the first skin (m), from the mean radius of the grains (m).
 pub(crate) fn first(mean_radius: f64) -> f64 {
     RANGE[0] * mean_radius
 }
 
-/// The skin of the next list (m): of one with this skin (m) that held so many pairs of so many grains in `dimension` dimensions
-/// for so many steps.
+/// Returns the skin of the next list (m), from the skin of the previous list (m), its numbers of pairs and grains, and
+/// the steps for which it lasted.
 pub(crate) fn next(skin: f64, mean_radius: f64, [pairs, grains, steps]: [f64; 3], dimension: usize) -> f64 {
     let building = (grains * GRAIN + pairs * PAIR) / steps;
     let testing = pairs * TEST * dimension as f64 * skin / (2.0 * mean_radius + skin);
@@ -42,7 +42,7 @@ pub(crate) fn next(skin: f64, mean_radius: f64, [pairs, grains, steps]: [f64; 3]
 mod tests {
     use super::*;
 
-    /// The skin to which lists of discs come whose steps are given by how fast grains move, in steps a skin of a radius lasts.
+    /// Returns the final skin for discs, where a list with a skin of one radius lasts `lasts` steps.
     fn settled(lasts: f64) -> f64 {
         let mut skin = first(1.0);
         for _ in 0..100 {
@@ -52,7 +52,7 @@ mod tests {
         skin
     }
 
-    /// What a step costs (ns), as the head of the file has it.
+    /// Returns the cost of a step (ns) by the formula above.
     fn cost(skin: f64, lasts: f64) -> f64 {
         let pairs = 100.0 * (2.0 + skin) * (2.0 + skin);
         pairs * TEST + (100.0 * GRAIN + pairs * PAIR) / (lasts * skin)

@@ -1,4 +1,4 @@
-//! The discrete element method as a solver: it picks the kernel once, before the first step, and keeps the record.
+//! Discrete element method as a solver. It selects the kernel once, before the first step, and produces the record.
 
 use crate::contact::Options;
 use crate::contact::normal::{Hertz, HertzDashpot, Normal, Spring, SpringDashpot};
@@ -26,32 +26,32 @@ use grainbench_scene::solver::{Defect, Resolution, RunError, Solver, Watch};
 use grainbench_scene::space::{Plane, Solid};
 use grainbench_scene::terms::{Less, Terms};
 
-/// The discrete element method in one convention.
+/// Discrete element method in one convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dem {
-    /// The convention.
+    /// Convention.
     pub convention: Convention,
-    /// A defect, for negative controls only.
+    /// Defect, for negative controls only.
     pub defect: Option<Defect>,
-    /// Whether a run goes on where its time step is above the critical one of a contact.
+    /// True if a run continues although its time step exceeds the critical one of a contact.
     pub allow_unstable: bool,
 }
 
-/// Decomposition of velocities at the end of a step.
+/// Reason for limitations: decomposition of velocities at the end of a step.
 const END_OF_STEP: &str = "velocities are decomposed along the normal at the end of the step, and a wall that turns has the \
                            velocity of its place there: first order in ΩΔt";
 
-/// Properties that the letter of the 1979 paper does not have.
+/// Limitations of the 1979 paper as published.
 const OF_1979: &[Less] = &[
     Less { property: "objectivity", quantity: "place off in the end", at_most: 2e-3, because: END_OF_STEP },
     Less { property: "order", quantity: "order in the time step of the end", at_most: 1.0, because: END_OF_STEP },
 ];
 
-/// Rolling resistance at walls in the programs.
+/// Reason for limitations: rolling resistance at walls in LAMMPS and LIGGGHTS.
 const OWN_SPIN: &str = "the rolling stage at a wall takes the spin of the grain and not that relative to the wall, in \
                         LAMMPS and in LIGGGHTS: a wall that turns drives the grain";
 
-/// Properties that the programs behind two conventions do not have.
+/// Limitations of LAMMPS and LIGGGHTS.
 const OF_PROGRAMS: &[Less] = &[
     Less {
         property: "objectivity",
@@ -73,10 +73,10 @@ const OF_PROGRAMS: &[Less] = &[
 ];
 
 impl Dem {
-    /// Terms of the conventions that are no other program's.
+    /// Conformance properties of the default convention.
     pub const TERMS: Terms = Terms::SECOND_ORDER;
 
-    /// Terms of a convention.
+    /// Returns the conformance properties of the convention.
     #[must_use]
     pub const fn terms(&self) -> Terms {
         match (self.convention.history, self.convention.velocity_normal) {
@@ -86,36 +86,37 @@ impl Dem {
         }
     }
 
-    /// The method in a convention.
+    /// Creates the method in a convention.
     #[must_use]
     pub const fn new(convention: Convention) -> Self {
         Self { convention, defect: None, allow_unstable: false }
     }
 
-    /// The method with a defect, for negative controls.
+    /// Returns the method with a defect, for negative controls.
     #[must_use]
     pub const fn with_defect(self, defect: Defect) -> Self {
         Self { defect: Some(defect), ..self }
     }
 
-    /// The method that goes on where its time step is above the critical one of a contact.
+    /// Returns the method without the check of the time step against the critical one of contacts.
     #[must_use]
     pub const fn allowing_unstable_steps(self) -> Self {
         Self { allow_unstable: true, ..self }
     }
 
-    /// Sets up a scene with a time step (s), for callers who advance the simulation themselves.
+    /// Sets up a scene with a time step (s), for callers that advance the simulation themselves.
     ///
     /// # Errors
-    /// When the scene cannot be expressed or is broken from the start.
+    /// When the scene is not supported or its initial state is not valid.
     pub fn start(&self, scene: &Scene, time_step: f64) -> Result<Box<dyn Simulation>, RunError> {
         self.start_on(scene, time_step, 1, u64::MAX)
     }
 
-    /// The same, on so many threads at most, for who wants snapshots of so many rows of grains and contacts at most.
+    /// Sets up a scene on at most `threads` threads. Individual contacts are recorded for at most `most_rows` rows of
+    /// grains and contacts.
     ///
     /// # Errors
-    /// When the scene cannot be expressed or is broken from the start.
+    /// When the scene is not supported or its initial state is not valid.
     pub fn start_on(
         &self,
         scene: &Scene,
@@ -152,13 +153,13 @@ impl Dem {
         Ok(Box::new(simulated))
     }
 
-    /// The run that a checkpoint belongs to.
+    /// Returns the run to which a checkpoint belongs.
     fn run_of<'a>(&self, scene: &'a Scene, time_step: f64, steps: u64, layout: &'static str) -> Run<'a> {
         let solver = format!("{} ({})", self.name(), self.convention.words().join(", "));
         Run { solver, scene, time_step, steps, layout }
     }
 
-    /// Refuses a scene that rigid grains on springs cannot express.
+    /// Rejects a scene that cannot be run with rigid grains on springs.
     fn refuse(&self, scene: &Scene) -> Result<(), RunError> {
         let unsupported = |reason: String| Err(RunError::Unsupported { solver: self.name(), reason });
         if let Some(what) = scene.needs_deformable() {
@@ -173,8 +174,8 @@ impl Dem {
         Ok(())
     }
 
-    /// Refuses a time step (s) at which springs alone are stable and dashpots are not. A dashpot near or above critical
-    /// damping then brings energy in, and the run would go on as if nothing were wrong.
+    /// Rejects a time step (s) at which springs are stable but dashpots are not. A dashpot near or above critical
+    /// damping then supplies energy, without any other sign of failure.
     fn refuse_lagging_dashpots(&self, scene: &Scene, time_step: f64) -> Result<(), RunError> {
         let (damped, undamped) = damped_step(scene, &self.convention);
         if time_step > damped && time_step <= undamped {
@@ -189,7 +190,7 @@ impl Dem {
         RunError::Resolution { solver: self.name(), reason }
     }
 
-    /// Time step (s) and number of steps.
+    /// Returns the time step (s) and the number of steps.
     fn steps(&self, scene: &Scene, resolution: &Resolution) -> Result<(f64, u64), RunError> {
         resolution.steps(scene).map_err(|reason| self.resolution_error(reason))
     }
@@ -243,7 +244,7 @@ impl Dem {
     }
 }
 
-/// The loops over contacts in the plane, for the effects that a scene calls for in a convention.
+/// Returns the loops over contacts in the plane, for the effects of a scene and a convention.
 pub(crate) fn plane(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Plane>> {
     match convention.history {
         History::Turned => chain::<Plane, Coulomb<Turned>>(scene),
@@ -251,7 +252,7 @@ pub(crate) fn plane(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Pl
     }
 }
 
-/// The loops over contacts in space.
+/// Returns the loops over contacts in space.
 pub(crate) fn solid(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Solid>> {
     match convention.history {
         History::Turned => chain::<Solid, Coulomb<Turned>>(scene),
@@ -259,7 +260,7 @@ pub(crate) fn solid(scene: &Scene, convention: &Convention) -> Box<dyn Forces<So
     }
 }
 
-/// The loops over contacts for the effects that a scene calls for, with `T` where it has friction.
+/// Returns the loops over contacts for the effects of a scene, with `T` if it has friction.
 fn chain<S: Geometry, T: Tangential<S>>(scene: &Scene) -> Box<dyn Forces<S>> {
     let effects = Effects::of(scene);
     // All laws of a scene that have springs are of one kind.
@@ -273,7 +274,7 @@ fn chain<S: Geometry, T: Tangential<S>>(scene: &Scene) -> Box<dyn Forces<S>> {
     }
 }
 
-/// The stages after a normal stage.
+/// Adds the stages that follow a normal stage.
 fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn Forces<S>> {
     match (effects.friction, effects.rolling_resistance) {
         (false, _) => Box::new(Chain::<S, N, Frictionless, FreeRolling>::new()),
@@ -282,7 +283,7 @@ fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn 
     }
 }
 
-/// A simulation under way.
+/// Running simulation.
 struct Running<'a> {
     simulation: Box<dyn Simulation>,
     run: Run<'a>,
@@ -336,5 +337,5 @@ impl Stepper for Running<'_> {
     }
 }
 
-/// Largest number of steps between two reports of progress.
+/// Largest number of steps between two progress reports.
 const STEPS_BETWEEN_PROGRESS: u64 = 20_000;

@@ -1,4 +1,4 @@
-//! How large a step any packing of equal grains bears.
+//! Stable time steps of packings of equal grains and of damped contacts.
 
 use crate::contact::Options;
 use crate::convention::Convention;
@@ -6,11 +6,11 @@ use crate::laws::damping_ratio;
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::{Dimension, Scene};
 
-/// A fraction of the critical step `2√(m/k_n)` at which no packing of equal grains is unstable.
+/// Returns a fraction of the critical step `2√(m/k_n)` at which every packing of equal grains is stable.
 ///
-/// Bound on the largest frequency of a grain with `z` contacts between neighbours that move against it: ω² ≤ z (k_n/m)
-/// (1 + κ(1 + mR²/I)), κ = k_s/k_n, hence f = 2/(ω · 2√(m/k_n)) = 1/√(z(1 + κ(1 + mR²/I))), with z = 6 for discs and 12
-/// for spheres. For the square lattice (z = 4) it is exact at κ = 0 and κ = 1.
+/// It bounds the largest frequency of a grain with `z` contacts whose neighbours move against it: ω² ≤ z (k_n/m) (1 +
+/// κ(1 + mR²/I)), κ = k_s/k_n. Hence f = 2/(ω · 2√(m/k_n)) = 1/√(z(1 + κ(1 + mR²/I))), with z = 6 for discs and z = 12
+/// for spheres. For the square lattice (z = 4), the bound is exact at κ = 0 and κ = 1.
 #[must_use]
 pub fn stable_fraction(scene: &Scene) -> f64 {
     let contacts = match scene.dimension {
@@ -25,15 +25,16 @@ pub fn stable_fraction(scene: &Scene) -> f64 {
     1.0 / (contacts * (1.0 + worst * (1.0 + 1.0 / scene.grain_shape.inertia_factor()))).sqrt()
 }
 
-/// The largest step (s) at which a dashpot at a single contact is stable in a convention, and the largest without the dashpot,
-/// of the contact that bears least; both infinite where nothing is damped.
+/// Returns the largest step (s) at which a dashpot at a single contact is stable in a convention, and the largest step
+/// (s) without the dashpot. Both refer to the contact with the smallest stable step, and are infinite without damping.
 ///
-/// The dashpot feels the velocity of half a step before: λ² − (2 − θ² − 2ζθ)λ + 1 − 2ζθ = 0 with θ = ωΔt, ω² = k/m* and
-/// ζ = c/(2√(k m*)) reaches λ = −1 at θ = 2(√(1 + ζ²) − ζ), half of the undamped limit 2 already at ζ = 3/4.
+/// The dashpot uses the velocity of half a step before. The equation λ² − (2 − θ² − 2ζθ)λ + 1 − 2ζθ = 0 with θ = ωΔt,
+/// ω² = k/m* and ζ = c/(2√(k m*)) reaches λ = −1 at θ = 2(√(1 + ζ²) − ζ). For ζ = 3/4, this is half of the undamped
+/// limit 2.
 #[must_use]
 pub fn damped_step(scene: &Scene, convention: &Convention) -> (f64, f64) {
     let options = Options::of(convention);
-    // The lightest grains of every material.
+    // The two lightest grains of every material.
     let mut lightest = vec![[f64::INFINITY; 2]; scene.materials.len()];
     for grain in &scene.grains {
         let [first, second] = &mut lightest[usize::from(grain.material)];

@@ -1,6 +1,7 @@
-//! What a simulation must remember between two steps so that it goes on to the same bits.
+//! State of a simulation between two steps, from which it continues bit for bit.
 //!
-//! The order of the pairs in the neighbour list is stored too: the sums of forces depend on it in their last bit.
+//! The order of the pairs in the neighbour list is part of the state, because it affects the last bit of the force
+//! sums.
 
 use crate::accounts::Accounts;
 use crate::geometry::Geometry;
@@ -14,7 +15,7 @@ use grainbench_scene::record::Counts;
 use grainbench_scene::recorder::Recorder;
 use serde::{Deserialize, Serialize};
 
-/// What is stored. The order of the fields is that of the bytes in a checkpoint.
+/// Stored state. The order of the fields is the order of the bytes in a checkpoint.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 struct State<S: Geometry> {
@@ -31,7 +32,7 @@ struct State<S: Geometry> {
 }
 
 impl<S: Geometry> Simulated<S> {
-    /// A checkpoint of the state after the last step, with the record so far.
+    /// Returns a checkpoint of the state after the last step, with the record so far.
     pub(crate) fn kept(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
         let state = State::<S> {
             grains: self.grains.clone(),
@@ -48,7 +49,7 @@ impl<S: Geometry> Simulated<S> {
         Checkpoint::keep(identity, self.step, &state)
     }
 
-    /// Goes to the state of a checkpoint, and gives the record so far.
+    /// Restores the state of a checkpoint, and returns the record so far.
     pub(crate) fn recalled(
         &mut self,
         identity: &RunIdentity,
@@ -73,7 +74,7 @@ impl<S: Geometry> Simulated<S> {
         self.neighbours = state.neighbours.in_shares(self.shares());
         self.walls.iter_mut().zip(state.walls).for_each(|(wall, memory)| wall.recall(memory));
         self.step = state.step;
-        // Not stored: it is found anew.
+        // Not stored; infinity makes the next cycle compute it.
         self.travelled = f64::INFINITY;
         self.extent = state.extent;
         self.cost = state.cost;

@@ -1,5 +1,4 @@
-//! The pairs that touch, picked from those that are listed: what laws are computed for, as many at a time as registers
-//! hold.
+//! Selection of the listed pairs in contact, for which laws are evaluated; as many at a time as a register holds.
 
 use crate::geometry::{Geometry, Linear};
 use crate::laws::{between, gathered, places};
@@ -8,33 +7,33 @@ use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, WIDEST};
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// The blocks of so many listed pairs.
+/// Returns the blocks of a number of listed pairs.
 pub(crate) fn blocks(pairs: usize) -> impl Iterator<Item = Range<usize>> {
     (0..pairs).step_by(BLOCK).map(move |from| from..(from + BLOCK).min(pairs))
 }
 
-/// Pairs that touch, in the order of the list.
+/// Pairs in contact, in the order of the list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touching {
-    /// How many.
+    /// Number of pairs.
     pub(crate) count: usize,
-    /// Slot of the first grain of each, its row in the list. Filled up beyond the last so that a register can be.
+    /// Slot of the first grain of each pair, its row in the list. Padded after the last pair so that a register can be
+    /// filled.
     pub(crate) first: Vec<u32>,
-    /// Slot of the second grain of each.
+    /// Slot of the second grain of each pair.
     pub(crate) second: Vec<u32>,
-    /// Number of each in the list, only where the list has shifts.
+    /// Index of each pair in the list; only for lists with shifts.
     pub(crate) pair: Vec<u32>,
-    /// Whether they are those that touched when they were looked at last.
+    /// True if the same pairs were in contact at the last evaluation.
     pub(crate) steady: bool,
-    /// What each remembers: its place in the memory of the block as it was before, the first, which is nothing, for a new
-    /// contact.
+    /// For each contact, its index in the previous history of the block; 0 for a new contact.
     pub(crate) remembered: Vec<u32>,
-    /// The memory of the block as it was before, where it is made anew.
+    /// Previous history of the block, if the history is rebuilt.
     pub(crate) before: Remembered,
 }
 
 impl Touching {
-    /// Finds those of a block of listed pairs that touch; the block follows the last, or is the first.
+    /// Finds the pairs in contact of a block of listed pairs. Blocks must be processed in order.
     pub(crate) fn find<S: Geometry>(
         &mut self,
         processor: Processor,
@@ -55,7 +54,7 @@ impl Touching {
     }
 }
 
-/// The loop over listed pairs.
+/// Loop over listed pairs.
 struct Find<'a, S: Geometry> {
     place: &'a [Quad],
     pairs: &'a mut Pairs,
@@ -120,7 +119,7 @@ impl<S: Geometry> Kernel for Find<'_, S> {
     }
 }
 
-/// Whole numbers from one on.
+/// Fills with consecutive integers.
 #[inline(always)]
 fn count_up(numbers: &mut [u32], from: usize) {
     for (lane, number) in numbers.iter_mut().enumerate() {
@@ -128,10 +127,10 @@ fn count_up(numbers: &mut [u32], from: usize) {
     }
 }
 
-/// Eight bits.
+/// Mask of eight bits.
 const ALL: u32 = 255;
 
-/// Eight whole numbers of a row, from a place on.
+/// Returns eight integers of a row, from an index.
 #[inline(always)]
 fn eight(of: &[u32], from: usize) -> [u32; WIDEST] {
     let mut eight = [0; WIDEST];

@@ -1,4 +1,4 @@
-//! Walls in motion: where they are at a step, how they moved over it, and which grains are near.
+//! Moving walls: their position at a step, their motion over it, and nearby grains.
 
 use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;
@@ -11,14 +11,14 @@ use grainbench_scene::scene::{Piston, Wall, WallShape};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Slots or ids of grains near a wall, and what their contacts remember.
+/// Slots or ids of grains near a wall, with their contact history.
 pub(crate) type NearWall = Vec<(u32, Memory<f64>)>;
 
-/// A wall during the run.
+/// Wall during the run.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingWall {
     wall: Wall,
-    /// Shape now.
+    /// Present shape.
     pub(crate) shape: WallShape,
     centre: Vector3<f64>,
     displacement: Displacement,
@@ -26,23 +26,23 @@ pub(crate) struct MovingWall {
     /// Mean velocity over the last step (m/s), and spin (rad/s) about the centre.
     velocity: Vector3<f64>,
     spin: Vector3<f64>,
-    /// Whether the velocity of a point is its mean over the last step, and not that of its place at the end of it.
+    /// True if the velocity of a point is its mean over the last step; otherwise it is that at the end of the step.
     mid_step: bool,
     /// Factors c₁ and c₂ (s) of the velocity V + c₁ Ω×r − c₂ Ω×(Ω×r) at r from the centre.
     swing: [f64; 2],
-    /// The grains near the wall, by slot.
+    /// Grains near the wall, by slot.
     pub(crate) near: NearWall,
-    /// What a mesh knows of them instead.
+    /// Nearby grains of a mesh, which replace `near`.
     pub(crate) at_mesh: AtMesh,
     /// Force of the grains on the wall in the last force evaluation (N).
     pub(crate) force: Vector3<f64>,
-    /// How far it has been pressed along its normal (m), and its speed half a step ago (m/s).
+    /// Displacement of a pressed wall along its normal (m), and its speed half a step before (m/s).
     pressed: [f64; 2],
-    /// Whether it has been taken away.
+    /// True if the wall has been removed.
     gone: bool,
 }
 
-/// What a wall must remember between two steps; the rest follows from its motion.
+/// State of a wall between two steps; everything else follows from its motion.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct WallMemory {
     displacement: Displacement,
@@ -55,7 +55,7 @@ pub(crate) struct WallMemory {
 }
 
 impl WallMemory {
-    /// Whether it remembers none but so many grains, of this wall.
+    /// Returns true if the state fits this wall and the number of grains.
     pub(crate) fn is_of(&self, grains: usize, wall: &MovingWall) -> bool {
         let of_mesh = match wall.mesh() {
             Some(mesh) => self.near.is_empty() && self.at_mesh.is_of(grains, mesh),
@@ -65,18 +65,19 @@ impl WallMemory {
     }
 }
 
-/// What a grain sees of a wall.
+/// Wall as seen from a grain.
 pub(crate) struct Facing {
     /// Unit vector from the grain to the wall.
     pub(crate) normal: Vector3<f64>,
     /// Distance from the grain's centre to the wall (m), negative inside the solid of a plane.
     pub(crate) distance: f64,
-    /// Velocity of the wall there (m/s).
+    /// Velocity of the wall at the nearest point (m/s).
     pub(crate) velocity: Vector3<f64>,
 }
 
 impl MovingWall {
-    /// The wall at its start, with velocities of mid-step or of the end of a step.
+    /// Creates the wall at its initial position. With `mid_step`, velocities are means over a step, otherwise those at
+    /// its end.
     pub(crate) fn new(wall: &Wall, mid_step: bool) -> Self {
         let rest = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
         Self {
@@ -101,22 +102,22 @@ impl MovingWall {
         self.wall.material
     }
 
-    /// Mean velocity of its centre over the last step (m/s).
+    /// Returns the mean velocity of the centre over the last step (m/s).
     pub(crate) fn velocity(&self) -> Vector3<f64> {
         self.velocity
     }
 
-    /// Its triangles, where it is a mesh.
+    /// Returns the mesh; `None` for other walls.
     pub(crate) fn mesh(&self) -> Option<&Mesh> {
         if let WallShape::Mesh(mesh) = &self.shape { Some(mesh) } else { None }
     }
 
-    /// Number of pairs of a grain and a part of it that are near.
+    /// Returns the number of listed pairs of a grain and the wall, or of a grain and a triangle.
     pub(crate) fn pairs(&self) -> usize {
         self.near.len() + self.at_mesh.pairs()
     }
 
-    /// Forgets what every contact remembers.
+    /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
         self.near.iter_mut().for_each(|(_, memory)| *memory = [0.0; MEMORY]);
         self.at_mesh.forget();
@@ -126,7 +127,7 @@ impl MovingWall {
         &self.wall.name
     }
 
-    /// What it must remember between two steps.
+    /// Returns the state between two steps.
     pub(crate) fn memory(&self) -> WallMemory {
         WallMemory {
             displacement: self.displacement,
@@ -139,7 +140,7 @@ impl MovingWall {
         }
     }
 
-    /// Takes up what it remembered.
+    /// Restores the state between two steps.
     pub(crate) fn recall(&mut self, memory: WallMemory) {
         if self.displacement != memory.displacement {
             self.displaced_to(memory.displacement);
@@ -150,33 +151,34 @@ impl MovingWall {
         (self.pressed, self.gone) = (memory.pressed, memory.gone);
     }
 
-    /// Whether it has been taken away.
+    /// Returns true if the wall has been removed.
     pub(crate) fn is_gone(&self) -> bool {
         self.gone
     }
 
-    /// Takes it away where it is time (s). Gives whether that is now.
+    /// Removes the wall if its time (s) has come. Returns true if it is removed now.
     pub(crate) fn take_away(&mut self, time: f64) -> bool {
         let now = !self.gone && self.wall.until.is_some_and(|until| time >= until * (1.0 - 1e-9));
         self.gone |= now;
         now
     }
 
-    /// What presses it, the acceleration along its normal that this and the grains give it (m/s²), and the normal.
+    /// Returns the piston, the acceleration along the normal due to piston and grains (m/s²), and the normal; `None`
+    /// without a piston.
     fn pressure(&self) -> Option<(Piston, f64, Vector3<f64>)> {
         let (Some(piston), WallShape::Plane { normal, .. }) = (self.wall.piston, &self.shape) else { return None };
         Some((piston, (piston.force + self.force.dot(normal)) / piston.mass, *normal))
     }
 
-    /// Takes the speed of a wall that is pressed, and at rest, to half a step before the start.
+    /// Sets the speed of a pressed wall at rest to its value half a step before the start.
     pub(crate) fn step_back_half(&mut self, time_step: f64) {
         if let Some((_, acceleration, _)) = self.pressure() {
             self.pressed[1] = -0.5 * acceleration * time_step;
         }
     }
 
-    /// Moves the wall to where it is at `time`, one step after the last call: a wall that is pressed by the force that the
-    /// grains had on it then, as grains are.
+    /// Moves the wall to its position at `time`, one step after the last call. A pressed wall moves by the force that
+    /// the grains exerted on it at that call, like a grain.
     pub(crate) fn move_to(&mut self, time: f64, time_step: f64) {
         let motion = &self.wall.motion;
         let pressure = self.pressure();
@@ -204,20 +206,21 @@ impl MovingWall {
         self.shape = self.wall.shape.moved(motion, &displacement);
     }
 
-    /// Bound on how far any part of the wall within `extent` (m) of its centre has moved since the list was made.
+    /// Returns an upper bound of the displacement (m) since the list was built, for parts within `extent` (m) of the
+    /// centre.
     pub(crate) fn moved_since_list(&self, extent: f64) -> f64 {
         let translation = (self.displacement.translation - self.at_list.translation).norm();
         translation + (self.displacement.rotation - self.at_list.rotation).norm() * extent
     }
 
-    /// Takes note that the list of near grains is made now.
+    /// Starts a new list of nearby grains at the present position.
     pub(crate) fn begin_list(&mut self) {
         self.at_list = self.displacement;
         self.near.clear();
     }
 
-    /// Lists the triangles near each grain, where it is a mesh, for grains that had these ids in order of slots before. Gives
-    /// whether it is one.
+    /// Lists the triangles near each grain, if the wall is a mesh. `ids` are the ids of the grains in the previous
+    /// order of slots. Returns false for other walls.
     pub(crate) fn list_triangles<S: Geometry>(&mut self, grains: &Grains<S>, ids: &[u32], skin: f64) -> bool {
         if self.mesh().is_none() {
             return false;
@@ -236,13 +239,14 @@ impl MovingWall {
             held.slot = grains.slot[id as usize];
             held.slot != ABSENT
         });
-        // Those of a grain stay in their order.
+        // The sort is stable, so contacts of a grain keep their order.
         held.sort_by_key(|held| held.slot);
         self.at_mesh.held = held;
         true
     }
 
-    /// Slot of every grain that is near, and its distance from the wall (m); of a mesh every contact of the last evaluation.
+    /// Returns the slot of each nearby grain and its distance from the wall (m). For a mesh, these are the contacts of
+    /// the last evaluation.
     pub(crate) fn distances<S: Geometry>(&self, grains: &Grains<S>) -> impl Iterator<Item = (usize, f64)> {
         let near = self.near.iter().map(|&(slot, _)| {
             let slot = slot as usize;
@@ -257,12 +261,12 @@ impl MovingWall {
         near.chain(held)
     }
 
-    /// Distance from a point to the wall's centre of rotation (m).
+    /// Returns the distance from a point to the wall's centre of rotation (m).
     pub(crate) fn distance_to_centre(&self, point: Vector3<f64>) -> f64 {
         (point - self.centre).norm()
     }
 
-    /// The wall as a grain at `position` sees it.
+    /// Returns the wall as seen from a grain at `at`.
     #[inline(always)]
     pub(crate) fn facing(&self, at: Vector3<f64>) -> Facing {
         let (nearest, normal, distance) = match &self.shape {
@@ -278,13 +282,13 @@ impl MovingWall {
         Facing { normal, distance, velocity: self.velocity_at(nearest) }
     }
 
-    /// What a grain at `position` sees of a part of the mesh that it touches.
+    /// Returns the mesh part of a contact as seen from a grain at `at`.
     pub(crate) fn facing_part(&self, mesh: &Mesh, at: Vector3<f64>, touched: &Touched) -> Facing {
         let normal = mesh.turn * touched.direction;
         Facing { normal, distance: touched.distance, velocity: self.velocity_at(at + normal * touched.distance) }
     }
 
-    /// Velocity at a point of it (m/s).
+    /// Returns the velocity at a point of the wall (m/s).
     #[inline(always)]
     fn velocity_at(&self, point: Vector3<f64>) -> Vector3<f64> {
         let [turning, inward] = self.swing;
@@ -292,14 +296,15 @@ impl MovingWall {
         self.velocity + around * turning - self.spin.cross(&around) * inward
     }
 
-    /// Angular velocity over the last step (rad/s).
+    /// Returns the angular velocity over the last step (rad/s).
     pub(crate) fn spin(&self) -> Vector3<f64> {
         self.spin
     }
 }
 
-/// The factors of a velocity that is the mean over a step Δt (s) in which a wall turns by θ (rad), c₁ = sin θ/θ and
-/// c₂ = Δt (1 − cos θ)/θ²: those of (r − r₀)/Δt, where r₀ = r − sin θ n×r + (1 − cos θ) n×(n×r) is turned back by θ about n.
+/// Returns the factors of the mean velocity over a step Δt (s) in which a wall rotates by θ (rad): c₁ = sin θ/θ and
+/// c₂ = Δt (1 − cos θ)/θ². They follow from (r − r₀)/Δt, where r₀ = r − sin θ n×r + (1 − cos θ) n×(n×r) is r rotated
+/// back by θ about n.
 fn swing(angle: f64, time_step: f64, mid_step: bool) -> [f64; 2] {
     if !mid_step || angle == 0.0 {
         return [1.0, 0.0];

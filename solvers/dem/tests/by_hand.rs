@@ -1,5 +1,5 @@
-//! Forces, moments and energies worked out by hand. Most are of grains so heavy that nothing moves them: what a contact
-//! answers to a prescribed motion is then exact to rounding, of the time step too.
+//! Forces, moments and energies computed by hand. Most grains are so heavy that forces do not move them. The response
+//! of a contact to a prescribed motion is then exact to rounding, including the effect of the time step.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -15,12 +15,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 use support::{column, last, run, run_at};
 
-/// Ten significant digits: sums of some thousand steps lose no more than three of sixteen, differences of lengths with
-/// an overlap of a tenth one.
+/// Ten significant digits. Sums over some thousand steps lose at most three of sixteen digits, and differences of
+/// lengths with an overlap of a tenth lose one.
 const ROUNDING: f64 = 1e-10;
 
-/// A grain of a material that is 1e17 times as heavy as water, on stiff springs (N/m) with a dashpot (s), that hold
-/// whatever shear there is.
+/// Material 1e17 times as dense as water, with stiff springs (N/m) and a dashpot (s). Its friction holds any shear
+/// force.
 const HEAVY: &str = "materials.h.density = 1.0e20\n\
     contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 1.0e3, \
     stiffness_damping = 0.02 }\n";
@@ -41,13 +41,14 @@ fn closely(found: Vector3<f64>, expected: Vector3<f64>) {
     assert!((found - expected).norm() <= ROUNDING * expected.norm(), "{found:?} for {expected:?}");
 }
 
-/// A stretched spring is swung by a quarter turn with the contact that it belongs to: a wall turns about the centre of a
-/// sphere that turns along with it, so that nothing slips. F_s keeps its length and stays perpendicular to the normal.
+/// A displaced spring rotates by a quarter turn with its contact: a wall rotates about the centre of a sphere that
+/// rotates without slip. F_s keeps its length and stays perpendicular to the normal.
 ///
-/// The wall is d = .45 m from the centre and the radius R is .5 m: surfaces move alike when the sphere turns at d/R = .9
-/// of the wall's rate. A hundredth of a second of .1 rad/s more stretches the spring by s = .1 · .45 · .01 m, less the part
-/// (3/24) (ω Δt)² of it by which a chord is shorter than its arc. A spring that turns keeps it; where its normal part is taken
-/// off in every of N steps cos^N(π/2N) of it stays: 1 − π²/(8N), and less for what came later.
+/// The wall is d = .45 m from the centre, and the radius R is .5 m. The surfaces move together if the sphere rotates at
+/// d/R = .9 of the wall's rate. An additional .1 rad/s during .01 s displaces the spring by s = .1 · .45 · .01 m, less
+/// the fraction (3/24) (ω Δt)² by which a chord is shorter than its arc. A spring that rotates keeps this displacement.
+/// If the normal part is removed in each of N steps, a fraction cos^N(π/2N) remains: 1 − π²/(8N), and more for
+/// displacement that was added later.
 #[test]
 fn a_stretched_spring_swings_with_its_contact() {
     let steps = 1000;
@@ -65,8 +66,8 @@ fn a_stretched_spring_swings_with_its_contact() {
     for convention in [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS] {
         let record = run_at(&text, convention, &Resolution::TimeStep(1e-3));
         let contact = end(&record).told_contacts()[0];
-        // From the sphere to the wall: −y at the start, +x after the quarter turn. The wall went along +x first and
-        // drags the sphere with it; that has become +y.
+        // The normal points from the sphere to the wall: −y at the start, +x after the quarter turn. The wall first
+        // moved along +x and drags the sphere with it; this direction has become +y.
         assert!((contact.normal - Vector3::x()).norm() < ROUNDING, "{convention}: {:?}", contact.normal);
         let force = 5.0e5 * 0.1 * 0.45 * 0.01;
         assert!(contact.shear_force.dot(&contact.normal).abs() < ROUNDING * force, "{:?}", contact.shear_force);
@@ -76,8 +77,8 @@ fn a_stretched_spring_swings_with_its_contact() {
     }
 }
 
-/// A paddle that turns about its end meets a disc at rest: F_n = k δ + β k v with v = ω l, l the distance along the paddle
-/// from its end to the disc. Turned away from it, it pulls on its dashpot.
+/// A paddle rotates about its end and is in contact with a disc at rest: F_n = k δ + β k v with v = ω l, where l is the
+/// distance along the paddle from its end to the disc. If it rotates away from the disc, its dashpot pulls.
 #[test]
 fn a_paddle_feels_its_dashpot_by_its_velocity_where_it_touches() {
     for spin in [0.5, -0.5] {
@@ -94,11 +95,11 @@ fn a_paddle_feels_its_dashpot_by_its_velocity_where_it_touches() {
     }
 }
 
-/// A paddle that comes from afar is felt when it comes, though nothing else moves: what is near it is looked for anew when it
-/// may have turned so far, whether the grain is .05 m from the axis about which it turns or 3 m.
+/// A distant paddle comes into contact although nothing else moves. The neighbours of the paddle must be updated when
+/// it may have rotated far enough, for a grain at .05 m or at 3 m from the axis of rotation.
 ///
-/// The near end P of the paddle passes the disc at an angle of .3 rad before the end of its turn, or its side does: F_n = k δ +
-/// β k u·n with n from the nearest point P to the disc and u = ω e_z × P its velocity.
+/// Either the near end P of the paddle passes the disc at an angle of .3 rad before the end of its rotation, or its
+/// side does: F_n = k δ + β k u·n with n from the nearest point P to the disc and its velocity u = ω e_z × P.
 #[test]
 fn a_paddle_that_comes_from_afar_is_felt() {
     for (grain, ends, angle) in
@@ -129,9 +130,9 @@ fn a_paddle_that_comes_from_afar_is_felt() {
     }
 }
 
-/// A turntable of .3 rad/s under a sphere at rest, 1 m beside its axis: it moves by ω × r = .3 m/s along y there, drags the
-/// sphere along +y by the dashpot β k_s ω r and the spring k_s ω r n Δt, and feels the same backwards. The spring turns with the
-/// mean spin of both, ω/2: what it was stretched by j steps ago has turned by j ω Δt/2.
+/// A turntable rotates at .3 rad/s under a sphere at rest, 1 m from its axis, where it moves by ω × r = .3 m/s along y.
+/// It drags the sphere along +y by the dashpot β k_s ω r and the spring k_s ω r n Δt, and receives the opposite force.
+/// The spring rotates with the mean spin of both bodies, ω/2: a displacement of j steps ago has rotated by j ω Δt/2.
 #[test]
 fn a_turntable_drags_by_its_velocity_where_it_touches() {
     let record = heavy(
@@ -147,12 +148,12 @@ fn a_turntable_drags_by_its_velocity_where_it_touches() {
     let expected = Vector3::new(-drag * back * 1e-4, drag * (0.02 + along * 1e-4), 1.0e6 * 0.005);
     closely(end(&record).grains[0].force.unwrap(), expected);
     closely(end(&record).walls[0].force.unwrap(), -expected);
-    // R e × F_s with e = −z, R = .1 m: the sphere is made to turn about +x.
+    // R e × F_s with e = −z, R = .1 m: the torque starts a rotation of the sphere about +x.
     closely(end(&record).grains[0].torque.unwrap(), Vector3::new(0.1 * expected.y, -0.1 * expected.x, 0.0));
 }
 
-/// A belt under a disc that does not move stretches the spring by V t: F_s = k_s V (β + t). One that is a hundredth faster
-/// is told from it.
+/// A belt under a fixed disc displaces the spring by V t: F_s = k_s V (β + t). The test resolves a belt that is a
+/// hundredth faster.
 #[test]
 fn a_belt_stretches_its_spring_by_its_way() {
     let force = |speed: f64| {
@@ -172,12 +173,12 @@ fn a_belt_stretches_its_spring_by_its_way() {
     close(force(1.01 * 0.25), 1.01 * expected);
 }
 
-/// Newton's law for a rolling grain, from snapshots alone: between two of them v and ω change by the mean of the forces and
-/// of the moments, m (v' − v) = ½ (F + F') Δt + m g Δt and I (ω' − ω) = ½ (M + M') Δt, exactly so where velocities stand
-/// half a step between positions. At the contact with a plane below, M = R F_x about z.
+/// Newton's law for a rolling grain, from snapshots alone. Between two snapshots, v and ω change by the mean of the
+/// forces and moments: m (v' − v) = ½ (F + F') Δt + m g Δt and I (ω' − ω) = ½ (M + M') Δt. This is exact if velocities
+/// are half a step apart from positions. At the contact with a plane below, M = R F_x about z.
 #[test]
 fn grains_turn_by_the_moments_that_snapshots_show() {
-    // Discs have ½ m R² and π R² ρ, spheres ⅖ m R² and 4/3 π R³ ρ: R = .1 m, ρ = 1000 kg/m³.
+    // Discs have I = ½ m R² and m = π R² ρ, spheres I = ⅖ m R² and m = 4/3 π R³ ρ, with R = .1 m and ρ = 1000 kg/m³.
     let (disc, sphere) = (31.415_926_535_897_93, 4.188_790_204_786_391);
     let kinds = [
         (2, "disc", disc, 0.157_079_632_679_489_66),
@@ -220,8 +221,8 @@ fn grains_turn_by_the_moments_that_snapshots_show() {
     }
 }
 
-/// ½ I ω² of a grain that spins freely, in the energies of the system and in the budget: of a disc of .1 m and 1000 kg/m³
-/// at 3 rad/s, ½ · .15708 · 9 = .70686 J; of a sphere at (1, −2, 2) rad/s ½ · .0167552 · 9 = .0753982 J.
+/// The energy ½ I ω² of a freely spinning grain, in the system energies and in the budget. A disc of .1 m and 1000
+/// kg/m³ at 3 rad/s has ½ · .15708 · 9 = .70686 J; a sphere at (1, −2, 2) rad/s has ½ · .0167552 · 9 = .0753982 J.
 #[test]
 fn spinning_grains_have_their_energy() {
     for (dimension, position, spin, energy) in [
@@ -242,8 +243,8 @@ fn spinning_grains_have_their_energy() {
     }
 }
 
-/// At an end of a segment, and at the edges and corners of a rectangle, a grain is pushed along the line from the nearest
-/// point to its centre: (3, 4)/5 of k δ, and (2, 3, 6)/7 of it; δ = .01 m.
+/// At the end of a segment, and at edges and corners of a rectangle, the force on a grain acts along the line from the
+/// nearest point to its centre: (3, 4)/5 of k δ, and (2, 3, 6)/7 of k δ, with δ = .01 m.
 #[test]
 fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
     let force = |dimension: u8, wall: &str, position: &str, radius: f64| {
@@ -263,8 +264,9 @@ fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
     closely(force(3, rectangle, "[0.4, 2.3, -0.4]", 0.51), Vector3::new(0.0, 6e3, -8e3));
 }
 
-/// The three dashpots of a linear contact add up, F_n = k δ + (β k + γ m* + 2ζ √(k m*)) δ̇, between grains and at a wall: m* of
-/// discs of .1 m and 1000 and 3000 kg/m³ is 7.5 π kg, that of one at a wall 10 π kg; e = .5 has ζ = ln 2/√(π² + ln² 2).
+/// The three dashpots of a linear contact add up, F_n = k δ + (β k + γ m* + 2ζ √(k m*)) δ̇, between grains and at a
+/// wall. For discs of .1 m with 1000 and 3000 kg/m³, m* = 7.5 π kg; at a wall, m* = 10 π kg. For e = .5, ζ = ln 2/√(π²
+/// + ln² 2).
 #[test]
 fn dashpots_add_up() {
     let ratio = 2.0_f64.ln() / (PI * PI + 2.0_f64.ln().powi(2)).sqrt();
@@ -285,15 +287,16 @@ fn dashpots_add_up() {
         let (force, step) = (column(&record, "c.normal_force"), record.provenance.time_step);
         let dashpot = 1.0e-4 * 1.0e6 + 30.0 * mass + 2.0 * ratio * (1.0e6 * mass).sqrt();
         let expected = 1.0e6 * overlap[2] + dashpot * (overlap[2] - overlap[1]) / step;
-        // Of the difference of two overlaps of a millimetre, a step of some 1e-4 m apart, five digits less are left.
+        // The rate is the difference of two overlaps of 1 mm, which differ by about 1e-4 m per step; this loses five
+        // digits.
         assert!((force[2] / expected - 1.0).abs() < 1e-9, "{} for {expected}", force[2]);
     }
 }
 
-/// Rolling resistance between two discs that spin against each other, so that their surfaces do not slip: a moment
-/// k_r θ + 2η √(I k_r) Ω with the spring's k_r = 2.25 k μ² R_eff², R_eff = R/2, the angle θ by which one has turned against
-/// the other, and I the moment of inertia about the contact, of both together: 3/2 m R² of each disc, half as much for two
-/// alike. The spring holds ½ k_r θ².
+/// Rolling resistance between two discs with opposite spins, so that their surfaces do not slip. The moment is k_r θ +
+/// 2η √(I k_r) Ω with k_r = 2.25 k μ² R_eff², R_eff = R/2, and the angle θ of one disc relative to the other. I is the
+/// moment of inertia of both discs about the contact: 3/2 m R² of each disc, half as much for two equal discs. The
+/// spring energy is ½ k_r θ².
 #[test]
 fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
     // Spins of .5 and −.5 rad/s, R = .1 m, δ = 1 mm, μ = .1: the spring yields at k_r θ = μ R_eff k δ = 5 N m.
@@ -320,9 +323,9 @@ fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
     }
 }
 
-/// The largest stable step of a spring with a dashpot that feels the velocity of half a step before: 2/ω (√(1 + ζ²) − ζ),
-/// of two discs of m = 10 π kg (m* = 5 π kg) and k = 1e6 N/m, ω = √(k/m*) = 252.313 /s and the ζ of e = .5, .215454: 6.4007 ms.
-/// Beside it that without the dashpot, 2/ω = 7.9266 ms. A wall has m* = m and the longer one.
+/// The largest stable step of a spring with a dashpot that uses the velocity of half a step before is 2/ω (√(1 + ζ²) −
+/// ζ). For two discs of m = 10 π kg (m* = 5 π kg) with k = 1e6 N/m, ω = √(k/m*) = 252.313 /s. With e = .5, ζ = .215454,
+/// and the step is 6.4007 ms. Without the dashpot it is 2/ω = 7.9266 ms. At a wall, m* = m, and both steps are longer.
 #[test]
 fn a_dashpot_shortens_the_stable_step() {
     let step = |partner: &str| {

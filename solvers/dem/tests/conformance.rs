@@ -1,4 +1,4 @@
-//! What every solver owes, of every convention of the discrete element method.
+//! Conformance properties of every convention of the discrete element method.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -15,7 +15,7 @@ fn every_convention_conforms() {
     }
 }
 
-/// 10⁵ steps of what bounces, with `GRAINBENCH_LONG=1`.
+/// Runs of 10⁵ steps with bouncing grains, if `GRAINBENCH_LONG=1` is set.
 #[test]
 fn nothing_gains_energy_in_the_long_run() {
     if std::env::var_os("GRAINBENCH_LONG").is_none_or(|value| value != "1") {

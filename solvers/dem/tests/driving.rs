@@ -1,4 +1,4 @@
-//! Grains that are driven for a part of the run: free before and after, as heavy as walls between.
+//! Grains whose motion is prescribed for a part of the run: free before and after, with infinite mass in between.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -11,7 +11,7 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use support::{MATERIAL, column, last, run, run_at};
 
-/// Gravity (m/s²), the velocity upwards that the disc is driven with (m/s), and from when to when (s).
+/// Gravity (m/s²), upward velocity of the prescribed motion (m/s), and its start and end (s).
 const GRAVITY: f64 = 10.0;
 const SPEED: f64 = 0.5;
 const SPAN: [f64; 2] = [0.2, 0.5];
@@ -25,8 +25,9 @@ fn thrown(driven: &str, time_step: f64) -> Record {
     run_at(&text, Convention::CUNDALL_STRACK, &Resolution::TimeStep(time_step))
 }
 
-/// y = −g t²/2 until it is driven, then a straight line, then a throw with the velocity that it was driven with: to rounding,
-/// for central differences are exact where forces are constant. Sideways it has what it had, then nothing.
+/// y = −g t²/2 before the prescribed motion, then a straight line, then free flight with the prescribed velocity. The
+/// result is exact to rounding, because central differences are exact for constant forces. The initial horizontal
+/// velocity lasts until the prescribed motion starts.
 #[test]
 fn a_disc_falls_is_lifted_and_falls_again() {
     let driven =
@@ -43,19 +44,20 @@ fn a_disc_falls_is_lifted_and_falls_again() {
     for (at, time) in record.series.time.iter().enumerate() {
         let (y, vy) = (column(&record, "g.y")[at], column(&record, "g.vy")[at]);
         assert!((y - exact(*time)).abs() < 1e-12, "{time}: {y} for {}", exact(*time));
-        // Over the step at which it begins to be driven it has both velocities.
+        // In the step in which the prescribed motion starts, the grain has both velocities.
         assert!((time - start).abs() < 1e-6 || (vy - velocity(*time)).abs() < 1e-11, "{time}: {vy}");
         let x = 0.3 * time.min(start);
         assert!((column(&record, "g.x")[at] - x).abs() < 1e-12);
     }
-    // Nothing of this holds of a disc that is driven all the time, or never.
+    // A disc with prescribed motion during the whole run, or without it, does not follow this solution.
     let always = thrown(&format!("[driven.d]\ngrains = 'g'\nvelocity = [0.0, {SPEED}]"), 1e-3);
     assert!(
         (last(&always, "g.y") - exact(0.8)).abs() > 0.1 && (last(&thrown("", 1e-3), "g.y") - exact(0.8)).abs() > 0.1
     );
 }
 
-/// While it is driven a disc is as heavy as a wall to the dashpot of a contact; before and after it has its mass.
+/// During its prescribed motion, a disc acts on the dashpot of a contact like a wall; before and after, it has its own
+/// mass.
 #[test]
 fn a_disc_has_its_mass_before_and_after() {
     let rebound = |span: &str| {
@@ -69,7 +71,8 @@ fn a_disc_has_its_mass_before_and_after() {
         let record = run(&text);
         [last(&record, "free.vx"), last(&record, "held.vx")]
     };
-    // The contact lasts from .1 s to .13 s: against a wall −.5; between equals (1 ∓ .5)/2.
+    // The contact lasts from .1 s to .13 s. Against a wall, the velocity becomes −.5 m/s; between equal discs, (1 ∓
+    // .5)/2 m/s.
     for held in ["start = 0.05", "stop = 0.3", "start = 0.05\nstop = 0.3", ""] {
         let [free, other] = rebound(held);
         assert!((free + 0.5).abs() < 5e-3 && other == 0.0, "{held}: {free}, {other}");
@@ -81,7 +84,7 @@ fn a_disc_has_its_mass_before_and_after() {
     }
 }
 
-/// Wrong times are refused by name, with what was expected.
+/// Invalid times are rejected with the name of the key and the expected value.
 #[test]
 fn times_that_make_no_span_are_refused() {
     let refused = |span: &str, says: &str| {

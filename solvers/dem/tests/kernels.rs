@@ -1,4 +1,4 @@
-//! How many kernels are compiled, and that each holds only the stages that its scene calls for.
+//! Number of compiled kernels, and check that each holds only the stages that its scene needs.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,14 +13,14 @@ use grainbench_scene::source::SceneSource;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Kernels that are compiled, in the plane and in space: four normal stages, each without friction (1) and with it, with
-/// and without rolling resistance, for the two transports of springs at a contact that turns (4).
+/// Number of compiled kernels, in the plane and in space. There are four normal stages, each without friction (1), or
+/// with friction (4): with or without rolling resistance, for two transports of springs at rotating contacts.
 ///
-/// A kernel is two loops: one over pairs, for each path of the processor, and one over walls. A new effect or option that
-/// multiplies kernels is seen here.
+/// A kernel consists of two loops: one over pairs, for each instruction set, and one over walls. A new effect or option
+/// that multiplies kernels changes this number.
 const KERNELS: usize = 2 * 4 * (1 + 4);
 
-/// A contact law in which every effect is on; Hertz's in place of linear springs where that is asked for.
+/// Returns a contact law with every effect on, with Hertz's law instead of linear springs if requested.
 fn law_with_everything(hertz: bool) -> ContactLaw {
     let law = ContactLaw {
         friction: 0.5,
@@ -40,7 +40,7 @@ fn law_with_everything(hertz: bool) -> ContactLaw {
     }
 }
 
-/// Two grains and a wall in motion, with every effect on.
+/// Returns two grains and a moving wall, with every effect on.
 fn scene_with_everything(dimension: usize, hertz: bool) -> Scene {
     let vector = |value: &str| vec![value; dimension].join(", ");
     let (high, gravity) = (vector("10.0"), vector("1.0"));
@@ -67,12 +67,12 @@ fn scene_with_everything(dimension: usize, hertz: bool) -> Scene {
     scene
 }
 
-/// The effects that a solver for rigid grains knows.
+/// Returns the effects that apply to solvers for rigid grains.
 fn effects() -> impl Iterator<Item = Effect> {
     Effect::ALL.into_iter().filter(|effect| effect.concerns(Method::Dem))
 }
 
-/// Every combination of effects, in two and three dimensions, with linear springs and with Hertz contacts.
+/// Returns every combination of effects, in two and three dimensions, with linear springs and with Hertz contacts.
 fn scenes() -> Vec<Scene> {
     let switches: Vec<Effect> = effects().filter(|effect| *effect != Effect::Hertz).collect();
     let mut scenes = Vec::new();
@@ -88,7 +88,7 @@ fn scenes() -> Vec<Scene> {
     scenes
 }
 
-/// Every combination of the options of a convention.
+/// Returns every combination of the options of a convention.
 fn conventions() -> Vec<Convention> {
     let mut conventions = vec![Convention::CUNDALL_STRACK];
     let mut vary = |options: [fn(&mut Convention); 2]| {
@@ -112,12 +112,12 @@ fn conventions() -> Vec<Convention> {
     conventions
 }
 
-/// The kernel that a scene gets in a convention, in words.
+/// Returns the name of the kernel for a scene and a convention.
 fn kernel(scene: &Scene, convention: Convention) -> &'static str {
     Dem::new(convention).start(scene, 1e-6).unwrap().layout()
 }
 
-/// Every kernel that the solver can pick is counted: for all combinations of effects, conventions and dimension.
+/// Counts every kernel that the solver can select, for all combinations of effects, conventions and dimensions.
 #[test]
 fn no_more_kernels_are_compiled_than_known() {
     let (scenes, conventions) = (scenes(), conventions());
@@ -129,7 +129,7 @@ fn no_more_kernels_are_compiled_than_known() {
     assert_eq!(kernels.len(), KERNELS, "{}", listed.join("\n"));
 }
 
-/// The stage of an effect that is absent is no part of the kernel's name, and that of one that is present is.
+/// The name of a kernel contains the stage of an effect exactly if the effect is present.
 #[test]
 fn a_kernel_has_no_stage_for_what_is_absent() {
     for scene in scenes() {

@@ -1,4 +1,4 @@
-//! Motions by table and by function, of walls and of driven grains.
+//! Prescribed motions by table and by function, of walls and of grains.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -12,7 +12,7 @@ use support::{column, last, run_at};
 
 const STEP: f64 = 1.0 / 1024.0;
 
-/// A disc that is driven as said, and beside it nothing.
+/// Runs a single disc with a prescribed motion.
 fn carried(driven: &str) -> Record {
     let text = format!(
         "dimension = 2\nduration = 2.0\n[grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\n\
@@ -21,14 +21,14 @@ fn carried(driven: &str) -> Record {
     run_at(&text, Convention::CUNDALL_STRACK, &Resolution::TimeStep(STEP))
 }
 
-/// The largest distance of a column from a course.
+/// Returns the largest deviation of a column from an exact function of time.
 fn worst(record: &Record, name: &str, exact: impl Fn(f64) -> f64) -> f64 {
     let off = record.series.time.iter().zip(column(record, name)).map(|(time, value)| (value - exact(*time)).abs());
     off.fold(0.0, f64::max)
 }
 
-/// Places are those of the function, to the rounding of a sum of 2048 steps; velocities the mean over the two steps at a moment,
-/// which is off by (2πfΔt)²/6 of 2πfA.
+/// Positions agree with the function to the rounding of a sum of 2048 steps. Velocities are means over the two adjacent
+/// steps; their error is (2πfΔt)²/6 of 2πfA.
 #[test]
 fn a_grain_is_carried_by_a_sine() {
     let record = carried("motion = [{ sine = { amplitude = [0.3, 0.0], frequency = 1.5 } }]");
@@ -38,7 +38,7 @@ fn a_grain_is_carried_by_a_sine() {
     let moving = |t: f64| if t > 0.0 { 0.3 * rate * (rate * t).cos() } else { column(&record, "g.vx")[0] };
     let off = worst(&record, "g.vx", moving);
     assert!(off < 1.01 * allowed + 1e-10, "{off}");
-    // Another phase starts where it is, and not somewhere else.
+    // With another phase, the motion still starts at the initial position.
     let record =
         carried("motion = [{ sine = { amplitude = [0.0, 0.2], frequency = 1.0, phase_deg = 90.0 }, start = 0.5 }]");
     let exact = |t: f64| if t < 0.5 { 0.0 } else { 0.2 * ((TAU * (t - 0.5)).cos() - 1.0) };
@@ -61,7 +61,7 @@ fn a_grain_is_carried_by_a_ramp_and_a_table_beside_its_velocity() {
     assert!(worst(&record, "g.x", exact) < 1e-13 && (last(&record, "g.y") - 0.2).abs() < 1e-13);
 }
 
-/// A disc between a floor and a wall that comes down as said.
+/// Runs a disc between a floor and a wall with a prescribed downward motion.
 fn pressed(motion: &str) -> Record {
     let text = format!(
         "dimension = 2\nduration = 0.5\n[grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.1]\n\
@@ -72,7 +72,7 @@ fn pressed(motion: &str) -> Record {
     run_at(&text, Convention::CUNDALL_STRACK, &Resolution::TimeStep(STEP / 8.0))
 }
 
-/// The bits of all that is sampled.
+/// Returns the bits of all samples.
 fn bits(record: &Record) -> Vec<u64> {
     let columns = record.series.columns.iter().flat_map(|of| column(record, &of.name));
     columns.map(|value| value.to_bits()).collect()
@@ -84,18 +84,19 @@ fn a_table_that_samples_a_line_is_the_line_to_the_bit() {
     let table = "motion = [{ table = [[0.0, 0.0, 0.0], [0.25, 0.0625, -0.001953125], [1.0, 0.25, -0.0078125]] }]";
     assert_eq!(bits(&line), bits(&pressed(table)));
     assert!(last(&line, "lid.force_y") != 0.0);
-    // A table that does not lie on the line is another motion.
+    // A table with a point off the line is another motion.
     assert_ne!(bits(&line), bits(&pressed(&table.replace("-0.001953125", "-0.002"))));
 }
 
 #[test]
 fn a_wall_by_a_sine_presses_as_its_place_says() {
     let record = pressed("motion = [{ sine = { amplitude = [0.0, -1e-4], frequency = 0.5 } }]");
-    // At a quarter of a period the lid has come by 1e-4 and rests: the disc, slowly pressed, shares it between both contacts.
+    // At a quarter period, the lid has moved by 1e-4 m and is at rest. The slow displacement is shared by the disc's
+    // two contacts.
     let (force, y) = (last(&record, "lid.force_y"), last(&record, "g.y"));
     let slow = pressed("motion = [{ velocity = [0.0, -2e-4], ramp = 0.0625 }]");
     assert!(force > 0.0 && (0.1 - y - 0.5e-4).abs() < 0.3e-4, "{force} {y}");
-    // v (t − T/2) with T = 1/16 s: .46875 s at 2e-4 m/s, .9375 of the sine's way.
+    // v (t − T/2) with T = 1/16 s: .46875 s at 2e-4 m/s, which is .9375 of the displacement of the sine.
     assert!((last(&slow, "g.y") - 0.1 + 0.46875e-4).abs() < 0.3e-4);
 }
 

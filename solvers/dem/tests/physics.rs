@@ -1,5 +1,5 @@
-//! Parts of the method that no case of the registry singles out: walls of every shape and motion, periodic faces,
-//! cohesion, and what a grain in the plane is.
+//! Parts of the method that no case of the registry isolates: walls of every shape and motion, periodic faces,
+//! cohesion, and the shape of a grain in the plane.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -12,7 +12,7 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use support::{MATERIAL, last, run, run_as};
 
-/// A disc dropped on the face of a segment does as on a plane.
+/// A disc dropped on the face of a segment moves as on a plane.
 #[test]
 fn the_face_of_a_segment_is_a_plane() {
     let scene = |wall: &str| {
@@ -29,7 +29,7 @@ fn the_face_of_a_segment_is_a_plane() {
     assert!((last(&plane, "g.vx") - 0.2).abs() < 1e-15);
 }
 
-/// A ball dropped on a rectangle does as on a plane; beside it, it falls past.
+/// A ball dropped on a rectangle moves as on a plane; beside the rectangle, it falls past.
 #[test]
 fn the_face_of_a_rectangle_is_a_plane() {
     let scene = |wall: &str, x: f64| {
@@ -46,21 +46,23 @@ fn the_face_of_a_rectangle_is_a_plane() {
     assert!((last(&scene(rectangle, 1.2), "g.z") - fallen).abs() < 1e-9);
 }
 
-/// A disc that meets the end of a segment is thrown back along the line from that end to its centre, with its speed.
+/// A disc that hits the end of a segment rebounds along the line from that end to its centre, with its speed.
 #[test]
 fn the_end_of_a_segment_is_a_point() {
     let record = run("dimension = 2\nduration = 0.2\nmaterials.n.density = 1000.0\n\
          contacts.n = { between = ['n', 'n'], normal_stiffness = 1.0e9 }\n\
          [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [0.2, 0.05]\nvelocity = [-1.0, 0.0]\n\
          [walls.w]\nmaterial = 'n'\nsegment = [[-1.0, 0.0], [0.0, 0.0]]\n[probes]\ng.grain = 'g'\n");
-    // Normal at first touch: (√(R² − .05²), .05)/R; a head-on part reverses, the other is kept.
+    // The normal at first contact is (√(R² − .05²), .05)/R. The normal velocity is reversed, the tangential velocity is
+    // kept.
     let (nx, ny) = ((0.01_f64 - 0.0025).sqrt() / 0.1, 0.5);
     let (vx, vy) = (-1.0 + 2.0 * nx * nx, 2.0 * nx * ny);
     assert!((last(&record, "g.vx") - vx).abs() < 0.02 && (last(&record, "g.vy") - vy).abs() < 0.02);
     assert!((last(&record, "g.vx").hypot(last(&record, "g.vy")) - 1.0).abs() < 1e-3);
 }
 
-/// A belt under a disc: friction ends when the surface keeps up with the belt; then v = V i/(1+i) = V/3.
+/// A belt under a disc: friction ends when the surface of the disc moves with the belt. Then v = V i/(1+i) = V/3 with
+/// i = I/(m R²).
 #[test]
 fn a_belt_drags_a_disc_to_a_third_of_its_speed() {
     let record = run("dimension = 2\nduration = 1.0\ngravity = [0.0, -9.8]\nmaterials.n.density = 1000.0\n\
@@ -73,18 +75,18 @@ fn a_belt_drags_a_disc_to_a_third_of_its_speed() {
     assert!((last(&record, "g.omega") - 6.0).abs() < 1e-5, "the top lags, so it turns counter-clockwise");
 }
 
-/// A paddle that turns about its end hits a disc with the velocity of the point that touches it.
+/// A paddle that rotates about its end hits a disc with the velocity of the contact point.
 #[test]
 fn a_turning_wall_hits_with_its_local_velocity() {
     let record = run("dimension = 2\nduration = 0.08\n\
          [grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [1.0, 0.102]\n\
          [walls.w]\nmaterial = 'm'\nsegment = [[0.0, 0.0], [2.0, 0.0]]\nmotion = [{ spin = 0.5, centre = [0.0, 0.0] }]\n\
          [probes]\ng.grain = 'g'\n");
-    // Elastic impact of a heavy wall: twice the velocity Ω r = .5 · 1 at the point of contact.
+    // Elastic impact of a heavy wall: twice the velocity Ω r = .5 · 1 m/s at the contact point.
     assert!((last(&record, "g.vy") - 1.0).abs() < 0.01, "{}", last(&record, "g.vy"));
 }
 
-/// A collision across a periodic face is the same as one in the middle.
+/// A collision across a periodic face gives the same result as one in the middle.
 #[test]
 fn a_periodic_face_is_not_felt() {
     let scene = |x: f64, dimension: u8| {
@@ -114,8 +116,8 @@ fn a_periodic_face_is_not_felt() {
     }
 }
 
-/// With cohesion a disc rolls without slip iff m g sin θ/3 ≤ μ m g cos θ + c; else it slips at g sin θ − μ g cos θ −
-/// c/m.
+/// With cohesion, a disc rolls without slip if and only if m g sin θ/3 ≤ μ m g cos θ + c. Otherwise it slips, with the
+/// acceleration g sin θ − μ g cos θ − c/m.
 #[test]
 fn cohesion_carries_shear_without_load() {
     let mass = 1000.0 * std::f64::consts::PI * 0.01;
@@ -137,7 +139,7 @@ fn cohesion_carries_shear_without_load() {
     assert!((run(0.5 * threshold) / slipping(0.5 * threshold) - 1.0).abs() < 5e-3);
 }
 
-/// A sphere kept in the plane has a sphere's mass and inertia: it rolls at (5/7) g sin θ, a disc at (2/3).
+/// A sphere kept in the plane has the mass and inertia of a sphere: it rolls at (5/7) g sin θ, a disc at (2/3) g sin θ.
 #[test]
 fn a_grain_in_the_plane_is_what_the_scene_says() {
     for (shape, factor, share) in [("disc", 0.5, 2.0 / 3.0), ("sphere", 0.4, 5.0 / 7.0)] {
@@ -153,8 +155,9 @@ fn a_grain_in_the_plane_is_what_the_scene_says() {
     }
 }
 
-/// Two driven discs shear a third one between them, with friction: what moves as it is told does, momentum is what was
-/// given, and the energy that was brought in is stored or rubbed away, to the order of the method.
+/// Two discs with prescribed motion shear a third disc between them, with friction. Prescribed motions are exact,
+/// momentum equals the impulse, and the supplied energy is stored or dissipated by friction, to the order of the
+/// method.
 #[test]
 fn driven_grains_give_what_they_say() {
     let friction = "contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6 }";
@@ -188,8 +191,8 @@ fn driven_grains_give_what_they_say() {
     assert!((open - of("friction")).abs() > 1e-2 * of("work").abs(), "it would not close without friction");
 }
 
-/// A grain that is driven does not feel what meets it: to the dashpot of a contact it is as heavy as a wall, and the
-/// coefficient of restitution is what was asked for.
+/// Forces do not move a grain with prescribed motion. It acts on the dashpot of a contact like a wall, and the
+/// coefficient of restitution has the requested value.
 #[test]
 fn a_driven_grain_has_no_finite_mass() {
     let text = "dimension = 2\nduration = 0.4\n\
@@ -197,13 +200,14 @@ fn a_driven_grain_has_no_finite_mass() {
          [grains.free]\nmaterial = 'n'\nradius = 0.5\nposition = [-1.1, 0.0]\nvelocity = [1.0, 0.0]\n\
          [grains.held]\nmaterial = 'n'\nradius = 0.5\nposition = [0.0, 0.0]\n\
          [driven.held]\ngrains = 'held'\n[probes]\nfree.grain = 'free'\n";
-    // Of first order in the step: .480 at a tenth of the critical one, .4996 here; .618 with the mass of a free grain.
+    // First-order accuracy in the step: .480 at a tenth of the critical time step, .4996 here; .618 with the mass of a
+    // free grain.
     let rebound = -last(&run(text), "free.vx");
     assert!((rebound - 0.5).abs() < 5e-3, "{rebound}");
 }
 
-/// Grains in a box are driven, those outside it are free; one that is held against a wall with a dashpot, which has no mass to
-/// go by, stays what it is, and the spring of the contact pushes as it does on any grain.
+/// Grains in a box have prescribed motion, grains outside it are free. A held grain in contact with a wall with a
+/// dashpot has no effective mass. It stays at its position, and the spring of the contact exerts its usual force.
 #[test]
 fn grains_of_a_region_are_held_against_a_wall() {
     let text = "dimension = 2\nduration = 0.01\n\
@@ -226,8 +230,8 @@ fn grains_of_a_region_are_held_against_a_wall() {
     assert!(scene(&empty).unwrap_err().to_string().contains("driven.held.region.high: expected a corner above `low`"));
 }
 
-/// A disc that is pushed along a floor: with a dashpot of any size friction stays within Coulomb's limit at every step.
-/// The paper adds the dashpot while the contact sticks, whatever it comes to.
+/// A disc moves along a floor. With a dashpot of any size, friction stays within the Coulomb limit at every step. The
+/// 1979 paper adds the dashpot without limit while the contact sticks.
 #[test]
 fn friction_never_passes_coulombs_limit() {
     let text = "dimension = 2\nduration = 0.002\ngravity = [0.0, -9.81]\n\
@@ -247,7 +251,7 @@ fn friction_never_passes_coulombs_limit() {
     assert!(most(Convention::CUNDALL_STRACK) > 100.0, "{}", most(Convention::CUNDALL_STRACK));
 }
 
-/// Two discs that touch across the corner of two periodic axes push each other apart along the line through it.
+/// Two discs in contact across the corner of two periodic axes repel each other along their line of centres.
 #[test]
 fn grains_meet_across_the_corner_of_two_periodic_axes() {
     let record = run("dimension = 2\nduration_cycles = 1\n\
@@ -255,7 +259,7 @@ fn grains_meet_across_the_corner_of_two_periodic_axes() {
          [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.06, 0.075]\n\
          [grains.b]\nmaterial = 'm'\nradius = 0.1\nposition = [0.94, 1.925]\n\
          [probes]\na.grain = 'a'\nb.grain = 'b'\nc.contact = ['a', 'b']\n");
-    // From a to the image of b: (−.12, −.15), .192094 apart; k = 1e6.
+    // From a to the image of b: (−.12, −.15) m, with a length of .192094 m; k = 1e6 N/m.
     let overlap = 0.2 - (0.12_f64 * 0.12 + 0.15 * 0.15).sqrt();
     assert!((record.series.column("c.overlap").unwrap()[0] - overlap).abs() < 1e-15);
     assert!((record.series.column("c.normal_force").unwrap()[0] - 1e6 * overlap).abs() < 1e-8);
@@ -265,11 +269,11 @@ fn grains_meet_across_the_corner_of_two_periodic_axes() {
     assert!((velocity[0] + velocity[2]).abs() < 1e-15 && (velocity[1] + velocity[3]).abs() < 1e-15);
 }
 
-/// A wall that turns under a disc drags it as a belt would: the velocity of the wall where they touch is ω × r.
+/// A rotating wall under a disc drags it like a belt: the velocity of the wall at the contact point is ω × r.
 #[test]
 fn a_turning_wall_drags_by_its_velocity_where_it_touches() {
-    // The plane turns about (0, 2) with .3 rad/s, so that at the origin it moves by +.6 m/s along x; in one cycle the
-    // spring is stretched by that times Δt.
+    // The plane rotates about (0, 2) m at .3 rad/s, so at the origin it moves at +.6 m/s along x. In one cycle, the
+    // spring is displaced by this velocity times Δt.
     let record = run("dimension = 2\nduration_cycles = 2\n\
          materials.n.density = 1000.0\n\
          contacts.n = { between = ['n', 'n'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 100.0 }\n\

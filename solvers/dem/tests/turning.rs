@@ -1,4 +1,4 @@
-//! Contacts that turn, whose walls turn, or whose stiffness changes: against exact answers in the frame that turns with them.
+//! Rotating contacts, rotating walls and changing stiffness, compared with exact solutions in the rotating frame.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -24,14 +24,15 @@ fn run(text: &str, fraction: f64) -> Record {
     Dem::new(Convention::DEFAULT).run(&scene(text), &Resolution::CriticalFraction(fraction), &mut ()).unwrap()
 }
 
-/// Angle (rad) that a grain named `b` goes round the z axis.
+/// Returns the angle (rad) by which a grain named `b` moves around the z axis.
 fn way_round(record: &Record) -> f64 {
     let angles: Vec<f64> = column(record, "b.y").iter().zip(column(record, "b.x")).map(|(y, x)| y.atan2(*x)).collect();
     angles.windows(2).map(|pair| (pair[1] - pair[0] + TAU + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU).sum()
 }
 
-/// A sphere of m = ρ 4πR³/3 at rest on the wall of a drum that turns at Ω = 10 rad/s: it orbits at Ω with the spin Ω, its
-/// contact pressed by m Ω² (1.1 m − R + δ) = k_n δ, and rolling resistance has nothing to resist.
+/// Returns a sphere of m = ρ 4πR³/3 at rest on the wall of a drum that rotates at Ω = 10 rad/s. It orbits at Ω with the
+/// spin Ω. Its contact force is m Ω² (1.1 m − R + δ) = k_n δ, and there is no rolling against which rolling resistance
+/// acts.
 fn drum() -> String {
     let (mass, stiffness) = (2500.0 * 4.0 / 3.0 * 0.5 * TAU * 1e-3, 1.0e7);
     let place = 1.0 / (1.0 - mass * 100.0 / stiffness);
@@ -48,9 +49,9 @@ fn drum() -> String {
     )
 }
 
-/// Friction acts at the distance R from the centre, δ beyond the wall: places are off by the part δ/R of the angle, and spins by
-/// 2δ/R of Ω, as the rolling spring swings with what the start is off by. Without the wall's spin in the rolling stage the
-/// sphere is driven ahead by a tenth.
+/// Friction acts at the distance R from the centre, which is δ beyond the wall. Positions thus have a relative error of
+/// δ/R in the angle. Spins have an error of 2δ/R of Ω, because the rolling spring oscillates due to the initial error.
+/// Without the wall's spin in the rolling stage, the sphere would be ahead by a tenth.
 #[test]
 fn a_sphere_rides_on_the_wall_of_a_turning_drum() {
     let mass = 2500.0 * 4.0 / 3.0 * 0.5 * TAU * 1e-3;
@@ -62,14 +63,14 @@ fn a_sphere_rides_on_the_wall_of_a_turning_drum() {
         let spin = last(&record, "b.omega_z");
         assert!((spin / 10.0 - 1.0).abs() < 2.0 * off, "{spin}");
     }
-    // LAMMPS and LIGGGHTS take the spin of the grain alone, so that its own turning is resisted.
+    // LAMMPS and LIGGGHTS use only the spin of the grain, so rolling resistance acts against its own rotation.
     let lammps = Dem::new(Convention::LAMMPS);
     let record = lammps.run(&scene(&drum()), &Resolution::CriticalFraction(0.1), &mut ()).unwrap();
     assert!(way_round(&record) / TAU - 1.0 > 0.03, "{}", way_round(&record));
 }
 
-/// A tray under a disc is tilted by .1 rad, less than the .2 rad that rolling resistance holds: relative to the tray the disc
-/// moves by its springs alone, F/k < m g (.1)/k_t + (rolling angle M/k_r = m g R (.1)/k_r) R.
+/// A tray under a disc is tilted by .1 rad, less than the .2 rad that rolling resistance supports. Relative to the
+/// tray, the disc moves only by its springs, F/k < m g (.1)/k_t + (rolling angle M/k_r = m g R (.1)/k_r) R.
 #[test]
 fn a_disc_stays_on_a_tray_that_is_tilted() {
     let text = "dimension = 2\ngravity = [0.0, -9.81]\nduration = 1.0\nmaterials.m.density = 2500.0\n\
@@ -84,14 +85,14 @@ fn a_disc_stays_on_a_tray_that_is_tilted() {
     let (mass, force) = (2500.0 * 0.5 * TAU * 0.01, 2500.0 * 0.5 * TAU * 0.01 * 9.81 * 0.1);
     let rolling = 2.25 * 1.0e7 * 0.2 * 0.2 * 0.01;
     let springs = force / 2_857_142.857 + force * 0.1 / rolling * 0.1;
-    // Twice the static answer for the motion it is set off with, and the centrifugal and Coriolis parts of .1 rad/s.
+    // Twice the static displacement for the initial motion, and the centrifugal and Coriolis terms of .1 rad/s.
     let allowed = 2.0 * springs + mass * 0.01 * 0.1 / 2_857_142.857;
     assert!(along.abs() < allowed, "{along:e} m along the tray, allowed {allowed:e}; R θ is .01 m");
 }
 
-/// A sphere clamped between two plates that turn about their normal at Ω = 10 rad/s leads them by nothing and stays at r: the
-/// springs that hold it, 2 k_t s = m Ω² r, are stretched outwards and turn with the plates. Springs that do not turn about the
-/// normal let it lead by π m Ω²/k_t = .00314 rad a turn.
+/// A sphere clamped between two plates that rotate about their normal at Ω = 10 rad/s rotates with them and stays at r.
+/// The springs that hold it, 2 k_t s = m Ω² r, are displaced outwards and rotate with the plates. With springs that do
+/// not rotate about the normal, the sphere would lead by π m Ω²/k_t = .00314 rad per turn.
 #[test]
 fn a_clamped_sphere_rides_with_its_plates() {
     let radius = 0.045_707_814_973_408_33;
@@ -111,14 +112,15 @@ fn a_clamped_sphere_rides_with_its_plates() {
     let record = run(&text, 0.1);
     let lead = (way_round(&record) - 2.0 * TAU) / 2.0;
     let place = last(&record, "b.x").hypot(last(&record, "b.y"));
-    // m = 1 kg: the stretch is m Ω²/(2 k_t − m Ω²) of r, and twice that while it is set off.
+    // m = 1 kg: the displacement is m Ω²/(2 k_t − m Ω²) of r, and twice that during the initial motion.
     let stretch = 100.0 / (2.0e5 - 100.0);
     assert!((place - 1.0 - stretch).abs() < stretch, "{place}");
-    // Each turn begins and ends with the swing of that start, 2 Ω times which the Coriolis force turns sideways.
+    // Each turn begins and ends with the oscillation of that start, which the Coriolis force deflects by 2 Ω times its
+    // velocity.
     assert!(lead.abs() < 0.05 * 0.5 * TAU * 100.0 / 1.0e5, "{lead:e} rad a turn");
 }
 
-/// The scene of a Hertz contact that is driven: times (s) and places (m) of a ball on a floor.
+/// Returns a scene of a Hertz contact with prescribed motion: times (s) and positions (m) of a ball on a floor.
 fn driven(table: &str, duration: f64) -> String {
     format!(
         "dimension = 3\nduration = {duration}\nmaterials.glass = {{ density = 2500.0, young_modulus = 1.0e7, \
@@ -131,18 +133,20 @@ fn driven(table: &str, duration: f64) -> String {
     )
 }
 
-/// Mindlin's k_t = 8 G* √(R δ) (N/m), G* = G/(2 (2 − ν)) and G = E/(2 (1 + ν)) of two bodies of E = 10 MPa and ν = .25.
+/// Returns Mindlin's k_t = 8 G* √(R δ) (N/m), G* = G/(2 (2 − ν)), G = E/(2 (1 + ν)), for two bodies of E = 10 MPa and
+/// ν = .25.
 fn mindlin(overlap: f64) -> f64 {
     8.0 * (1.0e7 / 2.5) / (2.0 * 1.75) * (0.005 * overlap).sqrt()
 }
 
-/// Sheared by 5 µm at δ = 50 µm, pressed to 100 µm, let go: the force keeps F = k_t(50 µm) s while it is pressed, and the
-/// closed cycle yields no work. Without slip nothing else can be lost than what the receding edge releases.
+/// A contact is sheared by 5 µm at δ = 50 µm, pressed to 100 µm, and released. The force stays at F = k_t(50 µm) s
+/// while it is pressed, and the closed cycle yields no work. Without slip, only the receding edge of the contact can
+/// release energy.
 #[test]
 fn a_closed_cycle_of_a_hertz_contact_yields_no_work() {
     let press = "[0.0, 0.0, 0.0, 0.0], [0.01, 0.0, 0.0, -5.0e-5], [0.02, 5.0e-6, 0.0, -5.0e-5], \
                  [0.03, 5.0e-6, 0.0, -1.0e-4], [0.04, 0.0, 0.0, -1.0e-4], [0.05, 0.0, 0.0, 0.0]";
-    // Press, shear, take off load, unshear: what a force without rescaling would gain by.
+    // Press, shear, reduce the load, reverse the shear: a force without rescaling would gain energy.
     let shear = "[0.0, 0.0, 0.0, 0.0], [0.01, 0.0, 0.0, -1.0e-4], [0.02, 5.0e-6, 0.0, -1.0e-4], \
                  [0.03, 5.0e-6, 0.0, -5.0e-5], [0.04, 0.0, 0.0, -5.0e-5], [0.05, 0.0, 0.0, 0.0]";
     for (table, held) in [(press, mindlin(5.0e-5)), (shear, mindlin(5.0e-5))] {
@@ -152,7 +156,7 @@ fn a_closed_cycle_of_a_hertz_contact_yields_no_work() {
         let force = column(&record, "touch.shear_force");
         let expected = held * 5.0e-6;
         assert!((force[at(0.03)].abs() - expected).abs() < 1e-3 * expected, "{} N for {expected}", force[at(0.03)]);
-        // Force of the floor on the ball (N) and place of the ball (m), snapshot by snapshot.
+        // Force of the floor on the ball (N) and position of the ball (m), for each snapshot.
         let seen: Vec<(Vector3<f64>, Vector3<f64>)> = record
             .snapshots
             .iter()
@@ -168,8 +172,8 @@ fn a_closed_cycle_of_a_hertz_contact_yields_no_work() {
     }
 }
 
-/// A sphere that bounces between two plates with Hertz and Mindlin contacts: its energy never grows, and what it loses is what
-/// slides and what the receding edge of the contact releases.
+/// A sphere bounces between two plates with Hertz and Mindlin contacts. Its energy never grows, and its loss is the
+/// frictional work plus the energy that the receding edge of the contact releases.
 #[test]
 fn hertz_and_mindlin_create_no_energy() {
     for friction in [1.0, 1000.0] {
@@ -197,13 +201,14 @@ fn hertz_and_mindlin_create_no_energy() {
         // An impact that begins and ends within a step scatters the energy by the square of ω Δt = 2 · fraction.
         assert!(coarse.0 < 1.0 + 0.04 && fine.0 < 1.0 + 0.01, "μ = {friction}: {coarse:?}, {fine:?}");
         assert!(coarse.1 < 1.0 && fine.1 < 1.0, "μ = {friction}: {coarse:?}, {fine:?}");
-        // What is left in the tangential spring when a contact ends is in no entry of the budget: with slip it is nothing.
+        // The energy left in the tangential spring at the end of a contact is in no entry of the budget; it is zero
+        // with slip.
         assert!(friction > 1.0 || fine.2 < 0.35 * coarse.2, "the budget converges: {coarse:?}, {fine:?}");
     }
 }
 
-/// A sphere grazes a wall with a tangential dashpot that alone exceeds Coulomb's limit: it slides throughout and loses
-/// μ (1 + e) v_n = 1 m/s of 4, whatever the dashpot. The spring never pushes it on.
+/// A sphere grazes a wall with a tangential dashpot that alone exceeds the Coulomb limit. It slides throughout and
+/// loses μ (1 + e) v_n = 1 m/s of 4 m/s, for any dashpot. The spring never accelerates it.
 #[test]
 fn an_overdamped_contact_slides_as_any_other() {
     for damping in [20_000.0, 5000.0, 0.0] {
@@ -217,15 +222,15 @@ fn an_overdamped_contact_slides_as_any_other() {
         );
         let record = run(&text, 0.01);
         let (along, up) = (last(&record, "ball.vx"), last(&record, "ball.vz"));
-        // Friction is μ F_n at every step but the first, in which the spring begins to be stretched.
+        // Friction is μ F_n at every step except the first, in which the spring displacement starts to grow.
         assert!((4.0 - along - 0.5 * (1.0 + up)).abs() < 1e-3, "γ_t = {damping}: {along}, {up}");
         assert!((up - 1.0).abs() < 0.01 && (along - 3.0).abs() < 0.01, "γ_t = {damping}: {along}, {up}");
     }
 }
 
-/// An oblique impact of e = .6 that sticks: the contact lasts t_c = 2 acos ζ/(ω_n √(1 − ζ²)), and in it the tangential spring
-/// of an oscillator with ω_t² = 3 k_t/m swings, v_x = v_0 [1 − (1 − cos ω_t t_c)/3], with the spin 2 (v_0 − v_x)/R.
-/// The same damping gives e, and a contact that slides loses μ (1 + e) v_n.
+/// An oblique impact with e = .6 that sticks. The contact lasts t_c = 2 acos ζ/(ω_n √(1 − ζ²)). During it, the
+/// tangential spring is an oscillator with ω_t² = 3 k_t/m: v_x = v_0 [1 − (1 − cos ω_t t_c)/3], with the spin 2 (v_0 −
+/// v_x)/R. The same damping gives e, and a sliding contact loses μ (1 + e) v_n.
 #[test]
 fn damped_impacts_stick_and_slide_as_their_closed_forms() {
     let text = |friction: f64| {
@@ -239,7 +244,7 @@ fn damped_impacts_stick_and_slide_as_their_closed_forms() {
         )
     };
     let mass = 2500.0 * 0.5 * TAU * 0.01;
-    // ζ with exp(−2ζ acos ζ/√(1 − ζ²)) = .6, found apart: .180 858.
+    // ζ with exp(−2ζ acos ζ/√(1 − ζ²)) = .6, computed separately: .180 858.
     let ratio = 0.180_858_308_f64;
     let root = (1.0 - ratio * ratio).sqrt();
     assert!(((-2.0 * ratio * ratio.acos() / root).exp() - 0.6).abs() < 1e-5);
@@ -252,11 +257,11 @@ fn damped_impacts_stick_and_slide_as_their_closed_forms() {
         assert!((spin.abs() - 2.0 * (0.5 - along) / 0.1).abs() < 1e-9, "{spin}");
         [along - expected, last(&record, "b.vy") - 0.6]
     });
-    // Of first order in the step: the dashpot is half a step late, and the contact begins within a step.
+    // First-order accuracy in the step: the dashpot lags by half a step, and the contact begins within a step.
     assert!(errors[0].iter().all(|error| error.abs() < 0.02), "{errors:?}");
     assert!(errors[1].iter().all(|error| error.abs() < 0.0025), "{errors:?}");
-    // Friction lacks the start, in which the dashpot pushes and the spring is not stretched yet: it reaches the limit
-    // μ (k v t + c v) at k_t v_t t, which takes 2ζ²/(ρ − 1) of μ m v with ρ = k_t v_t/(μ k v).
+    // At the start, the dashpot acts while the spring is not yet displaced, so friction is smaller. It reaches the
+    // limit μ (k v t + c v) at k_t v_t t, which reduces the loss by 2ζ²/(ρ − 1) of μ m v with ρ = k_t v_t/(μ k v).
     let friction = 0.05;
     let steepness = 2_857_142.857 * 0.5 / (friction * 1.0e7);
     let record = run(&text(friction), 0.0025);
@@ -265,9 +270,10 @@ fn damped_impacts_stick_and_slide_as_their_closed_forms() {
     assert!((found - lost).abs() < 0.0025 * lost, "{found} for {lost}");
 }
 
-/// A Hertz contact that is so stiff that its critical step is below the time step ends the run with a typed error that says when,
-/// in which grain and what step would do; and goes on where that is allowed. The critical step of a scene is that of an overlap
-/// of R/100: here a ball rests with R/50, whose contact is √2 times as stiff.
+/// If a Hertz contact stiffens until its critical time step is below the time step, the run ends with a typed error.
+/// The error names the time, the grain and a suitable step. The run continues if unstable steps are allowed. The
+/// critical time step of a scene is that of an overlap of R/100; here a ball rests with R/50, where the contact is √2
+/// times as stiff.
 #[test]
 fn a_contact_that_stiffens_beyond_the_step_is_refused() {
     let modulus = 1.0e7 / (2.0 * (1.0 - 0.09));

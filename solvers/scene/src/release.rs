@@ -2,19 +2,19 @@
 
 use std::f64::consts::PI;
 
-/// Damping ratio ζ with which a contact that ends at F_n = 0 has the coefficient of restitution that another one with the
-/// ratio `pulling` has when it ends with the overlap, e = exp(−π ζ/√(1 − ζ²)).
+/// Returns the damping ratio ζ of a contact that ends at F_n = 0. It has the same coefficient of restitution as a
+/// contact with the ratio `pulling` that ends with the overlap, e = exp(−π ζ/√(1 − ζ²)).
 ///
-/// The damped oscillation x'' + 2ζ x' + x = 0 from x = 0, x' = 1 is without force where x'' = 0, at t = 2φ/√(1 − ζ²) with
-/// cos φ = ζ, and there x' = −e with
+/// The damped oscillation x'' + 2ζ x' + x = 0 starts from x = 0, x' = 1. Its force vanishes where x'' = 0, at
+/// t = 2φ/√(1 − ζ²) with cos φ = ζ. There, x' = −e with
 ///
 /// ```text
 /// e = exp(−2ζ acos ζ/√(1 − ζ²))   below critical damping, e⁻² at it, exp(−2ζ acosh ζ/√(ζ² − 1)) above it.
 /// ```
 ///
-/// Hertz contacts with the dashpot of Tsuji, Tanaka & Ishida (1992) have the same e(ζ) at either release: with y = δ^{5/4} in
-/// the place of δ their motion v dv/dy is that of a linear oscillator (Antypov & Elliott, EPL 94 (2011) 50004), and the force
-/// vanishes where that of the oscillator does.
+/// Hertz contacts with the dashpot of Tsuji, Tanaka & Ishida (1992) have the same e(ζ) for either release. With
+/// y = δ^{5/4} instead of δ, their motion v dv/dy is that of a linear oscillator (Antypov & Elliott, EPL 94 (2011)
+/// 50004). Both forces vanish at the same point.
 #[must_use]
 pub fn no_tension_ratio(pulling: f64) -> f64 {
     if pulling <= 0.0 {
@@ -22,7 +22,7 @@ pub fn no_tension_ratio(pulling: f64) -> f64 {
     }
     let log = PI * pulling / (1.0 - pulling * pulling).sqrt();
     let (mut low, mut high) = (0.0, 1.0 + libm::exp(0.5 * log));
-    // The bracket is halved to the last bit.
+    // Bisection to the last bit.
     loop {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
@@ -32,7 +32,7 @@ pub fn no_tension_ratio(pulling: f64) -> f64 {
     }
 }
 
-/// −ln e of a contact with a damping ratio that ends at F_n = 0.
+/// Returns −ln e of a contact with a damping ratio that ends at F_n = 0.
 fn log_of_restitution(ratio: f64) -> f64 {
     let beside = 1.0 - ratio;
     let arc = if beside.abs() < 1e-4 {
@@ -50,7 +50,7 @@ fn log_of_restitution(ratio: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The largest speed of the rebound by fourth-order Runge-Kutta, for damping below and above the critical one.
+    /// Largest rebound speed, by the fourth-order Runge-Kutta method, for damping below and above the critical one.
     #[test]
     fn the_rebound_is_fastest_where_the_force_vanishes() {
         for ratio in [0.05, 0.2, 0.7, 0.99999, 1.0, 1.00001, 1.5, 4.0] {

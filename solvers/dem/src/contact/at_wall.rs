@@ -1,4 +1,4 @@
-//! A grain that touches a wall, made ready for the chain of stages.
+//! Contact between a grain and a wall, prepared for the chain of stages.
 
 use super::chain::{Answer, Evaluation, Turning, stages};
 use super::normal::Normal;
@@ -9,10 +9,9 @@ use super::{MEMORY, Memory, Touch, Turn, mean_normal, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 
-/// A grain that touches a wall, as the loop over walls finds it. The wall is a body of infinite mass that moves as it is
-/// driven.
+/// Grain in contact with a wall. The wall is a body of infinite mass with prescribed motion.
 pub(crate) struct AtWall<'a, S: Geometry> {
-    /// The law between the materials of grain and wall.
+    /// Law between the materials of grain and wall.
     pub(crate) law: &'a Constants<f64>,
     /// Unit normal e from the grain to the wall.
     pub(crate) normal: S::Vectors<f64>,
@@ -20,7 +19,7 @@ pub(crate) struct AtWall<'a, S: Geometry> {
     pub(crate) distance: f64,
     /// Radius R of the grain (m).
     pub(crate) radius: f64,
-    /// Velocity of the grain's centre relative to the wall where it touches (m/s).
+    /// Velocity of the grain's centre relative to the wall at the contact point (m/s).
     pub(crate) velocity: S::Vectors<f64>,
     /// Inverse mass 1/m of the grain (1/kg).
     pub(crate) inverse_mass: f64,
@@ -28,12 +27,12 @@ pub(crate) struct AtWall<'a, S: Geometry> {
     pub(crate) spin: Option<S::Spins<f64>>,
     /// Angular velocity Ω of the wall (rad/s).
     pub(crate) wall_spin: S::Spins<f64>,
-    /// Moment of inertia I of the grain (kg m²), only set for rolling resistance.
+    /// Moment of inertia I of the grain (kg m²); only set for rolling resistance.
     pub(crate) inertia: f64,
 }
 
 impl<S: Geometry> AtWall<'_, S> {
-    /// Forces and moments at the contact.
+    /// Returns the forces and moments at the contact.
     #[inline(always)]
     pub(crate) fn respond<N: Normal, T: Tangential<S>, R: Rolling<S>>(
         &self,
@@ -71,8 +70,9 @@ impl<S: Geometry> AtWall<'_, S> {
         stages::<S, N, T, R, f64>(&touch, arms, turning, evaluation, memory)
     }
 
-    /// Mean of the unit normals of the last evaluation and of this one, which the contact remembers from now on. The normal
-    /// itself at a new contact, and at one that goes on at another face of a wall, more than a quarter turn away.
+    /// Returns the mean of the unit normals of the previous and the present evaluation, and stores the present one. At
+    /// a new contact, it is the present normal. This also holds for a contact that continues on another face, more than
+    /// a quarter turn away.
     #[inline(always)]
     fn middle_normal(&self, memory: &mut Memory<f64>) -> S::Vectors<f64> {
         let remembered = &mut memory[MEMORY - 3..];

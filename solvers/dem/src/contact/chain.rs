@@ -1,4 +1,4 @@
-//! One contact through its chain of stages: normal, then tangential, then rolling.
+//! Chain of stages for one contact: normal, then tangential, then rolling.
 
 use super::normal::Normal;
 use super::rolling::Rolling;
@@ -7,17 +7,17 @@ use super::{MEMORY, Memory, Options, Touch};
 use crate::geometry::Geometry;
 use grainbench_lanes::Number;
 
-/// How the memory of a contact is laid out.
+/// Layout of the contact history.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
-    /// Numbers that are remembered.
+    /// Number of history values.
     pub(crate) numbers: usize,
-    /// What each is multiplied by when the roles of first and second grain are exchanged.
+    /// Factor of each value when the first and second grain are exchanged.
     pub(crate) exchanged: [f64; MEMORY],
 }
 
 impl Layout {
-    /// The layout of a chain of stages.
+    /// Returns the layout of a chain of stages.
     pub(crate) fn of<S: Geometry, T: Tangential<S>, R: Rolling<S>>() -> Self {
         let mut exchanged = [1.0; MEMORY];
         exchanged[..T::NUMBERS].fill(T::EXCHANGED);
@@ -26,55 +26,54 @@ impl Layout {
     }
 }
 
-/// How two bodies turn at their contact.
+/// Rotation of two bodies at their contact.
 pub(crate) struct Turning<S: Geometry, X: Number> {
-    /// ω₁a₁ + ω₂a₂, with the angular velocities ω and the torque arms a: by what the surfaces slip because the bodies
-    /// turn (m/s).
+    /// Sum ω₁a₁ + ω₂a₂ with angular velocities ω and lever arms a: the slip velocity due to rotation (m/s).
     pub(crate) surface: S::Spins<X>,
-    /// Angular velocity of the first body relative to the second, ω₁ − ω₂ (rad/s), or what rolls in its place at a
-    /// wall.
+    /// Angular velocity of the first body relative to the second, ω₁ − ω₂ (rad/s), or the rolling velocity of the
+    /// convention at a wall.
     pub(crate) relative: S::Spins<X>,
-    /// Moment of inertia of the two about their contact, [1/(I₁ + m₁R₁²) + 1/(I₂ + m₂R₂²)]⁻¹ (kg m²).
+    /// Moment of inertia of both bodies about the contact, [1/(I₁ + m₁R₁²) + 1/(I₂ + m₂R₂²)]⁻¹ (kg m²).
     pub(crate) inertia: X,
 }
 
-/// What the chain answers: forces and moments, and what is shown of the contact.
+/// Result of the chain: forces, moments, and output data of the contact.
 pub(crate) struct Answer<S: Geometry, X: Number> {
     /// Unit normal e from the first body to the second.
     pub(crate) normal: S::Vectors<X>,
     /// Overlap δ (m).
     pub(crate) overlap: X,
-    /// Force on the first body (N); on the second acts the opposite.
+    /// Force on the first body (N). The force on the second body is opposite.
     pub(crate) force: S::Vectors<X>,
-    /// Torques on both bodies (N m): of the tangential force at their arms, and the moments against rolling.
+    /// Torques on both bodies (N m), from the tangential force and from rolling resistance.
     pub(crate) torques: [S::Spins<X>; 2],
-    /// Normal force F_n (N), positive when it pushes apart.
+    /// Normal force F_n (N); positive if repulsive.
     pub(crate) normal_force: X,
     /// Tangential force F_s on the first body (N).
     pub(crate) shear: S::Tangents<X>,
-    /// Whether Coulomb's limit was reached.
+    /// True if the Coulomb limit was reached.
     pub(crate) slipping: X::Mask,
-    /// Energy in the springs (J), only when it is recorded.
+    /// Energy in the springs (J); only if recorded.
     pub(crate) elastic_energy: X,
-    /// Work of friction in the step (J), only when it is recorded.
+    /// Frictional work in the step (J); only if recorded.
     pub(crate) rubbed: X,
-    /// Energy that the tangential spring releases in the step because its stiffness changes (J), only when it is recorded.
+    /// Energy released by the tangential spring in the step because its stiffness changes (J); only if recorded.
     pub(crate) released: X,
 }
 
-/// How a contact is evaluated.
+/// Parameters of an evaluation.
 #[derive(Clone, Copy)]
 pub(crate) struct Evaluation<'a> {
-    /// The options of the convention.
+    /// Options of the convention.
     pub(crate) options: &'a Options,
     /// Time since the last evaluation (s).
     pub(crate) elapsed: f64,
-    /// Whether energies are found.
+    /// True if energies are computed.
     pub(crate) record: bool,
 }
 
-/// Takes one contact through its stages. `arms` are the torque arms of both bodies (m), and `turning` is `None` where
-/// bodies do not rotate.
+/// Evaluates the stages of one contact. `arms` are the lever arms of both bodies (m), and `turning` is `None` if bodies
+/// do not rotate.
 #[inline(always)]
 pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X: Number>(
     touch: &Touch<'_, S, X>,

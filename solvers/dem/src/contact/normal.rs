@@ -1,37 +1,37 @@
-//! First stage: the force along the normal, and the stiffness that the other stages build on.
+//! First stage: the normal force, and the stiffness that the other stages need.
 
 use super::{Options, Touch};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
 
-/// Normal force at a contact (N), positive when it pushes apart.
+/// Normal force at a contact (N); positive if repulsive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NormalForce<X> {
-    /// Of spring and dashpot.
+    /// Force of spring and dashpot.
     pub(crate) total: X,
-    /// What Coulomb's limit is proportional to.
+    /// Normal force to which the Coulomb limit is proportional.
     pub(crate) for_cap: X,
 }
 
-/// The normal stage.
+/// Normal stage.
 pub(crate) trait Normal: Copy + Send + Sync + 'static {
-    /// Whether dashpots act at contacts, along the tangent too.
+    /// True if dashpots act at contacts, including tangential ones.
     const DAMPED: bool;
-    /// Whether the stage reads the effective radius.
+    /// True if the stage needs the effective radius.
     const CURVED: bool;
 
-    /// The normal force.
+    /// Returns the normal force.
     fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, options: &Options) -> NormalForce<X>;
-    /// Stiffness k_s of the tangential spring (N/m).
+    /// Returns the stiffness k_s of the tangential spring (N/m).
     fn tangential_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
-    /// Secant stiffness F/δ of the normal spring (N/m).
+    /// Returns the secant stiffness F/δ of the normal spring (N/m).
     fn secant_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
-    /// Energy in the normal spring (J).
+    /// Returns the energy in the normal spring (J).
     fn energy<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
 }
 
-/// Spring and dashpot together.
+/// Returns the force of spring and dashpot together.
 #[inline(always)]
 fn damped<S: Geometry, X: Number>(
     touch: &Touch<'_, S, X>,
@@ -45,18 +45,19 @@ fn damped<S: Geometry, X: Number>(
     NormalForce { total, for_cap: signed.at_least(-signed * options.pull_in_cap) }
 }
 
-/// Viscosity 2ζ√(k m) (N s/m) from `stiff_mass` k m (N kg/m): without a root where no contact has such a dashpot.
+/// Returns the viscosity 2ζ√(k m) (N s/m) from `stiff_mass` k m (N kg/m). No square root is computed if no contact has
+/// this dashpot.
 #[inline(always)]
 fn restitution<X: Number>(law: &Constants<X>, stiff_mass: X) -> X {
     let zero = stiff_mass.like(0.0);
     if stiff_mass.anywhere(zero.below(law.damping_ratio)) { law.damping_ratio * 2.0 * stiff_mass.sqrt() } else { zero }
 }
 
-/// A linear spring, F_n = k_n δ.
+/// Linear spring, F_n = k_n δ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring;
 
-/// What every linear stage answers alike.
+/// Functions common to all linear stages.
 macro_rules! linear_stiffness {
     () => {
         #[inline(always)]
@@ -85,11 +86,11 @@ impl Normal for Spring {
     linear_stiffness!();
 }
 
-/// A linear spring and dashpots, F_n = k_n δ + c_n δ̇ with c_n = β k_n + γ_n m_eff + 2ζ√(k_n m_eff).
+/// Linear spring and dashpots, F_n = k_n δ + c_n δ̇ with c_n = β k_n + γ_n m_eff + 2ζ√(k_n m_eff).
 ///
-/// The first two terms are Cundall & Strack's (1979, eqs. 26 and 28; LAMMPS and LIGGGHTS write the second). The third gives a
-/// coefficient of restitution e, with ζ = −ln e/√(π² + ln² e). Exact when contact ends with the overlap: the damped
-/// half-oscillation ends at e = exp(−πζ/√(1 − ζ²)).
+/// The first two terms are from Cundall & Strack (1979, eqs. 26 and 28); LAMMPS and LIGGGHTS use the second. The third
+/// gives a coefficient of restitution e, with ζ = −ln e/√(π² + ln² e). It is exact if the contact ends with the
+/// overlap: the damped half-oscillation ends at e = exp(−πζ/√(1 − ζ²)).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpringDashpot;
 
@@ -107,7 +108,7 @@ impl Normal for SpringDashpot {
     linear_stiffness!();
 }
 
-/// What both Hertz stages answer alike: F_n = (4/3) E* √R* δ^{3/2}, Mindlin's k_s = 8 G* √(R* δ), energy (2/5) F_n δ
+/// Functions common to both Hertz stages: F_n = (4/3) E* √R* δ^{3/2}, Mindlin's k_s = 8 G* √(R* δ), energy (2/5) F_n δ
 /// (Johnson, Contact Mechanics, 1985, eqs. 4.23 and 7.43).
 macro_rules! hertz_stiffness {
     () => {
@@ -141,9 +142,9 @@ impl Normal for Hertz {
     hertz_stiffness!();
 }
 
-/// Hertz contact with dashpots: c_n = γ_n m_eff + 2√(5/6) ζ √(S m_eff), S = dF/dδ = 2E*√(R*δ), whose second term gives
-/// the coefficient of restitution e exactly when contact ends with the overlap (Tsuji, Tanaka & Ishida 1992; Antypov &
-/// Elliott 2011 show that it maps onto a damped harmonic oscillator).
+/// Hertz contact with dashpots: c_n = γ_n m_eff + 2√(5/6) ζ √(S m_eff), S = dF/dδ = 2E*√(R*δ). The second term gives
+/// exactly the coefficient of restitution e if the contact ends with the overlap (Tsuji, Tanaka & Ishida 1992). Antypov
+/// & Elliott (2011) map the contact to a damped harmonic oscillator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HertzDashpot;
 

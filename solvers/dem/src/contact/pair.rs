@@ -1,4 +1,4 @@
-//! Two grains that touch, made ready for the chain of stages.
+//! Contact between two grains, prepared for the chain of stages.
 
 use super::chain::{Answer, Evaluation, Turning, stages};
 use super::normal::Normal;
@@ -9,13 +9,13 @@ use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
 
-/// Two grains that touch, as the loop over pairs finds them; or several pairs at a time.
+/// Two grains in contact, or several such pairs at a time.
 pub(crate) struct Pair<'a, S: Geometry, X: Number> {
-    /// The law between their materials.
+    /// Law between the two materials.
     pub(crate) law: &'a Constants<X>,
     /// Vector from the first centre to the second (m).
     pub(crate) between: S::Vectors<X>,
-    /// Its length (m), and the inverse of that (1/m).
+    /// Its length (m), and the inverse of the length (1/m).
     pub(crate) distance: X,
     pub(crate) inverse_distance: X,
     /// Radii R (m).
@@ -26,16 +26,16 @@ pub(crate) struct Pair<'a, S: Geometry, X: Number> {
     pub(crate) velocity: S::Vectors<X>,
     /// Sum of the inverse masses, 1/m₁ + 1/m₂ (1/kg).
     pub(crate) inverse_mass: X,
-    /// Inverse masses 1/m (1/kg), only set for rolling resistance.
+    /// Inverse masses 1/m (1/kg); only set for rolling resistance.
     pub(crate) inverse_masses: [X; 2],
-    /// Angular velocities ω (rad/s), if they rotate.
+    /// Angular velocities ω (rad/s), if the grains rotate.
     pub(crate) spins: Option<[S::Spins<X>; 2]>,
-    /// Inverse moments of inertia 1/I (1/(kg m²)), only set for rolling resistance.
+    /// Inverse moments of inertia 1/I (1/(kg m²)); only set for rolling resistance.
     pub(crate) inverse_inertia: [X; 2],
 }
 
 impl<S: Geometry, X: Number> Pair<'_, S, X> {
-    /// Forces and moments at the contact.
+    /// Returns the forces and moments at the contact.
     #[inline(always)]
     pub(crate) fn respond<N: Normal, T: Tangential<S>, R: Rolling<S>>(
         &self,
@@ -84,7 +84,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         stages::<S, N, T, R, X>(&touch, arms, turning, evaluation, memory)
     }
 
-    /// Inverse moment of inertia of a grain about the contact, 1/(I + m R²) (1/(kg m²)).
+    /// Returns the inverse moment of inertia of a grain about the contact, 1/(I + m R²) (1/(kg m²)).
     #[inline(always)]
     fn about_contact(&self, grain: usize) -> X {
         let radius = self.radii[grain];
@@ -93,8 +93,8 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
     }
 }
 
-/// The mass (kg), or moment of inertia (kg m²), of two bodies against each other, from the sum of the inverses of both; none
-/// where both are driven: they do not feel each other.
+/// Returns the effective mass (kg), or moment of inertia (kg m²), of two bodies from the sum of their inverses. It is
+/// zero if both have prescribed motion.
 #[inline(always)]
 pub(crate) fn harmonic<X: Number>(inverse: X) -> X {
     let [zero, one] = [inverse.like(0.0), inverse.like(1.0)];
@@ -114,11 +114,12 @@ mod tests {
     use nalgebra::Vector3;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    /// Two spheres that are stuck together, their spring stretched, swing by a quarter turn about z as one body: F_s keeps
-    /// its length, but for 1 − cos^N(π/2N) < π²/(8N) of it that N steps take off as the normal part, and F_s·e = 0.
+    /// Two spheres stick together with a displaced spring and rotate by a quarter turn about z as one body. F_s keeps
+    /// its length, except for a fraction 1 − cos^N(π/2N) < π²/(8N) that N steps remove as the normal part, and
+    /// F_s·e = 0.
     ///
-    /// Rigid motion slips by nothing where the torque arms meet, at R − δ/2: (v₁ − v₂) + ω (a₁ + a₂) × e = 0 with v₁ − v₂ =
-    /// −ω × e (2R − δ).
+    /// Rigid rotation causes no slip if the lever arms end at R − δ/2: (v₁ − v₂) + ω (a₁ + a₂) × e = 0 with v₁ −
+    /// v₂ = −ω × e (2R − δ).
     #[test]
     fn stuck_spheres_carry_their_spring_when_they_swing() {
         type Stretched = Coulomb<Projected>;
@@ -147,7 +148,7 @@ mod tests {
             let answer = pair.respond::<Spring, Stretched, FreeRolling>(evaluation, &mut memory);
             (Vector3::from(answer.shear.0), Vector3::from(answer.normal.0))
         };
-        // Stretched along +y in a first step; the spring pulls the first sphere back.
+        // The first step displaces the spring along +y; the spring pulls the first sphere back.
         let (start, _) = swung(0.0, Vector3::y() * slip, 1.0);
         let force = 5e5 * slip;
         assert!((start + Vector3::y() * force).norm() < 1e-9 * force, "{start:?}");

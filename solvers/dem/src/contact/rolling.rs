@@ -1,20 +1,20 @@
-//! Third stage: the moment against rolling, with what the contact must remember for it.
+//! Third stage: the moment against rolling, and its contact history.
 
 use super::Touch;
 use super::normal::{Normal, NormalForce};
 use crate::geometry::{Geometry, Linear};
 use grainbench_lanes::Number;
 
-/// The rolling stage.
+/// Rolling stage.
 pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
-    /// Whether there is a moment at all.
+    /// True if there is a moment.
     const ACTIVE: bool;
-    /// Numbers that a contact remembers from step to step. With the roles of first and second grain exchanged they have the
-    /// opposite sign.
+    /// Number of history values. They change sign if the first and second grain are exchanged.
     const NUMBERS: usize;
 
-    /// Moment on the first body (N m), from the angular velocity of the first body relative to the second (rad/s), the
-    /// time that has passed since the last one (s) and the moment of inertia of the pair about the contact (kg m²).
+    /// Returns the moment on the first body (N m). The arguments are the angular velocity of the first body relative to
+    /// the second (rad/s), the time since the last evaluation (s), and the moment of inertia of the pair about the
+    /// contact (kg m²).
     fn moment<N: Normal, X: Number>(
         touch: &Touch<'_, S, X>,
         normal: NormalForce<X>,
@@ -23,11 +23,11 @@ pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
         inertia: X,
         memory: &mut [X],
     ) -> S::Spins<X>;
-    /// Energy in the rolling spring (J).
+    /// Returns the energy in the rolling spring (J).
     fn energy<N: Normal, X: Number>(touch: &Touch<'_, S, X>, memory: &[X]) -> X;
 }
 
-/// No rolling resistance: nothing is remembered, no moment.
+/// No rolling resistance: no history and no moment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FreeRolling;
 
@@ -51,16 +51,16 @@ impl<S: Geometry> Rolling<S> for FreeRolling {
     }
 }
 
-/// An elastic-plastic spring and a dashpot against rolling (Ai, Chen, Rotter & Ooi 2011, model C; LIGGGHTS `epsd`):
+/// Elastic-plastic spring and dashpot against rolling (Ai, Chen, Rotter & Ooi 2011, model C; LIGGGHTS `epsd`):
 ///
 /// ```text
 /// M = −k_r θ − C ω      |k_r θ| ≤ μ_r R_eff F_n      k_r = 2.25 k_n μ_r² R_eff²      C = 2η_r √(I_r k_r)
 /// ```
 ///
-/// θ is the rolling angle, cut back when the spring yields; the dashpot acts only while it has not. The part of the
-/// relative spin along the normal is twisting, not rolling, and exerts nothing.
+/// θ is the rolling angle, which is reduced when the spring yields. The dashpot acts only until the spring yields. The
+/// normal part of the relative spin is twisting, not rolling, and causes no moment.
 ///
-/// The angle (rad) is what a contact remembers.
+/// The history is the angle (rad).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ElasticPlastic;
 
@@ -95,7 +95,7 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
         }
         let spring = -(angle * stiffness);
         let dashpot = rate * (law.rolling_damping * 2.0 * (inertia * stiffness).sqrt());
-        // Contacts that do not resist, beside others that do, remember nothing.
+        // Contacts without rolling resistance store zero, even beside contacts with resistance.
         let (resists, none) = (zero.below(arm), S::as_spin([zero; 3]));
         S::Spins::<X>::choose(resists, angle, none).write(memory);
         S::Spins::<X>::choose(resists, S::Spins::<X>::choose(yields, spring, spring - dashpot), none)
@@ -106,7 +106,7 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
     }
 }
 
-/// k_r = 2.25 k_n μ_r² R_eff² (N m/rad), with the secant stiffness where it is not constant.
+/// Returns k_r = 2.25 k_n μ_r² R_eff² (N m/rad), with the secant stiffness if k_n is not constant.
 #[inline(always)]
 fn rolling_stiffness<S: Geometry, N: Normal, X: Number>(touch: &Touch<'_, S, X>) -> X {
     let arm = touch.law.rolling_friction * touch.effective_radius;

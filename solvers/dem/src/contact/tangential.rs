@@ -1,7 +1,7 @@
-//! Second stage: the force along the tangent, a spring and a dashpot under Coulomb's limit.
+//! Second stage: the tangential force, a spring and a dashpot with the Coulomb limit.
 //!
-//! The spring's stretch s (m) is what the contact remembers. It grows by the slip velocity times the time step, and it
-//! is carried along with a contact that turns ([`Carrying`]). Coulomb's limit cuts it back ([`Cap`]).
+//! The contact history is the displacement s of the tangential spring (m). It grows by the slip velocity times the time
+//! step, and rotates with the contact ([`Carrying`]). The Coulomb limit reduces it ([`Cap`]).
 
 use super::chain::Evaluation;
 use super::normal::{Normal, NormalForce};
@@ -12,29 +12,29 @@ use grainbench_scene::space::{Plane, Solid};
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-/// What the tangential stage answers.
+/// Result of the tangential stage.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear<S: Geometry, X: Number> {
-    /// Force F_s on the first body along the tangent (N).
+    /// Tangential force F_s on the first body (N).
     pub(crate) force: S::Tangents<X>,
-    /// Whether Coulomb's limit was reached.
+    /// True if the Coulomb limit was reached.
     pub(crate) slipping: X::Mask,
 }
 
-/// The tangential stage.
+/// Tangential stage.
 pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
-    /// Whether there is a tangential force at all.
+    /// True if there is a tangential force.
     const ACTIVE: bool;
-    /// Whether springs turn with the contact ([`crate::convention::History::Turned`]).
+    /// True if springs rotate with the contact ([`crate::convention::History::Turned`]).
     const TURNED: bool;
-    /// Whether a convention of this stage may decompose velocities along the normal of mid-step.
+    /// True if a convention of this stage may decompose velocities along the mid-step normal.
     const MAY_BE_MID_STEP: bool;
-    /// Numbers that a contact remembers from step to step, first in its memory: the stretch of its tangential spring (m).
+    /// Number of history values, which come first: the displacement of the tangential spring (m).
     const NUMBERS: usize;
-    /// What they are multiplied by when the roles of first and second grain are exchanged.
+    /// Factor of the history values when the first and second grain are exchanged.
     const EXCHANGED: f64;
 
-    /// The tangential force, from the slip velocity (m/s).
+    /// Returns the tangential force, from the slip velocity (m/s).
     fn respond<N: Normal, X: Number>(
         touch: &Touch<'_, S, X>,
         normal: NormalForce<X>,
@@ -43,12 +43,13 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
         memory: &mut Memory<X>,
     ) -> Shear<S, X>;
 
-    /// Energy lost in a step (J): the work of friction, and the energy released by a change of stiffness.
+    /// Returns the energy lost in a step (J): the frictional work, and the energy released by a change of stiffness.
     ///
-    /// The work of friction is ½ k (s + s')·(s + ṡ Δt − s'): the mean force of the spring times the distance that its end slid.
-    /// Here s is the stretch before the step, carried to the contact of now, s' the stretch after it, ṡ the slip velocity and k
-    /// the stiffness after the step. With the stretch s₀ and the stiffness k₀ before the step, the energy before it and the
-    /// work on the spring, ½ (k₀ s₀ + k s')·ṡ Δt, less the energy after it are all that is lost: what is not rubbed is released.
+    /// The frictional work is ½ k (s + s')·(s + ṡ Δt − s'): the mean spring force times the sliding distance of its
+    /// end. Here s is the spring displacement before the step, transported to the present contact, s' the displacement
+    /// after it, ṡ the slip velocity, and k the stiffness after the step. The displacement before the step is s₀, and
+    /// the stiffness k₀. The total loss is the energy before the step, plus the work on the spring, ½ (k₀ s₀ + k s')·ṡ
+    /// Δt, minus the energy after it. The loss beyond frictional work is released.
     fn lost<N: Normal, X: Number>(
         touch: &Touch<'_, S, X>,
         slip: S::Tangents<X>,
@@ -57,11 +58,11 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
         after: &Memory<X>,
     ) -> [X; 2];
 
-    /// Energy ½ k_s s² in the tangential spring (J), from the stiffness k_s (N/m).
+    /// Returns the energy ½ k_s s² in the tangential spring (J), from the stiffness k_s (N/m).
     fn energy<X: Number>(memory: &Memory<X>, stiffness: X) -> X;
 }
 
-/// No friction: no tangential force, no memory and no rotation.
+/// No friction: no tangential force, no history and no rotation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frictionless;
 
@@ -97,39 +98,41 @@ impl<S: Geometry> Tangential<S> for Frictionless {
     }
 }
 
-/// What Coulomb's limit acts on.
+/// Force to which the Coulomb limit applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cap {
-    /// The spring; the dashpot is added only while the contact sticks.
+    /// Force of the spring. The dashpot is added only while the contact sticks.
     Spring,
-    /// Spring and dashpot together; the spring is reset so that their sum is the limit (Luding 2008, Granular Matter 10,
-    /// 235, eq. 22), and relaxed where the dashpot alone exceeds the limit, so that it never pushes surfaces the way they slide.
+    /// Force of spring and dashpot together. The spring is reset so that their sum equals the limit (Luding 2008,
+    /// Granular Matter 10, 235, eq. 22). If the dashpot alone exceeds the limit, the spring is relaxed, so that it
+    /// never acts in the sliding direction.
     Total,
-    /// Spring and dashpot together, as LAMMPS does it: the spring may push surfaces the way they slide, and a force beyond the
-    /// limit is dropped where there is no stretch yet, as in its evaluation at the start.
+    /// Force of spring and dashpot together, as in LAMMPS. The spring may act in the sliding direction. A force beyond
+    /// the limit is dropped if the spring has no displacement yet, as in the evaluation at the start.
     TotalAsLammps,
 }
 
-/// A tangential spring and dashpot before Coulomb's limit.
+/// Tangential spring and dashpot before the Coulomb limit.
 #[derive(Clone, Copy, Debug)]
 struct Bound<X> {
     /// Stiffness k_s (N/m).
     stiffness: X,
-    /// Viscosity c_s (N s/m), where contacts are damped.
+    /// Viscosity c_s (N s/m), if contacts are damped.
     viscosity: Option<X>,
-    /// The limit (N).
+    /// Coulomb limit (N).
     limit: X,
 }
 
 impl<X: Number> Bound<X> {
-    /// The tangential force and whether the contact slips, from the stretch of the spring s (m) and the slip velocity
-    /// (m/s). The stretch is cut back when the contact slips.
+    /// Returns the tangential force, and true if the contact slips, from the spring displacement s (m) and the slip
+    /// velocity (m/s). The displacement is reduced if the contact slips.
     #[inline(always)]
     fn limit<S: Geometry>(&self, cap: Cap, stretch: &mut S::Tangents<X>, slip: S::Tangents<X>) -> Shear<S, X> {
         let Some(viscosity) = self.viscosity.filter(|_| cap != Cap::Spring) else {
             return self.limit_spring::<S>(stretch, slip, self.viscosity);
         };
-        // A contact without a dashpot is limited alike, to the last bit, whatever other contacts of the scene have.
+        // A contact without a dashpot gives the same result to the last bit, whether or not other contacts of the scene
+        // have one.
         let zero = viscosity.like(0.0);
         let damped = zero.below(viscosity);
         if !viscosity.anywhere(damped) {
@@ -153,7 +156,7 @@ impl<X: Number> Bound<X> {
         shear
     }
 
-    /// The limit on the spring alone.
+    /// Applies the limit to the spring alone.
     #[inline(always)]
     fn limit_spring<S: Geometry>(
         &self,
@@ -174,7 +177,7 @@ impl<X: Number> Bound<X> {
         Shear { force, slipping }
     }
 
-    /// The limit on spring and dashpot together.
+    /// Applies the limit to spring and dashpot together.
     #[inline(always)]
     fn limit_total<S: Geometry>(
         &self,
@@ -201,25 +204,26 @@ impl<X: Number> Bound<X> {
     }
 }
 
-/// Transport of the stretch of a tangential spring at a contact that turns.
+/// Transport of the tangential spring displacement at a rotating contact.
 pub(crate) trait Carrying<S: Geometry>: Copy + Debug + Send + Sync + 'static {
-    /// Whether the stretch turns with the contact.
+    /// True if the displacement rotates with the contact.
     const TURNED: bool;
-    /// Numbers that are remembered of the stretch.
+    /// Number of history values of the displacement.
     const NUMBERS: usize;
-    /// What they are multiplied by when the roles of first and second grain are exchanged.
+    /// Factor of these values when the first and second grain are exchanged.
     const EXCHANGED: f64;
-    /// The stretch (m) that was remembered, at a contact that has turned since.
+    /// Returns the stored displacement (m) after the rotation of the contact.
     fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, S, X>) -> S::Tangents<X>;
-    /// The stretch (m) that is remembered of a contact with `normal`.
+    /// Returns the stored displacement (m) of a contact with `normal`.
     fn held<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X>;
-    /// Remembers the stretch (m) of a contact with `normal`.
+    /// Stores the displacement (m) of a contact with `normal`.
     fn keep<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>, memory: &mut Memory<X>);
-    /// Squared stretch (m²).
+    /// Returns the squared displacement (m²).
     fn squared<X: Number>(memory: &Memory<X>) -> X;
 }
 
-/// The stretch turns with the contact: in the plane as a scalar along the tangent (Cundall & Strack 1979), in space as a vector.
+/// The displacement rotates with the contact: in the plane as a scalar along the tangent (Cundall & Strack 1979), in
+/// space as a vector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned;
 
@@ -270,8 +274,8 @@ impl Carrying<Solid> for Turned {
     }
 }
 
-/// The stretch is a vector that keeps its direction and loses its normal part, in the plane too (LAMMPS, LIGGGHTS): it
-/// shrinks a little as the contact turns.
+/// The displacement is a vector that keeps its direction and loses its normal part, also in the plane (LAMMPS,
+/// LIGGGHTS). It shrinks slightly as the contact rotates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projected;
 
@@ -298,8 +302,8 @@ impl<S: Geometry> Carrying<S> for Projected {
     }
 }
 
-/// An incremental spring F_s = −k_s s with Coulomb's limit |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to
-/// 19), and a dashpot c_s = β k_s + γ_t m_eff where contacts are damped.
+/// Incremental spring F_s = −k_s s with the Coulomb limit |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19),
+/// and a dashpot c_s = β k_s + γ_t m_eff if contacts are damped.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coulomb<H>(PhantomData<H>);
 
@@ -357,8 +361,8 @@ impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
     }
 }
 
-/// The stretch (m) at a contact that has turned and whose stiffness has changed since it was remembered: where it turns with
-/// the contact the force is kept while the stiffness grows.
+/// Returns the displacement (m) at a contact that has rotated and whose stiffness has changed since it was stored. If
+/// the displacement rotates with the contact, its force is kept while the stiffness grows.
 #[inline(always)]
 fn carried<S: Geometry, H: Carrying<S>, N: Normal, X: Number>(
     memory: &Memory<X>,
@@ -376,7 +380,7 @@ fn carried<S: Geometry, H: Carrying<S>, N: Normal, X: Number>(
 mod tests {
     use super::*;
 
-    /// Above the limit both conventions leave a stretch that gives the limit: of the spring alone, or of the sum.
+    /// Above the limit, both conventions leave a displacement that gives the limit: of the spring alone, or of the sum.
     #[test]
     fn caps_leave_a_consistent_stretch() {
         let slip = Components([2.0]);
@@ -389,17 +393,18 @@ mod tests {
         };
         let (force, spring, slipping) = limited(Cap::Spring, 0.2);
         assert!(slipping && (force + limit).abs() < 1e-14 && (spring * stiffness - limit).abs() < 1e-14);
-        // The dashpot alone, 3·2, is beyond the limit: the spring of LAMMPS pushes the way it slides, and ours relaxes.
+        // The dashpot alone, 3·2, exceeds the limit. The spring of LAMMPS acts in the sliding direction, and ours
+        // relaxes.
         let (force, stretch, slipping) = limited(Cap::TotalAsLammps, 0.2);
         assert!(slipping && (force + limit).abs() < 1e-14);
         assert!((stretch * stiffness + 2.0 * viscosity - limit).abs() < 1e-14);
         assert_eq!(limited(Cap::Total, 0.2), (force, 0.0, true));
 
-        // Where there is no stretch yet: −3·2 is beyond the limit.
+        // Without displacement, −3·2 exceeds the limit.
         let (force, stretch, slipping) = limited(Cap::TotalAsLammps, 0.0);
         assert!(slipping && force == 0.0 && stretch == 0.0);
         assert!((limited(Cap::Total, 0.0).0 + limit).abs() < 1e-14);
-        // Where the dashpot is within the limit, 3·2 of 10, spring and dashpot together are the limit.
+        // If the dashpot is within the limit, 3·2 of 10, spring and dashpot together equal the limit.
         let looser = Bound { limit: 10.0, ..bound };
         for cap in [Cap::Total, Cap::TotalAsLammps] {
             let mut stretch = Components([0.2]);
@@ -407,7 +412,7 @@ mod tests {
             assert!(shear.slipping && (shear.force.0[0] + 10.0).abs() < 1e-14);
             assert!((stretch.0[0] * stiffness + 2.0 * viscosity - 10.0).abs() < 1e-14, "{cap:?}");
         }
-        // Within the limit none of them cuts: −(100·.01 + 3·2/4).
+        // Within the limit, no variant reduces the displacement: −(100·.01 + 3·2/4).
         let bound = Bound { limit: 50.0, ..bound };
         for cap in [Cap::Spring, Cap::Total, Cap::TotalAsLammps] {
             let mut stretch = Components([0.01]);
@@ -416,7 +421,7 @@ mod tests {
         }
     }
 
-    /// Contacts with a dashpot beside contacts without: each is limited as it would be by itself.
+    /// Contacts with and without a dashpot in one register: each gives the same result as it would alone.
     #[test]
     fn contacts_side_by_side_are_limited_as_alone() {
         use grainbench_lanes::{Plain, Wide};

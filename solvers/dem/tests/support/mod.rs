@@ -1,4 +1,4 @@
-//! Scenes of the tests.
+//! Scenes for the tests.
 #![allow(dead_code, unreachable_pub, reason = "each test file takes what it needs")]
 
 use grainbench_dem::convention::Convention;
