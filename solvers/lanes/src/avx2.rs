@@ -1,4 +1,4 @@
-//! Four lanes in registers of 256 bits. Whether the processor has them is what holding the token means.
+//! Four lanes in 256-bit registers. The token exists only if the processor supports them.
 
 use crate::{FourLanes, LANES, Lanes, Quad, WIDEST};
 use pulp::x86::V3;
@@ -104,14 +104,14 @@ impl Lanes for V3 {
     }
 }
 
-/// A quad less another; of the fourth numbers the sum.
+/// Returns the difference of two quads; the fourth number is the sum instead.
 #[inline(always)]
 fn less(lanes: V3, from: Quad, to: Quad) -> __m256d {
     let (from, to): (__m256d, __m256d) = (pulp::cast(from.0), pulp::cast(to.0));
     lanes.avx._mm256_blend_pd::<0b1000>(lanes.avx._mm256_sub_pd(to, from), lanes.avx._mm256_add_pd(to, from))
 }
 
-/// Rows for columns.
+/// Transposition of four registers.
 trait Turned {
     fn turned(self, rows: [__m256d; 4]) -> [__m256d; 4];
 }
@@ -142,14 +142,14 @@ impl FourLanes for V3 {
     }
     #[inline(always)]
     fn sums(self, [a, b, c, d]: [__m256d; LANES]) -> [f64; LANES] {
-        // a₀+a₁, b₀+b₁, a₂+a₃, b₂+b₃; and of the others.
+        // a₀+a₁, b₀+b₁, a₂+a₃, b₂+b₃, and likewise for c and d.
         let [ab, cd] = [self.avx._mm256_hadd_pd(a, b), self.avx._mm256_hadd_pd(c, d)];
         let crossed = self.avx._mm256_permute2f128_pd::<0x21>(ab, cd);
         self.values(self.add(self.avx._mm256_blend_pd::<0b1100>(ab, cd), crossed))
     }
 }
 
-/// For all bits: the lanes whose bit is set, first.
+/// For each bit pattern, the lanes whose bit is set come first.
 static PLACES: [[u32; WIDEST]; 256] = {
     let mut all = [[0; WIDEST]; 256];
     let mut bits = 0;

@@ -1,33 +1,33 @@
-//! Eight lanes in registers of 512 bits. Whether the processor has them is what holding the token means.
+//! Eight lanes in 512-bit registers. The token exists only if the processor supports them.
 
 use crate::{Lanes, Quad, WIDEST};
 use pulp::x86::V4;
 use std::arch::x86_64::{__m256d, __m512d, __mmask8, _CMP_LT_OQ};
 
-/// Two quads in a register.
+/// Returns two quads in a register.
 #[inline(always)]
 fn both(lanes: V4, low: Quad, high: Quad) -> __m512d {
     let [low, high]: [__m256d; 2] = [pulp::cast(low.0), pulp::cast(high.0)];
     lanes.avx512f._mm512_insertf64x4::<1>(lanes.avx512f._mm512_castpd256_pd512(low), high)
 }
 
-/// The quads of a register.
+/// Returns the two quads of a register.
 #[inline(always)]
 fn split(register: __m512d) -> [Quad; 2] {
     let [low, high]: [[f64; 4]; 2] = pulp::cast(register);
     [Quad(low), Quad(high)]
 }
 
-/// The fourth numbers of two quads.
+/// Mask of the fourth numbers of two quads.
 const FOURTH: __mmask8 = 0b1000_1000;
 
-/// The signs of the first quad's numbers.
+/// Sign bits of the first quad's numbers.
 const FIRST_OPPOSED: [u64; WIDEST] = [SIGN, SIGN, SIGN, SIGN, 0, 0, 0, 0];
-/// The bit of a number that is its sign.
+/// Sign bit of a number.
 const SIGN: u64 = 1 << 63;
 
-/// The quads of a table at eight places, two in a register: 0 and 2, 1 and 3, 4 and 6, 5 and 7, so that the last step of
-/// turning them leaves them in order.
+/// Returns the quads of a table at eight indices, two per register: 0 and 2, 1 and 3, 4 and 6, 5 and 7. With this
+/// order, the last step of the transposition leaves them in sequence.
 #[inline(always)]
 fn twos<const N: usize>(lanes: V4, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
     [
@@ -38,13 +38,13 @@ fn twos<const N: usize>(lanes: V4, table: &[[Quad; N]], of: usize, at: &[usize; 
     ]
 }
 
-/// Two quads less two others; of the fourth numbers the sums.
+/// Returns the differences of two pairs of quads; the fourth numbers are sums instead.
 #[inline(always)]
 fn less(lanes: V4, from: __m512d, to: __m512d) -> __m512d {
     lanes.avx512f._mm512_mask_add_pd(lanes.avx512f._mm512_sub_pd(to, from), FOURTH, to, from)
 }
 
-/// Columns for rows.
+/// Transposes the quads.
 #[inline(always)]
 fn turned(lanes: V4, [a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
     let avx = lanes.avx512f;
@@ -58,7 +58,7 @@ fn turned(lanes: V4, [a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
     ]
 }
 
-/// Two quads for each of four lanes, from the first and last two numbers of each.
+/// Returns two quads for each of four lanes, from the first two and the last two numbers of each quad.
 #[inline(always)]
 fn in_pairs(lanes: V4, [a, b]: [__m512d; 2], [c, d]: [__m512d; 2]) -> [__m512d; 4] {
     let avx = lanes.avx512f;

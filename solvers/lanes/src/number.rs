@@ -1,9 +1,9 @@
-//! A number, or several at a time.
+//! One number, or several at a time.
 
 use crate::{FourLanes, LANES, Lanes, WIDEST};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number, or several.
+/// One number, or several at a time.
 pub trait Number:
     Copy
     + Add<Output = Self>
@@ -15,33 +15,33 @@ pub trait Number:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// An answer for each of them.
+    /// One flag per number.
     type Mask: Copy;
 
-    /// A constant, to compute with this one.
+    /// Returns a constant of the same type.
     #[must_use]
     fn like(self, value: f64) -> Self;
-    /// The number, that of the first lane.
+    /// Returns the number in the first lane.
     fn first(self) -> f64;
-    /// The square root.
+    /// Returns the square root.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Where this is less than `bound`.
+    /// Returns the mask of `self < bound`.
     fn below(self, bound: Self) -> Self::Mask;
-    /// `yes` where it is so, else `no`.
+    /// Returns `yes` where the mask is set, otherwise `no`.
     #[must_use]
     fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// Whether it is so anywhere. `like` is any number.
+    /// Returns true if any flag of a mask is set. `self` only selects the type.
     fn anywhere(self, mask: Self::Mask) -> bool;
 
-    /// `yes` where this is less than `bound`, else `no`.
+    /// Returns `yes` where this is less than `bound`, otherwise `no`.
     #[must_use]
     #[inline(always)]
     fn pick_below(self, bound: Self, yes: Self, no: Self) -> Self {
         Self::choose(self.below(bound), yes, no)
     }
 
-    /// The larger of both, this one where they are alike.
+    /// Returns the larger of both numbers; `self` if neither is larger.
     #[must_use]
     #[inline(always)]
     fn at_least(self, other: Self) -> Self {
@@ -78,14 +78,14 @@ impl Number for f64 {
     }
 }
 
-/// Several numbers with what computes with them.
+/// Several numbers in a register, with their backend.
 #[derive(Clone, Copy)]
 pub struct Wide<L: Lanes> {
     lanes: L,
     register: L::Register,
 }
 
-/// An answer for each of several numbers, with what computes with them.
+/// Mask for several numbers, with their backend.
 #[derive(Clone, Copy)]
 pub struct WideMask<L: Lanes> {
     lanes: L,
@@ -93,7 +93,7 @@ pub struct WideMask<L: Lanes> {
 }
 
 impl<L: Lanes> WideMask<L> {
-    /// The answers as bits, that of the first lane lowest.
+    /// Returns the mask as bits, with the first lane as the lowest bit.
     #[inline(always)]
     pub fn bits(self) -> u32 {
         self.lanes.bits(self.mask)
@@ -101,37 +101,37 @@ impl<L: Lanes> WideMask<L> {
 }
 
 impl<L: Lanes> Wide<L> {
-    /// The numbers of a register.
+    /// Wraps the numbers of a register.
     #[inline(always)]
     pub fn new(lanes: L, register: L::Register) -> Self {
         Self { lanes, register }
     }
 
-    /// The same number in every lane.
+    /// Returns the same number in every lane.
     #[inline(always)]
     pub fn splat(lanes: L, value: f64) -> Self {
         Self { lanes, register: lanes.splat(value) }
     }
 
-    /// The first numbers of a row.
+    /// Loads the first numbers of a row.
     #[inline(always)]
     pub fn load(lanes: L, from: &[f64; WIDEST]) -> Self {
         Self { lanes, register: lanes.load(from) }
     }
 
-    /// The register.
+    /// Returns the register.
     #[inline(always)]
     pub fn register(self) -> L::Register {
         self.register
     }
 
-    /// The number in each lane, in the first of a row.
+    /// Stores the number of each lane at the start of a row.
     #[inline(always)]
     pub fn store(self) -> [f64; WIDEST] {
         self.lanes.store(self.register)
     }
 
-    /// Three numbers, each times another.
+    /// Returns three numbers, each multiplied by another.
     #[inline(always)]
     #[must_use]
     pub fn scaled([a, b, c]: [Self; 3], by: Self) -> [Self; 3] {
@@ -140,19 +140,19 @@ impl<L: Lanes> Wide<L> {
 }
 
 impl<L: FourLanes> Wide<L> {
-    /// A number for each lane.
+    /// Returns one number per lane.
     #[inline(always)]
     pub fn four(lanes: L, values: [f64; LANES]) -> Self {
         Self { lanes, register: lanes.of(values) }
     }
 
-    /// The number in each lane.
+    /// Returns the numbers of all lanes.
     #[inline(always)]
     pub fn values(self) -> [f64; LANES] {
         self.lanes.values(self.register)
     }
 
-    /// The sums over the lanes of each.
+    /// Returns the sum over the lanes of each register.
     #[inline(always)]
     #[must_use]
     pub fn sums(of: [Self; LANES]) -> [f64; LANES] {
@@ -190,7 +190,7 @@ impl<L: Lanes> Number for Wide<L> {
     }
 }
 
-/// An operator on several numbers, and on several numbers and a constant.
+/// Implements an operator for several numbers, and for several numbers and a constant.
 macro_rules! operator {
     ($Operator:ident, $operator:ident) => {
         impl<L: Lanes> $Operator for Wide<L> {
@@ -219,7 +219,7 @@ impl<L: Lanes> Neg for Wide<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        // Not 0 − x, which has another zero.
+        // The difference 0 − x would give +0 for x = +0, so the sign is changed by multiplication.
         self * -1.0
     }
 }

@@ -1,13 +1,13 @@
-//! Lanes that any processor has: numbers in a row.
+//! Portable backend: lanes as an array of numbers.
 
 use crate::{FourLanes, LANES, Lanes, Quad, WIDEST};
 
-/// So many numbers in a row, one or four.
+/// Array of one or four numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Plain<const WIDTH: usize>;
 
-/// Does the same in each lane, of which there are at most four. Written out: as a loop, every operation would have to be
-/// unrolled by the compiler, once more in every kernel.
+/// Repeats an expression for each lane, of which there are at most four. It is written out, because the compiler would
+/// otherwise have to unroll a loop for every operation in every kernel.
 macro_rules! each {
     ($lane:ident of $count:expr => $do:expr) => {{
         const { assert!($count <= LANES) };
@@ -24,13 +24,13 @@ macro_rules! each {
     };
 }
 
-/// An answer as bits, so that it picks a number without a branch: all of them, or none.
+/// Returns a flag as bits, all set or none, so that a number can be selected without a branch.
 #[inline(always)]
 const fn all_bits(yes: bool) -> u64 {
     if yes { u64::MAX } else { 0 }
 }
 
-/// One of two numbers by such bits.
+/// Selects one of two numbers by such bits.
 #[inline(always)]
 const fn chosen(mask: u64, yes: f64, no: f64) -> f64 {
     f64::from_bits(yes.to_bits() & mask | no.to_bits() & !mask)
@@ -148,7 +148,7 @@ impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
     }
 }
 
-/// Columns for rows.
+/// Transposes the rows.
 #[inline(always)]
 fn turned<const WIDTH: usize>(rows: [[f64; 4]; WIDTH]) -> [[f64; WIDTH]; 4] {
     let mut columns = [[0.0; WIDTH]; 4];
@@ -171,18 +171,19 @@ impl FourLanes for Plain<LANES> {
     }
 }
 
-/// A quad less another; of the fourth numbers the sum.
+/// Returns the difference of two quads; the fourth number is the sum instead.
 #[inline(always)]
 const fn less(Quad(from): &Quad, Quad(to): &Quad) -> [f64; 4] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2], to[3] + from[3]]
 }
 
-/// The whole numbers whose bit is set, first.
+/// Moves the integers whose bit is set to the front.
 #[inline(always)]
 fn packed(of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
     let (mut all, mut count) = ([0; WIDEST], 0);
     for (lane, &value) in of.iter().enumerate() {
-        // Each is written, and the next over it where it was not wanted: no branch to foretell.
+        // Every entry is written, and overwritten by the next one if its bit is not set; this avoids an unpredictable
+        // branch.
         all[count % WIDEST] = value;
         count += (bits >> lane & 1) as usize;
     }

@@ -1,34 +1,34 @@
-//! What this processor has, and loops that are compiled for it.
+//! Instruction sets of this processor, and loops compiled for them.
 
 use crate::{FourLanes, LANES, Lanes, Plain};
 use std::sync::OnceLock;
 
-/// The environment variable that forces a path: `portable`, `avx2` or `avx512`.
+/// Environment variable that forces an instruction set: `portable`, `avx2` or `avx512`.
 pub const PROCESSOR: &str = "GRAINBENCH_PROCESSOR";
 
-/// A loop that takes as many at a time as registers hold, or four, or one by one.
+/// Loop over as many items at a time as a register holds, or four, or one.
 pub trait Kernel {
-    /// What it leaves.
+    /// Result of the loop.
     type Output;
-    /// Runs it.
+    /// Runs the loop.
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
 
-/// A loop that takes four at a time.
+/// Loop over four items at a time.
 pub trait FourKernel {
-    /// Runs it.
+    /// Runs the loop.
     fn run<L: FourLanes>(self, lanes: L);
 }
 
-/// A path through the loops.
+/// Instruction set for which loops are compiled.
 #[derive(Clone, Copy, Debug)]
 pub enum Processor {
-    /// What every processor can do.
+    /// Portable code for every processor.
     Portable,
-    /// Registers of 256 bits (x86-64-v3).
+    /// 256-bit registers (x86-64-v3).
     #[cfg(target_arch = "x86_64")]
     Avx2(pulp::x86::V3),
-    /// Registers of 512 bits (x86-64-v4).
+    /// 512-bit registers (x86-64-v4).
     #[cfg(target_arch = "x86_64")]
     Avx512(pulp::x86::V4),
 }
@@ -40,20 +40,20 @@ impl Default for Processor {
 }
 
 impl Processor {
-    /// The path that the environment forces, else the best that this processor has.
+    /// Returns the instruction set forced by the environment, or the best one of this processor.
     #[must_use]
     pub fn new() -> Self {
         static CHOSEN: OnceLock<Processor> = OnceLock::new();
         *CHOSEN.get_or_init(|| Self::forced().ok().flatten().unwrap_or_else(Self::best))
     }
 
-    /// The best path that this processor has.
+    /// Returns the best instruction set of this processor.
     #[must_use]
     pub fn best() -> Self {
         Self::all().pop().unwrap_or(Self::Portable)
     }
 
-    /// Every path that this processor has, the best last.
+    /// Returns every instruction set of this processor, the best one last.
     #[must_use]
     pub fn all() -> Vec<Self> {
         #[cfg(target_arch = "x86_64")]
@@ -63,10 +63,10 @@ impl Processor {
         std::iter::once(Self::Portable).chain(wider.into_iter().flatten()).collect()
     }
 
-    /// The path that the environment forces.
+    /// Returns the instruction set forced by the environment; `None` if there is none.
     ///
     /// # Errors
-    /// When it names none, or one that this processor does not have.
+    /// When the environment names an unknown instruction set, or one that this processor lacks.
     pub fn forced() -> Result<Option<Self>, String> {
         let Some(name) = std::env::var_os(PROCESSOR) else { return Ok(None) };
         let all = Self::all();
@@ -76,7 +76,7 @@ impl Processor {
         found.map(Some).ok_or_else(|| format!("{PROCESSOR}: {}, found `{}`", expected(), name.to_string_lossy()))
     }
 
-    /// Its name.
+    /// Returns the name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -88,7 +88,7 @@ impl Processor {
         }
     }
 
-    /// Runs a loop over as many at a time as registers hold.
+    /// Runs a loop over as many items at a time as a register holds.
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
@@ -100,34 +100,34 @@ impl Processor {
         }
     }
 
-    /// Runs a loop over four at a time.
+    /// Runs a loop over four items at a time.
     #[inline(always)]
     pub fn run_by_four<K: FourKernel>(self, kernel: K) {
         match self {
             Self::Portable => portable_by_four(kernel),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: features, kernel }),
-            // Four lanes as well, but with the more registers that this processor has.
+            // Four lanes too, but with the larger number of registers of this processor.
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: *features, kernel }),
         }
     }
 }
 
-/// A loop, compiled for what every processor can do. It is a function of its own, as those for other processors are: many such
-/// loops in one function take the compiler minutes.
+/// Runs a loop in portable code. It is a separate function, like those for other processors, because many such loops in
+/// one function take the compiler minutes.
 #[inline(never)]
 fn portable<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Plain::<LANES>)
 }
 
-/// A loop over four at a time, compiled in the same way.
+/// Runs a loop over four items at a time in portable code.
 #[inline(never)]
 fn portable_by_four<K: FourKernel>(kernel: K) {
     kernel.run(Plain::<LANES>);
 }
 
-/// A loop, compiled for a processor.
+/// Loop compiled for a processor.
 #[cfg(target_arch = "x86_64")]
 struct Compiled<L, K> {
     lanes: L,
@@ -144,7 +144,7 @@ impl<L: Lanes, K: Kernel> pulp::WithSimd for Compiled<L, K> {
     }
 }
 
-/// A loop over four at a time, compiled for a processor.
+/// Loop over four items at a time, compiled for a processor.
 #[cfg(target_arch = "x86_64")]
 struct CompiledByFour<L, K> {
     lanes: L,

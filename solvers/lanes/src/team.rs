@@ -1,4 +1,4 @@
-//! The threads of one run.
+//! Threads of a run.
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use std::sync::{Arc, Mutex};
@@ -6,25 +6,25 @@ use std::sync::{Arc, Mutex};
 /// Threads that share the work of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Team {
-    /// None where one thread does it all.
+    /// Thread pool; `None` for a single thread.
     pool: Option<Arc<rayon::ThreadPool>>,
 }
 
 impl Team {
-    /// A team of so many threads; of one where the system does not give them.
+    /// Creates a team of `threads` threads; of one thread if the system cannot provide them.
     #[must_use]
     pub fn new(threads: usize) -> Self {
         let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
         Self { pool: pool.and_then(Result::ok).map(Arc::new) }
     }
 
-    /// How many threads.
+    /// Returns the number of threads.
     #[must_use]
     pub fn members(&self) -> usize {
         self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
-    /// Does some work on one of the threads, from which [`Team::fold`] reaches the others at once.
+    /// Runs work on one of the threads, from which [`Team::fold`] starts the other threads without delay.
     pub fn lead<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(work),
@@ -32,8 +32,8 @@ impl Team {
         }
     }
 
-    /// Works on every part, all at once as far as there are threads, and joins what comes of it in the order of the parts. The
-    /// work is told the number of its part.
+    /// Processes all parts in parallel, and joins the results in the order of the parts. `work` receives the index of
+    /// its part.
     pub fn fold<T: Send, R: Send>(
         &self,
         parts: impl Iterator<Item = T>,
@@ -55,19 +55,19 @@ impl Team {
         slots.into_iter().filter_map(|slot| slot.into_inner().ok()?.1).fold(start, join)
     }
 
-    /// Works on every part, of which nothing comes but what it leaves in the part.
+    /// Processes all parts in parallel, without a result.
     pub fn each<T: Send>(&self, parts: impl Iterator<Item = T>, work: impl Fn(usize, T) + Sync) {
         self.fold(parts, work, (), |(), ()| ());
     }
 }
 
-/// Does every job of so many, all at once as far as there are threads. It knows nothing of the jobs: compiled with each kind
-/// of work, what shares them out was a fifth of the code of a solver.
+/// Runs `jobs` jobs in parallel. It is not generic over the jobs: when it was compiled for each kind of work, it made
+/// up a fifth of the code of a solver.
 fn at_once(pool: &rayon::ThreadPool, jobs: usize, job: &(dyn Fn(usize) + Sync)) {
     pool.install(|| (0..jobs).into_par_iter().with_max_len(1).for_each(job));
 }
 
-/// Takes the first of a slice off, so many or as many as there are.
+/// Splits off the first `count` items of a slice, or all of them if there are fewer.
 pub fn take_off<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     let count = count.min(slice.len());
     slice.split_off_mut(..count).unwrap_or_default()

@@ -1,14 +1,14 @@
 use super::*;
 
-/// Numbers that are awkward.
+/// Numbers that are numerically difficult.
 const NUMBERS: [f64; 8] = [1.0 / 3.0, -0.0, 1e300, -7.1e-310, f64::INFINITY, 2.5, -1.0 / 7.0, 1e16];
 
-/// Bits of a result; which bits one that is no number has is not said.
+/// Returns the bits of a result; zero for NaN, whose bits are unspecified.
 fn bits(value: f64) -> u64 {
     if value.is_nan() { 0 } else { value.to_bits() }
 }
 
-/// Every operation of four lanes, as bits.
+/// Every operation with four lanes, as bits.
 struct ByFour<'a>(&'a mut Vec<u64>);
 
 impl FourKernel for ByFour<'_> {
@@ -24,7 +24,7 @@ impl FourKernel for ByFour<'_> {
     }
 }
 
-/// Every operation on every two numbers, as bits, taken so many at a time.
+/// Every operation on every pair of numbers, as bits.
 struct Every<'a>(&'a mut Vec<u64>);
 
 impl Kernel for Every<'_> {
@@ -61,7 +61,7 @@ impl Kernel for Every<'_> {
     }
 }
 
-/// Quads that go into registers and out again.
+/// Quads loaded into registers and stored again.
 struct There<'a>(&'a [Quad], &'a [usize]);
 
 impl Kernel for There<'_> {
@@ -105,7 +105,7 @@ fn quads_are_turned_and_turned_back() {
     }
 }
 
-/// Quads less others.
+/// Differences of quads.
 struct Between<'a>(&'a [Quad], &'a [usize]);
 
 impl Kernel for Between<'_> {
@@ -138,7 +138,7 @@ fn quads_are_taken_from_others_and_their_fourth_numbers_are_added() {
     }
 }
 
-/// Whole numbers, packed by all bits.
+/// Integers, packed by all bit patterns.
 struct Packed;
 
 impl Kernel for Packed {
@@ -160,7 +160,7 @@ fn whole_numbers_are_packed_by_bits() {
     }
 }
 
-/// The portable path with four lanes computes as the one with one.
+/// The portable backend gives the same results with four lanes as with one.
 #[test]
 fn four_portable_lanes_are_four_numbers() {
     let [mut one, mut four] = [Vec::new(), Vec::new()];
@@ -172,7 +172,7 @@ fn four_portable_lanes_are_four_numbers() {
     assert_eq!(There(&table, &at).run(Plain::<4>), There(&table, &at).run(Plain::<1>));
 }
 
-/// Two quads for each lane, added to those that are there.
+/// Two quads per lane, added to given quads.
 struct Pairs<'a>(&'a [Quad], &'a [usize]);
 
 impl Kernel for Pairs<'_> {
