@@ -1,8 +1,8 @@
 //! Loops over contacts for any combination of contact laws, and the loop over grains at walls.
 //!
-//! The loops pass contacts to the chain of stages ([`crate::contact`]) and add the results to the forces and torques on
-//! the grains, in the order of the list. Only the loops over walls and over pairs ([`crate::pairs`]) are compiled for
-//! the laws of a scene, the latter also for each instruction set. Recorded pairs are processed one by one.
+//! The loops pass contacts to the chain of stages ([`crate::contact`]). They add the results to the forces and torques
+//! on the grains, in the order of the list. Only the loops over walls and over pairs ([`crate::pairs`]) are compiled
+//! for the laws of a scene, the latter also for each instruction set. Recorded pairs are processed one by one.
 
 use crate::contact::at_wall::AtWall;
 use crate::contact::chain::{Evaluation, Layout};

@@ -25,8 +25,8 @@ pub(crate) fn first(mean_radius: f64) -> f64 {
     RANGE[0] * mean_radius
 }
 
-/// Returns the skin of the next list (m), from the skin of the previous list (m), its numbers of pairs and grains, and
-/// the steps for which it lasted.
+/// Returns the skin of the next list (m). The arguments are the skin of the previous list (m), the mean radius (m), the
+/// numbers of pairs and grains, the steps for which the list lasted, and the number of dimensions.
 pub(crate) fn next(skin: f64, mean_radius: f64, [pairs, grains, steps]: [f64; 3], dimension: usize) -> f64 {
     let building = (grains * GRAIN + pairs * PAIR) / steps;
     let testing = pairs * TEST * dimension as f64 * skin / (2.0 * mean_radius + skin);

@@ -243,8 +243,8 @@ fn spinning_grains_have_their_energy() {
     }
 }
 
-/// At the end of a segment, and at edges and corners of a rectangle, the force on a grain acts along the line from the
-/// nearest point to its centre: (3, 4)/5 of k δ, and (2, 3, 6)/7 of k δ, with δ = .01 m.
+/// At the ends of a segment and the edges and corners of a rectangle, the force acts from the nearest point to the
+/// centre of the grain. It is (3, 4)/5 of k δ, and (2, 3, 6)/7 of k δ, with δ = .01 m.
 #[test]
 fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
     let force = |dimension: u8, wall: &str, position: &str, radius: f64| {

@@ -1,7 +1,7 @@
 //! State of a run between two steps, from which the run continues bit for bit.
 //!
 //! A file holds the line `grainbench checkpoint <format>`, length and hash (see `sealed`), and a [`Checkpoint`] in
-//! postcard's format, which keeps every bit of a number.
+//! postcard's format. This format keeps every bit of a number.
 
 use crate::scene::Scene;
 use crate::sealed::{self, Broken};
@@ -212,7 +212,7 @@ impl Checkpoint {
     /// Returns the bytes of the file.
     ///
     /// # Errors
-    /// Never, as far as is known.
+    /// When the checkpoint cannot be serialised. No such case is known.
     pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
         Ok(sealed::seal(MAGIC, FORMAT, &written(self)?))
     }

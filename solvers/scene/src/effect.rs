@@ -229,8 +229,8 @@ impl Effect {
     }
 
     /// Switches the effect on with a neutral value, and returns false if there is none. Neutral values are a law of a
-    /// material that no grain has, a rate lost in rounding, gravity that a step below 0.5 s rounds to zero, and a
-    /// motion that starts after the end.
+    /// material that no grain has, a rate lost in rounding, or a motion after the end. Gravity is so small that a step
+    /// below 0.5 s rounds it to zero.
     #[must_use]
     pub fn switch_on_idly(self, scene: &mut Scene) -> bool {
         match self {

@@ -2,7 +2,7 @@
 //! A data file loses the contact springs, and with them the friction that supports a heap.
 //!
 //! A file holds the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an
-//! [`EndState`] in postcard's format, which keeps every bit of a number. The smaller form is described in
+//! [`EndState`] in postcard's format. This format keeps every bit of a number. The smaller form is described in
 //! `rounded_state`.
 
 use crate::rounded_state::{self, Packed};

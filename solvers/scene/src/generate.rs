@@ -23,8 +23,8 @@ pub fn lattice(origin: Vector3<f64>, spacing: Vector3<f64>, count: [u32; 3]) -> 
 }
 
 /// Returns the centres of a close-packed lattice (m). Rows lie along x, and every second row is shifted by half a
-/// spacing. In three dimensions, the rows of each layer lie over the hollows of the layer below, and the fourth layer
-/// lies above the first (face-centred cubic).
+/// spacing. In three dimensions, the rows of each layer lie over the hollows of the layer below. The fourth layer lies
+/// above the first (face-centred cubic).
 #[must_use]
 pub fn close_packed(origin: Vector3<f64>, spacing: f64, count: [u32; 3]) -> Vec<Vector3<f64>> {
     let row = spacing * 0.75_f64.sqrt();

@@ -1,5 +1,5 @@
 //! Stored records of finished runs, which only this program reads. A file holds the line `grainbench record <format>`,
-//! length and hash (see `sealed`), and then its name and a [`Record`] in postcard's format, which keeps every bit of a
+//! length and hash (see `sealed`), a name, and a [`Record`] in postcard's format. This format keeps every bit of a
 //! number.
 
 use crate::record::Record;

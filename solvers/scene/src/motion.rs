@@ -34,9 +34,9 @@ pub struct Phase {
     pub velocity: Vector3<f64>,
     /// Angular velocity (rad/s) about [`Motion::centre`].
     pub spin: Vector3<f64>,
-    /// When it starts.
+    /// Start.
     pub start: Moment,
-    /// When it stops.
+    /// Stop.
     pub stop: Moment,
 }
 

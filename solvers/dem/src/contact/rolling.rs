@@ -12,9 +12,9 @@ pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
     /// Number of history values. They change sign if the first and second grain are exchanged.
     const NUMBERS: usize;
 
-    /// Returns the moment on the first body (N m). The arguments are the angular velocity of the first body relative to
-    /// the second (rad/s), the time since the last evaluation (s), and the moment of inertia of the pair about the
-    /// contact (kg m²).
+    /// Returns the moment on the first body (N m). The arguments are the angular velocity relative to the second body
+    /// (rad/s), the time since the last evaluation (s), and the moment of inertia of the pair about the contact (kg
+    /// m²).
     fn moment<N: Normal, X: Number>(
         touch: &Touch<'_, S, X>,
         normal: NormalForce<X>,

@@ -46,10 +46,11 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
     /// Returns the energy lost in a step (J): the frictional work, and the energy released by a change of stiffness.
     ///
     /// The frictional work is ½ k (s + s')·(s + ṡ Δt − s'): the mean spring force times the sliding distance of its
-    /// end. Here s is the spring displacement before the step, transported to the present contact, s' the displacement
-    /// after it, ṡ the slip velocity, and k the stiffness after the step. The displacement before the step is s₀, and
-    /// the stiffness k₀. The total loss is the energy before the step, plus the work on the spring, ½ (k₀ s₀ + k s')·ṡ
-    /// Δt, minus the energy after it. The loss beyond frictional work is released.
+    /// end. Here s is the spring displacement before the step, transported to the present contact, and s' the
+    /// displacement after it. ṡ is the slip velocity, and k the stiffness after the step. Before the step, the
+    /// displacement is s₀ and the stiffness k₀. The total loss is the energy before the step, plus the work on the
+    /// spring, ½ (k₀ s₀ + k s')·ṡ Δt, minus the energy after it. The loss beyond the frictional work is released
+    /// energy.
     fn lost<N: Normal, X: Number>(
         touch: &Touch<'_, S, X>,
         slip: S::Tangents<X>,

@@ -30,7 +30,7 @@ pub struct BodySpec {
     /// Initial stress at the centre of the shape (Pa, tension positive), `[[xx, xy], [xy, yy]]` in two dimensions.
     #[serde(default)]
     pub stress: Option<Vec<Vec<f64>>>,
-    /// Gradient of the initial stress along the axes.
+    /// Gradient of the initial stress along the axes (Pa/m).
     #[serde(default)]
     pub stress_gradient: Option<StressGradientSpec>,
     /// Initial velocity along x: a sine mode of a bar fixed at the lower end of the box.

@@ -41,7 +41,7 @@ pub struct ProbeSpec {
     #[serde(default)]
     pub budget: Option<bool>,
     /// Mean stress of the grains from the contacts between them, σ_ij = (1/V) Σ l_i f_j (Love 1927; Weber 1966). The
-    /// vector l points from the centre of one grain to that of the other, f is the force on the first, and V is the
+    /// vector l points from the centre of one grain to that of the other. f is the force on the first grain, and V the
     /// volume of the domain. Tension is positive; walls are not included. Columns sigma_xx, sigma_yy, sigma_xy (and
     /// sigma_zz, sigma_xz, sigma_yz), and coordination, the mean number of contacts with other grains per grain.
     #[serde(default)]

@@ -80,7 +80,7 @@ impl Surface {
     ///
     /// # Errors
     /// - When a triangle has no area or occurs twice.
-    /// - When a normal contradicts the order of the corners, or the order of a neighbour.
+    /// - When a normal contradicts the order of the corners, or two neighbours face different sides.
     /// - When an edge has more than two triangles or, unless open edges are allowed, only one.
     /// - When a corner of an open edge lies inside another open edge.
     /// - When the normals of a closed surface point to the wrong side.

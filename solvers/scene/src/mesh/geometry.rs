@@ -10,7 +10,7 @@ pub(super) enum Part {
     Corner(usize),
 }
 
-/// Returns the point of a triangle nearest to a position, and the part that contains it, from the Voronoi regions of
+/// Returns the point of a triangle nearest to a position, and the part that contains it. It uses the Voronoi regions of
 /// the triangle (Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5).
 pub(super) fn nearest(place: Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> (Vector3<f64>, Part) {
     let (ab, ac, from_a) = (b - a, c - a, place - a);
