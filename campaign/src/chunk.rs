@@ -1,28 +1,28 @@
-//! Chunks: tasks that follow one another, so many that all chunks take about as long.
+//! Chunks: ranges of consecutive tasks with about equal expected run times.
 
 use crate::task::Task;
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// Most chunks that can be asked for.
+/// Maximum number of chunks.
 pub const MOST: u32 = 1_000_000;
-/// A chunk is expected to last at least this long (s): batch systems take a second to start one.
+/// Shortest expected duration of a chunk (s): a batch system takes about a second to start one.
 pub const SECONDS: f64 = 60.0;
-/// A task takes this long (s) at least, beside its run.
+/// Shortest duration that is assumed for a task (s); it covers the overhead beside the run.
 const LEAST: f64 = 1e-3;
 
-/// One of some chunks, counted from 1.
+/// One chunk of a plan, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chunk {
-    /// Which.
+    /// Number of this chunk, from 1 to `count`.
     pub index: u32,
-    /// Of how many.
+    /// Number of all chunks.
     pub count: u32,
 }
 
 impl Chunk {
-    /// All of it.
+    /// The whole plan as one chunk.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 }
 
@@ -45,7 +45,9 @@ impl fmt::Display for Chunk {
     }
 }
 
-/// The places of tasks in each of so many chunks, in their order; a chunk may be empty. Tasks of one group are in one chunk.
+/// Returns the range of task indices of each of `count` chunks, in order.
+///
+/// A chunk may be empty. All tasks of a group are in one chunk.
 #[must_use]
 pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
     let total: f64 = tasks.iter().map(length).sum();
@@ -56,7 +58,7 @@ pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
         let others = tasks[from + 1..].iter().take_while(|task| group.is_some() && task.group == group).count();
         let to = from + 1 + others;
         let long: f64 = tasks[from..to].iter().map(length).sum();
-        // Whose middle lies in a chunk is of that chunk.
+        // A group belongs to the chunk that contains its midpoint.
         let place = ((before + 0.5 * long) / total * f64::from(count)) as usize;
         ends[place.min(count as usize - 1)] = to;
         (before, from) = (before + long, to);
@@ -71,13 +73,13 @@ pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
         .collect()
 }
 
-/// The places of tasks in a chunk.
+/// Returns the range of task indices of a chunk.
 #[must_use]
 pub fn of(tasks: &[Task], chunk: Chunk) -> Range<usize> {
     all(tasks, chunk.count).swap_remove(chunk.index as usize - 1)
 }
 
-/// As many chunks as last long enough, one at least.
+/// Returns the largest number of chunks, at least one, that each last [`SECONDS`] or longer on average.
 #[must_use]
 pub fn count(tasks: &[Task]) -> u32 {
     let total: f64 = tasks.iter().map(length).sum();

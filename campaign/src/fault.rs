@@ -1,31 +1,31 @@
-//! Why a plan cannot be read, worked on or collected.
+//! Errors of planning, running and collecting.
 
 use grainbench_reports::WriteError;
 use std::fmt::Display;
 use std::path::Path;
 use thiserror::Error;
 
-/// What went wrong.
+/// Error of a campaign.
 #[derive(Debug, Error)]
 pub enum Fault {
-    /// What was given is not what it should be: place, what was expected, what was found.
+    /// Invalid input: place, what was expected and what was found.
     #[error("{0}")]
     Input(String),
-    /// The disk refused.
+    /// The disk rejected a write.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// A batch system did not do what it was asked for.
+    /// A batch system failed or gave an unexpected answer.
     #[error("{0}")]
     Batch(String),
 }
 
 impl Fault {
-    /// What was expected at a place, and what was found there.
+    /// Returns an input error with its place, what was expected and what was found.
     pub fn expected(place: impl Display, expected: impl Display, found: impl Display) -> Self {
         Self::Input(format!("{place}: expected {expected}, found {found}"))
     }
 
-    /// The same of a file.
+    /// Returns an input error whose place is a file.
     pub fn in_file(path: &Path, expected: impl Display, found: impl Display) -> Self {
         Self::expected(path.display(), expected, found)
     }

@@ -1,4 +1,4 @@
-//! What is finished of a plan, whoever did it.
+//! Finished tasks of a plan, from the result files of all workers.
 
 use crate::fault::Fault;
 use crate::log::{self, ENDING, Line, State, Worker};
@@ -8,36 +8,36 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What came out of a task.
+/// Result of a task.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// How it ended.
+    /// Final state of the task.
     pub state: State,
-    /// What it took (s).
+    /// Duration (s).
     pub seconds: f64,
-    /// Programs that wanted a core meanwhile.
+    /// System load during the task: the average number of processes that wanted a core.
     pub load: Option<f64>,
-    /// Place of the worker among all.
+    /// Index of the worker in [`Finished::workers`].
     pub worker: usize,
-    /// What came out, where that was asked for.
+    /// Result as JSON; empty unless results were requested.
     pub json: Box<str>,
 }
 
-/// Everything that is finished.
+/// All finished tasks of a plan.
 #[derive(Clone, Debug, Default)]
 pub struct Finished {
-    /// By task.
+    /// Results by task.
     pub entries: HashMap<Id, Entry>,
-    /// Who worked.
+    /// Workers with a result file.
     pub workers: Vec<Worker>,
-    /// Lines that are cut off or damaged.
+    /// Number of lines that are cut off or damaged.
     pub damaged: usize,
-    /// Tasks that were done more than once.
+    /// Number of repeated results of tasks that were done already.
     pub twice: usize,
 }
 
 impl Finished {
-    /// Reads what all workers left, with what came out or without.
+    /// Reads the result files of all workers. The JSON of the results is kept only if `with_results` is set.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -51,7 +51,7 @@ impl Finished {
         };
         let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         files.retain(|path| path.extension().is_some_and(|ending| ending == ENDING));
-        // By name, which begins with the time.
+        // Sorted by name, which begins with the time.
         files.sort();
         for file in files {
             let bytes = fs::read(&file).map_err(|error| Fault::in_file(&file, "a file that can be read", error))?;
@@ -61,7 +61,7 @@ impl Finished {
     }
 
     fn add(&mut self, bytes: &[u8], with_results: bool) {
-        // The worker died before it could say who it is.
+        // The file is empty if the worker died before it wrote its first line.
         if bytes.is_empty() {
             return;
         }
@@ -74,7 +74,7 @@ impl Finished {
         self.workers.push(worker);
         let mut lines = lines.peekable();
         while let Some(line) = lines.next() {
-            // What follows the last end of a line is nothing, or cut off.
+            // The text after the last newline is empty or a line that was cut off.
             let is_last = lines.peek().is_none();
             match Line::read(line).filter(|_| !is_last) {
                 Some(line) => self.take(&line, place, with_results),
@@ -84,7 +84,7 @@ impl Finished {
         }
     }
 
-    /// The first result of a task counts; of a task that failed and was done again, the last.
+    /// Adds a line: the first successful result of a task counts. A result of a failed task is replaced by a later one.
     fn take(&mut self, line: &Line<'_>, worker: usize, with_results: bool) {
         let Line { id, state, seconds, load, json } = *line;
         let json = if with_results { json } else { "" };

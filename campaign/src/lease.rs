@@ -1,7 +1,9 @@
-//! Leases: who is at which tasks. A worker says now and then that it is still there; of one that says nothing for long, or
-//! whose process is no more, what it had not finished is anybody's.
+//! Leases: which worker is at which tasks.
 //!
-//! Times are those of the file system, which all workers share: clocks of machines differ.
+//! A worker renews its lease at intervals. A lease expires if it is not renewed in time or if its process has ended;
+//! other workers may then take its unfinished tasks.
+//!
+//! Times are file times of the shared file system, because the clocks of the machines differ.
 
 use crate::fault::Fault;
 use crate::machine;
@@ -15,42 +17,42 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, SystemTime};
 
-/// Held for as long as leases are looked at and one is added.
+/// Name of the lock file, which is held while leases are read and one is added.
 const LOCK: &str = ".lock";
-/// A lock that is older (s) has no owner any more.
+/// Age (s) at which a lock counts as abandoned.
 const LEFT: f64 = 20.0;
-/// How often a lock is asked for, and how long it is waited between.
+/// Maximum number of attempts to take the lock, and the pause between two attempts.
 const TRIES: u32 = 3000;
 const PAUSE: Duration = Duration::from_millis(20);
-/// How names of leases end.
+/// File extension of leases.
 const ENDING: &str = "json";
 
-/// What a worker says.
+/// Contents of a lease.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Said {
-    /// Its name.
+    /// Name of the worker.
     pub worker: String,
-    /// Its machine.
+    /// Name of the machine.
     pub host: String,
-    /// Its process there.
+    /// Process number on the machine.
     pub process: u32,
-    /// Job of a batch system.
+    /// Job of a batch system; `None` outside one.
     pub job: Option<String>,
-    /// First and one after the last of tasks that are its own.
+    /// Ranges of leased task indices: the first index, and one past the last.
     pub tasks: Vec<[usize; 2]>,
-    /// How many of them are done by now.
+    /// Number of tasks that the worker has done.
     pub done: usize,
 }
 
 impl Said {
-    /// Whether a task is its own.
+    /// Returns true if the lease covers a task.
     #[must_use]
     pub fn has(&self, place: usize) -> bool {
         self.tasks.iter().any(|[from, to]| (*from..*to).contains(&place))
     }
 }
 
-/// A lease that is held.
+/// A held lease, whose file is removed on drop.
 #[derive(Debug)]
 pub struct Lease {
     path: PathBuf,
@@ -58,7 +60,9 @@ pub struct Lease {
 }
 
 impl Lease {
-    /// Takes those tasks of a range that nobody holds; gives what others hold too. `None` where they hold all of it.
+    /// Leases all tasks of a range that no other worker holds, and also returns the leases of the other workers.
+    ///
+    /// The lease is `None` if other workers hold the whole range.
     ///
     /// # Errors
     /// When the disk refuses.
@@ -91,13 +95,13 @@ impl Lease {
         Ok((Some(lease), others))
     }
 
-    /// Whether a task may be done.
+    /// Returns true if the lease covers a task.
     #[must_use]
     pub fn has(&self, place: usize) -> bool {
         self.said.has(place)
     }
 
-    /// Says that the worker is still there, and how many tasks it has done.
+    /// Renews the lease and records the number of tasks done.
     ///
     /// # Errors
     /// When the disk refuses.
@@ -113,10 +117,10 @@ impl Drop for Lease {
     }
 }
 
-/// The leases that are held. Those of workers that are no more are taken away.
+/// Returns the valid leases and removes expired ones.
 ///
 /// # Errors
-/// When they cannot be read.
+/// When the directory of leases cannot be read.
 pub fn held(plan: &Path, seconds: f64) -> Result<Vec<Said>, Fault> {
     let folder = plan.join(RUNNING);
     let entries = match fs::read_dir(&folder) {
@@ -143,7 +147,7 @@ pub fn held(plan: &Path, seconds: f64) -> Result<Vec<Said>, Fault> {
     Ok(found)
 }
 
-/// What time it is on a file system; by our own clock where nothing can be written there.
+/// Returns the time of a file system, or the time of the local clock if the folder is not writable.
 fn time_of(folder: &Path) -> SystemTime {
     let path = folder.join(format!(".time-{}-{}", machine::name(), std::process::id()));
     let now = File::create(&path).and_then(|file| file.metadata()?.modified());
@@ -151,16 +155,18 @@ fn time_of(folder: &Path) -> SystemTime {
     now.unwrap_or_else(|_| SystemTime::now())
 }
 
-/// How long ago (s) a file was written; none where it is not there.
+/// Returns the age of a file (s), or `None` if it does not exist.
 fn age(path: &Path, now: SystemTime) -> Option<f64> {
     let written = fs::metadata(path).and_then(|about| about.modified()).ok()?;
     Some(now.duration_since(written).unwrap_or_default().as_secs_f64())
 }
 
-/// The lock, for as long as this is alive.
+/// The lock file, which is removed on drop.
 struct Lock {
     path: PathBuf,
-    /// Those of one machine take turns by a lock of the system, which ends with its process; none where there are no such locks.
+    /// Lock by the operating system, which orders the processes of one machine and ends with its process.
+    ///
+    /// `None` if the file system has no such locks.
     _turn: Option<File>,
 }
 
@@ -181,7 +187,7 @@ impl Lock {
                 Err(_) => {}
             }
             if is_left(&path, turn.is_some(), time_of(folder)) {
-                // Of those who try this one can, and it takes away what it has looked at.
+                // Renaming is atomic: only one contender succeeds, and it removes the file that it has inspected.
                 let aside = folder.join(format!(".left-{}-{}", machine::name(), std::process::id()));
                 if fs::rename(&path, &aside).is_ok() {
                     let _ = fs::remove_file(&aside);
@@ -198,7 +204,10 @@ impl Lock {
     }
 }
 
-/// Whether nobody holds a lock any more: it is old, or of this machine, of whose processes it is the turn of another.
+/// Returns true if a lock is abandoned.
+///
+/// A lock is abandoned if it is old. It is also abandoned if this machine wrote it and this process holds the system
+/// lock, because then no other process of this machine can hold the lock file.
 fn is_left(path: &Path, is_our_turn: bool, now: SystemTime) -> bool {
     let is_of_this_machine = || fs::read_to_string(path).is_ok_and(|host| host == machine::name());
     age(path, now).is_some_and(|age| age > LEFT) || is_our_turn && is_of_this_machine()
@@ -250,7 +259,7 @@ mod tests {
         assert_eq!(held(plan.path(), 60.0).unwrap(), [], "what cannot be read is nobody's");
     }
 
-    /// A worker that was killed while it held the lock keeps nobody of its machine waiting.
+    /// A worker that was killed while it held the lock does not block other workers on its machine.
     #[test]
     fn a_lock_is_left_by_who_is_no_more() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,10 +1,10 @@
-//! Many runs from one plan.
+//! Campaigns: many runs from one plan.
 //!
-//! A [`plan`] is a directory with a line for each [`task`]. Who works does a [`chunk`] of them under a [`lease`], and leaves what
-//! comes out in a [`log`] of its own, to which it only ever adds: whatever is killed, what stands there is whole or is not taken.
-//! What is [`finished`] is not done again, whoever did it. A batch system ([`slurm`]) starts workers and knows nothing else.
+//! A [`plan`] is a directory with a line for each [`task`]. A worker does a [`chunk`] of tasks under a [`lease`] and
+//! appends its results to its own [`log`]. After a crash, each line of the log is either whole or ignored.
+//! [`finished`] tasks are not repeated, whichever worker did them. A batch system ([`slurm`]) only starts workers.
 //!
-//! A plan is of a study of this program or of a [`sweep`]: a design over the keys of a scene, solvers and levels.
+//! A plan belongs to a study of this program or to a [`sweep`], a design over scene keys, solvers and levels.
 
 pub mod chunk;
 pub mod fault;

@@ -1,7 +1,7 @@
-//! Results of one worker: a file to which it adds a line a task, and nobody else anything.
+//! Results of one worker: a file to which only this worker appends, one line for each task.
 //!
-//! A line is `ID STATE SECONDS LOAD SUM JSON`, the sum over all the rest: what is cut off or damaged is told from what is whole,
-//! and is done again. The first line says who the worker is.
+//! A line is `ID STATE SECONDS LOAD SUM JSON`, with a checksum over all other fields. The checksum detects cut or
+//! damaged lines; their tasks are repeated. The first line identifies the worker.
 
 use crate::task::Id;
 use grainbench_reports::WriteError;
@@ -11,46 +11,46 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// How the first line begins.
+/// Beginning of the first line.
 const MAGIC: &str = "grainbench-results 1 ";
-/// How names of files end.
+/// File extension of result files.
 pub const ENDING: &str = "log";
-/// A machine that loses its power loses no more than this of what was done.
+/// Longest time between two syncs: a power failure loses at most the results of this time.
 const SYNC: Duration = Duration::from_secs(5);
-/// Digits of a sum.
+/// Hexadecimal digits of a checksum.
 const DIGITS: usize = 16;
 
-/// Who works.
+/// A worker.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Worker {
-    /// Its name, which no other has.
+    /// Unique name.
     pub name: String,
-    /// The machine, or the node of a batch system.
+    /// Name of the machine, or of the node of a batch system.
     pub host: String,
-    /// Process there.
+    /// Process number on the machine.
     pub process: u32,
-    /// Processor, cores and system.
+    /// Processor, cores and operating system.
     pub machine: String,
-    /// Cores that it may use.
+    /// Number of cores available to the worker.
     pub cores: usize,
-    /// Job of a batch system.
+    /// Job of a batch system; `None` outside one.
     #[serde(default)]
     pub job: Option<String>,
-    /// Cores that the batch system gave it; all of a node that is its own. None where there is no batch system.
+    /// Cores that the batch system granted, or all cores of an exclusive node; `None` outside a batch system.
     #[serde(default)]
     pub granted: Option<usize>,
-    /// When it began.
+    /// Start time.
     pub began: String,
 }
 
-/// How a task ended.
+/// Final state of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// As it should.
+    /// Successful.
     Done,
-    /// In an error that has a type, which is its result.
+    /// Ended in a typed error, which is the result.
     Failed,
-    /// Our program failed: there is a message and no result.
+    /// Our program panicked: there is a message and no result.
     Crashed,
 }
 
@@ -68,18 +68,18 @@ impl State {
     }
 }
 
-/// A line.
+/// Line of a result file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line<'a> {
-    /// Which task.
+    /// Task.
     pub id: Id,
-    /// How it ended.
+    /// Final state of the task.
     pub state: State,
-    /// What it took (s).
+    /// Duration (s).
     pub seconds: f64,
-    /// Programs that wanted a core meanwhile; none where that is not known.
+    /// System load during the task (processes that wanted a core); `None` if unknown.
     pub load: Option<f64>,
-    /// What came out.
+    /// Result as JSON.
     pub json: &'a str,
 }
 
@@ -90,7 +90,7 @@ impl<'a> Line<'a> {
         format!("{head} {} {}\n", sum(&head, self.json), self.json)
     }
 
-    /// Reads a line without its end; none where it is damaged.
+    /// Reads a line without its newline; returns `None` if it is damaged.
     #[must_use]
     pub fn read(text: &'a str) -> Option<Self> {
         let mut ends = text.match_indices(' ').map(|(at, _)| at);
@@ -113,27 +113,27 @@ fn sum(head: &str, json: &str) -> String {
     hasher.finalize().to_hex()[..DIGITS].to_owned()
 }
 
-/// The worker that a first line names.
+/// Reads the worker from the first line of a file.
 #[must_use]
 pub fn worker(line: &str) -> Option<Worker> {
     serde_json::from_str(line.strip_prefix(MAGIC)?).ok()
 }
 
-/// A file of results in the making.
+/// Result file of a running worker.
 #[derive(Debug)]
 pub struct Log {
     file: File,
     path: PathBuf,
-    /// Bytes that are whole.
+    /// Length of all complete lines (bytes).
     whole: u64,
     synced: Instant,
 }
 
 impl Log {
-    /// Begins the file of a worker in a folder.
+    /// Creates the file of a worker in a folder.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When the disk rejects the write.
     pub fn new(folder: &Path, worker: &Worker) -> Result<Self, WriteError> {
         let path = folder.join(format!("{}.{ENDING}", worker.name));
         let file = File::create_new(&path).map_err(|source| WriteError::new(&path, source))?;
@@ -145,10 +145,10 @@ impl Log {
         Ok(log)
     }
 
-    /// Adds a line. Where the disk refuses nothing of it stays.
+    /// Adds a line. If the write fails, the file is truncated to its last complete line.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When the disk rejects the write.
     pub fn add(&mut self, line: &Line<'_>) -> Result<(), WriteError> {
         self.append(&line.written())?;
         if self.synced.elapsed() > SYNC { self.sync() } else { Ok(()) }
@@ -167,14 +167,14 @@ impl Log {
         }
     }
 
-    /// Has the disk keep what was added.
+    /// Flushes added lines to the disk.
     ///
     /// # Errors
-    /// When it refuses.
+    /// When the disk rejects it.
     pub fn sync(&mut self) -> Result<(), WriteError> {
         self.synced = Instant::now();
         match self.file.sync_data() {
-            // Pipes and some file systems cannot.
+            // Pipes and some file systems do not support syncing.
             Err(error) if error.kind() != io::ErrorKind::InvalidInput => Err(WriteError::new(&self.path, error)),
             _ => Ok(()),
         }

@@ -1,15 +1,15 @@
-//! The machine that works: its name, and how busy it is.
+//! Name and load of the local machine.
 
 use std::fs;
 
-/// What others call it.
+/// Returns the host name, with the node name of a batch system appended if it differs.
 #[must_use]
 pub fn name() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").ok();
     let name = name.or_else(|| std::env::var("HOSTNAME").ok()).unwrap_or_default();
     let plain: String =
         name.trim().chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
-    // Nodes of a batch system may share a machine.
+    // Several nodes of a batch system may share one machine.
     match std::env::var("SLURMD_NODENAME") {
         Ok(node) if node != plain && !node.is_empty() => {
             format!("{plain}-{}", node.replace(|c: char| !c.is_alphanumeric(), "-"))
@@ -19,13 +19,13 @@ pub fn name() -> String {
     }
 }
 
-/// Programs that want a core, on average over the last minute; none where the system does not tell.
+/// Returns the system load of the last minute (processes that want a core), or `None` if the system does not report it.
 #[must_use]
 pub fn load() -> Option<f64> {
     fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
 }
 
-/// Whether a process of this machine is there; none where the system does not tell.
+/// Returns whether a process of this machine exists, or `None` if the system does not report it.
 #[must_use]
 pub fn runs(process: u32) -> Option<bool> {
     std::path::Path::new("/proc/self").exists().then(|| std::path::Path::new(&format!("/proc/{process}")).exists())

@@ -1,4 +1,4 @@
-//! Plans: a directory with what is to be done (`tasks.jsonl`) and how it came about (`plan.toml`).
+//! Plans: a directory with the tasks (`tasks.jsonl`) and their origin (`plan.toml`).
 
 use crate::chunk;
 use crate::fault::Fault;
@@ -10,65 +10,65 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// How it came about.
+/// File with the origin of the plan.
 pub const HEAD: &str = "plan.toml";
-/// The tasks, a line each.
+/// File with the tasks, one a line.
 pub const TASKS: &str = "tasks.jsonl";
-/// Where workers leave what comes out.
+/// Directory of result files.
 pub const RESULTS: &str = "results";
-/// Where workers say what they are at.
+/// Directory of leases.
 pub const RUNNING: &str = "running";
-/// To be raised whenever anything that is stored changes its meaning.
+/// Format version. It must be raised whenever the meaning of stored data changes.
 const FORMAT: u32 = 1;
-/// How long (s) a worker is waited for that says nothing.
+/// Default time (s) after which a lease expires if it is not renewed.
 const LEASE: f64 = 60.0;
 
-/// What a plan is of.
+/// Kind of plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// Gates of cases.
+    /// Claims of cases.
     Run,
-    /// What accuracy costs.
+    /// Cost-accuracy study.
     Cost,
-    /// What stays stable.
+    /// Stability study.
     Stability,
     /// A design over the keys of a scene.
     Sweep,
 }
 
-/// `plan.toml`.
+/// Contents of `plan.toml`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Head {
-    /// Of this file.
+    /// Format version of the file.
     pub format: u32,
-    /// What it is of.
+    /// Kind of plan.
     pub kind: Kind,
-    /// How many tasks there are.
+    /// Number of tasks.
     pub tasks: usize,
-    /// Hash of their file.
+    /// Hash of the file of tasks.
     pub hash: String,
-    /// Into how many chunks they are best divided.
+    /// Recommended number of chunks.
     pub chunks: u32,
-    /// What all of them are expected to take on one core (s).
+    /// Expected time of all tasks on one core (s).
     pub seconds: f64,
-    /// Whether times are measured, so that nothing else may run beside.
+    /// True if wall times are measured: then nothing else may run at the same time.
     pub timed: bool,
-    /// How long (s) a worker is waited for that says nothing.
+    /// Time (s) after which a lease expires if it is not renewed.
     #[serde(default = "lease")]
     pub lease_seconds: f64,
-    /// Hash of the program that planned, which is the one that works.
+    /// Hash of the program that planned; only the same program may run the tasks.
     pub program: String,
-    /// Its version and commit.
+    /// Version and commit of the program.
     pub version: String,
-    /// When it planned.
+    /// Date of planning.
     pub date: String,
-    /// Where it was started: paths are seen from there.
+    /// Directory in which the program was started; relative paths refer to it.
     pub directory: PathBuf,
-    /// What it was told.
+    /// Command line arguments.
     pub arguments: Vec<String>,
-    /// Hashes of files that tasks hang on, by their paths.
+    /// Hashes of the input files of tasks, by their paths.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
 }
@@ -78,7 +78,7 @@ const fn lease() -> f64 {
 }
 
 impl Head {
-    /// The head of a plan of some tasks, by the program that runs.
+    /// Returns the head of a plan for this program; `Plan::write` fills in the tasks.
     #[must_use]
     pub fn new(kind: Kind, arguments: Vec<String>, timed: bool) -> Self {
         Self {
@@ -103,20 +103,21 @@ impl Head {
 /// A plan.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Its directory.
+    /// Directory of the plan.
     pub path: PathBuf,
-    /// How it came about.
+    /// Contents of `plan.toml`.
     pub head: Head,
-    /// What is to be done.
+    /// Tasks in the order of the file.
     pub tasks: Vec<Task>,
 }
 
 impl Plan {
-    /// Leaves a plan in a directory that is new, empty, or has a plan: what was finished there stays, and is taken where a task
-    /// is the same.
+    /// Writes a plan to a directory that is new, empty, or already has a plan.
+    ///
+    /// Results of an earlier plan in the directory are kept. They count for tasks with equal ids.
     ///
     /// # Errors
-    /// When something else stands there, or the disk refuses.
+    /// When the directory has other contents, or the disk rejects a write.
     pub fn write(path: &Path, mut head: Head, tasks: Vec<Task>) -> Result<Self, Fault> {
         check_place(path)?;
         let text = task::lines(&tasks)?;
@@ -138,7 +139,7 @@ impl Plan {
     /// Reads a plan.
     ///
     /// # Errors
-    /// Names the file, the place, what was expected and what was found.
+    /// The error names the file, the place, what was expected and what was found.
     pub fn read(path: &Path) -> Result<Self, Fault> {
         let head = Self::head(path)?;
         let file = path.join(TASKS);
@@ -153,7 +154,7 @@ impl Plan {
     /// Reads the head of a plan.
     ///
     /// # Errors
-    /// Names the file, the place, what was expected and what was found.
+    /// The error names the file, the place, what was expected and what was found.
     pub fn head(path: &Path) -> Result<Head, Fault> {
         let file = path.join(HEAD);
         if !file.is_file() {
@@ -177,10 +178,10 @@ impl Plan {
         Ok(head)
     }
 
-    /// Refuses another program than the one that planned, and other inputs: results would be of something else.
+    /// Checks that the program and the inputs are those that the plan was made with.
     ///
     /// # Errors
-    /// Says what is otherwise.
+    /// The error names the program or the input that differs.
     pub fn check_program(&self) -> Result<(), Fault> {
         let head = &self.head;
         let here = grainbench_studies::identity::of_this_program();
@@ -202,10 +203,10 @@ impl Plan {
     }
 }
 
-/// Refuses a place for a plan where something else stands.
+/// Checks that a directory can take a plan: it must be new, empty, or already have a plan.
 ///
 /// # Errors
-/// Says what.
+/// When the directory has other contents or cannot be read.
 pub fn check_place(path: &Path) -> Result<(), Fault> {
     let expected = "a new directory, an empty one, or one with a plan";
     match fs::read_dir(path) {
@@ -218,7 +219,7 @@ pub fn check_place(path: &Path) -> Result<(), Fault> {
     }
 }
 
-/// Hash of a file's content; another than that of any content where it cannot be read.
+/// Returns the hash of a file's content, or `unreadable`, which equals no hash, if the file cannot be read.
 #[must_use]
 pub fn hash_of_file(path: &Path) -> String {
     fs::read(path).map_or_else(|_| "unreadable".to_owned(), |bytes| blake3::hash(&bytes).to_hex().to_string())

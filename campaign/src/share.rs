@@ -1,11 +1,13 @@
-//! Work that threads share.
+//! Parallel work on numbered items.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Does pieces of work by number, so many at once, until all are done or no more are to be begun. Gives how many were left out.
+/// Processes items by index on up to `at_once` threads until all are done or `goes_on` returns false.
 ///
-/// Plain threads: gates wait for runs that they share, and a pool that lends a waiting thread to another gate could let a run
-/// wait for itself.
+/// Returns the number of items that were not started.
+///
+/// The threads are plain threads because claims wait for shared runs. In a thread pool, a waiting thread may be given
+/// another claim, and then a run could wait for itself.
 pub fn share(pieces: usize, at_once: usize, goes_on: impl Fn() -> bool + Sync, work: impl Fn(usize) + Sync) -> usize {
     let next = AtomicUsize::new(0);
     let take =

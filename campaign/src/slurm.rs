@@ -1,7 +1,7 @@
-//! Slurm: a job array over the chunks of a plan that have something left.
+//! Slurm: a job array over the chunks of a plan that have unfinished tasks.
 //!
-//! Slurm starts workers, and whether a task is finished is told by its result alone: nothing hangs on accounting, and a `squeue`
-//! that does not answer tells nothing, least of all that nothing is queued.
+//! Slurm only starts workers. A task is finished when it has a result; accounting data are not used. If `squeue` does
+//! not answer, the state of the queue is unknown, not empty.
 
 use crate::chunk::{self, MOST};
 use crate::fault::Fault;
@@ -16,39 +16,40 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Scripts, what jobs print, and which jobs there were.
+/// Directory of job scripts, job output and the list of submissions.
 pub const FOLDER: &str = "slurm";
-/// A line a submission.
+/// File of submissions, one a line.
 const JOBS: &str = "jobs.jsonl";
-/// Options that would make another array of it.
+/// Options of `sbatch` that users may not set, because they would change the job array.
 const OURS: [&str; 4] = ["--array", "-a", "--wrap", "--output"];
 
-/// A submission.
+/// A submitted job array.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Job {
-    /// Number of the array.
+    /// Job number of the array.
     pub job: u64,
-    /// Into how many chunks the plan was divided.
+    /// Number of chunks of the plan in this submission.
     pub chunks: u32,
-    /// Which of them.
+    /// Submitted chunk numbers, as ranges.
     pub indexes: String,
 }
 
-/// What is to be submitted.
+/// Request for a submission.
 #[derive(Clone, Debug)]
 pub struct Asked<'a> {
-    /// The program, as nodes see it.
+    /// Path of the program on the nodes.
     pub program: &'a Path,
-    /// Whether something was submitted before, of which only the rest is wanted.
+    /// True to submit the remaining chunks of a plan that was submitted before.
     pub again: bool,
     /// Options for `sbatch`.
     pub options: &'a [String],
 }
 
-/// Submits the chunks in which something is left; none where nothing is.
+/// Submits the chunks with unfinished tasks; returns `None` if there are none.
 ///
 /// # Errors
-/// When Slurm does not answer or refuses.
+/// When Slurm does not answer or rejects the job, when an option would change the job array, or when the plan was
+/// submitted before and `again` is not set.
 pub fn submit(plan: &Plan, asked: &Asked<'_>) -> Result<Option<Job>, Fault> {
     if let Some(option) = asked.options.iter().find(|option| OURS.iter().any(|ours| is_option(option, ours))) {
         return Err(Fault::expected(
@@ -92,10 +93,10 @@ pub fn submit(plan: &Plan, asked: &Asked<'_>) -> Result<Option<Job>, Fault> {
     Ok(Some(job))
 }
 
-/// The submissions of a plan.
+/// Reads the submissions of a plan.
 ///
 /// # Errors
-/// When their file cannot be read.
+/// When the file of submissions cannot be read.
 pub fn jobs(plan: &Path) -> Result<Vec<Job>, Fault> {
     let path = plan.join(FOLDER).join(JOBS);
     let text = match fs::read_to_string(&path) {
@@ -116,10 +117,10 @@ pub fn jobs(plan: &Path) -> Result<Vec<Job>, Fault> {
     text.lines().enumerate().map(read).collect()
 }
 
-/// How many elements of the submissions of a plan wait or run.
+/// Returns the number of array elements of a plan that are queued or running.
 ///
 /// # Errors
-/// When `squeue` does not answer: then it is not known.
+/// When `squeue` does not answer, because then the number is unknown.
 pub fn in_queue(plan: &Path) -> Result<usize, Fault> {
     let jobs = jobs(plan)?;
     if jobs.is_empty() {
@@ -129,14 +130,14 @@ pub fn in_queue(plan: &Path) -> Result<usize, Fault> {
     Ok(jobs.iter().filter_map(|job| queued.get(&job.job)).map(BTreeSet::len).sum())
 }
 
-/// Numbers of the chunks in which a task is neither finished, nor queued, nor somebody's.
+/// Returns the numbers of the chunks that are not queued and have a task that is neither finished nor leased.
 fn left(plan: &Plan, chunks: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<u32>>) -> Result<Vec<u32>, Fault> {
     let finished = Finished::read(&plan.path, false)?;
     let is_queued = |index: u32| {
         jobs.iter()
             .any(|job| job.chunks == chunks && queued.get(&job.job).is_some_and(|of_job| of_job.contains(&index)))
     };
-    // A worker whose job is not in the queue is no more, though its lease may not have lapsed yet.
+    // A worker whose job is not in the queue has ended, although its lease may not have expired yet.
     let is_there = |name: &str| {
         let parts = name.split_once('_').and_then(|(job, index)| Some((job.parse().ok()?, index.parse().ok()?)));
         parts.is_some_and(|(job, index): (u64, u32)| queued.get(&job).is_some_and(|of_job| of_job.contains(&index)))
@@ -155,15 +156,15 @@ fn left(plan: &Plan, chunks: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<
     Ok(open)
 }
 
-/// The script of a job array.
+/// Returns the script of a job array.
 fn text(plan: &Plan, program: &Path, chunks: u32, indexes: &str) -> String {
     let place = fs::canonicalize(&plan.path).unwrap_or_else(|_| plan.path.clone());
     let name = place.file_name().map_or_else(|| "plan".to_owned(), |name| name.to_string_lossy().into_owned());
-    // Options of a script end at a blank.
+    // Options in a script end at a space.
     let name: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
     let [program, plan_path] = [program, &place].map(quoted);
-    // Times want a node of their own; counts do not.
+    // Timed runs need an exclusive node.
     let (alone, jobs) =
         if plan.head.timed { ("#SBATCH --exclusive\n", "1") } else { ("", "\"${SLURM_CPUS_PER_TASK:-1}\"") };
     format!(
@@ -172,12 +173,12 @@ fn text(plan: &Plan, program: &Path, chunks: u32, indexes: &str) -> String {
     )
 }
 
-/// A path as a shell reads it.
+/// Quotes a path for the shell.
 fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
 }
 
-/// Numbers that rise, as ranges.
+/// Formats increasing numbers as ranges.
 fn ranges(numbers: &[u32]) -> String {
     let of = |run: &[u32]| match run {
         [one] => one.to_string(),
@@ -187,7 +188,7 @@ fn ranges(numbers: &[u32]) -> String {
     numbers.chunk_by(|a, b| a + 1 == *b).map(of).collect::<Vec<_>>().join(",")
 }
 
-/// The most that an array may have here: indexes are below `MaxArraySize`.
+/// Returns the largest size of a job array at this site: indices must be below `MaxArraySize`.
 fn most_in_array() -> Result<u32, Fault> {
     let answer = ask(Command::new("scontrol").args(["show", "config"]))?;
     let size = answer.lines().find_map(|line| {
@@ -203,7 +204,7 @@ fn most_in_array() -> Result<u32, Fault> {
     }
 }
 
-/// Elements of arrays of this user that wait or run.
+/// Returns the array elements of this user that are queued or running, by job number.
 fn queued() -> Result<BTreeMap<u64, BTreeSet<u32>>, Fault> {
     let answer = ask(Command::new("squeue").args(["--noheader", "--array", "--me", "--format=%F %K"]))?;
     let mut found: BTreeMap<u64, BTreeSet<u32>> = BTreeMap::new();
@@ -217,7 +218,7 @@ fn queued() -> Result<BTreeMap<u64, BTreeSet<u32>>, Fault> {
     Ok(found)
 }
 
-/// What a command of Slurm prints.
+/// Runs a Slurm command and returns its output.
 fn ask(command: &mut Command) -> Result<String, Fault> {
     let name = PathBuf::from(command.get_program()).display().to_string();
     let output = command

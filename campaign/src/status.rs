@@ -1,4 +1,4 @@
-//! How far a plan is.
+//! Progress of a plan.
 
 use crate::fault::Fault;
 use crate::finished::Finished;
@@ -9,37 +9,38 @@ use crate::task::Id;
 use serde::Serialize;
 use std::collections::HashSet;
 
-/// How far a plan is.
+/// Progress of a plan.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Status {
-    /// All tasks.
+    /// Number of all tasks.
     pub tasks: usize,
-    /// That ended as they should.
+    /// Number of successful tasks.
     pub done: usize,
-    /// That ended in an error, which is their result.
+    /// Number of tasks that ended in an error, which is their result.
     pub failed: usize,
-    /// At which our program failed; they may be done again.
+    /// Number of tasks at which our program crashed; they may be repeated.
     pub crashed: usize,
-    /// That somebody is at.
+    /// Number of unfinished tasks that a worker has leased.
     pub running: usize,
-    /// That nobody has taken up.
+    /// Number of unfinished tasks without a lease.
     pub waiting: usize,
-    /// Time that is left (s): what is not finished, as long as what is finished took of what it was expected to take, shared
-    /// by those who work; by one where nobody does.
+    /// Estimated remaining time (s): the expected time of unfinished tasks divided by the number of workers, at least 1.
+    ///
+    /// The estimate is scaled by the ratio of actual to expected time of the finished tasks.
     pub seconds_left: f64,
-    /// Who works.
+    /// Active workers.
     pub workers: Vec<Said>,
-    /// Lines of results that are cut off or damaged; what they were of is done again.
+    /// Number of result lines that are cut off or damaged; their tasks are repeated.
     pub damaged: usize,
-    /// Tasks that were done more than once.
+    /// Number of repeated results of tasks that were done already.
     pub twice: usize,
 }
 
 impl Status {
-    /// Looks at a plan.
+    /// Reads the progress of a plan.
     ///
     /// # Errors
-    /// When something in it cannot be read.
+    /// When a file of the plan cannot be read.
     pub fn of(plan: &Plan) -> Result<Self, Fault> {
         let workers = lease::held(&plan.path, plan.head.lease_seconds)?;
         let finished = Finished::read(&plan.path, false)?;
@@ -68,7 +69,7 @@ impl Status {
         Ok(status)
     }
 
-    /// Whether every task has a result.
+    /// Returns true if every task has a result.
     #[must_use]
     pub const fn is_whole(&self) -> bool {
         self.done + self.failed + self.crashed == self.tasks

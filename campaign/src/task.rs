@@ -1,4 +1,4 @@
-//! Tasks: what is to be done, a line each.
+//! Tasks of a plan, one a line.
 
 use crate::fault::Fault;
 use grainbench_scene::text::tamed;
@@ -9,22 +9,23 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-/// Digits of an id.
+/// Hexadecimal digits of an id.
 const DIGITS: usize = 32;
 
-/// What a task is known by: the first half of the hash of all that it is. Equal tasks of equal programs have equal ids, in
-/// whichever plan they stand.
+/// Id of a task: the first half of the hash of its description.
+///
+/// Equal tasks of equal programs have equal ids in every plan.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id([u8; 16]);
 
 impl Id {
-    /// Of a hash in hexadecimal digits; none where it has too few.
+    /// Returns the id from a hash in hexadecimal digits, or `None` if it has too few.
     #[must_use]
     pub fn of_hash(hash: &str) -> Option<Self> {
         hash.get(..DIGITS)?.parse().ok()
     }
 
-    /// Of words, and of the program that is to do it.
+    /// Computes the id from a description and the program that will run the task.
     #[must_use]
     pub fn of_words(program: &str, words: &[&str]) -> Self {
         let mut id = [0; 16];
@@ -75,37 +76,37 @@ impl<'de> Deserialize<'de> for Id {
     }
 }
 
-/// One task.
+/// A task.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Task {
-    /// What it is known by.
+    /// Id.
     pub id: Id,
-    /// Case and variant, or file of the scene.
+    /// Case and variant, or path of the scene file.
     pub scene: String,
-    /// Keys of the scene that are set otherwise.
+    /// Scene keys that are changed.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub set: BTreeMap<String, Value>,
-    /// Solver, or the manifest of a program.
+    /// Solver name, or the manifest of an external program.
     pub solver: String,
-    /// Resolution in words.
+    /// Resolution level as text.
     pub level: String,
-    /// What is looked at, in words.
+    /// Target quantity.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub what: String,
-    /// How often it is run; more than once where it is timed.
+    /// Number of runs; above 1 only for timed tasks.
     pub repetitions: u32,
-    /// What it is expected to take (s), with all repetitions.
+    /// Expected time (s) of all repetitions.
     pub seconds: f64,
-    /// Tasks of one number stand together and are done by one worker in turns.
+    /// Group number: tasks of one group are consecutive, and one worker runs them in alternation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<u32>,
 }
 
-/// Reads a line a task.
+/// Reads tasks, one a line.
 ///
 /// # Errors
-/// Names the file, the line, what was expected and what was found.
+/// The error names the file, the line, what was expected and what was found.
 pub fn read(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
     let mut tasks = Vec::new();
     for (at, line) in text.lines().enumerate() {
@@ -122,10 +123,10 @@ pub fn read(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
     Ok(tasks)
 }
 
-/// The lines.
+/// Returns tasks as lines of JSON.
 ///
 /// # Errors
-/// When something has no JSON form, which no task of this project has.
+/// When a task has no JSON form, which does not occur for tasks of this project.
 pub fn lines(tasks: &[Task]) -> Result<String, Fault> {
     let mut text = String::with_capacity(300 * tasks.len());
     for task in tasks {

@@ -1,4 +1,4 @@
-//! Work: the tasks of a chunk that are not finished and that nobody else is at, until all of the chunk is finished.
+//! Worker: runs the tasks of a chunk that are neither finished nor leased, until the whole chunk is finished.
 
 use crate::chunk::{self, Chunk};
 use crate::fault::Fault;
@@ -16,54 +16,54 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A worker says that it is there this often in the time of a lease.
+/// Number of heartbeats within the duration of a lease.
 const BEATS: f64 = 12.0;
-/// Others are looked after this often at most.
+/// Shortest interval between checks of other workers' leases.
 const LOOK: Duration = Duration::from_millis(500);
-/// Looking after them takes this share of the time at most.
+/// Ratio of the pause to the duration of a check: checks take at most 1/20 of the time.
 const SHARE: u32 = 20;
 
-/// What is asked for.
+/// Request for a worker.
 #[derive(Clone, Debug)]
 pub struct Asked {
-    /// Which chunk.
+    /// Chunk to run.
     pub chunk: Chunk,
-    /// Whether what failed is done again.
+    /// True to repeat failed tasks.
     pub again: bool,
 }
 
-/// Who is told of what happens, and says whether it goes on.
+/// Observer of progress, which can also stop the work.
 pub trait Watch: Send + Sync {
-    /// Whether work is to go on.
+    /// Returns true if work should continue.
     fn goes_on(&self) -> bool {
         true
     }
-    /// So many tasks are taken up.
+    /// Called when `tasks` tasks are started.
     fn begins(&self, _tasks: usize) {}
-    /// A task is finished.
+    /// Called when a task is finished.
     fn finished(&self) {}
-    /// Others are at what is left, and are waited for.
+    /// Called when the remaining tasks are leased to other workers and this worker waits for them.
     fn waits(&self, _others: &[Said]) {}
 }
 
 impl Watch for () {}
 
-/// What came of a chunk.
+/// Outcome of a chunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
-    /// Tasks of the chunk.
+    /// Number of tasks in the chunk.
     pub tasks: usize,
-    /// That were finished before.
+    /// Number of tasks that were finished before.
     pub before: usize,
-    /// That were done now,
+    /// Number of tasks done by this worker.
     pub done: usize,
-    /// and of these such as failed.
+    /// Number of failed or crashed tasks among `done`.
     pub failed: usize,
-    /// That are left.
+    /// Number of remaining tasks.
     pub left: usize,
 }
 
-/// Where whoever does tasks leaves what comes out.
+/// Result sink: receives the results of tasks and writes them to the log.
 pub struct Desk {
     log: Mutex<Log>,
     watch: Arc<dyn Watch>,
@@ -75,13 +75,13 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// Whether another task may be begun.
+    /// Returns true if another task may be started.
     #[must_use]
     pub fn goes_on(&self) -> bool {
         !self.stops.load(Ordering::Relaxed) && self.watch.goes_on()
     }
 
-    /// Leaves what came out of a task in so many seconds.
+    /// Writes the result of a task that took `seconds`.
     pub fn leave(&self, id: Id, state: State, seconds: f64, result: &impl Serialize) {
         match serde_json::to_string(result) {
             Ok(json) => self.leave_text(id, state, seconds, &json),
@@ -89,7 +89,7 @@ impl Desk {
         }
     }
 
-    /// The same of what has a JSON form already, on one line.
+    /// Writes a result that is already JSON on one line.
     pub fn leave_text(&self, id: Id, state: State, seconds: f64, json: &str) {
         let load = if self.timed { machine::load() } else { None };
         let added =
@@ -104,7 +104,7 @@ impl Desk {
         self.watch.finished();
     }
 
-    /// Does one task, whose result is its state and what came out; a panic of ours is what came of that task, and no more.
+    /// Runs one task and writes its state and result. A panic counts as a crash of this task only.
     pub fn attempt<T: Serialize>(&self, id: Id, work: impl FnOnce() -> (State, T)) {
         let start = Instant::now();
         match std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)) {
@@ -113,7 +113,7 @@ impl Desk {
         }
     }
 
-    /// Leaves that our program failed at a task.
+    /// Records a task at which our program panicked.
     pub fn crashed(&self, id: Id, seconds: f64, reason: &(dyn std::any::Any + Send)) {
         let words =
             reason.downcast_ref::<String>().map(String::as_str).or_else(|| reason.downcast_ref::<&str>().copied());
@@ -129,13 +129,13 @@ fn quoted(words: &str) -> String {
     serde_json::to_string(words).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// Who does tasks, and leaves at a desk what comes out.
+/// Function that runs tasks and writes their results to the sink.
 pub type Does<'a> = &'a dyn Fn(&[&Task], &Arc<Desk>) -> Result<(), Fault>;
 
-/// Does a chunk of a plan with somebody who does tasks.
+/// Runs a chunk of a plan; `does` runs the tasks.
 ///
 /// # Errors
-/// When the disk refuses; what was done before that stays done.
+/// When the disk rejects a write; results written before are kept.
 pub fn work(
     plan: &Plan,
     asked: &Asked,
@@ -155,12 +155,12 @@ pub fn work(
     };
     let mut summary = Summary { tasks: range.len(), ..Summary::default() };
     let mut desk: Option<Arc<Desk>> = None;
-    // Each is done by us once at most, though it fail again.
+    // Each task is tried at most once by this worker, even if it fails again.
     let mut tried: BTreeSet<usize> = BTreeSet::new();
     let mut is_first = true;
     loop {
         let (lease, others) = Lease::take(&plan.path, range.clone(), &said, seconds)?;
-        // Looked at when nobody else can finish what is ours.
+        // Results are read after the lease is taken, so that no other worker can finish a leased task meanwhile.
         let look = Instant::now();
         let finished = Finished::read(&plan.path, false)?;
         let look = look.elapsed();
@@ -224,7 +224,7 @@ fn begin(plan: &Plan, worker: &Worker, watch: Arc<dyn Watch>) -> Result<Desk, Fa
     })
 }
 
-/// Does something while the lease is renewed.
+/// Runs a function while a second thread renews the lease.
 fn with_a_heart<T>(lease: Option<&Lease>, desk: &Desk, every: f64, work: impl FnOnce() -> T) -> T {
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
@@ -234,7 +234,7 @@ fn with_a_heart<T>(lease: Option<&Lease>, desk: &Desk, every: f64, work: impl Fn
                 std::thread::park_timeout(Duration::from_secs_f64(every));
                 if last.elapsed().as_secs_f64() >= every {
                     last = Instant::now();
-                    // A disk that is full now is told of by results.
+                    // A full disk is reported when results are written.
                     let _ = lease.map(|lease| lease.renew(desk.done.load(Ordering::Relaxed)));
                     let _ = desk.sync();
                 }
@@ -247,7 +247,7 @@ fn with_a_heart<T>(lease: Option<&Lease>, desk: &Desk, every: f64, work: impl Fn
     })
 }
 
-/// Ends the beats, also where work panics.
+/// Guard that stops the heartbeat thread, even if the work panics.
 struct Over<'a>(&'a AtomicBool, std::thread::Thread);
 
 impl Drop for Over<'_> {

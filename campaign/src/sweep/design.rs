@@ -1,4 +1,4 @@
-//! The points of a design.
+//! Sweep points of a design.
 
 use super::file::{Design, Factor, File, Spacing};
 use crate::fault::Fault;
@@ -7,13 +7,13 @@ use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
 use std::path::Path;
 
-/// Most points of all solvers and levels together.
+/// Maximum number of points, summed over all solvers and levels.
 pub const MOST: usize = 10_000_000;
 
-/// A value of a factor at each point: points by points, factors in the order of the file.
+/// Returns the factor values of each point; factors are in the order of the file.
 ///
 /// # Errors
-/// Names the key, what was expected and what was found.
+/// The error names the key, what was expected and what was found.
 pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
     let wrong = |key: String, expected: &str, found: String| {
         Err(Fault::expected(format!("{}: {key}", path.display()), expected, found))
@@ -58,14 +58,14 @@ pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault>
     }
 }
 
-/// A value at a place from 0 to 1 of its range.
+/// Returns the value of a factor at a fraction from 0 to 1 of its range.
 fn at(factor: &Factor, part: f64) -> Value {
     let (from, to) = (factor.from.unwrap_or_default(), factor.to.unwrap_or_default());
     let value = match factor.spacing {
         Spacing::Linear => from + (to - from) * part,
         Spacing::Log => (from.ln() + (to.ln() - from.ln()) * part).exp(),
     };
-    // Ends are what was written; between them twelve digits keep 0.30000000000000004 out of tables.
+    // Ends are exact. Values between them are rounded to twelve digits, so that tables do not show 0.30000000000000004.
     let value = if part <= 0.0 {
         from
     } else if part >= 1.0 {
@@ -76,7 +76,7 @@ fn at(factor: &Factor, part: f64) -> Value {
     Value::from(value)
 }
 
-/// The values of a factor in a grid.
+/// Returns the values of a factor in a grid.
 fn values(factor: &Factor) -> Vec<Value> {
     match (&factor.values, factor.count) {
         (Some(values), _) => values.iter().map(json).collect(),
@@ -85,13 +85,13 @@ fn values(factor: &Factor) -> Vec<Value> {
     }
 }
 
-/// A value of TOML as JSON.
+/// Converts a TOML value to JSON.
 pub(super) fn json(value: &toml::Value) -> Value {
     serde_json::to_value(value).unwrap_or(Value::Null)
 }
 
 fn grid(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
-    // Counted before they are made: there may be more than fit into memory.
+    // The points are counted before they are created, because they may not fit into memory.
     let length = |factor: &Factor| factor.values.as_ref().map_or(factor.count.unwrap_or(0) as usize, Vec::len);
     let count = file.factors.values().try_fold(1_usize, |count, factor| count.checked_mul(length(factor)));
     let Some(count) = count.filter(|count| *count <= MOST) else {
@@ -101,7 +101,7 @@ fn grid(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
     let factors: Vec<Vec<Value>> = file.factors.values().map(values).collect();
     let point = |mut place: usize| {
         let mut point: Vec<Value> = Vec::with_capacity(factors.len());
-        // The last factor is the one that changes first.
+        // The last factor changes fastest.
         for values in factors.iter().rev() {
             point.push(values[place % values.len()].clone());
             place /= values.len();

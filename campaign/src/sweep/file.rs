@@ -1,65 +1,65 @@
-//! `SWEEP.toml`: a design over the keys of a scene, solvers and their levels, and what is looked at.
+//! Contents of `SWEEP.toml`: a design over scene keys, solvers and levels, and the quantities to evaluate.
 
 use grainbench_cases::folder::Over;
 use indexmap::IndexMap;
 use serde::Deserialize;
 use toml::{Table, Value};
 
-/// The file.
+/// A sweep file.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
     /// Title.
     pub(super) title: String,
-    /// What it shows, in a sentence or two.
+    /// Description in one or two sentences.
     #[serde(default)]
     pub(super) about: String,
-    /// `CASE`, `CASE/VARIANT`, or the path of a scene from the file.
+    /// `CASE`, `CASE/VARIANT`, or the path of a scene file relative to the sweep file.
     pub(super) scene: String,
-    /// How points are laid out.
+    /// Kind of design.
     #[serde(default)]
     pub(super) design: Design,
-    /// How many points a design by lot has.
+    /// Number of points of a random design.
     pub(super) points: Option<u32>,
-    /// What the lot begins with.
+    /// Random seed.
     #[serde(default)]
     pub(super) seed: u64,
-    /// How often each point is run; more than once where it is timed.
+    /// Number of runs of each point; above 1 only for timed sweeps.
     #[serde(default = "once")]
     pub(super) repetitions: u32,
-    /// Whether times are wanted, so that nothing may run beside.
+    /// True to measure times: then nothing else may run at the same time.
     #[serde(default)]
     pub(super) timed: bool,
-    /// What is varied.
+    /// Factors that are varied.
     #[serde(default)]
     pub(super) factors: IndexMap<String, Factor>,
-    /// Keys of the scene that are otherwise in all points.
+    /// Scene keys that are changed in all points.
     #[serde(default)]
     pub(super) set: Table,
-    /// Keys of the scene that follow from the factors, by arithmetic over their names.
+    /// Scene keys that are computed from the factors by arithmetic over factor names.
     #[serde(default)]
     pub(super) formulas: Table,
-    /// Who is asked.
+    /// Solvers with their levels.
     pub(super) solvers: Vec<Asked>,
-    /// Claims of the case that are looked at.
+    /// Claims of the case to evaluate.
     #[serde(default)]
     pub(super) gates: Vec<Gate>,
-    /// Quantities that are looked at beside.
+    /// Further quantities to evaluate.
     #[serde(default)]
     pub(super) record: Vec<Recorded>,
-    /// The factors over which the map is drawn.
+    /// The two factors that are the axes of the map.
     pub(super) map: Option<[String; 2]>,
-    /// A line on it, such as the limit between two kinds of motion.
+    /// Curve on the map, for example the limit between two kinds of motion.
     pub(super) line: Option<Line>,
 }
 
-/// A line on the map.
+/// Curve on the map.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Line {
-    /// The second factor of the map, by arithmetic over the first.
+    /// The second factor of the map as arithmetic over the first.
     pub(super) formula: String,
-    /// What it parts.
+    /// Label of the curve.
     pub(super) label: String,
 }
 
@@ -67,30 +67,30 @@ const fn once() -> u32 {
     1
 }
 
-/// How points are laid out.
+/// Kind of design.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Design {
-    /// Every value with every other.
+    /// Full factorial grid: every value of a factor with every value of the other factors.
     #[default]
     Grid,
-    /// By lot, each by itself.
+    /// Independent random points.
     Random,
-    /// By lot, each value of each factor in its own slice of the range.
+    /// Latin hypercube: each factor has exactly one random value in each of n equal slices of its range.
     LatinHypercube,
 }
 
-/// What is varied.
+/// A factor of the design.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Factor {
-    /// The key that takes its value; none where only formulas do.
+    /// Scene key that takes the value; `None` if only formulas use the factor.
     pub(super) key: Option<String>,
-    /// What figures call it.
+    /// Label in figures.
     pub(super) label: Option<String>,
-    /// Its values,
+    /// List of values; exclusive with `from`, `to` and `count`.
     pub(super) values: Option<Vec<Value>>,
-    /// or a range of them.
+    /// Lower end of a range of values.
     pub(super) from: Option<f64>,
     pub(super) to: Option<f64>,
     pub(super) count: Option<u32>,
@@ -98,14 +98,14 @@ pub(super) struct Factor {
     pub(super) spacing: Spacing,
 }
 
-/// How values of a range follow one another.
+/// Spacing of values in a range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Spacing {
-    /// By equal differences.
+    /// Equal differences.
     #[default]
     Linear,
-    /// By equal ratios.
+    /// Equal ratios.
     Log,
 }
 
@@ -113,14 +113,14 @@ pub(super) enum Spacing {
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Asked {
-    /// Its name, or the manifest of a program.
+    /// Solver name, or the manifest of an external program.
     pub(super) solver: String,
-    /// Its levels, in words.
+    /// Levels as text.
     pub(super) levels: Vec<String>,
-    /// Keys of the scene that are otherwise for it.
+    /// Scene keys that are changed for this solver only.
     #[serde(default)]
     pub(super) set: Table,
-    /// The same by arithmetic over the factors.
+    /// Scene keys that are computed from the factors, for this solver only.
     #[serde(default)]
     pub(super) formulas: Table,
 }
@@ -129,31 +129,31 @@ pub(super) struct Asked {
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Gate {
-    /// Its words.
+    /// Name of the claim's quantity.
     pub(super) quantity: String,
-    /// How far it may be off, where that is not what the claim says.
+    /// Largest error that passes, if it differs from the tolerance of the claim.
     pub(super) allowed: Option<f64>,
 }
 
-/// A quantity.
+/// A quantity of the sweep file.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Recorded {
-    /// What it is, in words.
+    /// Name of the quantity.
     pub(super) quantity: String,
-    /// Its unit.
+    /// Unit of the quantity.
     pub(super) unit: String,
-    /// Arithmetic over columns of the record and numbers of the scene.
+    /// Arithmetic over record columns and numbers of the scene.
     pub(super) value: String,
-    /// The moment at which it is read (s); the end where none is named.
+    /// Time of the sample (s); the end of the run if `None`.
     pub(super) at: Option<f64>,
-    /// How samples are read, where it is not one of them.
+    /// Reduction over samples, if the value is not a single sample.
     pub(super) over: Option<Over>,
-    /// What is expected, by arithmetic over the factors, numbers of the scene and the time `t`.
+    /// Expected value: arithmetic over the factors, numbers of the scene and the time `t`.
     pub(super) equals: Option<Formula>,
-    /// What the difference is divided by; what is expected where nothing is said.
+    /// Scale by which the error is divided; |expected| by default.
     pub(super) scale: Option<Formula>,
-    /// How far it may be off.
+    /// Largest error that passes.
     pub(super) allowed: Option<f64>,
 }
 
@@ -166,7 +166,7 @@ pub(super) enum Formula {
 }
 
 impl Formula {
-    /// As arithmetic.
+    /// Returns the formula as text.
     pub(super) fn text(&self) -> String {
         match self {
             Self::Number(value) => format!("{value:?}"),

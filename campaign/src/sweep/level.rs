@@ -1,21 +1,21 @@
-//! Levels of resolution in words, as pages print them: `dt=.1`, `dt=1e-5 s`, `substeps=8 iterations=4`,
+//! Resolution levels as text, in the notation of pages: `dt=.1`, `dt=1e-5 s`, `substeps=8 iterations=4`,
 //! `cells=8 points=3 courant=.4`.
 
 use grainbench_scene::solver::{Method, Resolution};
 
-/// What is said where words are none of these.
+/// Expected notation, for error messages.
 const EXPECTED: &str =
     "`dt=FRACTION`, `dt=SECONDS s`, `substeps=N` with `iterations=N`, or `cells=N` with `points=N` and `courant=N`";
 
-/// The resolution that words mean.
+/// Reads a resolution from text.
 ///
 /// # Errors
-/// What was expected.
+/// The error names the expected notation.
 pub fn read(words: &str) -> Result<Resolution, String> {
     resolution(words).ok_or_else(|| EXPECTED.to_owned())
 }
 
-/// Whether a solver of ours works so; of others their own words tell.
+/// Returns true if the solver supports this kind of resolution. External solvers are assumed to support every kind.
 #[must_use]
 pub fn fits(solver: &str, resolution: &Resolution) -> bool {
     match Method::of(solver) {

@@ -1,4 +1,4 @@
-//! What is looked at in each run of a sweep: claims of the case, and quantities of the file's own.
+//! Quantities that are evaluated in each run of a sweep: claims of the case, and quantities of the sweep file.
 
 use super::file::{Gate, Recorded};
 use crate::fault::Fault;
@@ -14,15 +14,15 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use std::sync::Arc;
 
-/// One of them.
+/// An evaluated quantity.
 pub(super) enum Look {
-    /// A claim of the case, which follows the numbers of the scene.
+    /// Claim of the case, which is recomputed for the parameters of the scene, and an optional limit of its error.
     Gate(Box<Claim>, Option<f64>),
-    /// Arithmetic of the file.
+    /// Arithmetic of the sweep file.
     Own(Box<Own>),
 }
 
-/// A quantity of the file's own.
+/// A quantity of the sweep file.
 pub(super) struct Own {
     quantity: String,
     unit: String,
@@ -34,17 +34,17 @@ pub(super) struct Own {
     allowed: Option<f64>,
 }
 
-/// A run that is looked at.
+/// A run that is evaluated.
 pub(super) struct Seen<'a> {
-    /// The scene's text, with all keys as they were set.
+    /// Scene text with all keys as set for this point.
     pub(super) source: &'a SceneSource,
     pub(super) done: &'a Done,
-    /// The number of a factor.
+    /// Returns the value of a factor by name.
     pub(super) factor: &'a dyn Fn(&str) -> Option<f64>,
 }
 
 impl Look {
-    /// A claim of a case by its words.
+    /// Returns the claim of a case with the given quantity; a claim of the given variant comes first.
     pub(super) fn gate(
         path: &Path,
         gate: &Gate,
@@ -79,7 +79,7 @@ impl Look {
         Ok(Self::Gate(Box::new((*claim).clone()), gate.allowed))
     }
 
-    /// A quantity of the file's own.
+    /// Reads a quantity of the sweep file.
     pub(super) fn own(path: &Path, recorded: &Recorded) -> Result<Self, Fault> {
         let place = |key: &str| format!("{}: record ({}): {key}", path.display(), recorded.quantity);
         let read = |key: &str, text: &str| {
@@ -110,7 +110,7 @@ impl Look {
         })))
     }
 
-    /// What tables call it.
+    /// Returns the table entry that describes the quantity.
     pub(super) fn quantity(&self) -> Quantity {
         match self {
             Self::Gate(claim, allowed) => Quantity {
@@ -131,7 +131,7 @@ impl Look {
         }
     }
 
-    /// Looks at a run.
+    /// Evaluates the quantity in a run.
     pub(super) fn at(&self, seen: &Seen<'_>) -> Looked {
         let found = match self {
             Self::Gate(claim, allowed) => {
@@ -148,13 +148,13 @@ impl Look {
     }
 }
 
-/// How far a claim may be off in a scene of other numbers than its case has, where it says so.
+/// Returns the largest error that passes for a claim in this scene, which may differ from the scene of its case.
 fn own_allowance(claim: &Claim, done: &Done) -> f64 {
     let stated = || claim.tolerance.of(std::slice::from_ref(done));
     claim.elsewhere.as_ref().map_or_else(stated, |elsewhere| (elsewhere.allowed)(&done.scene))
 }
 
-/// A row of what was measured.
+/// Returns a table row from a measurement.
 fn judged(measured: &Measured, allowed: f64) -> Looked {
     let row = Verdict { allowed, ..Verdict::open("", "", "") }.judged(measured);
     Looked {
@@ -186,7 +186,7 @@ impl Own {
         };
         let scale = self.scale.as_ref().map_or(expected.abs(), of);
         let row = judged(&Measured::new(value, expected, scale), self.allowed.unwrap_or(f64::INFINITY));
-        // What may be off by anything is told and not judged.
+        // A quantity without a limit is reported without a verdict.
         Ok(if self.allowed.is_some() { row } else { Looked { verdict: None, ..row } })
     }
 }

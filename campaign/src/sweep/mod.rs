@@ -1,4 +1,4 @@
-//! Sweeps: a scene over a design of its keys, by solvers at their levels.
+//! Sweeps: a design over the keys of a scene, for several solvers and levels.
 
 mod design;
 mod file;
@@ -34,26 +34,26 @@ use std::time::Instant;
 
 pub use design::MOST;
 
-/// Scenes are made for this long (s) to see what tasks take; of the rest it is taken that they are like those.
+/// Time budget (s) for building scenes to estimate run times; further points reuse the last estimate.
 const LOOKING: f64 = 6.0;
-/// A program starts in this time (s), and takes this much longer than ours.
+/// Assumed start-up time (s) of an external program, and its assumed run time relative to our solver.
 const START: f64 = 0.3;
 const PROGRAM: f64 = 4.0;
-/// The reference of times is measured for this long (s) before and after a timed run.
+/// Duration (s) of the reference timing before and after each timed run.
 const REFERENCE: f64 = 2e-3;
 
 /// A sweep.
 pub struct Sweep {
-    /// What errors call the file.
+    /// Path of the file, for error messages.
     name: String,
     file: File,
     points: Vec<Vec<Value>>,
     source: SceneSource,
-    /// Where the scene is, if it is no case's.
+    /// Path of the scene file; `None` if the scene belongs to a case.
     scene_file: Option<PathBuf>,
     looks: Vec<Look>,
     levels: Vec<Level>,
-    /// The line on the map.
+    /// Curve on the map.
     line: Option<Expression>,
 }
 
@@ -62,13 +62,13 @@ struct Level {
     asked: usize,
     resolution: Resolution,
     words: String,
-    /// Keys that follow from the factors.
+    /// Scene keys that are computed from the factors.
     formulas: Vec<(String, Formula)>,
-    /// Keys that are otherwise.
+    /// Scene keys with changed values.
     set: Vec<(String, Value)>,
 }
 
-/// What a key of the scene follows from.
+/// Formula of a scene key.
 #[derive(Clone)]
 enum Formula {
     One(Expression),
@@ -104,7 +104,7 @@ impl Sweep {
     /// Reads a sweep.
     ///
     /// # Errors
-    /// Names the file, the key, what was expected and what was found.
+    /// The error names the file, the key, what was expected and what was found.
     pub fn read(path: &Path) -> Result<Self, Fault> {
         let told = |(expected, found): (&'static str, String)| Fault::in_file(path, expected, found);
         let text = written(path).map_err(told)?;
@@ -150,32 +150,32 @@ impl Sweep {
         Ok(Self { name, file, points, source, scene_file, looks, levels, line })
     }
 
-    /// Whether times are wanted.
+    /// Returns true if wall times are measured.
     #[must_use]
     pub const fn is_timed(&self) -> bool {
         self.file.timed
     }
 
-    /// Names of solvers, and manifests of programs.
+    /// Returns the names of solvers and the manifests of external programs.
     #[must_use]
     pub fn solvers(&self) -> Vec<String> {
         self.file.solvers.iter().map(|asked| asked.solver.clone()).collect()
     }
 
-    /// Where the scene is, if it is no case's.
+    /// Returns the path of the scene file, or `None` if the scene belongs to a case.
     #[must_use]
     pub fn scene_file(&self) -> Option<&Path> {
         self.scene_file.as_deref()
     }
 
-    /// Every point by every solver at every level, with what it is expected to take.
+    /// Returns a task for every point, solver and level, with its expected run time.
     ///
     /// # Errors
-    /// When a point's scene is wrong.
+    /// When the scene of a point is invalid.
     pub fn tasks(&self, program: &str, solvers: &dyn Solvers, names: &[String]) -> Result<Vec<Task>, Fault> {
         let base = self.source.text().to_owned();
         let looks = format!("{:?}", self.looks.iter().map(Look::quantity).collect::<Vec<_>>());
-        // What of the file belongs to all points alike.
+        // Inputs of the file that are common to all points.
         let common = format!("{base}|{looks}|{:?}|{}", self.source.directory, self.file.repetitions);
         let common = blake3::hash(common.as_bytes()).to_hex().to_string();
         let mut tasks = Vec::with_capacity(self.points.len() * self.levels.len());
@@ -188,7 +188,7 @@ impl Sweep {
             let mut looked = 0_usize;
             for (place, point) in self.points.iter().enumerate() {
                 let set = self.set(level, point);
-                // Those that are looked at stand evenly among all.
+                // Points are inspected in order until the time budget is spent; later points reuse the last estimate.
                 if patience > 0.0 || looked == 0 {
                     let start = Instant::now();
                     let scene = self.scene(&set)?;
@@ -215,7 +215,7 @@ impl Sweep {
         Ok(tasks)
     }
 
-    /// Keys of the scene at a point, for a solver.
+    /// Returns the scene keys of a point for a solver at a level.
     fn set(&self, level: &Level, point: &[Value]) -> BTreeMap<String, Value> {
         let mut set = BTreeMap::new();
         for (factor, value) in self.file.factors.values().zip(point) {
@@ -230,7 +230,7 @@ impl Sweep {
         set
     }
 
-    /// The number of a factor at a point.
+    /// Returns the value of a factor at a point.
     fn factor(&self, point: &[Value], name: &str) -> Option<f64> {
         point.get(self.file.factors.get_index_of(name)?)?.as_f64()
     }
@@ -244,13 +244,13 @@ impl Sweep {
         scene.map_err(|error| Fault::Input(format!("{}: a point of it: {error}", self.name)))
     }
 
-    /// The point and the level of the task at a place of all.
+    /// Returns the point and the level of a task index.
     fn place(&self, place: usize) -> Option<(&[Value], &Level)> {
         let count = self.points.len();
         Some((self.points.get(place % count.max(1))?, self.levels.get(place / count.max(1))?))
     }
 
-    /// Does the task at a place of all.
+    /// Runs the task with the given index.
     #[must_use]
     pub fn run(&self, place: usize, task: &Task, solver: &dyn Solver) -> (State, Left) {
         let Some((point, level)) = self.place(place) else {
@@ -292,7 +292,7 @@ impl Sweep {
         Ok((last.ok_or_else(missing)?, timings))
     }
 
-    /// The report of what is finished: `of` gives what came out of the task at a place.
+    /// Returns the report of finished tasks. `of` returns the result of a task index.
     #[must_use]
     pub fn report(
         &self,
@@ -333,7 +333,7 @@ impl Sweep {
         }
     }
 
-    /// The line on the map, between the ends of the first factor.
+    /// Returns the curve on the map, sampled between the extremes of the first factor.
     fn line(&self) -> Option<grainbench_reports::sweep::Line> {
         const PIECES: u32 = 200;
         let (formula, file, axes) = (self.line.as_ref()?, self.file.line.as_ref()?, self.file.map.as_ref()?);
@@ -345,7 +345,7 @@ impl Sweep {
     }
 }
 
-/// The line on the map.
+/// Reads the curve on the map.
 fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
     let Some(line) = &file.line else { return Ok(None) };
     let place = format!("{}: line", path.display());
@@ -362,7 +362,7 @@ fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
     }
 }
 
-/// What is left where there is no record.
+/// Returns the result of a task without a record.
 fn failed(detail: String, outcome: Outcome, looks: usize) -> (State, Left) {
     let looked = grainbench_reports::sweep::Looked { verdict: Some(outcome), ..Default::default() };
     (State::Failed, Left { ran: None, looked: vec![looked; looks], timings: Vec::new(), detail: Some(detail) })
@@ -380,7 +380,7 @@ fn ran(record: &Record) -> Ran {
     }
 }
 
-/// A value as a key is set to it.
+/// Formats a value for setting a key.
 fn words(value: &Value) -> String {
     match value {
         Value::Number(number) => number.to_string(),
@@ -388,7 +388,7 @@ fn words(value: &Value) -> String {
     }
 }
 
-/// The levels of a solver.
+/// Reads the levels of a solver.
 fn read_levels(path: &Path, file: &File, (place, asked): (usize, &Asked)) -> Result<Vec<Level>, Fault> {
     let key = format!("{}: solvers ({})", path.display(), asked.solver);
     if asked.levels.is_empty() {
@@ -424,7 +424,7 @@ fn read_levels(path: &Path, file: &File, (place, asked): (usize, &Asked)) -> Res
     Ok(levels)
 }
 
-/// Keys of nested tables as paths with dots, and their values.
+/// Flattens nested tables to dotted keys with their values.
 fn flat(table: &toml::Table) -> Vec<(String, toml::Value)> {
     let mut found = Vec::new();
     for (key, value) in table {
@@ -438,7 +438,7 @@ fn flat(table: &toml::Table) -> Vec<(String, toml::Value)> {
     found
 }
 
-/// The scene's text, its case where it is one's, and its file where it is not.
+/// Reads the scene text, with its case or, if it belongs to none, its file.
 fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>, Option<PathBuf>), Fault> {
     let is_file = Path::new(&file.scene).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
     let told = |error: grainbench_scene::error::SceneError| Fault::Input(error.to_string());
@@ -458,7 +458,7 @@ fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>
         None | Some(PLAIN) => source,
         Some(variant) => source.variant(variant),
     };
-    // A variant that is none is told of now.
+    // An unknown variant is reported now.
     source.scene_file().map_err(told)?;
     Ok((source, Some(case), None))
 }
