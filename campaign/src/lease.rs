@@ -65,7 +65,7 @@ impl Lease {
     /// The lease is `None` if other workers hold the whole range.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When the lock is not released within a minute, or the disk rejects a write.
     pub fn take(
         plan: &Path,
         range: Range<usize>,
@@ -104,7 +104,7 @@ impl Lease {
     /// Renews the lease and records the number of tasks done.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When the disk rejects the write.
     pub fn renew(&self, done: usize) -> Result<(), WriteError> {
         let said = Said { done, ..self.said.clone() };
         write_file(&self.path, serde_json::to_string(&said).unwrap_or_default())

@@ -1,10 +1,11 @@
-//! Time of the processor, which another program at work disturbs less than it does the clock on the wall.
+//! Processor time, which other running programs disturb less than wall-clock time.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Processor time of this process and of the programs that it ran and that have ended (s); wall-clock time since the
-/// first call where the system does not tell.
+/// Returns the processor time (s) of this process and of its child processes that have ended.
+///
+/// If the system does not report it, returns the wall-clock time since the first call.
 #[must_use]
 pub fn cpu_seconds() -> f64 {
     #[cfg(unix)]
@@ -24,14 +25,16 @@ pub fn cpu_seconds() -> f64 {
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Processor time of a fixed piece of work that no change of this program's solvers touches (s), the mean of as many in
-/// a row as take `lasting` seconds, of one at least: what a time is divided by when two sessions are compared, so that
-/// a machine that was slower for a while is not taken for a program that is.
+/// Measures the processor time (s) of a fixed reference task: the mean of as many runs as fill `lasting` seconds, at
+/// least one.
 ///
-/// Another program on the other thread of the same core slows solvers down by half for some milliseconds. Arithmetic in
-/// which each operation waits for the one before hardly feels it (a tenth); searching and branching feel it as solvers
-/// do: over a thousand pairs of runs in turn the logarithms of both times had a slope of .99 and their ratio a spread
-/// of 7 %, where times alone had 20 to 30 %.
+/// No change of the solvers affects the reference task. Times of two sessions are divided by it before they are
+/// compared, so that a temporarily slow machine is not mistaken for a slow program.
+///
+/// A program on the other thread of the same core slows solvers down by half for some milliseconds. Dependent
+/// arithmetic is slowed down by only a tenth; searching and branching are slowed down like solvers. In a thousand pairs
+/// of alternating runs the logarithms of both times had a slope of .99. Their ratio had a spread of 7 %, while the
+/// times alone had 20 to 30 %.
 #[must_use]
 pub fn reference_seconds(lasting: f64) -> f64 {
     let start = cpu_seconds();
@@ -46,20 +49,20 @@ pub fn reference_seconds(lasting: f64) -> f64 {
     }
 }
 
-/// What was done, and how long it took.
+/// Result of a timed task.
 #[derive(Clone, Copy, Debug)]
 pub struct Clocked<T> {
-    /// What was done.
+    /// Return value of the task.
     pub done: T,
     /// Processor time (s).
     pub cpu: f64,
     /// Wall-clock time (s).
     pub wall: f64,
-    /// Mean of the reference before and after (s).
+    /// Mean time of the reference task before and after (s).
     pub reference: f64,
 }
 
-/// Times a piece of work between two timings of the reference, each of `lasting` seconds.
+/// Times a task between two timings of the reference task, each of `lasting` seconds.
 pub fn clocked<T>(lasting: f64, work: impl FnOnce() -> T) -> Clocked<T> {
     let before = reference_seconds(lasting);
     let (cpu, start) = (cpu_seconds(), Instant::now());
@@ -68,8 +71,9 @@ pub fn clocked<T>(lasting: f64, work: impl FnOnce() -> T) -> Clocked<T> {
     Clocked { done, cpu, wall, reference: 0.5 * (before + reference_seconds(lasting)) }
 }
 
-/// Looks keys up in a table with two thirds of its places taken and branches on what it finds, as a solver does with
-/// the contacts of its grains: about a tenth of a millisecond.
+/// Looks up keys in a hash table that is two thirds full and branches on the result, as a solver does with contacts.
+///
+/// This takes about a tenth of a millisecond.
 fn searches(scale: f64) -> f64 {
     const PLACES: usize = 1024;
     const KEYS: usize = 700;

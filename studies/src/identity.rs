@@ -1,4 +1,4 @@
-//! What tells one piece of work from another, in sixty-four digits.
+//! Identifiers of runs and tasks: hashes of sixty-four hexadecimal digits.
 
 use grainbench_scene::checkpoint::fingerprint;
 use grainbench_scene::scene::Scene;
@@ -6,7 +6,7 @@ use grainbench_scene::solver::Resolution;
 use std::fs;
 use std::path::Path;
 
-/// Hash of a file's content; of its path where it cannot be read.
+/// Returns the hash of a file's content, or of its path if it cannot be read.
 #[must_use]
 pub fn of_file(path: &Path) -> String {
     match fs::read(path) {
@@ -15,24 +15,24 @@ pub fn of_file(path: &Path) -> String {
     }
 }
 
-/// Hash of the program that runs: every change of a solver, a case or a gate changes it.
+/// Returns the hash of the running program. Every change of a solver, a case or a claim changes it.
 #[must_use]
 pub fn of_this_program() -> String {
     std::env::current_exe().map_or_else(|_| "unknown".to_owned(), |path| of_file(&path))
 }
 
-/// What a run is, by content: program, solver, scene, resolution, and what is read from it.
+/// Returns the hash of a run: program, solver, scene, resolution and evaluated quantity.
 #[must_use]
 pub fn of_run(program: &str, solver: &str, scene: &Scene, resolution: &Resolution, read: &str) -> String {
     of_words(program, &[solver, fingerprint(scene).to_hex().as_str(), &format!("{resolution:?}"), read])
 }
 
-/// What a piece of work is whose content is all in words.
+/// Returns the hash of a task that is described by words.
 #[must_use]
 pub fn of_words(program: &str, words: &[&str]) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in std::iter::once(&program).chain(words) {
-        // The length before each part keeps two lists of parts from running into one.
+        // The length before each part prevents two lists from having the same byte sequence.
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     }

@@ -1,9 +1,9 @@
-//! The three studies: what accuracy costs ([`cost`]), what stays stable ([`stability`]), what each effect is worth
+//! The three studies: cost against accuracy ([`cost`]), stability ([`stability`]) and the influence of each effect
 //! ([`effects`]).
 //!
-//! Each goes through its pieces one by one, keeps every finished piece in a [`result_cache`], and takes from there what was
-//! finished before: a study that was ended goes on where it stopped. Beside them stands the [`race`] with other programs, whose
-//! pieces are only worth something next to each other.
+//! Each study stores every finished item in a [`result_cache`] and reuses it, so that an interrupted study continues
+//! where it stopped. The throughput benchmark ([`race`]) compares solvers; its timings are meaningful only in relation
+//! to each other, so it does not use the cache.
 
 pub mod clock;
 pub mod cost;
@@ -15,13 +15,13 @@ pub mod result_cache;
 pub mod run_cache;
 pub mod stability;
 
-/// Someone who wants to know how far a study is.
+/// Observer of a study's progress.
 pub trait Follow {
-    /// A piece is taken up.
+    /// Called when an item is started.
     fn now(&mut self, _piece: &str) {}
-    /// A piece is finished: taken from the result cache, or done.
+    /// Called when an item is finished; `reused` items come from the result cache.
     fn done(&mut self, _reused: bool) {}
 }
 
-/// Nobody follows.
+/// An observer that ignores all progress.
 impl Follow for () {}

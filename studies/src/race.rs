@@ -1,9 +1,9 @@
-//! Solvers and other programs on the same scenes in turn: grains stepped in a second of processor time, and how often as
-//! many as by another.
+//! Throughput benchmark: solvers and external programs on the same scenes in turn, in particle-steps per second of
+//! processor time, and their ratios.
 //!
-//! A lap is a long run less a short one, so that start, set-up and output do not count, in processor time of all that takes
-//! part. In every round each racer does one lap of a scene, and rates are divided within the round: a machine that is slower
-//! for a while is so for all of them.
+//! A timing is the processor time of a long run less that of a short run, so that start, set-up and output cancel. In
+//! every round each solver is timed once, and rates are divided within the round. A temporarily slow machine affects
+//! all solvers of a round alike.
 
 use crate::Follow;
 use crate::clock::cpu_seconds;
@@ -18,34 +18,35 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A lap that takes less processor time (s) tells noise: it is the difference of two times.
+/// Shortest timing (s of processor time) that is used; a shorter difference of two times is noise.
 const SHORTEST: f64 = 0.05;
 
-/// What is run: a scene at a step, for so many steps.
+/// Benchmark scene with its resolution and step counts.
 #[derive(Clone, Debug)]
 pub struct Track {
     /// Its name.
     pub name: String,
     /// The scene.
     pub scene: Scene,
-    /// The step.
+    /// Resolution.
     pub resolution: Resolution,
     /// Steps of the short and of the long run.
     pub steps: [u64; 2],
 }
 
-/// A racer and the one that its rate is divided by.
+/// A benchmarked solver and the solver that it is compared with.
 pub struct Racer {
     /// The solver.
     pub solver: Arc<dyn Solver>,
-    /// Whose rate the others of its pair are divided by.
+    /// Name of the solver by whose rate this solver's rate is divided.
     pub against: &'static str,
-    /// Whether it is a program that stays from run to run: what it spent is not told before it ends, and of one thread it is what
-    /// the clock shows.
+    /// True for a program that keeps running between runs.
+    ///
+    /// Its processor time is unknown before it ends; with one thread, wall time is used instead.
     pub stays: bool,
 }
 
-/// What all racers did on a track.
+/// Results of all solvers for one scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Heat {
     /// Name of the track.
@@ -54,40 +55,40 @@ pub struct Heat {
     pub grains: usize,
     /// Steps of the short and of the long run.
     pub steps: [u64; 2],
-    /// What each did, in the order in which they were named.
+    /// Results in the order of the solvers.
     pub results: Vec<Raced>,
 }
 
-/// What a racer did.
+/// Result of one solver.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Raced {
     /// The solver.
     pub solver: String,
-    /// Its version, where it tells one.
+    /// Version, if the solver reports one.
     pub version: Option<String>,
-    /// Million particle-steps in a second of processor time, lap by lap.
+    /// Millions of particle-steps per second of processor time, one for each timing.
     pub rates: Vec<f64>,
-    /// Its rate over that of the racer it is compared with, lap by lap.
+    /// Ratios of the rate to that of the compared solver, one for each timing.
     pub ratios: Vec<f64>,
-    /// The racer it is compared with.
+    /// Name of the compared solver.
     pub against: String,
-    /// Kinetic energy of the grains after the short run (J): the same scene was run where they agree.
+    /// Kinetic energy of the grains after the short run (J). Equal energies show that the same scene was run.
     pub kinetic_energy: Option<f64>,
-    /// Why it took no part.
+    /// Reason why the solver has no rates.
     pub absent: Option<String>,
 }
 
-/// What is kept of a race.
+/// Stored result of a throughput benchmark.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Race {
-    /// Where and when.
+    /// Version, date and machine.
     pub provenance: Provenance,
-    /// Scene by scene.
+    /// Results by scene.
     pub heats: Vec<Heat>,
 }
 
 impl Race {
-    /// The race as a table: medians of the laps with their least and largest.
+    /// Returns the benchmark as a table with median, minimum and maximum of the timings.
     #[must_use]
     pub fn table(&self) -> String {
         let shown = |values: &[f64], digits: usize| {
@@ -130,7 +131,7 @@ impl Race {
     }
 }
 
-/// The scene for so many steps, with nothing to be told of it but the energy at its end.
+/// Returns the scene with a given number of steps, with only the energy at its end as output.
 fn for_steps(scene: &Scene, steps: u64) -> Scene {
     Scene {
         duration: Duration::Cycles(steps),
@@ -144,7 +145,7 @@ fn for_steps(scene: &Scene, steps: u64) -> Scene {
     }
 }
 
-/// Processor time of a run (s), and what it left: kinetic energy at its end (J) and the version of the program.
+/// Returns the processor time of a run (s), the kinetic energy at its end (J) and the version of the program.
 fn run(racer: &Racer, track: &Track, steps: u64) -> Result<(f64, Option<f64>, Option<String>), RunError> {
     let scene = for_steps(&track.scene, steps);
     let begun = cpu_seconds();
@@ -155,7 +156,7 @@ fn run(racer: &Racer, track: &Track, steps: u64) -> Result<(f64, Option<f64>, Op
     Ok((spent, energy, record.provenance.options.into_iter().next()))
 }
 
-/// All racers on a track, `rounds` times in turn.
+/// Runs all solvers on a benchmark scene, `rounds` times in turn.
 pub fn heat(track: &Track, racers: &[Racer], rounds: u32, follow: &mut impl Follow) -> Heat {
     let blank = |racer: &Racer| Raced {
         solver: racer.solver.name(),
@@ -200,7 +201,7 @@ pub fn heat(track: &Track, racers: &[Racer], rounds: u32, follow: &mut impl Foll
     Heat { track: track.name.clone(), grains: track.scene.grains.len(), steps: track.steps, results }
 }
 
-/// How far apart the kinetic energies of a racer and of the one that it is compared with are, relative to the latter.
+/// Returns the relative difference of the kinetic energies of a solver and the compared solver.
 #[must_use]
 pub fn apart(heat: &Heat, raced: &Raced) -> Option<f64> {
     let other = heat.results.iter().find(|other| other.solver == raced.against)?;

@@ -1,4 +1,4 @@
-//! Finished pieces of work, each in a file of its own under a name that says what it is.
+//! Cache of finished results, each in its own file; the file name is a hash of the task.
 
 use grainbench_reports::{WriteError, sweep, write_file};
 use serde::Serialize;
@@ -7,47 +7,47 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Gives the text of the piece of a name.
+/// Returns the stored text of a name.
 type Gives = Box<dyn Fn(&str) -> Option<String> + Send + Sync>;
-/// Takes the text of the piece of a name.
+/// Stores a text under a name.
 type Takes = Box<dyn Fn(&str, &str) -> Result<(), WriteError> + Send + Sync>;
 
-/// Where finished pieces are kept, or nowhere.
+/// Cache of finished results; it may be disabled.
 pub struct ResultCache {
     place: Place,
 }
 
-/// The place.
+/// Storage of a result cache.
 enum Place {
     Nowhere,
-    /// A folder, of which nothing is taken where all is to be done anew.
+    /// A folder, and true if existing results are ignored.
     Folder(PathBuf, bool),
-    /// Somebody else's.
+    /// Storage provided by the caller.
     Elsewhere(Gives, Takes),
 }
 
 impl ResultCache {
-    /// A result cache in a folder, which is made when it is not there; with `fresh`, what stands on it is not taken.
+    /// Opens a cache in a folder, which is created if needed; with `fresh`, existing results are ignored.
     ///
     /// # Errors
-    /// When the folder cannot be made.
+    /// When the folder cannot be created.
     pub fn open(folder: &Path, fresh: bool) -> Result<Self, WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
-        // Of a program that was killed while it wrote, here or in the directory of the report; what has its name is
-        // whole.
+        // Removes temporary files of killed programs, here and in the directory of the report. Files with their final
+        // name are complete.
         for place in [Some(folder), folder.parent()].into_iter().flatten() {
             sweep(place).map_err(|source| WriteError::new(place, source))?;
         }
         Ok(Self { place: Place::Folder(folder.to_owned(), fresh) })
     }
 
-    /// No result cache: nothing is kept, nothing is found.
+    /// Returns a disabled cache, which stores and finds nothing.
     #[must_use]
     pub const fn none() -> Self {
         Self { place: Place::Nowhere }
     }
 
-    /// A result cache of somebody else's, who gives the texts of pieces and takes them.
+    /// Returns a cache whose texts are read and stored by the given functions.
     #[must_use]
     pub fn elsewhere(
         gives: impl Fn(&str) -> Option<String> + Send + Sync + 'static,
@@ -56,7 +56,7 @@ impl ResultCache {
         Self { place: Place::Elsewhere(Box::new(gives), Box::new(takes)) }
     }
 
-    /// A piece of that name, if it stands here and can be read. One that cannot is done again.
+    /// Returns the result of a name if it exists and can be read. An unreadable result is computed again.
     #[must_use]
     pub fn take<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         let text = match &self.place {
@@ -67,10 +67,10 @@ impl ResultCache {
         serde_json::from_str(&text).ok()
     }
 
-    /// Keeps a piece, whole or not at all.
+    /// Stores a result atomically.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When the disk rejects the write.
     pub fn put<T: Serialize>(&self, name: &str, piece: &T) -> Result<(), WriteError> {
         let text = || serde_json::to_string(piece).map_err(|error| WriteError::new(name, io::Error::other(error)));
         match &self.place {

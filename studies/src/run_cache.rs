@@ -1,9 +1,9 @@
-//! Finished runs, kept outside the tree from one command to the next: records, and never verdicts.
+//! Cache of finished runs, outside the source tree and shared by all commands; it stores records, not verdicts.
 //!
-//! A run is known by its scene, its solver with its defect, its resolution, the path that its loops take, and what this program
-//! was built from of it: who changes a case runs that case again, who changes a solver runs what it does. What is damaged, or
-//! holds another run, is done again. Of a run whose snapshots somebody takes as they come, or whose end state or checkpoints
-//! are wanted, nothing is kept; nor of other people's programs, which may change behind our back.
+//! The key of a run is a hash of its scene, solver, defect, resolution, SIMD backend and the sources that the solver was
+//! built from. A changed case or solver therefore repeats only the affected runs. A file that is damaged or holds
+//! another run is ignored. Runs are not cached if snapshots are streamed, or if the end state or checkpoints are
+//! requested. Runs of external programs are not cached either, because these programs may change unnoticed.
 
 use crate::identity;
 use grainbench_harness::case::Case;
@@ -23,49 +23,49 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, SystemTime};
 
-/// A run that takes less (s) is done sooner than it is read.
+/// Shortest run (s) that is cached; shorter runs are faster than reading a file.
 const LEAST: f64 = 2e-3;
-/// A record of more than this many bytes would push too many others out.
+/// Largest record (bytes) that is cached; a larger record would displace too many others.
 const LARGEST: usize = 256 << 20;
-/// How a file's name ends.
+/// File extension.
 const ENDING: &str = "run";
 
-/// What a solver's name was built from; none of what is not ours.
+/// Returns the hash of the sources of a solver, or `None` for an external solver.
 pub type Edition = fn(&str) -> Option<String>;
 
-/// A folder of finished runs.
+/// Folder of finished runs.
 pub struct RunCache {
     folder: PathBuf,
-    /// Bytes that all files together may have.
+    /// Maximum size of all files (bytes).
     most: u64,
-    /// Nothing that stands there is taken.
+    /// True to ignore existing files.
     fresh: bool,
     edition: Edition,
     taken: AtomicU64,
-    /// Where files are written before they have their names; from the first that is kept.
+    /// Directory for temporary files, created with the first stored run.
     desk: OnceLock<Option<Desk>>,
 }
 
 impl RunCache {
-    /// The runs in a folder, which is made when it is not there; with `fresh` none of them is taken.
+    /// Opens the cache in a folder, which is created if needed; with `fresh`, existing files are ignored.
     ///
     /// # Errors
-    /// When the folder cannot be made.
+    /// When the folder cannot be created.
     pub fn open(folder: &Path, most: u64, fresh: bool, edition: Edition) -> Result<Self, WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
-        // Of a program that was killed while it wrote.
+        // Removes temporary files of killed programs.
         sweep(folder).map_err(|source| WriteError::new(folder, source))?;
         let folder = folder.to_owned();
         Ok(Self { folder, most, fresh, edition, taken: AtomicU64::new(0), desk: OnceLock::new() })
     }
 
-    /// How many runs came from here.
+    /// Returns the number of runs that were read from the cache.
     #[must_use]
     pub fn taken(&self) -> u64 {
         self.taken.load(Ordering::Relaxed)
     }
 
-    /// What a run is; none where it is not kept.
+    /// Returns the key of a run, or `None` if it is not cached.
     fn name(&self, solver: &str, defect: Option<Defect>, scene: &Scene, resolution: &Resolution) -> Option<String> {
         let program = (self.edition)(solver)?;
         Some(identity::of_run(&program, solver, scene, resolution, &format!("{defect:?} {}", Processor::new().name())))
@@ -75,7 +75,7 @@ impl RunCache {
         self.folder.join(format!("{name}.{ENDING}"))
     }
 
-    /// The record of a name, if it stands here whole.
+    /// Returns the record of a key if the file is complete.
     fn take(&self, name: &str) -> Option<Record> {
         if self.fresh {
             return None;
@@ -83,12 +83,13 @@ impl RunCache {
         let path = self.path(name);
         let record = kept_record::from_bytes(name, &fs::read(&path).ok()?)?;
         self.taken.fetch_add(1, Ordering::Relaxed);
-        // The oldest are the first to go. Where the time cannot be set it goes by when it was done.
+        // The file time marks the last use, because the oldest files are removed first. If it cannot be set, the time of
+        // writing counts.
         let _ = File::options().append(true).open(&path).and_then(|file| file.set_modified(SystemTime::now()));
         Some(record)
     }
 
-    /// Keeps a record. A disk that refuses is no reason to lose the run: the next one does it again.
+    /// Stores a record. Write errors are ignored, because the run can be repeated.
     fn put(&self, name: &str, record: &Record) {
         if record.cost.wall_seconds < LEAST {
             return;
@@ -101,7 +102,7 @@ impl RunCache {
         }
     }
 
-    /// Takes away what was not used for longest until the rest has room.
+    /// Removes the least recently used files until the rest fits the maximum size.
     pub fn make_room(&self) {
         let of = |entry: fs::DirEntry| {
             let is_one = entry.path().extension().is_some_and(|ending| ending == ENDING);
@@ -116,21 +117,21 @@ impl RunCache {
             if all <= self.most {
                 break;
             }
-            // Somebody else may have taken it away.
+            // Another process may have removed the file.
             let _ = fs::remove_file(path);
             all -= bytes;
         }
     }
 }
 
-/// Solvers whose finished runs are kept and taken.
+/// Solvers with a cache of finished runs.
 pub struct WithCache<S> {
     solvers: S,
     cache: Arc<RunCache>,
 }
 
 impl<S: Solvers> WithCache<S> {
-    /// These solvers with this cache.
+    /// Combines solvers with a cache.
     pub const fn new(solvers: S, cache: Arc<RunCache>) -> Self {
         Self { solvers, cache }
     }
@@ -186,7 +187,7 @@ impl<S: Solvers> Solvers for WithCache<S> {
     }
 }
 
-/// A solver whose finished runs are kept and taken.
+/// A solver with a cache of finished runs.
 struct Cached {
     solver: Arc<dyn Solver>,
     name: String,
@@ -240,8 +241,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
-    /// Three files of a hundred bytes where there is room for two and a half: that of the longest rest goes, and what is no run
-    /// of ours stays.
+    /// With three files of a hundred bytes and room for two and a half, the least recently used run is removed. Other
+    /// files are kept.
     #[test]
     fn the_longest_unused_makes_room() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,36 +1,36 @@
-//! Two sessions against each other: counts exactly, times with their spread.
+//! Comparison of two sessions: counts exactly, times with their spread.
 //!
-//! A point's time is the median of its repetitions, in units of the reference that was timed before and after each
-//! ([`crate::clock::reference_seconds`]): a machine that was slower for a while cancels. Of all points of a solver in a
-//! case, xᵢ = ln(tᵢ,new/tᵢ,old); their median m has the standard error
+//! The time of a point is the median of its repetitions, in units of the reference time measured before and after each
+//! repetition ([`crate::clock::reference_seconds`]). A temporarily slower machine therefore cancels. For all points of
+//! a solver in a case, xᵢ = ln(tᵢ,new/tᵢ,old). The standard error of their median m is
 //!
 //! ```text
 //! s = max(1.2533 · 1.4826 · median|xᵢ − m|, √mean(σᵢ²))/√n
 //! ```
 //!
-//! with σᵢ the standard error of both sessions' medians, from the median distance of the repetitions to it in the same
-//! way. The second is larger where some points are doubtful: then all are, for they were measured in turn. A solver is
-//! called slower where m − 3s > ln 1.1, with at least three points: what repetitions within one session cannot see
-//! (where memory happened to lie, what else ran) has been seen to move all points of a case by 6 % more than 3s in 36
-//! pairs of sessions.
+//! with σᵢ the standard error of the medians of both sessions, from the median deviation of the repetitions in the same
+//! way. The second term is larger if some points are uncertain. Then all points are uncertain, because they were
+//! measured in alternation. A solver is called slower if m − 3s > ln 1.1, with at least three points. The margin of
+//! 10 % covers differences between sessions that repetitions cannot show, such as memory layout and other programs. In
+//! 36 pairs of sessions these shifted all points of a case by up to 6 % more than 3s.
 
 use grainbench_harness::statistics::median;
 use grainbench_reports::study::point::{Change, Point, Standing};
 use std::collections::BTreeMap;
 
-/// Change of a time that sessions differ by although nothing changed.
+/// Relative change of time that occurs between sessions of the same code.
 const SESSIONS: f64 = 0.1;
-/// Standard errors that a change must be away from it.
+/// Number of standard errors by which a change must exceed [`SESSIONS`].
 const SURE: f64 = 3.0;
-/// Fewest points that anything is said of.
+/// Smallest number of points for a comparison.
 const FEWEST: usize = 3;
-/// Runs shorter than this (s) are mostly clock.
+/// Shortest run (s) that is compared; shorter runs are dominated by the clock.
 const TOO_SHORT: f64 = 2e-4;
 
-/// What stands in place of a case where all points of a solver are looked at together.
+/// Case name for all points of a solver together.
 const ALL: &str = "all cases";
 
-/// What changed from one session to another.
+/// Returns the changes from one session to another.
 #[must_use]
 pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
     let before: BTreeMap<[&str; 6], &Point> = old.iter().map(|point| (point.key(), point)).collect();
@@ -48,7 +48,7 @@ pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
     changes
 }
 
-/// Any change of what was done, exactly, and of how it ended.
+/// Returns any change of counts, errors or outcome of a point; the comparison is exact.
 fn counts(old: &Point, new: &Point) -> Option<Change> {
     let mut how = Vec::new();
     if old.standing != new.standing {
@@ -67,7 +67,7 @@ fn counts(old: &Point, new: &Point) -> Option<Change> {
     (!how.is_empty()).then(|| Change { what, how: how.join(", "), worse: true })
 }
 
-/// Logarithm of the ratio of times, and its standard error.
+/// Returns the logarithm of the ratio of times, and its standard error.
 fn ratio(old: &Point, new: &Point) -> Option<(f64, f64)> {
     let measured = |point: &Point| point.standing == Standing::Measured && point.wall_seconds >= Some(TOO_SHORT);
     if !(measured(old) && measured(new)) {
@@ -77,22 +77,23 @@ fn ratio(old: &Point, new: &Point) -> Option<(f64, f64)> {
     Some((is.value - was.value, is.error.hypot(was.error)))
 }
 
-/// A median and its standard error, that of numbers with a normal distribution.
+/// A median and its standard error, for a normal distribution.
 struct Middle {
     value: f64,
     error: f64,
 }
 
 impl Middle {
-    /// Of at least one number. The error is taken from the median distance to the median, so that a few numbers far
-    /// away do not count; of a single number nothing is known, and it is zero.
+    /// Computes the median of at least one number, and its standard error from the median absolute deviation.
+    ///
+    /// The deviation is robust against a few outliers. The error of a single number is unknown and set to zero.
     fn of(values: &[f64]) -> Self {
         let value = median(values);
         let distance = median(&values.iter().map(|other| (other - value).abs()).collect::<Vec<_>>());
         Self { value, error: 1.2533 * 1.4826 * distance / (values.len() as f64).sqrt() }
     }
 
-    /// Of the logarithms of a point's times in units of the reference.
+    /// Computes the median of the logarithms of a point's times in units of the reference time.
     fn of_repetitions(point: &Point) -> Option<Self> {
         let times = point.repetitions.iter().map(|timing| (timing.cpu / timing.reference).ln());
         let times: Vec<f64> = times.filter(|time| time.is_finite()).collect();
@@ -100,7 +101,7 @@ impl Middle {
     }
 }
 
-/// What can be said of the times of a solver in a case, if anything.
+/// Returns the change of the times of a solver in a case if it is significant.
 fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
     if ratios.len() < FEWEST {
         return None;
@@ -132,8 +133,10 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
-    /// A session of one solver in one case, on a machine that is loaded now and then: every time is lengthened by up to
-    /// a third, the machine's speed drifts by up to half, and the session as a whole has its own few per cent.
+    /// Returns a session of one solver in one case on a machine with varying load.
+    ///
+    /// Noise lengthens every time by up to a third, and the machine's speed drifts by up to half. The session as a whole
+    /// is slower by up to 4 %.
     fn session(seed: u64, slower: f64, points: usize, repetitions: usize) -> Vec<Point> {
         let mut dice = Pcg64Mcg::seed_from_u64(seed);
         let mut unit = move || dice.random::<f64>();
@@ -199,8 +202,8 @@ mod tests {
         }
     }
 
-    /// Times (µs) of a squashed pair in two sessions of one code: for a moment the processor was half as fast again in
-    /// the first.
+    /// Times (µs) of a squashed pair in two sessions of the same code. In the first session the processor was briefly
+    /// faster by half.
     #[test]
     fn a_moment_at_another_clock_shows_nothing() {
         const OLD: [[f64; 5]; 5] = [

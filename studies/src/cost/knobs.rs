@@ -1,40 +1,40 @@
-//! The knobs of every kind of solver, and which turns of them are tried.
+//! Parameters of each kind of solver, and the sweep points of the cost study.
 
 use grainbench_harness::solvers::Stranger;
 use grainbench_harness::subject::Lane;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Method, Resolution};
 
-/// One turn of a solver's knobs.
+/// A sweep point: one setting of a solver's parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turn {
-    /// Solver, by name; settings of the material point method are spelt out in it.
+    /// Solver name, including the settings of the material point method.
     pub solver: String,
-    /// Line of the diagram that the point belongs to: the solver without its settings.
+    /// Curve of the diagram that contains the point: the solver without its settings.
     pub line: String,
     /// Resolution.
     pub resolution: Resolution,
-    /// What else was turned, in words.
+    /// Description of further changed parameters.
     pub knobs: String,
-    /// Place in a sequence of refinements of one knob: its name, and how fine. Points outside a sequence have none.
+    /// Fineness within a sequence of refinements of one parameter; `None` outside a sequence.
     pub sequence: Option<f64>,
 }
 
-/// Time steps as fractions of the critical one.
+/// Time steps as fractions of the critical time step.
 const FRACTIONS: [f64; 8] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002];
-/// Those that other programs are asked for, whose start takes longer than most of these runs.
+/// Time steps for external solvers, as fractions of the critical step. Their start takes longer than most runs.
 const PROGRAM_FRACTIONS: [f64; 3] = [0.2, 0.05, 0.01];
-/// Cells that they are asked for, over those of the lane.
+/// Cell counts for external solvers, relative to the solver setup.
 const PROGRAM_CELLS: [f64; 3] = [0.25, 0.5, 1.0];
 /// Substeps of rapier.
 const SUBSTEPS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
-/// Iterations of its constraint solver at eight substeps.
+/// Iterations of rapier's constraint solver at eight substeps.
 const ITERATIONS: [u32; 3] = [1, 2, 16];
-/// Whole steps instead of substeps (s).
+/// Steps of rapier without substeps (s).
 const STEPS: [f64; 2] = [0.03, 0.004];
-/// Cells over those of the lane.
+/// Cell counts relative to the solver setup.
 const CELLS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
-/// Settings of the material point method beside the best: basis, transfer, contact.
+/// Further settings of the material point method: basis, transfer and contact.
 const SETTINGS: [(&str, &str); 8] = [
     ("mpm+linear+flip", "hat functions, FLIP"),
     ("mpm+gimp+flip", "GIMP, FLIP"),
@@ -46,8 +46,10 @@ const SETTINGS: [(&str, &str); 8] = [
     ("mpm:penalty", "hat functions, FLIP, springs at surfaces"),
 ];
 
-/// All turns of a lane; programs beside the registry are asked where grains on springs are, by their names and the time steps
-/// that they name, or where bodies deform, with the cells that they name.
+/// Returns all sweep points of a solver setup.
+///
+/// External solvers take part by name if they have contact springs or deformable bodies. They use their declared time
+/// steps or cell counts.
 #[must_use]
 pub fn turns(lane: &Lane, strangers: &[Stranger]) -> Vec<Turn> {
     own(lane).into_iter().chain(strangers.iter().flat_map(|stranger| theirs(lane, stranger))).collect()
@@ -113,7 +115,7 @@ fn grid(lane: &Lane) -> Vec<Turn> {
         .map(|&factor| turn("mpm", "mpm", at(factor, points, courant), &lane.knobs, Some(factor)))
         .collect();
     if !lane.knobs.is_empty() {
-        // One sweep over the other knobs is enough.
+        // One sweep is enough if other parameters are changed.
         return turns;
     }
     for other in [points.saturating_sub(1).max(1), points + 1] {
@@ -126,8 +128,9 @@ fn grid(lane: &Lane) -> Vec<Turn> {
     turns
 }
 
-/// About how long a run takes (s), by counts alone, so that every machine draws the same line between what is run and
-/// what is only run when all is asked for.
+/// Estimates the run time (s) from counts alone.
+///
+/// Every machine therefore skips the same long points unless all are requested.
 #[must_use]
 pub fn nominal_seconds(scene: &Scene, resolution: &Resolution) -> f64 {
     let grains = scene.grains.len() as f64;
@@ -148,7 +151,7 @@ pub fn nominal_seconds(scene: &Scene, resolution: &Resolution) -> f64 {
     }
 }
 
-/// Points times steps times what a step of a point takes.
+/// Estimates the run time (s) as points times steps times the time of one point and step.
 fn grid_seconds(scene: &Scene, cells: f64, points: u32, courant: f64, seconds: f64) -> f64 {
     let dimensions = scene.dimension.count();
     let cell = scene.reference_length / cells;

@@ -1,8 +1,8 @@
-//! What a step costs of one grain, of a hundred and of ten thousand, start-up apart.
+//! Cost of a step for one grain, a hundred and ten thousand grains, without start-up.
 //!
-//! Discs stand on each other in a box, each solver at a usual resolution. Of two runs one is of one step: what the long one
-//! takes more, over the steps that it has more, is the time of a step, and what the short one takes beside its step is the
-//! start-up. All solvers do a lap of every scene in turn.
+//! Stacked discs rest in a box, and each solver has a usual resolution. A timing is a pair of runs, and the short run
+//! has one step. The difference of their times over the difference of their step counts is the time of a step. The
+//! short run without its step is the start-up. All solvers take turns, with one timing of each scene in a round.
 
 use super::knobs::nominal_seconds;
 use crate::Follow;
@@ -16,7 +16,7 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Discs on an edge of their square.
+/// Discs along each edge of the square packing.
 const EDGES: [u32; 3] = [1, 10, 100];
 /// Solvers and their resolutions.
 const SOLVERS: [(&str, Resolution); 5] = [
@@ -26,18 +26,18 @@ const SOLVERS: [(&str, Resolution); 5] = [
     ("lammps", Resolution::CriticalFraction(Resolution::FRACTION)),
     ("liggghts", Resolution::CriticalFraction(Resolution::FRACTION)),
 ];
-/// A long run is as many steps as take about this long (s),
+/// Target duration of a long run (s).
 const LONG: f64 = 0.5;
-/// but no fewer and no more than these.
+/// Minimum and maximum number of steps of a long run.
 const STEPS: [f64; 2] = [40.0, 400_000.0];
 
-/// Laps that [`measure`] tells its follower of.
+/// Returns the number of timings that [`measure`] reports to its observer.
 #[must_use]
 pub fn laps(rounds: u32) -> u64 {
     u64::from(rounds) * (EDGES.len() * SOLVERS.len()) as u64
 }
 
-/// A solver that takes part, and what it left so far.
+/// A solver with its scene and the timings so far.
 struct Entrant {
     solver: Option<Arc<dyn Solver>>,
     scene: Arc<Scene>,
@@ -45,10 +45,10 @@ struct Entrant {
     load: Load,
 }
 
-/// Measures in so many rounds.
+/// Measures the cost of a step in a number of rounds.
 ///
 /// # Errors
-/// When the scene cannot be read, which none of this project can fail to be.
+/// When the scene cannot be read, which does not occur for the scene of this study.
 pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl Follow) -> Result<Vec<Load>, SceneError> {
     let mut entrants = Vec::new();
     for edge in EDGES {
@@ -84,10 +84,10 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl Follow) -> 
     Ok(entrants.into_iter().map(|entrant| entrant.load).collect())
 }
 
-/// One lap.
+/// Measures one timing.
 fn lap(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<Lap, RunError> {
     let step = step(scene, resolution).map_err(|reason| RunError::Resolution { solver: solver.name(), reason })?;
-    // The scene lasts for a second.
+    // The duration of the scene is one second, so the nominal time is that of one simulated second.
     let seconds = (LONG / nominal_seconds(scene, resolution)).clamp(STEPS[0] * step, STEPS[1] * step);
     let run = |seconds: f64| -> Result<Spent, RunError> {
         let scene = Scene {
@@ -103,17 +103,17 @@ fn lap(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<La
     Ok(Spent::lap(run(step)?, run(seconds)?))
 }
 
-/// What a run took.
+/// Cost of a run.
 struct Spent {
     steps: u64,
-    /// Of the simulated motion (s).
+    /// Simulated time (s).
     seconds: f64,
     /// Processor time (s).
     processor: f64,
 }
 
 impl Spent {
-    /// A long run less a short one. Start-up that the difference leaves below nothing is none.
+    /// Computes the difference of a long and a short run. A negative start-up counts as zero.
     fn lap(short: Self, long: Self) -> Lap {
         let more = long.processor - short.processor;
         let step = more / (long.steps - short.steps) as f64;
@@ -122,7 +122,7 @@ impl Spent {
     }
 }
 
-/// The time step (s).
+/// Returns the time step (s).
 fn step(scene: &Scene, resolution: &Resolution) -> Result<f64, String> {
     match *resolution {
         Resolution::Rigid { step, substeps, .. } => Ok(step / f64::from(substeps)),
@@ -131,7 +131,9 @@ fn step(scene: &Scene, resolution: &Resolution) -> Result<f64, String> {
     }
 }
 
-/// A square of discs that touch, in a box, for a second: springs for grains that have them, moduli for grains that deform.
+/// Returns a scene of one second with a square of touching discs in a box.
+///
+/// It has contact springs for rigid grains and elastic moduli for deformable grains.
 fn box_of_discs(edge: u32) -> Result<Scene, SceneError> {
     let text = format!(
         "title = 'discs in a box'\ndimension = 2\nduration = 1.0\ngravity = [0.0, -9.8]\n\
@@ -159,7 +161,7 @@ mod tests {
         assert_eq!(counts, [1, 100, 10_000]);
     }
 
-    /// 3 ms to start, 20 µs a step of 1 ms.
+    /// The start takes 3 ms, and each step of 1 ms takes 20 µs.
     #[test]
     fn start_up_is_told_apart_from_steps() {
         let spent = |steps: u64| Spent { steps, seconds: 1e-3 * steps as f64, processor: 3e-3 + 20e-6 * steps as f64 };

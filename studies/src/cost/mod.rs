@@ -1,4 +1,4 @@
-//! What accuracy costs: each solver over its knobs, error against time; and what a step costs.
+//! Cost-accuracy study: error against time of each solver over its parameters, and the cost of a step.
 
 pub mod against;
 pub mod knobs;

@@ -1,4 +1,4 @@
-//! Measures the points: one at a time, repetitions of one subject in turn.
+//! Measures points one at a time, with the repetitions of a target quantity in alternation.
 
 use super::knobs::{self, Turn};
 use crate::clock::{self, Clocked};
@@ -18,75 +18,76 @@ use std::sync::{Arc, OnceLock};
 
 /// Repetitions of a point that takes less than a second.
 const REPETITIONS: usize = 5;
-/// What takes longer than this (s) is measured once.
+/// Longest run that is repeated (s); a longer run is measured once.
 const SHORT: f64 = 1.0;
-/// A repetition lasts this long at least (s): of what is shorter, it is several runs in a row.
+/// Shortest duration of a repetition (s): shorter runs are repeated in a row.
 const LEAST: f64 = 2e-3;
-/// The reference is timed for this share of a run's time, before it and after it,
+/// Duration of the reference timing before and after a run, as a fraction of the run time.
 const SHARE: f64 = 0.025;
-/// but no longer than this (s),
+/// Longest duration of a reference timing (s).
 const LONG_ENOUGH: f64 = 0.01;
-/// and as long as this (s) around a first run, for nothing is known of it yet.
+/// Duration of the reference timing around a first run (s), whose run time is still unknown.
 const AT_FIRST: f64 = 0.002;
-/// What takes this long (s) needs no run to warm the machine up: its first one counts.
+/// Shortest run (s) that needs no warm-up: its first run counts as a repetition.
 const WARM: f64 = 0.05;
-/// Most runs in a row.
+/// Maximum number of runs in a row.
 const MOST: f64 = 50.0;
-/// Points that take longer than this (s) are left to those who ask for all.
+/// Longest expected run (s) that is measured by default.
 const LONGEST: f64 = 20.0;
-/// Time of a program over that of ours, of the step of a grain: what is expected of one before it is run.
+/// Assumed run time of an external solver relative to our solver.
 const PROGRAM: f64 = 4.0;
-/// A refinement that leaves this much of the error has met a floor.
+/// Ratio of errors above which a refinement counts as stagnated at an error floor.
 const FLOOR: f64 = 0.8;
-/// The floor of a program's error.
+/// Error floor of an external solver.
 const UNKNOWN: &str = "what no finer step takes away";
-/// Errors below this are rounding, and no floor.
+/// Errors below this are rounding errors, not a floor.
 const ROUNDING: f64 = 1e-11;
 
-/// What is wanted.
+/// Selection of points.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
-    /// Only these solvers; all when none is named.
+    /// Solvers to measure; all if empty.
     pub solvers: Vec<String>,
-    /// Points over twenty seconds too.
+    /// True to include points that take longer than twenty seconds.
     pub all: bool,
-    /// Errors and counts alone, of one run each, whose times are as they happen to be.
+    /// True to measure only errors and counts, with one run each; times are then incidental.
     pub counts: bool,
 }
 
-/// A point as it is known before it is measured.
+/// Point that is not measured yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
-    /// Its name in the result cache.
+    /// Name in the result cache.
     pub name: String,
-    /// Solver, its settings spelt out.
+    /// Solver with its settings.
     pub solver: String,
-    /// Resolution, with the other knobs, in words.
+    /// Resolution and further parameters as text.
     pub setting: String,
-    /// What all its repetitions are expected to take (s).
+    /// Expected time of all repetitions (s).
     pub seconds: f64,
 }
 
-/// One point to measure.
+/// Point to measure.
 struct Task {
     turn: Turn,
-    /// What is left of its error when the resolution is as fine as one likes.
+    /// Cause of the error that remains at the finest resolution.
     floor: &'static str,
     scene: Arc<Scene>,
     solver: Arc<dyn Solver>,
-    /// The result cache.
+    /// Name in the result cache.
     name: String,
-    /// Processor time of a run of one step (s), of a program; what a program needs to start is no part of what steps
-    /// cost. It is that of the scene, whatever the step.
+    /// Processor time (s) of a run of one step by an external solver, shared by all points of the scene.
+    ///
+    /// It measures start-up, which is not part of the cost of steps.
     start: Arc<OnceLock<f64>>,
-    /// Whether the solver is another program.
+    /// True for an external solver.
     is_program: bool,
-    /// Whether it stays from run to run.
+    /// True if the external solver keeps running between runs.
     stays: bool,
 }
 
 impl Task {
-    /// Processor time that is not that of the steps (s).
+    /// Returns the processor time outside the steps (s).
     fn start(&self) -> f64 {
         if !self.is_program {
             return 0.0;
@@ -102,39 +103,39 @@ impl Task {
     }
 }
 
-/// Measures with solvers by name.
+/// Measures points of the study with solvers found by name.
 pub struct Meter<'a> {
     /// Hash of this program.
     pub program: String,
-    /// Where finished points are kept.
+    /// Cache of finished points.
     pub cache: &'a ResultCache,
-    /// What is wanted.
+    /// Selection of points.
     pub wanted: Wanted,
-    /// Gives the solver of a name.
+    /// Finds solvers by name.
     pub solvers: &'a dyn Solvers,
 }
 
 impl<'a> Meter<'a> {
-    /// A meter of some solvers.
+    /// Returns a meter for the given solvers.
     #[must_use]
     pub fn new(cache: &'a ResultCache, wanted: Wanted, solvers: &'a dyn Solvers) -> Self {
         Self { program: identity::of_this_program(), cache, wanted, solvers }
     }
 
-    /// How many points a subject has.
+    /// Returns the number of points of a target quantity.
     #[must_use]
     pub fn count(&self, subject: &Subject) -> usize {
         self.tasks(subject).len()
     }
 
-    /// The points of a subject, in the order in which they are measured first.
+    /// Returns the points of a target quantity in the order of their first measurement.
     #[must_use]
     pub fn planned(&self, subject: &Subject) -> Vec<Planned> {
         let planned = |task: Task| {
             let once = knobs::nominal_seconds(&task.scene, &task.turn.resolution);
             let once = if task.is_program { PROGRAM * once } else { once };
             let times = if self.wanted.counts || once >= SHORT { 1.0 } else { 1.0 + REPETITIONS as f64 };
-            // A repetition is no shorter than what the clock tells, and the reference is timed around each.
+            // A repetition lasts at least as long as the clock resolves.
             let seconds = times * once.max(if self.wanted.counts { 0.0 } else { LEAST });
             let Turn { solver, resolution, knobs, .. } = task.turn;
             let setting = if knobs.is_empty() { resolution.to_string() } else { format!("{resolution}, {knobs}") };
@@ -143,17 +144,17 @@ impl<'a> Meter<'a> {
         self.tasks(subject).into_iter().map(planned).collect()
     }
 
-    /// Measures a subject over all knobs.
+    /// Measures all points of a target quantity.
     ///
     /// # Errors
-    /// When a point cannot be kept.
+    /// When a point cannot be stored.
     pub fn diagram(&self, subject: &Subject, follow: &mut dyn Follow) -> Result<Diagram, WriteError> {
         let tasks = self.tasks(subject);
         let points = self.measure(subject, &tasks, follow)?;
         Ok(drawn(subject, &tasks, points))
     }
 
-    /// The diagram of what of a subject is finished, without measuring anything.
+    /// Returns the diagram of the finished points of a target quantity, without new measurements.
     #[must_use]
     pub fn finished(&self, subject: &Subject) -> Diagram {
         let mut tasks = self.tasks(subject);
@@ -164,10 +165,10 @@ impl<'a> Meter<'a> {
         drawn(subject, &tasks, points)
     }
 
-    /// Measures those points of a subject that have one of these names, in turn, and keeps each.
+    /// Measures and stores the points of a target quantity whose names are `wanted`.
     ///
     /// # Errors
-    /// When a point cannot be kept.
+    /// When a point cannot be stored.
     pub fn measure_named(
         &self,
         subject: &Subject,
@@ -179,7 +180,7 @@ impl<'a> Meter<'a> {
         self.measure(subject, &tasks, follow).map(drop)
     }
 
-    /// Measures tasks of a subject, what is finished left out: one at a time, repetitions in turn.
+    /// Measures the unfinished points of a target quantity one at a time, with repetitions in alternation.
     fn measure(
         &self,
         subject: &Subject,
@@ -249,13 +250,13 @@ impl<'a> Meter<'a> {
                 let read = format!("{}|{}|{}{once}", subject.quantity, subject.variant, turn.knobs);
                 let program = self.program.clone() + &self.solvers.edition(&turn.solver);
                 let name = identity::of_run(&program, &turn.solver, &scene, &turn.resolution, &read);
-                // Two lanes may lead to the same run.
+                // Two solver setups may lead to the same run.
                 if tasks.iter().all(|task: &Task| task.name != name) {
                     let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
                     let scene = Arc::clone(&scene);
                     let stranger = strangers.iter().find(|stranger| stranger.name == turn.solver);
                     let stays = stranger.is_some_and(|stranger| stranger.stays);
-                    // Of a program nothing is known but that no finer step helps.
+                    // The cause of the floor of an external solver is unknown.
                     let floor = stranger.map_or(lane.method.floor(), |_| UNKNOWN);
                     tasks.push(Task { turn, floor, scene, solver, name, start, is_program, stays });
                 }
@@ -265,7 +266,7 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// The diagram of the points of some tasks.
+/// Returns the diagram of measured points.
 fn drawn(subject: &Subject, tasks: &[Task], points: Vec<Option<Point>>) -> Diagram {
     let mut points: Vec<Point> = points.into_iter().flatten().collect();
     mark_floors(tasks, &mut points);
@@ -278,16 +279,16 @@ fn drawn(subject: &Subject, tasks: &[Task], points: Vec<Option<Point>>) -> Diagr
     }
 }
 
-/// Runs a task once, with its times; none of them where nothing ran. The reference is timed for `lasting` seconds
+/// Runs a point once and returns its times, or `None` if nothing ran. The reference is timed for `lasting` seconds
 /// before and after.
 fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>) {
     let clocked = clock::clocked(lasting, || task.solver.run(&task.scene, &task.turn.resolution, &mut ()));
     let Clocked { done: record, cpu, wall: whole, reference } = clocked;
     let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
-    // A run that broke left no record: all of its time is that of the loop.
+    // A failed run has no record: all of its time counts as loop time.
     let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
     let cpu = match (&record, task.stays) {
-        // Time of a program that stays is not told before it ends: of one thread it is that of the clock.
+        // The processor time of a program that keeps running is unknown; with one thread it equals the wall time.
         (Ok(_), true) => wall,
         (Ok(_), false) => (cpu - task.start()).max(0.0),
         (Err(_), _) => cpu,
@@ -295,7 +296,7 @@ fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>
     (ran.then_some(Timing { wall, cpu, start_up: (whole - wall).max(0.0), reference }), record)
 }
 
-/// One repetition: the mean of some runs in a row, each of which takes about `whole` seconds.
+/// Measures one repetition: the mean of some runs in a row, each of about `whole` seconds.
 fn repeated(task: &Task, whole: f64) -> Option<Timing> {
     let runs = (LEAST / whole).ceil().clamp(1.0, MOST) as usize;
     let lasting = (SHARE * whole).min(LONG_ENOUGH);
@@ -310,7 +311,7 @@ fn repeated(task: &Task, whole: f64) -> Option<Timing> {
     })
 }
 
-/// The first run, with the error.
+/// Measures the first run and its error.
 fn first(subject: &Subject, task: &Task) -> Point {
     let (timing, record) = timed(task, AT_FIRST);
     let mut point = Point {
@@ -365,16 +366,17 @@ fn first(subject: &Subject, task: &Task) -> Point {
     point
 }
 
-/// Medians and spread of the repetitions.
+/// Fills in medians and spread of the repetitions.
 fn summarise(point: &mut Point) {
     let range_of = |of: fn(&Timing) -> f64| range(&point.repetitions.iter().map(of).collect::<Vec<_>>());
     let median_of = |of: fn(&Timing) -> f64| range_of(of).map(|[_, median, _]| median);
     let (walls, cpu_seconds, start_up) =
         (range_of(|timing| timing.wall), median_of(|timing| timing.cpu), median_of(|timing| timing.start_up));
-    // Of a program that does not tell it is the whole less a run of no steps: nothing is left where the start varies by more.
+    // A program that does not report its loop time gets the total time less a run of no steps. The difference may be
+    // negative if the start-up time varies by more than it.
     point.wall_seconds = walls.map(|[_, median, _]| median).filter(|median| *median > 0.0);
     point.start_up_seconds = start_up;
-    // Of a program it is the difference of two times, which tells nothing where both are mostly start-up.
+    // For an external solver this is a difference of two times; it is noise if both are mostly start-up.
     let told = |cpu: &f64| *cpu >= 0.1 * point.start_up_seconds.unwrap_or(0.0);
     point.cpu_seconds = cpu_seconds.filter(told);
     point.wall_spread = match walls {
@@ -383,8 +385,10 @@ fn summarise(point: &mut Point) {
     };
 }
 
-/// Marks where finer resolutions no longer make the error smaller: the last two of a sequence, if they differ by less
-/// than a fifth.
+/// Marks the points of a sequence at which finer resolutions no longer reduce the error.
+///
+/// This holds if the errors of the two finest points, of at least three, differ by at most a fifth. All points with
+/// about the finest error are marked.
 fn mark_floors(tasks: &[Task], points: &mut [Point]) {
     let mut sequences: BTreeMap<(String, String), Vec<(f64, usize)>> = BTreeMap::new();
     for (at, task) in tasks.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! What a step costs, piece of work by piece of work: the cost model.
+//! Cost model: the cost of a step, divided into elementary operations.
 //!
-//! Grains on springs stand on a square or cubic lattice without an edge, at rest. In turn they are too far apart for the list,
-//! near enough to be listed, and in contact; of these three the time of a step is `g`, `g + p·pairs` and
-//! `g + p·pairs + c·contacts` for each grain, with the counts that the run tells. Of a block of material points there are four
-//! points in a cell and sixteen: `t = a·points + b·nodes` in both. A lap is a long run less a short one, in processor time, and
-//! all are run in turn.
+//! Grains on springs rest on a periodic square or cubic lattice. Three spacings are run in turn: beyond the reach of
+//! the neighbour list, within it, and in contact. The time of a step per grain is then `g`, `g + p·pairs` and
+//! `g + p·pairs + c·contacts`, with the counts that the run reports. A block of material points is run with four
+//! points in a cell and with sixteen: `t = a·points + b·nodes` in both. A timing is the processor time of a long run
+//! less that of a short run. All runs take turns.
 
 use crate::Follow;
 use crate::clock::cpu_seconds;
@@ -19,34 +19,35 @@ use grainbench_scene::source::SceneSource;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Steps of the short and of the long run, of grains and of a block.
+/// Steps of the short and of the long run, for grains and for a block.
 const STEPS: [[u64; 2]; 2] = [[20, 1620], [20, 320]];
-/// Quads that are streamed: 64 MB twice, more than caches hold.
+/// Number of SIMD packs that are streamed: two arrays of 64 MB, more than caches hold.
 const STREAMED: usize = 2 << 20;
-/// How often registers are multiplied and added to in a lap.
+/// Number of multiplications and additions of all registers in a timing.
 const COMPUTED: u64 = 2_000_000;
 
-/// Distances of neighbours over the diameter: out of the list's reach, within it, and in contact. The list reaches a tenth of
-/// a diameter beyond contact.
+/// Distances of neighbours over the diameter: beyond the reach of the neighbour list, within it, and in contact.
+///
+/// The list reaches a tenth of a diameter beyond contact.
 const SPACINGS: [f64; 3] = [1.3, 1.05, 0.9999];
 
-/// Scenes and steps of a family that is solved for its prices.
+/// Scenes from which the unit costs of a set of operations are computed.
 struct Family {
     solver: &'static str,
-    /// Its pieces, the first of which is in every scene.
+    /// Operations, with the scenes that determine them; the first operation occurs in every scene.
     pieces: &'static [(&'static str, &'static str)],
     scenes: Vec<(Scene, Resolution)>,
-    /// How many of each piece there are for each particle-step, by what the run counted.
+    /// Returns the number of each operation per particle-step from the counts of a run.
     counts: fn(&Cost) -> Vec<f64>,
 }
 
-/// Pieces that [`measure`] tells its follower of.
+/// Returns the number of items that [`measure`] reports to its observer.
 #[must_use]
 pub fn pieces(rounds: u32) -> u64 {
     u64::from(rounds) * (2 * SPACINGS.len() as u64 + 2 + 1)
 }
 
-/// Measures the prices in so many rounds, and the machine between them.
+/// Measures unit costs and machine speed in a number of rounds.
 ///
 /// # Errors
 /// When a solver cannot run its scene.
@@ -88,7 +89,7 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl Follow) -> 
     Ok(Model { prices, probe })
 }
 
-/// How many of each piece a particle-step has, and what it takes (ns).
+/// Returns the number of each operation per particle-step, and the time of a particle-step (ns).
 fn lap(
     solver: &dyn Solver,
     scene: &Scene,
@@ -106,10 +107,10 @@ fn lap(
     Ok((counts(&long), 1e9 * (after - before) / (long.particle_steps - short.particle_steps) as f64))
 }
 
-/// A scene for so many steps, looked at only where it begins and ends.
+/// Returns the scene with a given number of steps and output only at start and end.
 fn for_steps(scene: &Scene, resolution: &Resolution, steps: u64) -> Scene {
     let duration = match (resolution, scene.duration) {
-        // Methods with a grid are told a time: there the scene lasts for about a step.
+        // Methods with a grid take a duration, not a step count: the scene lasts about one step.
         (Resolution::Grid { .. }, Duration::Seconds(step)) => Duration::Seconds(step * steps as f64),
         _ => Duration::Cycles(steps),
     };
@@ -120,8 +121,9 @@ fn for_steps(scene: &Scene, resolution: &Resolution, steps: u64) -> Scene {
     Scene { duration, sampling, snapshots: 0, ..scene.clone() }
 }
 
-/// Prices from as many rows of counts and times as there are pieces, by elimination: each row has a piece that those before it
-/// do not have, or has it in another share.
+/// Solves for unit costs by elimination, from as many rows of counts and times as there are operations.
+///
+/// Each row must be independent of the rows before it: it has a new operation or another ratio of operations.
 fn solved(mut rows: Vec<(Vec<f64>, f64)>) -> Vec<f64> {
     let count = rows.len();
     for pivot in 0..count {
@@ -137,7 +139,7 @@ fn solved(mut rows: Vec<(Vec<f64>, f64)>) -> Vec<f64> {
     rows.into_iter().enumerate().map(|(pivot, (counts, time))| time / counts[pivot]).collect()
 }
 
-/// Bytes in a nanosecond.
+/// Measures the memory bandwidth (bytes/ns).
 fn streamed() -> f64 {
     let (mut to, from) = (vec![Quad([1.0; 4]); STREAMED], vec![Quad([2.0; 4]); STREAMED]);
     let begun = cpu_seconds();
@@ -147,7 +149,7 @@ fn streamed() -> f64 {
     4.0 * (STREAMED * probe::BYTES_OF_A_QUAD) as f64 / (1e9 * (cpu_seconds() - begun))
 }
 
-/// Operations in a nanosecond.
+/// Measures the arithmetic rate (operations/ns).
 fn computed() -> f64 {
     let begun = cpu_seconds();
     let (operations, sum) = probe::compute(Processor::new(), black_box(COMPUTED));
@@ -155,7 +157,7 @@ fn computed() -> f64 {
     operations as f64 / (1e9 * (cpu_seconds() - begun))
 }
 
-/// Grains in the plane and in space, and a block.
+/// Returns grains in two and three dimensions, and a block of material points.
 fn families() -> Result<Vec<Family>, SceneError> {
     const OF_GRAINS: fn(&Cost) -> Vec<f64> = |cost| {
         let each = |count: Option<u64>| count.unwrap_or(0) as f64 / cost.particle_steps as f64;
@@ -201,7 +203,7 @@ fn families() -> Result<Vec<Family>, SceneError> {
     ])
 }
 
-/// Grains at rest, so many diameters (1 m) apart, in a periodic domain so that they stay so.
+/// Returns grains at rest at a spacing in diameters (1 m), in a periodic domain so that they stay at rest.
 fn lattice(dimension: usize, spacing: f64) -> Result<Scene, SceneError> {
     let count = if dimension == 2 { 100 } else { 25 };
     let all = |value: String| vec![value; dimension].join(", ");
@@ -224,9 +226,9 @@ fn lattice(dimension: usize, spacing: f64) -> Result<Scene, SceneError> {
     )
 }
 
-/// A square block that swings, for a duration of a step.
+/// Returns a vibrating square block; its duration is one step.
 fn block() -> Result<Scene, SceneError> {
-    // A wave goes 11.6 m in a second: through .35 of a cell of 1/60 m.
+    // The wave speed is 11.6 m/s: in one step a wave crosses .35 of a cell of 1/60 m.
     scene(
         "block",
         "dimension = 2\nduration = 5.0e-4\nreference_length = 1.0\n\
@@ -244,7 +246,7 @@ fn scene(title: &str, text: &str) -> Result<Scene, SceneError> {
 mod tests {
     use super::*;
 
-    /// A grain of 20 ns, a pair of 3 ns and a contact of 15 ns.
+    /// A grain costs 20 ns, a pair 3 ns and a contact 15 ns.
     #[test]
     fn prices_are_found_from_times_and_counts() {
         let row = |counts: [f64; 3]| (counts.to_vec(), 20.0 * counts[0] + 3.0 * counts[1] + 15.0 * counts[2]);
@@ -254,7 +256,7 @@ mod tests {
         }
     }
 
-    /// The lattices are what they are said to be: without pairs, with pairs that do not touch, and with pairs that do.
+    /// The three lattices have no pairs, pairs without contacts, and contacts.
     #[test]
     fn lattices_have_what_is_counted() {
         use grainbench_dem::{convention::Convention, solver::Dem};

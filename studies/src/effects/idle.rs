@@ -1,4 +1,4 @@
-//! An absent effect, compiled in with a value that does nothing: the answer bit by bit, and what it costs.
+//! Absent effects compiled in with a neutral value: the result must be equal bit by bit, and the cost is measured.
 
 use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
@@ -6,37 +6,38 @@ use grainbench_scene::scene::{self, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver};
 use std::time::{Duration, Instant};
 
-/// Steps at most: enough for contacts to open and close.
+/// Maximum number of steps, enough for contacts to open and close.
 const STEPS: u64 = 20_000;
-/// Particle-steps at most.
+/// Maximum number of particle-steps.
 const PARTICLE_STEPS: u64 = 4_000_000;
-/// Times that both are run, in turn, at least.
+/// Minimum number of alternating pairs of runs.
 const FEWEST: usize = 3;
-/// Times that both are run, in turn, at most.
+/// Maximum number of alternating pairs of runs.
 const MOST: usize = 15;
 
-/// What was seen.
+/// Result of a trial with a neutral value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Idle {
-    /// Whether every number is the same, the sign of zero apart.
+    /// True if all numbers are equal; the sign of zero is ignored.
     pub same: bool,
-    /// Particle-steps and contact evaluations with it over those without it.
+    /// Ratio of particle-steps and contact evaluations with the effect to those without it.
     pub counts: f64,
-    /// Time of the loop with it over that without it, the median of runs in turn; none of runs that are too short to time.
+    /// Median ratio of loop times with and without the effect; `None` if runs are too short to time.
     pub time: Option<f64>,
 }
 
-/// Shortest run whose time is compared (s): below it a ratio is that of the machine's noise.
+/// Shortest run whose time is compared (s); the ratio of shorter runs is noise.
 const SHORTEST: f64 = 0.1;
 
-/// Ratio of the times of two runs; none where one of them is too short to time.
+/// Returns the ratio of the times of two runs, or `None` if one of them is too short to time.
 pub(super) fn ratio_of_times(with: &Record, without: &Record) -> Option<f64> {
     let [with, without] = [with, without].map(|record| record.cost.wall_seconds);
     (with >= SHORTEST && without >= SHORTEST).then(|| with / without)
 }
 
-/// Tries an effect in a scene that does not call for it, in so many runs in turn as there is `patience` for; none where
-/// there is no value that does nothing.
+/// Compares a scene with and without an effect at its neutral value, in alternating runs.
+///
+/// Runs are repeated while `patience` lasts. Returns `None` if the effect has no neutral value.
 ///
 /// # Errors
 /// When the solver cannot run the scene.
@@ -61,7 +62,7 @@ pub fn try_idly(
     if !effect.switch_on_idly(&mut idle) {
         return Ok(None);
     }
-    // The critical step is that of the scene as it is: a material that nobody has must not change it.
+    // The critical step is computed from the unchanged scene, because an unused material must not change it.
     let resolution = match resolution.steps(&plain) {
         Ok((time_step, _)) => Resolution::TimeStep(time_step),
         Err(_) => *resolution,
@@ -87,8 +88,9 @@ pub fn try_idly(
     }))
 }
 
-/// Whether two records end in the same numbers. Equality of numbers is that of bits but for the sign of zero. A spin
-/// that nothing can change is not carried along without friction, and is left out.
+/// Returns true if two records end in the same numbers; the sign of zero is ignored.
+///
+/// Spin is not compared, because it is not integrated without friction when nothing can change it.
 fn same(a: &Record, b: &Record) -> bool {
     let (Some(a), Some(b)) = (a.snapshots.last(), b.snapshots.last()) else { return false };
     a.grains.len() == b.grains.len()

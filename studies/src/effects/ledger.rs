@@ -1,4 +1,4 @@
-//! The ledger of a case.
+//! Effects study of a case: the influence of each physical effect on its claims.
 
 use super::idle::{Idle, ratio_of_times, try_idly};
 use crate::identity;
@@ -18,35 +18,35 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How long an absent effect is tried, beyond the fewest runs.
+/// Time for which an absent effect is tested, beyond the minimum number of runs.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Steps of a method with a grid that an absent effect is tried in.
+/// Maximum number of steps of a method with a grid when an absent effect is tested.
 const STEPS_OF_A_GRID: u64 = 200;
 
-/// One scene of a case with one effect.
+/// An effect in one scene of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     /// Variant of the scene.
     pub variant: &'static str,
     /// The effect.
     pub effect: Effect,
-    /// The key that turned it on; none where it is off.
+    /// Scene key that turns the effect on; `None` if the effect is off.
     pub key: Option<String>,
 }
 
-/// A case at work: runs with an effect switched off are done once, whoever asks.
+/// Effects study of a case. Runs without an effect are shared by all claims.
 pub struct Ledger {
     case: &'static Case,
     solvers: Arc<dyn Solvers>,
     runner: Runner,
     claims: Vec<Claim>,
-    /// By effect and run.
+    /// Runs without an effect, by effect and run.
     without: BTreeMap<(Effect, String), Result<Done, RunError>>,
 }
 
 impl Ledger {
-    /// The ledger of a case: of its claims that pass, of which all runs can be had here.
+    /// Returns the study of a case. It covers short claims that are expected to pass and whose runs are all available.
     #[must_use]
     pub fn new(case: &'static Case, solvers: Arc<dyn Solvers>) -> Self {
         let runner = Runner::new(case, Arc::clone(&solvers));
@@ -58,7 +58,7 @@ impl Ledger {
         Self { case, solvers, runner, claims, without: BTreeMap::new() }
     }
 
-    /// Every variant that claims look at with every effect, on or off.
+    /// Returns each variant used by the claims with each effect, on or off.
     #[must_use]
     pub fn pieces(&self) -> Vec<Piece> {
         let mut pieces: Vec<Piece> = Vec::new();
@@ -67,7 +67,7 @@ impl Ledger {
             for effect in Effect::switches() {
                 let key = effect.key(&scene).filter(|_| knows(run, effect));
                 match pieces.iter_mut().find(|piece| piece.variant == run.variant && piece.effect == effect) {
-                    // A change that belongs to a claim may turn on what the scene as it stands does not call for.
+                    // A claim's change of the scene may turn on an effect that is off in the unchanged scene.
                     Some(piece) => piece.key = piece.key.take().or(key),
                     None => pieces.push(Piece { variant: run.variant, effect, key }),
                 }
@@ -76,11 +76,12 @@ impl Ledger {
         pieces
     }
 
-    /// The entry of a piece, from the result cache where it stands there, and whether it did; nothing of an absent effect that
-    /// has no value that does nothing.
+    /// Returns the entry of an effect and true if it came from the result cache.
+    ///
+    /// The entry is `None` for an absent effect without a neutral value.
     ///
     /// # Errors
-    /// When it cannot be kept.
+    /// When the entry cannot be stored.
     pub fn entry(
         &mut self,
         program: &str,
@@ -96,13 +97,14 @@ impl Ledger {
         Ok((entry, false))
     }
 
-    /// Whether some claim of the case turns red by its value when the effect is switched off: the first that does. Where none
-    /// does, one that has no value without it, as the pressure under what nothing presses has none.
+    /// Returns the first claim whose error exceeds its limit when the effect is switched off.
+    ///
+    /// If there is none, returns a claim without a value, such as the pressure under an unloaded wall.
     #[must_use]
     pub fn catches(&mut self, effect: Effect) -> Option<String> {
         let mut claims = self.claims.clone();
         claims.retain(|claim| self.calls_for(claim, effect));
-        // One that is caught by what the main job runs need not wait for more.
+        // Claims of the quick tiers come first, so that slow claims run only if needed.
         claims.sort_by_key(Claim::set);
         let words = |claim: &Claim| format!("{} · {}", claim.runs[0].solver, claim.quantity);
         let mut nothing = None;
@@ -138,7 +140,7 @@ impl Ledger {
         }
     }
 
-    /// Asks every claim of the variant without the effect.
+    /// Evaluates each claim of the variant without the effect.
     fn switched_off(&mut self, piece: &Piece) -> Entry {
         let mut entry = self.blank(piece);
         let claims: Vec<Claim> = self
@@ -167,11 +169,11 @@ impl Ledger {
         entry
     }
 
-    /// A claim with and without an effect.
+    /// Evaluates a claim with and without an effect.
     fn shift(&mut self, claim: &Claim, effect: Effect) -> Shift {
         let without = self.error_without(claim, effect);
         let row = self.runner.judge(claim);
-        // What cannot be run or measured any more shows nothing, as in any control.
+        // A claim that cannot be run or measured without the effect proves nothing, as in negative controls.
         let red = without.is_some_and(|(error, allowed)| error.abs() > allowed);
         Shift {
             quantity: claim.quantity.clone(),
@@ -183,7 +185,7 @@ impl Ledger {
         }
     }
 
-    /// The error of a claim without an effect and how large it may be; none when it cannot be run or measured any more.
+    /// Returns the error of a claim without an effect and its limit, or `None` if it cannot be run or measured.
     fn error_without(&mut self, claim: &Claim, effect: Effect) -> Option<(f64, f64)> {
         let done: Result<Vec<Done>, RunError> = claim.runs.iter().map(|run| self.run_without(run, effect)).collect();
         let done = done.ok()?;
@@ -191,8 +193,9 @@ impl Ledger {
         Some((error, self.runner.allowed(claim, &done)?.0))
     }
 
-    /// A run of a claim whose solver is given the scene without the effect; the scene of the claim stays what it was,
-    /// and so do the runs that others are judged by.
+    /// Runs the scene without the effect. The expectation still uses the unchanged scene.
+    ///
+    /// Reference runs keep the effect.
     fn run_without(&mut self, run: &Run, effect: Effect) -> Result<Done, RunError> {
         if !self.is_judged(run) {
             return self.runner.run(run);
@@ -217,13 +220,14 @@ impl Ledger {
         Ok(Done::new(scene, Arc::new(record)))
     }
 
-    /// Whether a run is one of ours that is judged, and not one that others are judged by.
+    /// Returns true for a run of our solver that is not a reference run.
     fn is_judged(&self, run: &Run) -> bool {
         !run.aside && !self.solvers.is_program(run.solver)
     }
 
-    /// The first run of the variant by each kind of solver that leaves the effect out, with the effect compiled in. It
-    /// is inert where it is for all of them; counts and times are those of the first.
+    /// Tests an absent effect with the first run of the variant for each kind of solver that can leave the effect out.
+    ///
+    /// The effect is inert if it is inert for all of these solvers. Counts and times are from the first solver.
     fn idle(&self, piece: &Piece) -> Option<Entry> {
         let mut entry = Entry { worth: Worth::Inert, ..self.blank(piece) };
         for &method in piece.effect.left_out_by() {
@@ -244,7 +248,7 @@ impl Ledger {
         let run = self.claims.iter().flat_map(|claim| &claim.runs).find(is_ours)?;
         let mut scene = (*self.runner.scene(run).ok()?).clone();
         if method == Method::Grid {
-            // A grid says its step only when it runs.
+            // The step of a method with a grid is known only from a run.
             let ran = self.runner.run(run).ok()?.record;
             scene.duration = Seconds(ran.provenance.time_step * ran.cost.steps.min(STEPS_OF_A_GRID) as f64);
         }
@@ -254,7 +258,7 @@ impl Ledger {
     }
 }
 
-/// Whether the solver of a run knows an effect.
+/// Returns true if the solver of a run supports an effect.
 fn knows(run: &Run, effect: Effect) -> bool {
     Method::of(run.solver).is_none_or(|method| effect.concerns(method))
 }

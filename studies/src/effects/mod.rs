@@ -1,8 +1,8 @@
-//! What each effect is worth: the ledger of a case.
+//! Effects study: the influence of each physical effect on the claims of a case.
 //!
-//! Every effect that a scene calls for is switched off in turn, and every gate of the case is asked again, as it asks
-//! its negative control: the solver is given the scene without the effect, the expectation stays that of the scene.
-//! Every effect that it does not call for is compiled in with a value that does nothing, and no bit may change.
+//! Each effect that a scene uses is switched off in turn, and every claim of the case is evaluated again. As in a
+//! negative control, the solver gets the scene without the effect, and the expectation is still computed from the scene
+//! with it. Each effect that the scene does not use is compiled in with a neutral value, and no bit may change.
 
 pub mod idle;
 pub mod ledger;

@@ -1,4 +1,4 @@
-//! What each effect is worth in a scene that no case is made of: what changes of what its probes tell, and what that costs.
+//! Effects study of a scene without claims: the change of its probes without an effect, and the cost of the effect.
 
 use super::idle::{ratio_of_times, try_idly};
 use grainbench_reports::study::effects::{Entry, Shift, Worth};
@@ -8,25 +8,25 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Method, Resolution, RunError, Solver};
 use std::time::Duration;
 
-/// How long an absent effect is tried, beyond the fewest runs.
+/// Time for which an absent effect is tested, beyond the minimum number of runs.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// A scene, by a solver.
+/// Scene, solver and resolution of an effects study.
 pub struct Asked<'a> {
-    /// What it is called.
+    /// Name of the scene.
     pub name: String,
     /// The scene.
     pub scene: &'a Scene,
-    /// Who runs it.
+    /// Solver.
     pub solver: &'a dyn Solver,
-    /// How finely.
+    /// Resolution.
     pub resolution: Resolution,
-    /// The least change that matters, in units of the largest value that a probe tells.
+    /// Smallest relevant change, relative to the largest value of a probe.
     pub matters: f64,
 }
 
 impl Asked<'_> {
-    /// The scene as it stands.
+    /// Runs the unchanged scene.
     ///
     /// # Errors
     /// When the solver cannot run it.
@@ -34,8 +34,9 @@ impl Asked<'_> {
         self.solver.run(self.scene, &self.resolution, &mut ())
     }
 
-    /// An effect switched off where the scene calls for it, and tried with a value that does nothing where it does not; nothing
-    /// of what has no such value, or is none of the solver's.
+    /// Evaluates an effect: switches it off if the scene uses it, otherwise tests it with its neutral value.
+    ///
+    /// Returns `None` if the effect has no neutral value or the solver does not support the effect.
     #[must_use]
     pub fn entry(&self, whole: &Record, effect: Effect) -> Option<Entry> {
         if Method::of(&self.solver.name()).is_some_and(|method| !effect.concerns(method)) {
@@ -65,7 +66,7 @@ impl Asked<'_> {
     fn switched_off(&self, whole: &Record, effect: Effect, entry: &mut Entry) {
         let mut without = self.scene.clone();
         effect.switch_off(&mut without);
-        // The step stays that of the scene as it is.
+        // The step is the one of the unchanged scene.
         let resolution = match self.resolution.steps(self.scene) {
             Ok((step, _)) => Resolution::TimeStep(step),
             Err(_) => self.resolution,
@@ -73,7 +74,7 @@ impl Asked<'_> {
         let record = self.solver.run(&without, &resolution, &mut ()).ok();
         for (at, column) in whole.series.columns.iter().enumerate() {
             let moved = record.as_ref().map_or(Some(f64::NAN), |record| farthest(whole, record, at));
-            // What never told a number tells nothing now.
+            // Columns without any value are skipped.
             let Some(moved) = moved else { continue };
             entry.shifts.push(Shift {
                 quantity: column.name.clone(),
@@ -104,14 +105,15 @@ impl Asked<'_> {
     }
 }
 
-/// The farthest that a column is from that of the whole scene at the same sample, in units of its largest value; not a number
-/// where one of them has none, none where the whole scene tells nothing.
+/// Returns the largest difference of a column from the unchanged scene at equal samples, relative to its largest value.
+///
+/// The result is NaN if the changed run has no value, and `None` if the column of the unchanged scene is empty.
 fn farthest(whole: &Record, without: &Record, column: usize) -> Option<f64> {
     let values = whole.series.values.get(column)?;
     let scale = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |scale, value| scale.max(value.abs()));
     let others = without.series.column(&whole.series.columns.get(column)?.name).unwrap_or_default();
     if scale == 0.0 {
-        // Of what is nothing with the effect, anything without it is all there is.
+        // If a quantity is zero with the effect, any non-zero value without it counts as a change of one.
         let largest = others.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         return (!values.is_empty()).then_some(if largest > 0.0 { 1.0 } else { 0.0 });
     }
@@ -153,7 +155,7 @@ mod tests {
     fn what_a_scene_needs_is_told_from_what_it_does_not() {
         assert_eq!(worth(Effect::Friction, 0.01), Worth::Needed);
         assert_eq!(worth(Effect::Cohesion, 0.01), Worth::Inert);
-        // Who does not mind any change needs nothing.
+        // With a very large limit, no effect is needed.
         assert_eq!(worth(Effect::Friction, 1e3), Worth::NotWorthSimulating);
     }
 }

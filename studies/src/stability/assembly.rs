@@ -1,9 +1,9 @@
-//! Assemblies whose largest stable step is known exactly: grains of unit mass on springs of unit stiffness, so that
+//! Assemblies with an exactly known largest stable step: grains of unit mass on springs of unit stiffness, so that
 //! steps are in units of √(m/k).
 //!
-//! Central differences are stable up to Δt = 2/ω of the highest mode. Every assembly is pressed together, so that no
-//! contact opens, and every degree of freedom is perturbed at random by a millionth of the overlap: a symmetric start
-//! never excites the critical mode. It is unstable when the perturbation has grown a thousandfold.
+//! Central differences are stable up to Δt = 2/ω of the highest mode. Every assembly is compressed, so that no contact
+//! opens. Every degree of freedom is perturbed at random by a millionth of the overlap, because a symmetric start never
+//! excites the critical mode. A run is unstable if the perturbation has grown a thousandfold.
 //!
 //! ```text
 //! grain on a wall     ω² = k/m; with a tangential spring κk that does not slip also κ(k/m)(1 + 1/i), i = I/(mR²)
@@ -14,9 +14,9 @@
 //! nine discs in a box the largest eigenvalue of 27 equations: 2/ω = 1.08239, .65402, .53418 for κ = 0, 2/3, 1
 //! ```
 //!
-//! A free pair flies apart within two steps near its limit, 2/ω = √2: it starts overlapped by δ and at rest. In central
-//! differences ½v²(1 − ω²Δt²/4) ≤ ½ω²δ²(1 − ω²Δt²/4) holds at the step at which it parts, so that it parts with more
-//! energy than its spring held if and only if Δt > 2/ω.
+//! A free pair starts at rest with overlap δ and separates within two steps near its limit, 2/ω = √2. In central
+//! differences ½v²(1 − ω²Δt²/4) ≤ ½ω²δ²(1 − ω²Δt²/4) holds at the step of separation. The pair therefore separates
+//! with more energy than its spring stored if and only if Δt > 2/ω.
 
 use super::failure::{Failure, finite};
 use grainbench_scene::error::SceneError;
@@ -32,20 +32,22 @@ use std::path::Path;
 const OVERLAP: f64 = 1e-5;
 /// Perturbation of every degree of freedom (m).
 const PERTURBATION: f64 = 1e-6 * OVERLAP;
-/// Growth that counts as unstable.
+/// Growth factor that counts as unstable.
 const GROWTH: f64 = 1000.0;
-/// Steps; just above the limit by ε a perturbation grows by 1 + √(8ε) in each. Rows of a compressed lattice without
-/// friction slide off each other in any case, at a rate √(overlap/R · k/m) or so that is not felt within as many.
+/// Number of steps. Slightly above the limit, by ε, a perturbation grows by 1 + √(8ε) in each step.
+///
+/// Rows of a compressed lattice without friction always slide off each other, at a rate of about √(overlap/R · k/m).
+/// This is negligible within 400 steps.
 const STEPS: u64 = 400;
-/// Steps within which a pair has parted.
+/// Number of steps within which a free pair separates.
 const APART: u64 = 60;
 
-/// How an assembly is judged.
+/// Criterion of instability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Judge {
-    /// By the growth of its perturbation.
+    /// Growth of the perturbation.
     Growth,
-    /// By the energy with which it flies apart.
+    /// Kinetic energy after separation.
     Energy,
 }
 
@@ -54,22 +56,22 @@ enum Judge {
 pub struct Assembly {
     /// Name.
     pub name: &'static str,
-    /// κ = k_s/k_n of contacts that do not slip; none where they are frictionless and nothing is varied.
+    /// κ = k_s/k_n of contacts that do not slip; `None` for frictionless assemblies in which κ is not varied.
     pub kappa: Option<f64>,
     /// Exact limit in √(m/k).
     pub exact: f64,
-    /// The scene, perturbed.
+    /// Scene with its perturbation.
     pub scene: Scene,
-    /// Places at rest (m), by grain.
+    /// Equilibrium positions (m), by grain.
     rest: Vec<Vector3<f64>>,
     judge: Judge,
 }
 
 impl Assembly {
-    /// Whether a run of it was stable.
+    /// Checks that a run was stable.
     ///
     /// # Errors
-    /// How it failed.
+    /// The error is the kind of failure.
     pub fn judge(&self, record: &Record) -> Result<(), Failure> {
         record.snapshots.iter().try_for_each(finite)?;
         match self.judge {
@@ -94,7 +96,7 @@ impl Assembly {
 }
 
 impl Assembly {
-    /// A way between two places, by the shortest path across periodic faces.
+    /// Returns the minimum image of a distance vector in a periodic domain.
     fn nearest_image(&self, mut way: Vector3<f64>) -> Vector3<f64> {
         if let Some(domain) = self.scene.domain {
             for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
@@ -106,10 +108,10 @@ impl Assembly {
     }
 }
 
-/// Every assembly.
+/// Returns all assemblies.
 ///
 /// # Errors
-/// Never, unless scene files have changed and these have not.
+/// When a scene cannot be read, which occurs only if the scene format has changed.
 pub fn all() -> Result<Vec<Assembly>, SceneError> {
     let mut all = Vec::new();
     for kappa in [0.0, 0.1, 0.2, 2.0 / 7.0, 0.5, 2.0 / 3.0, 1.0, 1.5, 2.0] {
@@ -126,10 +128,10 @@ pub fn all() -> Result<Vec<Assembly>, SceneError> {
     Ok(all)
 }
 
-/// The head of a scene of discs or spheres of unit mass.
+/// Returns the beginning of a scene file of discs or spheres of unit mass.
 fn head(dimension: u32, kappa: f64) -> String {
     let density = if dimension == 2 { std::f64::consts::FRAC_1_PI } else { 0.75 * std::f64::consts::FRAC_1_PI };
-    // So rough that nothing slips.
+    // Friction is so high that nothing slips.
     let friction =
         if kappa > 0.0 { format!("tangential_stiffness = {kappa:?}\nfriction = 100.0\n") } else { String::new() };
     format!(
@@ -166,8 +168,9 @@ fn finish(
     Ok(Assembly { name, kappa, exact, scene, rest, judge })
 }
 
-/// Moves every grain, and turns it where it can be turned, by a random part of the perturbation: along x alone in a
-/// single row, which would buckle otherwise.
+/// Moves every grain by a random part of the perturbation, and turns it by such a part if rotation matters.
+///
+/// A single row is moved only along x, because it would buckle otherwise.
 fn perturb(scene: &mut Scene, turns: bool) {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut dice = move || {
@@ -211,7 +214,7 @@ fn pair() -> Result<Assembly, SceneError> {
     finish("free pair", None, SQRT_2, &text, Judge::Energy)
 }
 
-/// Sixty-four grains in a ring: an even number, so that neighbours can move against each other.
+/// Returns a ring of sixty-four grains. The number is even, so that neighbours can move in opposite directions.
 fn chain() -> Result<Assembly, SceneError> {
     const COUNT: usize = 64;
     let spacing = 2.0 - OVERLAP;

@@ -1,19 +1,20 @@
-//! The largest step that passes, to a given precision.
+//! Bisection for the largest step that passes, to a given precision.
 
-/// Where a step begins to fail.
+/// Bracket of the limit between passing and failing steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bracket<F> {
     /// The largest step that passed.
     pub stable: f64,
-    /// The smallest that failed, and how.
+    /// The smallest step that failed, and the failure; `None` if no step failed.
     pub unstable: Option<(f64, F)>,
 }
 
-/// Halves, in the logarithm, the range between a step that passes and one that fails until they are within `precision`
-/// (a fraction) of each other. Where the larger end passes too, it is doubled up to `doublings` times.
+/// Bisects the logarithmic range between a step that passes and one that fails, to a relative `precision`.
+///
+/// If the larger end passes, it is doubled up to `doublings` times.
 ///
 /// # Errors
-/// How the smaller end failed.
+/// The failure of the smaller end.
 pub fn largest<F>(
     [low, high]: [f64; 2],
     precision: f64,

@@ -1,32 +1,32 @@
-//! How a run fails, told apart.
+//! Kinds of failure of a run.
 
 use grainbench_scene::record::Snapshot;
 use grainbench_scene::solver::{Cause, RunError};
 use std::fmt;
 
-/// A failure that a step can be called unstable for.
+/// Failure for which a step counts as unstable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Failure {
-    /// A number is infinite or none.
+    /// A number is infinite or NaN.
     NotFinite,
-    /// There is more energy, or a larger perturbation, by this factor than there may be.
+    /// Energy or perturbation exceeds its limit by this factor.
     Growth(f64),
-    /// A grain is on the wrong side of what it cannot pass.
+    /// A grain has passed through a wall or another grain.
     Tunnelling(String),
-    /// What must move does not.
+    /// A grain does not move although it must.
     Freeze(String),
-    /// A cell lost its volume.
+    /// A cell has collapsed to zero volume.
     CellCollapsed,
-    /// Grains overlap by this part of a radius, more than they may.
+    /// The overlap of two grains, in radii, exceeds its limit.
     Overlap(f64),
-    /// Something else that must hold does not.
+    /// Another condition is violated.
     Wrong(String),
-    /// The solver itself gave up, and said why.
+    /// The solver stopped with this message.
     Broken(String),
 }
 
 impl Failure {
-    /// Whether the solver said so itself.
+    /// Returns true if the solver itself reported the failure.
     #[must_use]
     pub const fn is_typed(&self) -> bool {
         matches!(self, Self::Broken(_) | Self::CellCollapsed)
@@ -48,7 +48,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// Why a run that ended in an error failed; nothing when the error says that it could not even begin.
+/// Returns the failure of a run that ended in an error, or `None` if the run could not start.
 #[must_use]
 pub fn of_error(error: &RunError) -> Option<Failure> {
     match error {
@@ -61,10 +61,10 @@ pub fn of_error(error: &RunError) -> Option<Failure> {
     }
 }
 
-/// Whether every number of a snapshot is finite.
+/// Checks that every number of a snapshot is finite.
 ///
 /// # Errors
-/// When one is not.
+/// When a number is not finite.
 pub fn finite(snapshot: &Snapshot) -> Result<(), Failure> {
     let sound = snapshot.grains.iter().all(|grain| {
         let vectors = [grain.position, grain.velocity, grain.spin];

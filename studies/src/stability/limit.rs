@@ -12,38 +12,38 @@ use grainbench_reports::study::stability::Limit;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Unstable};
 
-/// How near the two ends of a bracket come.
+/// Relative precision of a bracket.
 const PRECISION: f64 = 0.005;
-/// Steps between which the limit of an assembly is looked for, in √(m/k): the same for all, or the answer would be in
-/// the question.
+/// Range of steps in which the limit of an assembly is sought, in √(m/k). It is the same for all assemblies, so that it
+/// contains no information about the exact limit.
 const RANGE: [f64; 2] = [0.15, 3.0];
-/// The step that decks and commands take by default, in √(m/k): a tenth of 2√(m/k).
+/// Default step of input decks and commands, in √(m/k): a tenth of 2√(m/k).
 const DEFAULT: f64 = 0.2;
 /// Solvers with springs.
 pub const SPRINGS: [&str; 3] = ["dem", "lammps", "liggghts"];
-/// Settings of the method with a grid.
+/// Settings of the material point method.
 pub const GRIDS: [&str; 6] =
     ["mpm", "mpm+linear", "mpm+gimp+flip", "mpm+linear+flip", "mpm+linear+flip+usf", "mpm+linear+flip+usl"];
-/// Energy over that at the start that counts as growth.
+/// Ratio of energy to its initial value that counts as growth.
 const MORE_ENERGY: f64 = 1.1;
 
-/// The name of the limit of an assembly in a result cache.
+/// Returns the name of an assembly's limit in a result cache.
 #[must_use]
 pub fn name_of_assembly(program: &str, assembly: &Assembly, solver: &str) -> String {
     let text = format!("{:?}", assembly.scene);
     identity::of_words(program, &["limit", assembly.name, &text, solver])
 }
 
-/// The name of the limit of the bar.
+/// Returns the name of the bar's limit in a result cache.
 #[must_use]
 pub fn name_of_bar(program: &str, setting: &str, cells: f64) -> String {
     identity::of_words(program, &["bar", setting, &cells.to_string()])
 }
 
-/// The limit of an assembly with a solver, from the result cache where it stands there; and whether it did.
+/// Returns the limit of an assembly for a solver, and true if it came from the result cache.
 ///
 /// # Errors
-/// When it cannot be kept.
+/// When the limit cannot be stored.
 pub fn of_assembly(
     program: &str,
     assembly: &Assembly,
@@ -81,11 +81,13 @@ pub fn of_assembly(
     Ok((limit, false))
 }
 
-/// Courant number up to which the method with a grid keeps the energy of a vibrating bar to a tenth, at a number of
-/// cells over the length of `bar`, the scene of a vibrating bar.
+/// Returns the largest Courant number at which the energy of a vibrating bar grows by at most a tenth, and true if it
+/// came from the result cache.
+///
+/// `bar` is the scene of the vibrating bar, and `cells` the number of cells over its length.
 ///
 /// # Errors
-/// When it cannot be kept.
+/// When the limit cannot be stored.
 pub fn of_bar(
     program: &str,
     bar: &Scene,
@@ -133,7 +135,7 @@ fn vibrate(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Resu
     if most > MORE_ENERGY { Err(Stop::Unstable(Failure::Growth(most))) } else { Ok(()) }
 }
 
-/// Why a step is not taken.
+/// Reason why a step does not pass.
 enum Stop {
     /// The solver cannot run the scene at any step.
     Cannot(String),
@@ -145,7 +147,7 @@ fn stop(error: RunError) -> Stop {
     of_error(&error).map_or_else(|| Stop::Cannot(error.to_string()), Stop::Unstable)
 }
 
-/// Bisects and fills the row.
+/// Bisects and fills in the result.
 fn fill(limit: &mut Limit, range: [f64; 2], doublings: u32, test: impl FnMut(f64) -> Result<(), Stop>) {
     match largest(range, PRECISION, doublings, test) {
         Err(Stop::Cannot(why)) => limit.detail = why,

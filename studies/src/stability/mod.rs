@@ -1,4 +1,4 @@
-//! What stays stable: the largest stable step, found by bisection on a typed failure, and hard cases.
+//! Stability study: the largest stable step, found by bisection on a typed failure, and hard cases.
 
 pub mod assembly;
 pub mod bisection;
@@ -8,5 +8,5 @@ pub mod limit;
 
 use std::time::Duration;
 
-/// How long another program may take: one whose grains have flown off may go on for hours.
+/// Time limit of an external solver; grains that have escaped could keep it running for hours.
 const PATIENCE: Duration = Duration::from_secs(20);

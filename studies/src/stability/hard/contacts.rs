@@ -1,4 +1,4 @@
-//! Contacts as they should not be: deep, fast, cornered, on top of each other.
+//! Extreme contacts: deep overlaps, high speeds, corners and coincident grains.
 
 use super::{HardCase, case, changed, end, kinetic, kinetic_at_start, near};
 use crate::stability::failure::Failure;
@@ -74,7 +74,7 @@ fn released(scene: &Scene, record: &Record) -> Result<(), Failure> {
     near("height", grains[0].position.y.abs().max(grains[1].position.y.abs()), 0.0, 1e-6)
 }
 
-/// Critical step 2√(m/k) = 2√(785/1e7) = .0177 s; in a tenth of it the disc flies 1.8 m.
+/// The critical step is 2√(m/k) = 2√(785/1e7) = .0177 s; in a tenth of it the disc moves 1.8 m.
 const BULLET: &str = "title = 'Too fast'\ndimension = 2\nduration = 0.05\n\
     materials.m = { density = 1000.0, young_modulus = 1.0e10, poisson_ratio = 0.3 }\n\
     [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e7\n\
@@ -91,7 +91,7 @@ fn stopped(scene: &Scene, record: &Record) -> Result<(), Failure> {
     if after > 1.01 * before { Err(Failure::Growth(after / before)) } else { Ok(()) }
 }
 
-/// Eight cells a radius: the lowest point of the disc is on a border of cells.
+/// With eight cells per radius, the lowest point of the disc is on a border of cells.
 const EDGE: &str = "title = 'Along a border'\ndimension = 2\ngravity = [0.0, -1.0]\nduration = 1.0\n\
     materials.m = { density = 1000.0, young_modulus = 1.0e6, poisson_ratio = 0.3 }\n\
     [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n\
@@ -130,7 +130,7 @@ fn squeezed(_scene: &Scene, record: &Record) -> Result<(), Failure> {
     }
 }
 
-/// A floor, and a wall with a normal of its own, into which gravity drives the disc.
+/// Returns a scene with a floor and an inclined wall; gravity drives the disc into the corner.
 fn corner(normal: [f64; 2]) -> String {
     format!(
         "title = 'A corner'\ndimension = 2\ngravity = [-7.0, -7.0]\nduration = 2.0\n\
@@ -148,7 +148,7 @@ fn in_the_corner(scene: &Scene, record: &Record) -> Result<(), Failure> {
     let energy = |velocity: f64, place: nalgebra::Vector3<f64>| 0.5 * velocity - scene.gravity.dot(&place);
     let start = energy(scene.grains[0].velocity.norm_squared(), scene.grains[0].position);
     let now = energy(grains[0].velocity.norm_squared(), grains[0].position);
-    // In the corner itself potential energy is lowest: 7 (x + y) > 0 inside.
+    // Potential energy has its minimum in the corner: 7 (x + y) > 0 inside.
     if now > start + 0.02 * start.abs() {
         return Err(Failure::Growth(now / start));
     }

@@ -1,11 +1,11 @@
-//! Ratios and units far from one.
+//! Extreme ratios of mass, size, stiffness and damping, and extreme units.
 
 use super::{HardCase, case, end, head_on, kinetic, kinetic_at_start, near};
 use crate::stability::failure::Failure;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 
-/// Two discs, elastic, head-on: radii, densities, length and speed.
+/// Elastic head-on impact of two discs.
 struct Impact {
     radii: [f64; 2],
     densities: [f64; 2],
@@ -15,16 +15,16 @@ struct Impact {
 }
 
 impl Impact {
-    /// The duration covers the gap, the contact and as much again.
+    /// Returns the scene; its duration is three times the time of approach and contact.
     fn text(&self) -> String {
         let &Self { radii: [a, b], densities: [first, second], length, speed, stiffness } = self;
         let mass = |radius: f64, density: f64| density * std::f64::consts::PI * (radius * length).powi(2);
         let reduced = 1.0 / (1.0 / mass(a, first) + 1.0 / mass(b, second));
         let gap = 0.02 * a.min(b) * length;
         let duration = 3.0 * (gap / speed + std::f64::consts::PI * (reduced / stiffness).sqrt());
-        // Moduli whose waves cross either grain in a hundredth of the time in which the smaller one flies its radius: a
-        // grain that is away before the other has felt it as a whole leaves waves in it, and does not part as from a
-        // point.
+        // The moduli are chosen so that waves cross either grain in a hundredth of the time in which the smaller one
+        // moves by its radius. If a grain leaves before the other is in equilibrium, waves remain in the other grain.
+        // The velocities then differ from those of point masses.
         let modulus = |radius: f64, density: f64| 1e4 * density * (speed * radius / a.min(b)).powi(2);
         let (stiff_first, stiff_second) = (modulus(a, first), modulus(b, second));
         format!(
@@ -44,7 +44,7 @@ impl Impact {
     }
 }
 
-/// Impact at such a speed that the deepest overlap is a hundredth of a radius.
+/// Returns an impact whose speed gives a maximum overlap of a hundredth of a radius.
 fn impact(radii: [f64; 2], densities: [f64; 2], length: f64) -> String {
     let speed = length;
     let mass = |radius: f64, density: f64| density * std::f64::consts::PI * (radius * length).powi(2);
@@ -112,7 +112,7 @@ fn three_in_a_row(scene: &Scene, record: &Record) -> Result<(), Failure> {
     near("energy", after, before, 0.01 * before)
 }
 
-/// γ_n = 2ζ√(k/m*) of unit masses, m* = 1/2 and k = 1e4.
+/// γ_n = 2ζ√(k/m*) for unit masses, with m* = 1/2 and k = 1e4.
 fn damped(ratio: f64) -> String {
     format!(
         "title = 'Damped impact'\ndimension = 2\nduration = 2.0\nmaterials.m.density = {:?}\n\
@@ -143,7 +143,7 @@ const SPIN: &str = "title = 'High spin'\ndimension = 2\ngravity = [0.0, -10.0]\n
     [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
     [output]\nevery = 0.5\n[probes]\na = { grain = 'a' }\n";
 
-/// It slides all the while: v = μ g t.
+/// The disc slides all the time: v = μ g t.
 fn spin(scene: &Scene, record: &Record) -> Result<(), Failure> {
     let grains = end(record);
     near("velocity", grains[0].velocity.x, 0.5 * 10.0 * 0.5, 0.05)?;

@@ -1,4 +1,4 @@
-//! What must not creep.
+//! Rest over many steps without creep.
 
 use super::{HardCase, case, end, kinetic, near};
 use crate::stability::failure::Failure;
@@ -6,7 +6,7 @@ use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use std::fmt::Write as _;
 
-/// Steps of a tenth of the critical one that the heap rests for.
+/// Duration of rest, in steps of a tenth of the critical step.
 const STEPS: f64 = 1e6;
 
 pub(super) fn cases() -> Vec<HardCase> {
@@ -18,8 +18,9 @@ pub(super) fn cases() -> Vec<HardCase> {
     )]
 }
 
-/// Three, two and one, between stops, with friction and dashpots. Unit masses, k = 1e6: a tenth of the critical step is
-/// 2e-4 s.
+/// Returns rows of three, two and one discs between stops, with friction and dashpots.
+///
+/// The masses are one and k = 1e6, so that a tenth of the critical step is 2e-4 s.
 fn heap() -> String {
     let mut text = format!(
         "title = 'A heap'\ndimension = 2\ngravity = [0.0, -10.0]\nduration = {:?}\nmaterials.m.density = {:?}\n\

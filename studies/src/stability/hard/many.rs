@@ -1,4 +1,4 @@
-//! A thousand grains: what holds for two must hold for many, for long, and when a run goes on from its middle.
+//! A thousand grains: long rest, dense shear, and a restart in the middle of a run.
 
 use super::{HardCase, case, end, kinetic, near};
 use crate::stability::failure::Failure;
@@ -7,14 +7,14 @@ use grainbench_scene::scene::Scene;
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
 
-/// Rows of the heap: 990 discs.
+/// Rows of the heap, which has 990 discs.
 const ROWS: usize = 44;
-/// Steps of a tenth of the critical one that the heap rests for.
+/// Duration of rest, in steps of a tenth of the critical step.
 const STEPS: f64 = 1e6;
-/// Discs along the sheared layer, and rows of it.
+/// Discs along the sheared layer, and number of its rows.
 const ACROSS: usize = 40;
 const LAYERS: usize = 25;
-/// Radius of a sheared disc; they stand two apart, so that they fill .80 of the plane.
+/// Radius of a sheared disc; centres are two apart, so that the area fraction is .80.
 const RADIUS: f64 = 0.94;
 
 pub(super) fn cases() -> Vec<HardCase> {
@@ -49,7 +49,7 @@ pub(super) fn cases() -> Vec<HardCase> {
     ]
 }
 
-/// Laws of unit masses with k = 1e6, so that a tenth of the critical step is 2e-4 s.
+/// Returns the beginning of a scene of unit masses with k = 1e6: a tenth of the critical step is 2e-4 s.
 fn head(title: &str, duration: f64, gravity: f64, radius: f64) -> String {
     format!(
         "title = '{title}'\ndimension = 2\ngravity = [0.0, {gravity:?}]\nduration = {duration:?}\nmaterials.m.density = {:?}\n\
@@ -93,7 +93,7 @@ fn at_rest(scene: &Scene, record: &Record) -> Result<(), Failure> {
     near("kinetic energy", kinetic(grains, scene), 0.0, 1e-6)
 }
 
-/// Height of the layer.
+/// Returns the height of the layer.
 fn height() -> f64 {
     3.0_f64.sqrt() * (LAYERS - 1) as f64 + 2.0 * RADIUS
 }

@@ -1,4 +1,4 @@
-//! Hard cases, each with what must hold whatever the solver, and a verdict from every solver that can express it.
+//! Hard cases: each has a solver-independent condition, and each solver that supports the case gets a verdict.
 
 mod contacts;
 mod extremes;
@@ -21,52 +21,52 @@ use grainbench_scene::solver::{Ahead, Resolution, RunError, Solver, Unstable, Wa
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
-/// Checks what must hold at the end.
+/// Checks the condition at the end of a run.
 type Check = fn(&Scene, &Record) -> Result<(), Failure>;
 
 /// A hard case.
 pub struct HardCase {
     /// Name.
     pub name: String,
-    /// What must hold, in words.
+    /// Description of the condition.
     pub must: &'static str,
-    /// Why the scene could not be made, or the scene.
+    /// Scene, or the error of reading it.
     pub scene: Result<Scene, SceneError>,
-    /// What must hold, in deed.
+    /// Check of the condition.
     pub check: Check,
-    /// Whether it is continued from a checkpoint halfway too, and must end in the same bits.
+    /// True if the run is also continued from a checkpoint halfway and must end in the same bits.
     pub goes_on: bool,
-    /// Who is asked; what takes a solver a thousand million grain-steps is asked of the one that takes a minute for them.
+    /// Solvers to test; only a fast solver is listed for cases of 10⁹ grain-steps, which it does in a minute.
     pub asked: &'static [&'static str],
 }
 
-/// Solvers that are asked.
+/// Tested solvers.
 pub const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
-/// Steps smaller than the default one that are tried, as parts of it.
+/// Fractions of the default step that are tried after a failure.
 const SMALLER: [f64; 4] = [0.5, 0.25, 0.1, 0.01];
-/// The default step of springs, as a fraction of the critical one.
+/// Default step of solvers with springs, as a fraction of the critical step.
 const FRACTION: f64 = 0.1;
-/// Cells over a radius by default.
+/// Default number of cells per radius.
 const CELLS: f64 = 8.0;
-/// Material points in a cell, along each axis.
+/// Material points per cell along each axis.
 const POINTS: u32 = 2;
-/// Smaller steps are tried as long as a run is expected to take no more than this (s).
+/// Longest expected run (s) of an attempt with a smaller step.
 const PATIENCE: f64 = 60.0;
-/// A case that is expected to take longer than this (s) at the default step is not one that a solver can express.
+/// Longest expected run (s) at the default step; beyond it the case counts as unsupported.
 const HOPELESS: f64 = 600.0;
 
-/// Every hard case.
+/// Returns all hard cases.
 #[must_use]
 pub fn all() -> Vec<HardCase> {
     [extremes::cases(), contacts::cases(), long::cases(), many::cases()].into_iter().flatten().collect()
 }
 
-/// A case from the text of its scene.
+/// Returns a case from the text of its scene.
 fn case(name: impl Into<String>, must: &'static str, text: &str, check: Check) -> HardCase {
     changed(name, must, text, |_| {}, check)
 }
 
-/// The same with a change that a scene file would not be let through with.
+/// Returns a case with a change of the scene that the scene reader would reject.
 fn changed(
     name: impl Into<String>,
     must: &'static str,
@@ -83,24 +83,24 @@ fn changed(
     HardCase { name, must, scene, check, goes_on: false, asked: &SOLVERS }
 }
 
-/// The name of the verdict of a solver in a result cache.
+/// Returns the name of a solver's verdict in a result cache.
 #[must_use]
 pub fn name_of(program: &str, case: &HardCase, solver: &str) -> String {
     let text = format!("{:?}", case.scene);
     identity::of_words(program, &["hard", &case.name, &text, solver])
 }
 
-/// What a verdict of a solver is expected to take (s).
+/// Estimates the time of a verdict (s).
 #[must_use]
 pub fn seconds(case: &HardCase, solver: &str) -> f64 {
     let expected = case.scene.as_ref().map_or(0.0, |scene| nominal_seconds(scene, &resolution(solver, 1.0)));
     if expected > HOPELESS { 0.0 } else { expected }
 }
 
-/// The verdict of a solver, from the result cache where it stands there; and whether it did.
+/// Returns the verdict of a solver, and true if it came from the result cache.
 ///
 /// # Errors
-/// When it cannot be kept.
+/// When the verdict cannot be stored.
 pub fn verdict(
     program: &str,
     case: &HardCase,
@@ -116,7 +116,7 @@ pub fn verdict(
     Ok((row, false))
 }
 
-/// Runs a case with a solver by name: at its default step, and where that fails at smaller ones.
+/// Runs a case with a solver at its default step, and at smaller steps if it fails.
 #[must_use]
 pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> Hard {
     let mut row = Hard {
@@ -168,13 +168,13 @@ pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> Hard {
     row
 }
 
-/// Why an attempt did not hold.
+/// Reason why an attempt failed.
 enum Stop {
     Cannot(RunError),
     Failed(Failure),
 }
 
-/// The default resolution of a solver, its step multiplied.
+/// Returns the default resolution of a solver with its step multiplied by `part`.
 fn resolution(solver: &str, part: f64) -> Resolution {
     match solver.split([':', '+']).next() {
         Some("rigid") => Resolution::substeps((8.0 / part).round() as u32),
@@ -199,7 +199,7 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
             record.snapshots.iter().try_for_each(finite).map_err(Stop::Failed)?;
             (case.check)(scene, &record).map_err(Stop::Failed)
         }
-        // A step that is refused with what would be stable is a failure that is typed, and early.
+        // A solver that rejects the step and names a stable one has failed early, with a typed error.
         Err(RunError::Resolution { reason, .. }) => Err(Stop::Failed(Failure::Broken(reason))),
         Err(error) => Err(match of_error(&error) {
             Some(failure) => Stop::Failed(failure),
@@ -208,7 +208,7 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
     }
 }
 
-/// Keeps the checkpoint of half the steps.
+/// Observer that keeps the checkpoint at half of the steps.
 #[derive(Default)]
 struct Halfway {
     steps: u64,
@@ -236,7 +236,7 @@ impl Watch for Halfway {
     }
 }
 
-/// Whether a run that goes on from its middle ends as the whole one did.
+/// Checks that a run continued from its middle ends in the same bits as the uninterrupted run.
 fn continues(
     scene: &Scene,
     solver: &dyn Solver,
@@ -255,12 +255,12 @@ fn continues(
     Ok(())
 }
 
-/// Grains at the end.
+/// Returns the grains at the end.
 fn end(record: &Record) -> &[GrainState] {
     record.snapshots.last().map_or(&[], |snapshot| &snapshot.grains)
 }
 
-/// Kinetic energy of some grains, rotation included (J).
+/// Returns the kinetic energy of grains, including rotation (J).
 fn kinetic(grains: &[GrainState], scene: &Scene) -> f64 {
     let of = |(grain, start): (&GrainState, &grainbench_scene::scene::Grain)| {
         0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * start.inertia * grain.spin.norm_squared()
@@ -268,7 +268,7 @@ fn kinetic(grains: &[GrainState], scene: &Scene) -> f64 {
     grains.iter().zip(&scene.grains).map(of).sum()
 }
 
-/// Kinetic energy at the start (J).
+/// Returns the kinetic energy at the start (J).
 fn kinetic_at_start(scene: &Scene) -> f64 {
     let of = |grain: &grainbench_scene::scene::Grain| {
         0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * grain.inertia * grain.spin.norm_squared()
@@ -276,9 +276,9 @@ fn kinetic_at_start(scene: &Scene) -> f64 {
     scene.grains.iter().map(of).sum()
 }
 
-/// Refuses a value that is off by more than a part of a scale.
+/// Returns an error if a value differs from the expected value by more than `allowed`.
 fn near(what: &str, value: f64, expected: f64, allowed: f64) -> Result<(), Failure> {
-    // Written so that what is no number does not pass.
+    // The comparison is written so that NaN fails.
     if (value - expected).abs() <= allowed {
         Ok(())
     } else {
@@ -286,7 +286,7 @@ fn near(what: &str, value: f64, expected: f64, allowed: f64) -> Result<(), Failu
     }
 }
 
-/// A head-on impact without loss in the plane: momentum, and the speeds of two points.
+/// Checks an elastic head-on impact: the velocities are those of two point masses.
 fn head_on(scene: &Scene, record: &Record) -> Result<(), Failure> {
     let (a, b) = (&scene.grains[0], &scene.grains[1]);
     let grains = end(record);
@@ -319,14 +319,14 @@ mod tests {
         }
     }
 
-    /// A check that passes whatever comes out would call anything stable.
+    /// A check that passes for any result would call every step stable.
     #[test]
     fn every_check_refuses_a_run_of_something_else() {
         for case in all() {
             let scene = case.scene.unwrap();
             let mut grains: Vec<GrainState> =
                 scene.grains.iter().enumerate().map(|(at, grain)| GrainState::start(at as u32 + 1, grain)).collect();
-            // Far away, and faster than anything here.
+            // Grains are far away and faster than in any case.
             for grain in &mut grains {
                 grain.position += nalgebra::Vector3::new(-3e9, -7e9, -5e9) * grain.radius;
                 grain.velocity += nalgebra::Vector3::new(-1e9, -2e9, 0.0);
